@@ -30,6 +30,7 @@ COMMANDS = {
     "diff": "Compare two models by meaning.",
     "explain": "Explain a rule or another finding.",
     "fmt": "Rewrite models in canonical form.",
+    "generate": "Write or check build options of the firmware: colcon.meta.",
     "info": "Show the content of a model.",
     "init": "Write a commented app.yaml to begin with, or copy an example.",
     "lsp": "Run the language server, for editors.",

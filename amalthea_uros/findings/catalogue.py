@@ -15,6 +15,7 @@ FAMILIES = {
     "CFG": "Settings of a project",
     "APP": "Content of app.yaml",
     "BLD": "Building a model",
+    "GEN": "Generating and checking build options",
     "EXT": "Extracting the performance model",
     "ANA": "Analysing response times",
     "SIM": "Simulating systems",

@@ -9,7 +9,7 @@ from pydantic import Field
 from amalthea_uros.spec.executors import Executor, MessageCost
 from amalthea_uros.spec.section import Section, Shorthand
 from amalthea_uros.spec.transports import Agent, Transport
-from amalthea_uros.spec.values import Count, CountOrNone, Duration, Name, Priority, Size, described
+from amalthea_uros.spec.values import Count, CountOrNone, Duration, Name, OffsetOrNumberZero, Priority, Size, described
 
 
 class ResponseTime(Shorthand):
@@ -34,15 +34,29 @@ class Initialisation(Section):
     """Response time of the agent; if omitted, only the minimum number of cycles is known."""
 
 
+_TRANSPORTS = described(
+    udp="UDP sockets.",
+    tcp="TCP sockets.",
+    serial="A serial device of a POSIX system.",
+    custom="Functions of the application: what the ports to microcontrollers use.",
+)
+_CREATION_MODES = described(
+    bin="Entities are described in binary form.",
+    refs="Entities are described by references to profiles of the agent.",
+    xml="Entities are described in XML: older releases.",
+)
+
+
 class PoolSizes(Section):
-    """Static pools of rmw_microxrcedds, by the names of its build options."""
+    """Build options of the middleware, by their names: those of rmw_microxrcedds, of its XRCE-DDS client, and of zenoh-pico."""
 
     RMW_UXRCE_MAX_SESSIONS: Count | None = None
     """Sessions with an agent."""
     RMW_UXRCE_MAX_NODES: Count | None = None
     """Nodes."""
     RMW_UXRCE_MAX_TOPICS: Annotated[int, Field(strict=True, ge=-1)] | None = None
-    """Topics; -1: as many as there are publishers, subscriptions, services and clients."""
+    """Topics, one per publisher and per subscription; -1: as many as `RMW_UXRCE_MAX_PUBLISHERS` and `RMW_UXRCE_MAX_SUBSCRIPTIONS`
+    together."""
     RMW_UXRCE_MAX_PUBLISHERS: CountOrNone | None = None
     """Publishers."""
     RMW_UXRCE_MAX_SUBSCRIPTIONS: CountOrNone | None = None
@@ -51,12 +65,90 @@ class PoolSizes(Section):
     """Service servers."""
     RMW_UXRCE_MAX_CLIENTS: CountOrNone | None = None
     """Service clients."""
+    RMW_UXRCE_MAX_WAIT_SETS: CountOrNone | None = None
+    """Wait sets: one per executor that has spun."""
+    RMW_UXRCE_MAX_GUARD_CONDITION: CountOrNone | None = None
+    """Guard conditions: one per timer, and those of the application."""
     RMW_UXRCE_MAX_HISTORY: Count | None = None
-    """Messages that are kept for all subscriptions, services and clients together."""
+    """Slots for received messages that wait until they are taken, shared by all subscriptions, services and clients."""
     RMW_UXRCE_MTU: Size | None = None
-    """Maximum size of a message of the transport."""
+    """Maximum size of a message of the transport: the `UCLIENT_..._TRANSPORT_MTU` of the transport that is used."""
     RMW_UXRCE_STREAM_HISTORY: Count | None = None
-    """MTU-sized buffers of a reliable stream."""
+    """MTU-sized buffers of each reliable stream, a power of two."""
+    RMW_UXRCE_STREAM_HISTORY_INPUT: Count | None = None
+    """MTU-sized buffers of the reliable input stream, a power of two; only together with `RMW_UXRCE_STREAM_HISTORY_OUTPUT`."""
+    RMW_UXRCE_STREAM_HISTORY_OUTPUT: Count | None = None
+    """MTU-sized buffers of the reliable output stream, a power of two; only together with `RMW_UXRCE_STREAM_HISTORY_INPUT`."""
+    RMW_UXRCE_PUBLISH_RELIABLE_TIMEOUT: Duration | None = None
+    """Time after which publishing a reliable message gives up."""
+    RMW_UXRCE_ENTITY_CREATION_DESTROY_TIMEOUT: OffsetOrNumberZero | None = None
+    """Time after which creating or destroying an entity gives up; 0: it is not checked."""
+    RMW_UXRCE_ENTITY_CREATION_TIMEOUT: OffsetOrNumberZero | None = None
+    """The same, for creating only."""
+    RMW_UXRCE_ENTITY_DESTROY_TIMEOUT: OffsetOrNumberZero | None = None
+    """The same, for destroying only."""
+    RMW_UXRCE_NODE_NAME_MAX_LENGTH: Count | None = None
+    """Characters of the name of a node, with its terminator."""
+    RMW_UXRCE_TOPIC_NAME_MAX_LENGTH: Count | None = None
+    """Characters of the name of a topic or service, with the leading `/` and its terminator."""
+    RMW_UXRCE_TYPE_NAME_MAX_LENGTH: Count | None = None
+    """Characters of the name of a message type, with its terminator."""
+    RMW_UXRCE_REF_BUFFER_LENGTH: Count | None = None
+    """Characters of a reference to a profile of the agent, for `RMW_UXRCE_CREATION_MODE: refs`."""
+    RMW_UXRCE_XML_BUFFER_LENGTH: Count | None = None
+    """Not read any more."""
+    RMW_UXRCE_TRANSPORT: Annotated[Literal["udp", "tcp", "serial", "custom"], _TRANSPORTS] | None = None
+    """Transport that the middleware is built with; default: `udp` and `tcp` for these, else `custom`."""
+    RMW_UXRCE_CREATION_MODE: Annotated[Literal["bin", "refs", "xml"], _CREATION_MODES] | None = None
+    """How entities are described to the agent."""
+    RMW_UXRCE_GRAPH: bool | None = None
+    """Whether the graph of nodes and topics is available."""
+    RMW_UXRCE_ALLOW_DYNAMIC_ALLOCATIONS: bool | None = None
+    """Whether pools of entities grow on the heap when they are full; the slots for received messages never do."""
+    RMW_UROS_ERROR_HANDLING: bool | None = None
+    """Whether a callback of the application is told of errors, such as dropped messages."""
+    UCLIENT_UDP_TRANSPORT_MTU: Size | None = None
+    """Maximum size of a message, for the transport `udp`."""
+    UCLIENT_TCP_TRANSPORT_MTU: Size | None = None
+    """Maximum size of a message, for the transport `tcp`."""
+    UCLIENT_SERIAL_TRANSPORT_MTU: Size | None = None
+    """Maximum size of a message, for the transport `serial`."""
+    UCLIENT_CUSTOM_TRANSPORT_MTU: Size | None = None
+    """Maximum size of a message, for the transport `custom`."""
+    UCLIENT_MAX_SESSION_CONNECTION_ATTEMPTS: Count | None = None
+    """Attempts to connect to the agent before the initialisation fails."""
+    UCLIENT_MIN_SESSION_CONNECTION_INTERVAL: Duration | None = None
+    """Time between two of these attempts."""
+    UCLIENT_MIN_HEARTBEAT_TIME_INTERVAL: Duration | None = None
+    """Time without input after which an unacknowledged message is announced again."""
+    UCLIENT_HARD_LIVELINESS_CHECK: bool | None = None
+    """Whether the agent drops a client that it does not hear from."""
+    UCLIENT_HARD_LIVELINESS_CHECK_TIMEOUT: Duration | None = None
+    """Time after which it does."""
+    BATCH_UNICAST_SIZE: Size | None = None
+    """zenoh-pico: buffer of a unicast link, for each direction."""
+    BATCH_MULTICAST_SIZE: Size | None = None
+    """zenoh-pico: buffer of a multicast link, for each direction."""
+    FRAG_MAX_SIZE: Size | None = None
+    """zenoh-pico: maximum size of a message that arrives in fragments."""
+    Z_CONFIG_SOCKET_TIMEOUT: Duration | None = None
+    """zenoh-pico: timeout of a socket."""
+    Z_TRANSPORT_LEASE: Duration | None = None
+    """zenoh-pico: time without a message after which a connection counts as lost."""
+    Z_TRANSPORT_CONNECT_TIMEOUT: Duration | None = None
+    """zenoh-pico: timeout of a connection attempt."""
+    Z_TRANSPORT_ACCEPT_TIMEOUT: Duration | None = None
+    """zenoh-pico: timeout of accepting a connection."""
+    Z_RUNTIME_MAX_TASKS: Count | None = None
+    """zenoh-pico: jobs of its background thread."""
+    Z_MAX_KEYEXPR_LENGTH: Count | None = None
+    """zenoh-pico: characters of a key expression."""
+    Z_FEATURE_MULTI_THREAD: bool | None = None
+    """zenoh-pico: whether it has threads of its own."""
+    Z_FEATURE_BATCHING: bool | None = None
+    """zenoh-pico: whether messages can be held back and sent together."""
+    Z_FEATURE_FRAGMENTATION: bool | None = None
+    """zenoh-pico: whether messages longer than a batch are sent in fragments."""
 
 
 _POLICIES = described(

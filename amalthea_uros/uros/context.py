@@ -6,10 +6,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from amalthea_uros.diagnostics import Location
+from amalthea_uros.perf.executors import Executor
 from amalthea_uros.perf.software import Channel, Runnable
 from amalthea_uros.spec.description import Description
 from amalthea_uros.uros.demand import DemandConverter
 from amalthea_uros.uros.hardware import Controller
+from amalthea_uros.uros.middleware.profile import Profile
 from amalthea_uros.uros.notes import Notes
 from amalthea_uros.uros.rtos import PriorityScale, priority_scale
 from amalthea_uros.uros.stimuli import StimulusRegistry
@@ -22,18 +24,22 @@ class AssemblyContext:
 
     Attributes
     ----------
+    profile : of the middleware
     runnables : by name, in the order of their creation
     channels : by name, of the messages that the application sends and receives itself
+    executors : that spin in loops
     """
 
     description: Description
     controller: Controller
     notes: Notes
+    profile: Profile
     stimuli: StimulusRegistry = field(default_factory=StimulusRegistry)
     tasks: list[PlannedTask] = field(default_factory=list)
     isrs: list[PlannedIsr] = field(default_factory=list)
     runnables: dict[str, Runnable] = field(default_factory=dict)
     channels: Mapping[str, Channel] = field(default_factory=dict)
+    executors: list[Executor] = field(default_factory=list)
 
     @property
     def converter(self) -> DemandConverter:

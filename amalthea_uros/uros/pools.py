@@ -1,114 +1,81 @@
-"""Static pools of rmw_microxrcedds: their sizes compared with the needs of the application."""
+"""The build options of the middleware: what the application needs of its pools, and which values the build refuses or ignores."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
 
+from amalthea_uros.diagnostics import Location
 from amalthea_uros.spec.application import Application
 from amalthea_uros.spec.middleware import Middleware
-from amalthea_uros.units import data_size_text
-from amalthea_uros.uros.callbacks import Callback, Message
+from amalthea_uros.uros.middleware.load import profile_of
+from amalthea_uros.uros.middleware.options import OptionRow
+from amalthea_uros.uros.middleware.profile import MemoryUse, Option, OptionRole
+from amalthea_uros.uros.middleware.xrce_dds import pools as xrce_pools
+from amalthea_uros.uros.middleware.zenoh_pico import pools as zenoh_pools
+from amalthea_uros.uros.middleware.zenoh_pico.profile import ZenohPico
 from amalthea_uros.uros.notes import Notes
-from amalthea_uros.uros.streams import DEFAULT_STREAM_HISTORY
-
-#: Default values of the build options, from the table in the README of micro-ROS/rmw_microxrcedds.
-DEFAULTS: Mapping[str, int] = {
-    "RMW_UXRCE_MAX_SESSIONS": 1,
-    "RMW_UXRCE_MAX_NODES": 4,
-    "RMW_UXRCE_MAX_TOPICS": -1,
-    "RMW_UXRCE_MAX_PUBLISHERS": 4,
-    "RMW_UXRCE_MAX_SUBSCRIPTIONS": 4,
-    "RMW_UXRCE_MAX_SERVICES": 4,
-    "RMW_UXRCE_MAX_CLIENTS": 4,
-}
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Pool:
-    """A pool.
-
-    Attributes
-    ----------
-    option : the build option that sets its size
-    configured : whether the description sets the size; otherwise it is the default
-    """
-
-    option: str
-    needed: int
-    available: int
-    configured: bool
-
-    @property
-    def is_exceeded(self) -> bool:
-        """Whether the application needs more than is available."""
-        return self.needed > self.available
+def options_of(application: Application, middleware: Middleware) -> Sequence[Option]:
+    """The build options of the middleware."""
+    return profile_of(middleware).options(application, middleware)
 
 
-def needs(application: Application) -> dict[str, int]:
-    """The number of elements of each pool that an application needs."""
-    nodes = application.nodes
-    publishers = sum(len(node.publishers) for node in nodes)
-    subscriptions = sum(len(node.subscriptions) for node in nodes)
-    return {
-        "RMW_UXRCE_MAX_SESSIONS": 1 if nodes else 0,
-        "RMW_UXRCE_MAX_NODES": len(nodes),
-        "RMW_UXRCE_MAX_TOPICS": publishers + subscriptions,
-        "RMW_UXRCE_MAX_PUBLISHERS": publishers,
-        "RMW_UXRCE_MAX_SUBSCRIPTIONS": subscriptions,
-        "RMW_UXRCE_MAX_SERVICES": sum(len(node.services) for node in nodes),
-        "RMW_UXRCE_MAX_CLIENTS": sum(len(node.clients) for node in nodes),
-    }
+def static_memory_of(application: Application, middleware: Middleware) -> Sequence[MemoryUse]:
+    """The static memory of the middleware."""
+    return profile_of(middleware).memory(application, middleware)
 
 
-def pools_of(application: Application, middleware: Middleware) -> tuple[Pool, ...]:
-    """All pools with their needed and available sizes."""
-    limits = middleware.limits
-    found = []
-    for option, needed in needs(application).items():
-        configured: int | None = getattr(limits, option)
-        size = DEFAULTS[option] if configured is None else configured
-        # -1 makes the pool as large as all entities with a topic need.
-        available = needed if size < 0 else size
-        found.append(Pool(option=option, needed=needed, available=available, configured=configured is not None))
-    return tuple(found)
+def option_table(middleware: Middleware) -> Mapping[str, OptionRow]:
+    """What is known of the build options of the middleware, by name."""
+    return zenoh_pools.rows() if isinstance(profile_of(middleware), ZenohPico) else xrce_pools.rows()
 
 
-def check_pools(pools: tuple[Pool, ...], callbacks: tuple[Callback, ...], middleware: Middleware, notes: Notes) -> None:
-    """Report pools that are too small, and messages that do not fit into their buffers."""
-    for pool in filter(lambda pool: pool.is_exceeded, pools):
-        default = "" if pool.configured else " by default"
-        message = f"{pool.option} is {pool.available}{default}, but the application needs {pool.needed}"
-        advice = f"Set {pool.option} to {pool.needed} or more in the build and under 'limits'."
-        report = notes.error if pool.configured else notes.warning
-        report("UR120", message, middleware.limits.location(pool.option), advice)
-    for sent in _messages(callbacks):
-        _check_size(sent, middleware, notes)
+def pools_of(options: Iterable[Option]) -> tuple[Option, ...]:
+    """The options that count things, entities and waiting messages."""
+    return tuple(each for each in options if each.role in (OptionRole.POOL, OptionRole.QUEUE) and each.needed is not None)
 
 
-def _messages(callbacks: tuple[Callback, ...]) -> Iterator[Message]:
-    """Each message once, even if several callbacks send it."""
-    seen = set()
-    for callback in callbacks:
-        for message in (callback.incoming, *callback.outgoing):
-            if message is not None and (key := (message.topic, message.size, message.origin)) not in seen:
-                seen.add(key)
-                yield message
+def check_options(options: Iterable[Option], middleware: Middleware, notes: Notes) -> None:
+    """Report options that are too small, and values that the build refuses or ignores."""
+    for option in options:
+        if option.without_effect:
+            _report_without_effect(option, middleware, notes)
+        elif option.is_power_of_two and option.available & (option.available - 1):
+            _report_no_power_of_two(option, middleware, notes)
+        elif option.is_exceeded and option.role in (OptionRole.POOL, OptionRole.QUEUE):
+            _report_pool(option, middleware, notes)
+        elif option.is_exceeded and option.role is OptionRole.ROOM:
+            _report_name(option, middleware, notes)
 
 
-def _check_size(message: Message, middleware: Middleware, notes: Notes) -> None:
-    """Report a best-effort message larger than the MTU, or a reliable one larger than all buffers of its stream."""
-    limits = middleware.limits
-    if limits.RMW_UXRCE_MTU is None:
-        return
-    history = limits.RMW_UXRCE_STREAM_HISTORY or DEFAULT_STREAM_HISTORY
-    capacity = limits.RMW_UXRCE_MTU * (history if message.reliable else 1)
-    size = message.size + middleware.transport.overhead
-    if size > capacity:
-        source, options = "RMW_UXRCE_MTU", "RMW_UXRCE_MTU"
-        if message.reliable:
-            source = f"RMW_UXRCE_MTU times RMW_UXRCE_STREAM_HISTORY ({history})"
-            options = "RMW_UXRCE_MTU or RMW_UXRCE_STREAM_HISTORY"
-        needed, limit = data_size_text(size), data_size_text(capacity)
-        text = f"a message of {message.topic!r} needs {needed} with headers, but the limit is {limit}: {source}"
-        notes.error("UR121", text, message.origin, f"Increase {options}, or reduce the size of the message.")
+def _report_pool(option: Option, middleware: Middleware, notes: Notes) -> None:
+    """Without an entity the application does not start; without a slot it loses messages."""
+    default = "" if option.is_stated else " by default"
+    message = f"{option.name} is {option.available}{default}, but the application needs {option.needed}"
+    advice = f"{option.when_exhausted} Set {option.name} to {option.needed} or more in the build and under 'limits'."
+    report = notes.error if option.is_stated and option.role is OptionRole.POOL else notes.warning
+    report("UR120", message, _location(option, middleware), advice)
+
+
+def _report_no_power_of_two(option: Option, middleware: Middleware, notes: Notes) -> None:
+    lower = 1 << (option.available.bit_length() - 1)
+    message = f"{option.name} is {option.available}, which is not a power of two: the build stops with an error"
+    notes.warning("UR126", message, _location(option, middleware), f"Set it to {2 * lower}, or to {lower} if that is enough.")
+
+
+def _report_name(option: Option, middleware: Middleware, notes: Notes) -> None:
+    default = "" if option.is_stated else " by default"
+    message = f"{option.name} is {option.available}{default}, but the application needs {option.needed} {option.counts}"
+    advice = f"{option.when_exhausted} Use a shorter name, or set {option.name} to {option.needed} or more."
+    report = notes.error if option.is_stated else notes.warning
+    report("UR127", message, _location(option, middleware), advice)
+
+
+def _report_without_effect(option: Option, middleware: Middleware, notes: Notes) -> None:
+    message = f"{option.name} has no effect: {option.without_effect}"
+    notes.warning("UR128", message, _location(option, middleware), "Remove it here and in the build.")
+
+
+def _location(option: Option, middleware: Middleware) -> Location | None:
+    return middleware.limits.location(option.name)

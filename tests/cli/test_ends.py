@@ -26,6 +26,7 @@ WITH_A_FILE = {
     "compare": ["{}", "{}"],
     "diff": ["{}", str(BRAKE)],
     "fmt": ["{}"],
+    "generate": [str(YAML), "--check", "{}"],
     "info": ["{}"],
     "measure": ["{}", "--start", "1", "--end", "2"],
     "migrate": ["{}"],

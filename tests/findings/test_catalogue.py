@@ -11,6 +11,7 @@ from amalthea_uros import build, load, measure
 from amalthea_uros.bridge.extract import extract
 from amalthea_uros.errors import ReadError
 from amalthea_uros.findings import catalogue
+from amalthea_uros.services.generate import check_colcon_meta
 from amalthea_uros.services.settings import project_settings
 from amalthea_uros.trace.state_charts import check_trace
 from amalthea_uros.validate import registry
@@ -83,10 +84,13 @@ def reported(example, family, folder):
                 (folder / "amuros.toml").write_text(example)
                 project_settings(folder / "model.amxmi")
                 return []
-            case "YML" | "APP":
+            case "YML" | "APP" | "EXE":
                 path = folder / "app.yaml"
                 path.write_text(example)
                 return build(path).assembly.findings
+            case "GEN":
+                (folder / "colcon.meta").write_text(example)
+                return check_colcon_meta(ROOT / "samples" / "rclc-in-executor.yaml", folder / "colcon.meta").findings
             case "CAN" | "MEA" | "TRC":
                 return found_in_trace(example, folder)
         path = folder / "model.amxmi"

@@ -6,6 +6,7 @@ from typing import Any
 
 from amalthea_uros.report.findings import finding_json
 from amalthea_uros.services.build import BuildResult
+from amalthea_uros.uros.memory.ram import Memory
 
 
 def content(result: BuildResult) -> dict[str, Any]:
@@ -37,7 +38,26 @@ def content(result: BuildResult) -> dict[str, Any]:
             "most_time_ps": start.max_time,
         },
         "pools": [
-            {"option": p.option, "needed": p.needed, "available": p.available, "stated": p.configured} for p in assembly.pools
+            {"option": p.name, "needed": p.needed, "available": p.available, "stated": p.is_stated} for p in assembly.pools
         ],
+        "memory": memory_json(assembly.memory),
         "findings": [finding_json(finding) for finding in result.findings],
+    }
+
+
+def memory_json(memory: Memory) -> dict[str, Any]:
+    """The parts of the memory in bytes."""
+    stacks = memory.stacks
+    return {
+        "parts": [{"name": use.name, "bytes": use.size, "formula": use.formula} for use in memory.uses],
+        "stacks": {
+            "shared": stacks.shared,
+            "bytes": stacks.size,
+            "of": [{"process": user.name, "bytes": user.size} for user in stacks.users],
+            "unknown": list(stacks.unknown),
+        },
+        "total_bytes": memory.total,
+        "is_complete": memory.is_complete,
+        "ram_bytes": memory.ram,
+        "budget_bytes": memory.budget,
     }

@@ -5,11 +5,13 @@ from __future__ import annotations
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.perf.system import System
 from amalthea_uros.report.activation_text import activation_text
+from amalthea_uros.report.memory_text import memory_rows
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.services.build import BuildResult
 from amalthea_uros.units import time_text
 from amalthea_uros.uros.assemble import Assembly
 from amalthea_uros.uros.initialisation import Initialisation
+from amalthea_uros.uros.memory.ram import Memory
 
 
 def write(result: BuildResult, terminal: Terminal) -> None:
@@ -23,6 +25,7 @@ def write(result: BuildResult, terminal: Terminal) -> None:
         terminal.heading("Initialisation of the middleware")
         terminal.line(f"  {start_text(assembly.initialisation)}")
     _pools(terminal, assembly)
+    _memory(terminal, assembly.memory)
 
 
 def write_closing(result: BuildResult, terminal: Terminal) -> None:
@@ -93,5 +96,12 @@ def _pools(terminal: Terminal, assembly: Assembly) -> None:
     if not used:
         return
     terminal.heading("Static pools")
-    rows = [(pool.option, pool.needed, pool.available, "" if pool.configured else "default") for pool in used]
+    rows = [(pool.name, pool.needed, pool.available, "" if pool.is_stated else "default") for pool in used]
     terminal.table(("option", "needed", "available", ""), rows, right=(1, 2))
+
+
+def _memory(terminal: Terminal, memory: Memory) -> None:
+    rows = memory_rows(memory)
+    if rows:
+        terminal.heading("Memory")
+        terminal.table(("part", "size", ""), rows, right=(1,))

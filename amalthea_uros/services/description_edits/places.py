@@ -199,7 +199,7 @@ class Places:
     @property
     def callbacks(self) -> tuple[uros.Callback, ...]:
         """The callbacks, with their intervals and messages."""
-        return uros.callbacks_of(self.description.application, self.description.middleware.executor, Notes())
+        return uros.callbacks_of(self.description.application, self.description.middleware, Notes())
 
 
 def _constant(parts: Iterable[ExecutionTime | Time | None], name: str) -> Time:

@@ -43,6 +43,15 @@ class Part(Brief):
     acknowledgement: int | None = None
 
 
+class OptionRole(StrEnum):
+    """What depends on the value of a build option."""
+
+    POOL = "pool"  # how many things can be created
+    QUEUE = "queue"  # how many messages can wait; more of them are lost
+    ROOM = "room"  # how long a name can be
+    SETTING = "setting"  # times and sizes that the figures depend on
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Option(Brief):
     """A build option of the middleware.
@@ -56,6 +65,10 @@ class Option(Brief):
     unit : such as "B" or "ms"; "" for a number of things
     counts : what it counts, for a comment
     when_exhausted : what happens when the application needs more
+    least : smallest value that the build takes
+    is_power_of_two : whether the build takes powers of two only
+    words : values that are words, by their numbers; () if they are numbers
+    without_effect : why the value that is stated has no effect; "" if it has
     """
 
     name: str
@@ -63,14 +76,33 @@ class Option(Brief):
     needed: int | None
     available: int
     is_stated: bool
+    role: OptionRole = OptionRole.POOL
     unit: str = ""
     counts: str = ""
     when_exhausted: str = ""
+    least: int = 0
+    is_power_of_two: bool = False
+    words: tuple[str, ...] = ()
+    without_effect: str = ""
 
     @property
     def is_exceeded(self) -> bool:
-        """Whether the application needs more than there is."""
-        return self.needed is not None and self.needed > self.available
+        """Whether the application needs more than there is, or something else."""
+        if self.needed is None:
+            return False
+        return self.needed != self.available if self.words else self.needed > self.available
+
+    @property
+    def smallest(self) -> int | None:
+        """The smallest value that the build takes and with which the application works; None if it has no use for it."""
+        if self.needed is None:
+            return None
+        value = max(self.needed, self.least)
+        return 1 << (value - 1).bit_length() if self.is_power_of_two else value
+
+    def text(self, value: int) -> str:
+        """A value as the build takes it."""
+        return self.words[value] if self.words else str(value)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -93,8 +125,9 @@ class MiddlewareThread(Brief):
 
     Attributes
     ----------
-    priority : None if it is that of the executor that it serves
+    priority : None if it depends on the operating system, and the description does not state it
     period : None if messages activate it
+    stack : in bytes; None if it is not known
     calls_subscribers : whether callbacks of messages run in it, instead of in an executor
     """
 
@@ -117,6 +150,7 @@ class Sending(Brief):
     resends_after : time without an acknowledgement after which the receiver is asked for it; None if the transport cares for losses
     holds_session_while_waiting : whether a thread that waits for messages keeps others from sending, with several threads
     drops_when_busy : whether a message is dropped when another thread is sending
+    is_protected : whether several threads may use the middleware at the same time
     """
 
     waits: bool
@@ -124,14 +158,26 @@ class Sending(Brief):
     resends_after: Time | None
     holds_session_while_waiting: bool
     drops_when_busy: bool
+    is_protected: bool
 
 
 class Profile(Protocol):
     """A middleware; sizes are in bytes, and `content` is the serialised message without headers."""
 
-    name: str
-    title: str
-    source: str
+    @property
+    def name(self) -> str:
+        """Its name."""
+        ...
+
+    @property
+    def title(self) -> str:
+        """Its full name."""
+        ...
+
+    @property
+    def source(self) -> str:
+        """Where its figures come from."""
+        ...
 
     def waiting(self, middleware: Middleware) -> Waiting:
         """How an executor waits."""
@@ -153,8 +199,20 @@ class Profile(Protocol):
         """Length and least interval of messages that are sent while something is not acknowledged, or to keep alive; None for none."""
         ...
 
+    def gives_up_after(self, kind: MessageKind, content: int, *, reliable: bool, middleware: Middleware) -> Time | None:
+        """Time after which the sender of a message stops waiting for its acknowledgement; None if it does not wait."""
+        ...
+
     def largest_content(self, kind: MessageKind, *, reliable: bool, middleware: Middleware) -> int | None:
         """The longest content that can be sent or received; None for no limit."""
+        ...
+
+    def limiting_options(self, *, reliable: bool, middleware: Middleware) -> Sequence[str]:
+        """The build options that limit the content of messages."""
+        ...
+
+    def buffers(self, middleware: Middleware) -> int | None:
+        """The number of buffers in which reliable messages wait for their acknowledgement, a part in each; None for no limit."""
         ...
 
     def options(self, application: Application, middleware: Middleware) -> Sequence[Option]:

@@ -1,0 +1,192 @@
+"""The build options to generate for an application, and a file of others compared with them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from amalthea_uros._internal.similar import did_you_mean
+from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros.perf.named import Brief
+from amalthea_uros.spec.application import Application
+from amalthea_uros.spec.middleware import Middleware, PoolSizes
+from amalthea_uros.uros.colcon_meta import ColconMeta, Definition
+from amalthea_uros.uros.middleware.options import OptionRow
+from amalthea_uros.uros.middleware.profile import Option, OptionRole
+from amalthea_uros.uros.pools import option_table, options_of, static_memory_of
+
+_COUNTED = (OptionRole.POOL, OptionRole.QUEUE)
+#: Options of rmw_microxrcedds that no figure depends on.
+_OTHERS = ("RMW_UXRCE_DEFAULT_", "RMW_UXRCE_IPV")
+_MULTITHREAD = "UCLIENT_PROFILE_MULTITHREAD"
+
+
+def value_of(option: Option) -> int | None:
+    """The value to generate for an option; None for its default.
+
+    Pools become as small as possible, as they cost memory; other options keep what the description states, and are set besides only
+    where their default is too small.
+    """
+    if option.without_effect:
+        return None
+    if option.role in _COUNTED:
+        return option.smallest
+    if option.is_stated:
+        return option.available if option.words else max(option.available, option.smallest or 0)
+    return option.smallest if option.is_exceeded else None
+
+
+def values_of(options: Sequence[Option]) -> list[tuple[Option, int]]:
+    """The options to set, with their values."""
+    return [(option, value) for option in options if (value := value_of(option)) is not None]
+
+
+def with_generated_options(middleware: Middleware, options: Sequence[Option]) -> Middleware:
+    """The middleware that is built with the options to generate."""
+    table = option_table(middleware)
+    values = {option.name: table[option.name].described(value) for option, value in values_of(options)}
+    limits = middleware.limits.model_copy(
+        update={name: value for name, value in values.items() if name in PoolSizes.model_fields}
+    )
+    return middleware.model_copy(update={"limits": limits})
+
+
+def check_meta(application: Application, middleware: Middleware, meta: ColconMeta) -> tuple[Finding, ...]:
+    """What is wrong with a file of build options for an application."""
+    comparison = _Comparison(application, middleware, option_table(middleware))
+    return tuple(comparison.findings_of(meta))
+
+
+@dataclass(slots=True)
+class _Comparison(Brief):
+    """Compares a file with what an application needs.
+
+    Attributes
+    ----------
+    values : of the options in the file that the build accepts
+    places : of the options in the file
+    """
+
+    application: Application
+    middleware: Middleware
+    table: Mapping[str, OptionRow]
+    values: dict[str, int] = field(default_factory=dict)
+    places: dict[str, Location] = field(default_factory=dict)
+
+    def findings_of(self, meta: ColconMeta) -> Iterator[Finding]:
+        """All findings: first about single lines, then about values."""
+        for place in meta.comments:
+            message = "colcon reads this file as YAML, where '//' and '/*' start no comment: the value after it is lost"
+            yield Finding("GEN007", Severity.WARNING, message, place, "Start comments with '#', or remove them.")
+        for definition in meta.definitions:
+            yield from self._accept(definition)
+        described = {option.name: option for option in options_of(self.application, self.middleware)}
+        middleware = self._built()
+        for option in options_of(self.application, middleware):
+            yield from self._judge(option, described.get(option.name), middleware, Location(meta.path))
+
+    def _accept(self, definition: Definition) -> Iterator[Finding]:
+        """Keep the value of an option, or say why the build does not."""
+        name, place = definition.name, definition.location
+        row = self.table.get(name)
+        if row is None:
+            if (advice := self._misspelled(name)) is not None:
+                message = f"unknown option {name}: it has no effect"
+                yield Finding("GEN003", Severity.WARNING, message, place, advice)
+            return
+        if definition.package != row.package:
+            message = f"{name} has no effect in {definition.package!r}: it is an option of {row.package!r}"
+            yield Finding("GEN005", Severity.WARNING, message, place, f"Set it for {row.package!r}.")
+            return
+        if name in self.places:
+            message = f"{name} has no effect: it is set again on line {place.line}"
+            yield Finding("GEN005", Severity.WARNING, message, self.places[name], "Remove one of them.")
+        self.places[name] = place
+        value = row.number(definition.value)
+        problem = _problem(row, value, definition.value)
+        if problem is None and value is not None:
+            self.values[name] = value
+            return
+        self.values.pop(name, None)
+        yield Finding("GEN004", Severity.ERROR, f"{name} is {definition.value[:40]!r}: {problem}", place, "Correct the value.")
+
+    def _misspelled(self, name: str) -> str | None:
+        """Advice about a name that no option has; None if it may be one that is not known here."""
+        question = did_you_mean(name, self.table)
+        if name.startswith("RMW_UXRCE_") and not name.startswith(_OTHERS):
+            return question or "Remove it."
+        prefixes = {known.partition("_")[0] for known in self.table}
+        return question if question and name.partition("_")[0] in prefixes and not name.startswith("UCLIENT_PROFILE_") else None
+
+    def _built(self) -> Middleware:
+        """The middleware that is built with the file."""
+        limits = PoolSizes.model_construct(
+            **{name: self.table[name].described(value) for name, value in self.values.items() if name in PoolSizes.model_fields}
+        )
+        update = {
+            "limits": limits,
+            "multithread": self.values.get(_MULTITHREAD, 0) == 1,
+            "reliable": self.middleware.reliable.model_copy(update={"timeout": None}),
+        }
+        return self.middleware.model_copy(update=update)
+
+    def _judge(self, option: Option, described: Option | None, middleware: Middleware, file: Location) -> Iterator[Finding]:
+        """What is wrong with the value that an option has with the file."""
+        place = self.places.get(option.name, file)
+        if option.name in self.places and option.name not in self.values:
+            return
+        if option.without_effect:
+            if option.name in self.places:
+                message = f"{option.name} has no effect: {option.without_effect}"
+                yield Finding("GEN005", Severity.WARNING, message, place, "Remove it.")
+        elif option.is_exceeded:
+            severity = Severity.WARNING if option.role is OptionRole.QUEUE else Severity.ERROR
+            value = f"{option.text(option.available)}" + ("" if option.name in self.places else " by default")
+            message = f"{option.name} is {value}, but the application needs {option.smallest}: {option.counts}"
+            yield Finding("GEN001", severity, message, place, f"{option.when_exhausted} Set it to {option.smallest}.".strip())
+        elif option.role in _COUNTED and option.name in self.values and self.values[option.name] >= 0:
+            yield from self._surplus(option, middleware, place)
+        elif described is not None and option.role is OptionRole.SETTING:
+            yield from self._difference(option, described, place)
+
+    def _surplus(self, option: Option, middleware: Middleware, place: Location) -> Iterator[Finding]:
+        smallest = option.smallest
+        if smallest is None or option.available <= smallest:
+            return
+        saved = self._size(middleware) - self._size(self._with(middleware, option.name, smallest))
+        message = f"{option.name} is {option.available}, but {smallest} would be enough"
+        advice = f"Set it to {smallest} to save {saved} B." if saved else f"Set it to {smallest}."
+        yield Finding("GEN002", Severity.INFO, message, place, advice)
+
+    def _difference(self, option: Option, described: Option, place: Location) -> Iterator[Finding]:
+        expected = value_of(described)
+        value = described.available if expected is None else expected
+        if (described.is_stated or option.name in self.places) and option.available != value:
+            unit = f" {option.unit}" if option.unit else ""
+            default = "" if option.name in self.places else " by default"
+            message = (
+                f"{option.name} is {option.text(option.available)}{unit}{default}, but {option.text(value)}{unit} in app.yaml"
+            )
+            advice = "The figures for the other value do not hold. Change one of them."
+            yield Finding("GEN008", Severity.WARNING, message, place, advice)
+
+    def _with(self, middleware: Middleware, name: str, value: int) -> Middleware:
+        limits = middleware.limits.model_copy(update={name: self.table[name].described(value)})
+        return middleware.model_copy(update={"limits": limits})
+
+    def _size(self, middleware: Middleware) -> int:
+        return sum(use.size for use in static_memory_of(self.application, middleware))
+
+
+def _problem(row: OptionRow, value: int | None, text: str) -> str | None:
+    """Why the build does not take a value; None if it does."""
+    if value is None:
+        return f"expected {' or '.join(row.words)}" if row.words else "expected a whole number"
+    if row.words:
+        return None
+    is_automatic = row.default is not None and value == row.default
+    if value < row.least and not is_automatic:
+        return f"expected {row.least} or more"
+    if value > 2**31 - 1:
+        return "it is too large"
+    return "expected a power of two" if row.is_power_of_two and value & (value - 1) else None

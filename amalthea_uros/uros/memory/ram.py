@@ -1,0 +1,140 @@
+"""The memory that micro-ROS takes on a board: static memory of the middleware, handles of executors, parameters, and stacks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from amalthea_uros.perf.hardware import MemoryKind
+from amalthea_uros.perf.named import Brief
+from amalthea_uros.perf.system import System
+from amalthea_uros.spec.application import Application
+from amalthea_uros.spec.description import Description
+from amalthea_uros.spec.hardware import Hardware
+from amalthea_uros.spec.middleware import Middleware
+from amalthea_uros.uros.memory.entities import executors_of
+from amalthea_uros.uros.memory.stack import StackUse, StackUser, separate_stacks, shared_stacks
+from amalthea_uros.uros.middleware.profile import MemoryUse
+from amalthea_uros.uros.notes import Notes
+
+#: Bytes of a handle, from ros2/rclc rclc/include/rclc/executor_handle.h on a 32-bit target; allocated when the executor is initialised.
+_HANDLE = 64
+#: Bytes of a parameter server for 7 parameters, measured on an STM32F4: ros2/rclc rclc_parameter/README.md; with low memory second.
+_PARAMETERS = (11736, 4160)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Memory(Brief):
+    """The memory that micro-ROS takes, and the other tasks of the controller with their stacks.
+
+    Attributes
+    ----------
+    uses : everything but stacks
+    other_stacks : in bytes, of tasks and interrupt service routines that are not part of micro-ROS; 0 if all share their stack
+    ram : in bytes, of all memories of the board that can be written at any time; None if none is described
+    budget : in bytes, what the platform leaves for it; None if it is not stated
+    """
+
+    uses: tuple[MemoryUse, ...]
+    stacks: StackUse
+    other_stacks: int
+    ram: int | None
+    budget: int | None
+
+    @property
+    def total(self) -> int:
+        """In bytes; a lower bound if the size of a stack is unknown."""
+        return sum(use.size for use in self.uses) + self.stacks.size
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether the sizes of all stacks are stated."""
+        return not self.stacks.unknown
+
+
+def memory_of(description: Description, hardware: Hardware, system: System, static: Iterable[MemoryUse]) -> Memory:
+    """The memory of an application.
+
+    Parameters
+    ----------
+    hardware : of the description, completed by its platform
+    static : of the middleware
+    """
+    application, middleware = description.application, description.middleware
+    handles = _handles(application, middleware) if application.nodes else ()
+    stacks = stacks_of(description, system)
+    others = {section.name for section in (*description.tasks, *description.isrs)}
+    return Memory(
+        uses=(*(static if application.nodes else ()), *handles, *_parameters(application)),
+        stacks=stacks,
+        other_stacks=sum(user.size or 0 for user in stacks.users if user.name in others) if not stacks.shared else 0,
+        ram=_ram(system),
+        budget=None if hardware.ram_budget is None else hardware.ram_budget // 8,
+    )
+
+
+def check_memory(memory: Memory, hardware: Hardware, notes: Notes) -> None:
+    """Report memory that exceeds the budget of the platform, or else all that the board has."""
+    limit = memory.ram if memory.budget is None else memory.budget
+    needed = memory.total if memory.budget is None else memory.total - memory.other_stacks
+    what, key = ("the application", "memories") if memory.budget is None else ("micro-ROS", "ram_budget")
+    if limit is None or needed <= limit:
+        return
+    least = "" if memory.is_complete else "at least "
+    source = "the board has" if memory.budget is None else "the budget for it is"
+    message = f"{what} needs {least}{needed} B of memory, but {source} {limit} B"
+    largest = max(memory.uses, key=lambda use: use.size, default=None)
+    advice = f"Most of it are {largest.name}: {largest.formula}." if largest is not None else "Reduce the stacks."
+    notes.warning("UR129", message, hardware.location(key), advice)
+
+
+def stacks_of(description: Description, system: System) -> StackUse:
+    """The stacks of all tasks and interrupt service routines: one per core if the operating system says so, as OSEK does."""
+    sizes = dict(_stated(description))
+    stack = description.os.stack
+    if stack == "shared" or (stack is None and description.middleware.policy == "OSEK"):
+        return shared_stacks(system, sizes)
+    messages = {each.name for each in system.network.transmissions}
+    tasks = [task.name for task in system.software.tasks if task.name not in messages]
+    # Interrupt service routines run on the stack of the interrupts, or of the task that they interrupt: those that state one count.
+    own = [isr.name for isr in system.software.isrs if sizes.get(isr.name) is not None]
+    threads = [name for name in sizes if name not in system.processes and sizes[name] is not None]
+    return separate_stacks(StackUser(name=name, size=sizes.get(name)) for name in dict.fromkeys([*tasks, *own, *threads]))
+
+
+def _stated(description: Description) -> Iterator[tuple[str, int | None]]:
+    middleware = description.middleware
+    stated = [(each.name, each.stack) for each in executors_of(middleware)]
+    stated += [(each.name, each.stack) for each in middleware.tasks]
+    stated += [(each.name, each.stack) for each in description.tasks]
+    stated += [(each.name, each.stack) for each in description.isrs]
+    for name, stack in stated:
+        yield name, None if stack is None else -(-stack // 8)
+
+
+def _handles(application: Application, middleware: Middleware) -> Iterator[MemoryUse]:
+    """The handles of executors that state their number."""
+    for executor in executors_of(middleware):
+        if executor.max_handles is not None:
+            yield MemoryUse(
+                name=f"handles of {executor.name}",
+                size=executor.max_handles * _HANDLE,
+                formula=f"{executor.max_handles} x {_HANDLE} B",
+            )
+
+
+def _parameters(application: Application) -> Iterator[MemoryUse]:
+    for node in application.nodes:
+        if node.parameter_server is not None:
+            size = _PARAMETERS[node.parameter_server.low_memory]
+            yield MemoryUse(name=f"parameter server of {node.name}", size=size, formula=f"{size} B, measured for 7 parameters")
+
+
+def _ram(system: System) -> int | None:
+    """The sum of all memories that can be written at any time."""
+    sizes = [
+        memory.size
+        for memory in system.memories.values()
+        if memory.kind in (MemoryKind.SRAM, MemoryKind.DRAM) and memory.size is not None
+    ]
+    return sum(sizes) // 8 if sizes else None

@@ -1,0 +1,1 @@
+"""XRCE-DDS: rmw_microxrcedds with its client, the middleware of micro-ROS."""

@@ -1,0 +1,46 @@
+"""What a callback sends, and how long it waits for the acknowledgement."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.perf.executors import Publication
+from amalthea_uros.spec.middleware import Middleware
+from amalthea_uros.uros.callbacks import Callback, CallbackKind, Message, transmission_name_of
+from amalthea_uros.uros.executors.wires import describes_wire
+from amalthea_uros.uros.middleware.kinds import content_bytes, message_kind
+from amalthea_uros.uros.middleware.profile import MessageKind, Profile
+
+
+def publications(callback: Callback, middleware: Middleware, profile: Profile) -> tuple[Publication, ...]:
+    """The messages that a callback sends, in their order: to topics, requests, then its response."""
+    if callback.kind in (CallbackKind.PARAMETERS, CallbackKind.LIFECYCLE):
+        return tuple(_of_middleware(callback, middleware, profile))
+    return tuple(_publication(message, middleware, profile) for message in callback.outgoing)
+
+
+def _publication(message: Message, middleware: Middleware, profile: Profile) -> Publication:
+    kind, content = message_kind(message, incoming=False), content_bytes(message)
+    timeout = profile.gives_up_after(kind, content, reliable=message.reliable, middleware=middleware)
+    parts = profile.parts(kind, content, reliable=message.reliable, middleware=middleware)
+    is_acknowledged = any(part.acknowledgement is not None for part in parts)
+    transmission = transmission_name_of(message, incoming=False) if describes_wire(middleware.transport) else None
+    return Publication(
+        topic=message.topic,
+        transmission=transmission,
+        reliable=message.reliable,
+        acknowledgement=f"{transmission}_acknowledgement" if transmission and is_acknowledged else None,
+        waits=timeout is not None,
+        timeout=timeout,
+    )
+
+
+def _of_middleware(callback: Callback, middleware: Middleware, profile: Profile) -> Iterator[Publication]:
+    """Responses of parameters and of the lifecycle: of unknown sizes, but reliable, so that they keep the executor as others do."""
+    timeout = profile.gives_up_after(MessageKind.RESPONSE_OUT, 0, reliable=True, middleware=middleware)
+    topics = [f"{callback.name} (response)"]
+    server = callback.node.parameter_server if callback.kind is CallbackKind.PARAMETERS else None
+    if server is not None and server.events:
+        topics.append("parameter_events")
+    for topic in topics:
+        yield Publication(topic=topic, reliable=True, waits=timeout is not None, timeout=timeout)

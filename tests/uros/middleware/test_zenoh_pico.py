@@ -1,0 +1,70 @@
+"""Messages of zenoh-pico, against the pieces of its protocol."""
+
+import pytest
+
+from amalthea_uros.spec.middleware import Middleware
+from amalthea_uros.units import SECOND
+from amalthea_uros.uros.middleware.load import profile_of
+from amalthea_uros.uros.middleware.profile import MessageKind
+
+MIDDLEWARE = Middleware(profile="zenoh-pico")
+PROFILE = profile_of(MIDDLEWARE)
+
+
+def lengths(content, kind=MessageKind.PUBLICATION, reliable=False):
+    return [part.length for part in PROFILE.parts(kind, content, reliable=reliable, middleware=MIDDLEWARE)]
+
+
+@pytest.mark.parametrize(
+    # Frame 1, sequence number 4, push 1, key 2, put 1, attachment 35, serialisation 4: 48 B, and the length of the payload, which is
+    # written in one byte for each 7 bits; the payload has 4 B more than the content.
+    ("content", "length"),
+    [(4, 48 + 1 + 4), (123, 48 + 1 + 123), (124, 48 + 2 + 124), (1998, 48 + 2 + 1998)],
+)
+def test_headers_of_a_publication(content, length):
+    assert lengths(content) == [length]
+
+
+def test_reliable_messages_and_services_have_more_headers():
+    assert lengths(8, reliable=True) == [lengths(8)[0] + 2]
+    for kind in MessageKind:
+        is_query = kind not in (MessageKind.PUBLICATION, MessageKind.DELIVERY)
+        assert lengths(8, kind) == [lengths(8)[0] + 16 * is_query]
+
+
+def test_nothing_is_acknowledged_and_no_sender_waits():
+    (part,) = PROFILE.parts(MessageKind.PUBLICATION, 8, reliable=True, middleware=MIDDLEWARE)
+    assert part.acknowledgement is None
+    assert PROFILE.gives_up_after(MessageKind.PUBLICATION, 8, reliable=True, middleware=MIDDLEWARE) is None
+    sending = PROFILE.sending(MIDDLEWARE)
+    assert (sending.waits, sending.drops_when_busy, sending.is_protected) == (False, True, True)
+
+
+def test_messages_longer_than_a_batch_are_cut():
+    # 43 B before the content, and 2 B for its length; each fragment has 5 B of headers in a batch of 2048 B.
+    assert lengths(2043 - 45) == [2048]
+    assert lengths(2043 - 44) == [2048, 6]
+    assert lengths(2 * 2043 - 45) == [2048, 2048]
+
+
+@pytest.mark.parametrize("kind", MessageKind)
+@pytest.mark.parametrize("reliable", [True, False])
+def test_the_longest_content_is_joined_from_fragments(kind, reliable):
+    # FRAG_MAX_SIZE is 4096 B, without the headers of the fragments.
+    limit = PROFILE.largest_content(kind, reliable=reliable, middleware=MIDDLEWARE)
+    assert sum(length - 5 for length in lengths(limit, kind, reliable)) == 4096
+
+
+def test_waiting():
+    waiting = PROFILE.waiting(MIDDLEWARE)
+    assert (waiting.messages_per_wait, waiting.slots) == (None, None)
+    assert (waiting.stored_data_ends_wait, waiting.guard_conditions_end_wait, waiting.polls_without_messages) == (
+        True,
+        True,
+        False,
+    )
+
+
+def test_keep_alives():
+    # A third of the lease of 10 s, rounded down.
+    assert PROFILE.heartbeat(MIDDLEWARE) == (1, 10 * SECOND // 3)
