@@ -42,8 +42,8 @@ def slept(sleep: Time, os: Os) -> Sleep:
         return Sleep(sleep, sleep, sleep)
     rule = os.sleep_ticks or _INEXACT
     ticks = -(-sleep // os.tick)
-    least = max(0, ticks - rule.early)
-    return Sleep(least * os.tick, (ticks + rule.late) * os.tick, max(least, min(least + 1, ticks)) * os.tick)
+    least, pace = max(0, ticks - rule.early), max(0, ticks - max(0, rule.early - 1))
+    return Sleep(least * os.tick, (ticks + rule.late) * os.tick, pace * os.tick)
 
 
 @dataclass(frozen=True, slots=True)

@@ -105,7 +105,12 @@ def test_a_value_of_a_file_that_comes_with_amuros_has_the_location_of_its_name(t
     (tmp_path / "app.yaml").write_text(APPLICATION.format(f"os: {os}").replace("./mine.yaml", hardware))
     whole = complete(read_description(tmp_path / "app.yaml"), tmp_path).description
     executor = whole.middleware.executor
-    for location in (executor.location(), executor.location("stack"), executor.loop.location("sleep"), whole.os.location("stack")):
+    for location in (
+        executor.location(),
+        executor.location("stack"),
+        executor.loop.location("sleep"),
+        whole.os.location("stack"),
+    ):
         assert (location.path.name, location.line) == ("app.yaml", line)
 
 

@@ -36,7 +36,7 @@ TASKS = """
         # Of an unknown operating system both can be the case.
         (10 * MS, 10 * MS, None, (0, 20 * MS, 10 * MS)),
         # Less than a tick early can not become negative, and no sleep is none.
-        (1 * MS, 10 * MS, {"early": 2}, (0, 10 * MS, 10 * MS)),
+        (1 * MS, 10 * MS, {"early": 2}, (0, 10 * MS, 0)),
         (0, 10 * MS, {"late": 1}, (0, 0, 0)),
         (15 * MS, None, None, (15 * MS, 15 * MS, 15 * MS)),
     ],

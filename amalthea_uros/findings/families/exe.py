@@ -17,7 +17,9 @@ application:
 {callbacks}
 """
 _TIMER = "      timers: [{name: Control, period: 10 ms, execution_time: 4 us}]"
-_SUBSCRIPTION = "      subscriptions: [{name: On_Command, topic: command, rate: 50 Hz, message_size: 4 B, execution_time: 4 us}]"
+_SUBSCRIPTION = (
+    "      subscriptions: [{name: On_Command, topic: command, rate: 50 Hz, message_size: 4 B, execution_time: 4 us}]"
+)
 _GUARD = "      guard_conditions: [{name: Stop, execution_time: 4 us}]"
 _ACTION = """      action_servers:
         - {name: Move, rate: 1 Hz, goal_size: 4 B, result_size: 4 B, feedback_size: 4 B, execution_time: 4 us}"""

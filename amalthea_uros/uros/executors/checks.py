@@ -78,7 +78,9 @@ def _check_polling(executor: Executor, section: spec.Executor, notes: Notes) -> 
             f"{executor.name!r} has timers only: the wait of the middleware returns at once, and the loop uses all the time that others "
             "leave it; with rmw_microxrcedds#305 it waits for the whole timeout instead, also if a guard condition is set"
         )
-        notes.warning("EXE006", message, where, "Add a 'sleep', or a subscription; check which version of the middleware is built.")
+        notes.warning(
+            "EXE006", message, where, "Add a 'sleep', or a subscription; check which version of the middleware is built."
+        )
     elif 0 < loop.timeout < resolution:
         message = f"the timeout of {time_text(loop.timeout)} of {executor.name!r} is cut to 0: the executor does not wait"
         notes.warning("EXE003", message, where, f"Set a timeout of {time_text(resolution)} or more; or 0, if that is meant.")
@@ -128,7 +130,7 @@ def _can_be_lost(guard: Handle, executor: Executor) -> bool:
 def _check_timers(executor: Executor, callbacks: Iterable[Callback], notes: Notes) -> None:
     """A timer is called once per round, and periods that it missed are skipped (ros2/rcl `rcl/src/rcl/timer.c`)."""
     loop = executor.loop
-    least = loop.sleep or (loop.period if is_paced(loop) else None)
+    least = max(loop.pace, loop.sleep - loop.sleep_early) or (loop.period if is_paced(loop) else None)
     origins = {callback.name: callback.origin for callback in callbacks}
     for handle in executor.handles:
         if handle.kind is HandleKind.TIMER and handle.interval is not None and least and handle.interval < least:
