@@ -9,8 +9,8 @@ from amalthea_uros.spec import description as description  # with all its sectio
 from amalthea_uros.spec import platforms as platforms
 from amalthea_uros.spec.section import Section
 
-#: The version of the format, for which there is only one value.
-WITHOUT_EFFECT = {"amuros"}
+#: The version of the format, for which there is only one value, and where figures come from, for readers.
+WITHOUT_EFFECT = {"amuros", "sources"}
 
 
 def test_every_key_is_read_somewhere():
