@@ -78,6 +78,12 @@ RUNS = {
         ("build", "bodas-test-hardware.yaml", "-o", "built.amxmi"),
         ("build", "drive-and-lift.yaml", "-o", "too.amxmi"),
         ("build", "loops.yaml", "-o", "loops.amxmi"),
+        ("build", "stacks.yaml", "-o", "stacks.amxmi"),
+    ),
+    "amuros generate": (
+        ("generate", "drive-and-lift.yaml", "-o", "firmware"),
+        ("generate", "stacks.yaml", "-o", "firmware"),
+        ("generate", "rclc-in-executor.yaml", "--check", "wrong.meta"),
     ),
     "amuros calibrate": (
         ("calibrate", "bodas-test-measured.yaml", "bodas-test-measured.log", "--markers", "bodas-test-measured.markers.yml"),
@@ -193,6 +199,9 @@ def folder(tmp_path):
     save(model, tmp_path / "counted.amxmi")
     (tmp_path / "loops.yaml").write_text(LOOPS)
     (tmp_path / "arduino.yaml").write_text(ARDUINO)
+    rclc = (tmp_path / "rclc-in-executor.yaml").read_text()
+    (tmp_path / "stacks.yaml").write_text(rclc.replace("  executor:\n", "  executor:\n    stack: 16 kB\n"))
+    (tmp_path / "wrong.meta").write_text('{"names": {"rmw_microxrcedds": {"cmake-args": ["-DRMW_UXRCE_MAX_NODES=0"]}}}')
     (tmp_path / "stopwatch.csv").write_text(
         "object,kind,quantity,value_us\nControl_Function,process,response_time,16\nControl_Function,process,response_time,1200\n"
     )

@@ -32,6 +32,8 @@ def command(
     """
     if (folder is None) == (meta is None):
         raise click.UsageError("give either -o FOLDER, or --check COLCON.META")
+    if folder is not None and str(folder) == "-":
+        raise click.UsageError("-o needs a folder, as several files are written")
     if meta is not None:
         check = check_colcon_meta(description, meta, platform)
         show_findings(check.findings)

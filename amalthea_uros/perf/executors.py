@@ -28,15 +28,17 @@ class Loop(Brief):
     Attributes
     ----------
     timeout : of each wait
-    sleep : minimum time after each round, for `spin_some`; 0 for a bare loop
-    sleep_jitter : additional time that a sleep can last, as operating systems count in ticks
+    sleep : maximum time that it sleeps after each round, for `spin_some`; 0 for a bare loop
+    sleep_early : time by which a sleep can be shorter, as operating systems count in ticks
+    pace : minimum time between the ends of two sleeps that follow each other, if that is more than the shortest sleep
     period : of `spin_period`; None for the others
     """
 
     kind: LoopKind
     timeout: Time
     sleep: Time = 0
-    sleep_jitter: Time = 0
+    sleep_early: Time = 0
+    pace: Time = 0
     period: Time | None = None
 
 

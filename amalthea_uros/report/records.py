@@ -29,8 +29,10 @@ from amalthea_uros.report.json import (
     check_result,
     comparison,
     diff_result,
+    generate_result,
     impact,
     measurement,
+    meta_check,
     migration_result,
     optimization,
     simulation_result,
@@ -42,6 +44,7 @@ from amalthea_uros.services.calibrate import Calibration
 from amalthea_uros.services.check import CheckResult
 from amalthea_uros.services.comparison.results import Comparison, ComparisonRow, DistributionRow, MeasuredLimit
 from amalthea_uros.services.diff import DiffResult
+from amalthea_uros.services.generate import GenerateResult, MetaCheck
 from amalthea_uros.services.improvements import Improvements
 from amalthea_uros.services.migrate import MigrationResult
 from amalthea_uros.services.optimize import DesignProposal, Optimization
@@ -216,6 +219,17 @@ def _(label: LabelObservation) -> list[Record]:
 @all_records.register
 def _(requirement: RequirementObservation) -> list[Record]:
     return [flat(simulation_result.requirement_json(requirement))]
+
+
+@all_records.register
+def _(result: GenerateResult) -> list[Record]:
+    """One row for each build option."""
+    return [flat(option) for option in generate_result.content(result)["options"]]
+
+
+@all_records.register
+def _(result: MetaCheck) -> list[Record]:
+    return [flat(finding) for finding in meta_check.content(result)["findings"]]
 
 
 @all_records.register

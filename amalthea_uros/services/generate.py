@@ -10,6 +10,7 @@ from pathlib import Path
 from amalthea_uros._internal.files import FileError, is_file, read_text
 from amalthea_uros._internal.limits import SETTINGS_SIZE
 from amalthea_uros._internal.resources import resource_folder
+from amalthea_uros._internal.shown import Shown
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError, WriteError
 from amalthea_uros.findings.suppression import unsuppressed
@@ -34,7 +35,7 @@ _MTU = re.compile(r"UCLIENT_(\w+_TRANSPORT_MTU)")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class GenerateResult(Brief):
+class GenerateResult(Brief, Shown):
     """Files that were generated.
 
     Attributes
@@ -58,7 +59,7 @@ class GenerateResult(Brief):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class MetaCheck(Brief):
+class MetaCheck(Brief, Shown):
     """A `colcon.meta` compared with an application."""
 
     description: Path

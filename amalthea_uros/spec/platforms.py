@@ -51,10 +51,10 @@ def complete(description: Description, folder: Path, other: str | None = None) -
     """
     findings: list[Finding] = []
     path = _platform_file(description.hardware, folder, other, findings)
-    platform = None if path is None else _platform(path)
-    if path is None or platform is None:
+    if path is None:
         rtos = _rtos(description.os, folder, findings)
         return _completed(description, None, [rtos.os], [rtos.middleware], findings)
+    platform = _platform(path, description.hardware)
     if description.os.rtos in (None, platform.os.rtos):
         rtos = _rtos(platform.os, path.parent, findings)
         return _completed(description, platform, [platform.os, rtos.os], [platform.middleware, rtos.middleware], findings)
@@ -89,8 +89,12 @@ def _platform_file(stated: Hardware, folder: Path, other: str | None, findings: 
     return path
 
 
-def _platform(path: Path) -> Platform:
+def _platform(path: Path, stated: Hardware) -> Platform:
     platform = read_section(path, Platform)
+    if path.parent == PLATFORMS:
+        # Users cannot change the files that come with amuros; they change what names them.
+        platform.os.move_to(stated, "platform")
+        platform.middleware.move_to(stated, "platform")
     if platform.hardware.platform is not None:
         message = f"the platform {platform.platform!r} refers to another platform, {platform.hardware.platform!r}"
         advice = "Describe the whole hardware in the platform file."
@@ -114,4 +118,7 @@ def _rtos(stated: Os, folder: Path, findings: list[Finding]) -> Rtos:
     files = KnownFiles(kind="operating system", folder=RTOSES, names=known_rtoses(), advice=advice)
     path, mistakes = files.find(stated.rtos, folder, stated.location("rtos"))
     findings += mistakes
-    return read_section(path, Rtos)
+    rtos = read_section(path, Rtos)
+    if path.parent == RTOSES:
+        rtos.move_to(stated, "rtos")
+    return rtos

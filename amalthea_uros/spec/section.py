@@ -62,6 +62,12 @@ class Section(BaseModel):
                 node = node.items[index]
         return source.location(node.place)
 
+    def move_to(self, other: Section, key: str) -> None:
+        """Give the section and those in it the location of a key of another one, which names the file that they are from."""
+        if other._where is not None:
+            own, source = other._where
+            attach_locations(self, Mapping(own.items.get(key, own).place, {}, {}), source)
+
     def states(self, key: str) -> bool:
         """Whether the author wrote the key, or that of the platform."""
         return key in self.model_fields_set

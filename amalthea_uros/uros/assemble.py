@@ -43,7 +43,7 @@ from amalthea_uros.uros.notes import Notes
 from amalthea_uros.uros.os import isr_allocations, os_of, task_allocations
 from amalthea_uros.uros.overheads import add_overheads
 from amalthea_uros.uros.periods import PeriodChoice
-from amalthea_uros.uros.pools import check_options, options_of, pools_of, static_memory_of
+from amalthea_uros.uros.pools import check_options, options_of, pools_of
 from amalthea_uros.uros.priorities import check_shared_priorities
 from amalthea_uros.uros.requirements import requirements
 from amalthea_uros.uros.rtos import PriorityScale, check_sleeps
@@ -163,7 +163,7 @@ def _assembly(context: AssemblyContext, hardware: Hardware, database: Sequence[F
         message = "no callback, task or interrupt service routine is defined"
         context.notes.error("APP009", message, context.description.location(), advice)
     system = _system(context, callbacks, network)
-    memory = memory_of(context.description, hardware, system, static_memory_of(application, middleware))
+    memory = memory_of(context.description, hardware, system, context.profile)
     check_memory(memory, hardware, context.notes)
     response_time = middleware.initialisation.response_time
     first = next((choice for choice in choices if choice.task == choice.executor), None)

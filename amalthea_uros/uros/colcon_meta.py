@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import re
+from bisect import bisect_right
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -109,6 +110,7 @@ class _Reader:
     def __init__(self, path: Path, text: str) -> None:
         self.path, self.text = path, text
         self.comments: list[int] = []
+        self._lines = [0, *(found.end() for found in re.finditer("\n", text))]
         self._tokens = self._scan()
         self._next = next(self._tokens)
 
@@ -121,8 +123,8 @@ class _Reader:
 
     def location(self, start: int) -> Location:
         """The place of a character."""
-        line = self.text.count("\n", 0, start) + 1
-        begin = self.text.rfind("\n", 0, start) + 1
+        line = bisect_right(self._lines, start)
+        begin = self._lines[line - 1]
         end = self.text.find("\n", begin)
         return Location(self.path, line, start - begin + 1, self.text[begin : end if end >= 0 else None])
 

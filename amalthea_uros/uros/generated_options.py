@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import islice
 
-from amalthea_uros._internal.similar import did_you_mean
+from amalthea_uros._internal.similar import Suggestions
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.spec.application import Application
@@ -15,9 +16,11 @@ from amalthea_uros.uros.middleware.options import OptionRow
 from amalthea_uros.uros.middleware.profile import Option, OptionRole
 from amalthea_uros.uros.pools import option_table, options_of, static_memory_of
 
+#: So many are reported of a file; more of them say nothing new.
+MAX_FINDINGS = 100
 _COUNTED = (OptionRole.POOL, OptionRole.QUEUE)
-#: Options of rmw_microxrcedds that no figure depends on.
-_OTHERS = ("RMW_UXRCE_DEFAULT_", "RMW_UXRCE_IPV")
+#: Options that no figure depends on.
+_OTHERS = ("RMW_UXRCE_DEFAULT_", "RMW_UXRCE_IPV", "UCLIENT_PROFILE_", "UCLIENT_MAX_INPUT_", "UCLIENT_MAX_OUTPUT_")
 _MULTITHREAD = "UCLIENT_PROFILE_MULTITHREAD"
 
 
@@ -54,7 +57,7 @@ def with_generated_options(middleware: Middleware, options: Sequence[Option]) ->
 def check_meta(application: Application, middleware: Middleware, meta: ColconMeta) -> tuple[Finding, ...]:
     """What is wrong with a file of build options for an application."""
     comparison = _Comparison(application, middleware, option_table(middleware))
-    return tuple(comparison.findings_of(meta))
+    return tuple(islice(comparison.findings_of(meta), MAX_FINDINGS))
 
 
 @dataclass(slots=True)
@@ -72,6 +75,7 @@ class _Comparison(Brief):
     table: Mapping[str, OptionRow]
     values: dict[str, int] = field(default_factory=dict)
     places: dict[str, Location] = field(default_factory=dict)
+    suggestions: Suggestions = field(default_factory=Suggestions)
 
     def findings_of(self, meta: ColconMeta) -> Iterator[Finding]:
         """All findings: first about single lines, then about values."""
@@ -112,11 +116,11 @@ class _Comparison(Brief):
 
     def _misspelled(self, name: str) -> str | None:
         """Advice about a name that no option has; None if it may be one that is not known here."""
-        question = did_you_mean(name, self.table)
-        if name.startswith("RMW_UXRCE_") and not name.startswith(_OTHERS):
-            return question or "Remove it."
-        prefixes = {known.partition("_")[0] for known in self.table}
-        return question if question and name.partition("_")[0] in prefixes and not name.startswith("UCLIENT_PROFILE_") else None
+        family = name.partition("_")[0]
+        if name.startswith(_OTHERS) or family not in {known.partition("_")[0] for known in self.table}:
+            return None
+        near = self.suggestions.nearest(name, self.table)
+        return f"Did you mean {near}?" if near else "Remove it." if name.startswith("RMW_UXRCE_") else None
 
     def _built(self) -> Middleware:
         """The middleware that is built with the file."""
@@ -161,7 +165,9 @@ class _Comparison(Brief):
     def _difference(self, option: Option, described: Option, place: Location) -> Iterator[Finding]:
         expected = value_of(described)
         value = described.available if expected is None else expected
-        if (described.is_stated or option.name in self.places) and option.available != value:
+        # Choices between words that the description leaves open change no figure.
+        matters = described.is_stated or (option.name in self.places and not option.words)
+        if matters and option.available != value:
             unit = f" {option.unit}" if option.unit else ""
             default = "" if option.name in self.places else " by default"
             message = (

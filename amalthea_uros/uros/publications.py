@@ -10,6 +10,7 @@ from amalthea_uros.uros.callbacks import Callback, CallbackKind, Message, transm
 from amalthea_uros.uros.executors.wires import describes_wire
 from amalthea_uros.uros.middleware.kinds import content_bytes, message_kind
 from amalthea_uros.uros.middleware.profile import MessageKind, Profile
+from amalthea_uros.uros.transports.messages import acknowledgement_name
 
 
 def publications(callback: Callback, middleware: Middleware, profile: Profile) -> tuple[Publication, ...]:
@@ -29,7 +30,7 @@ def _publication(message: Message, middleware: Middleware, profile: Profile) -> 
         topic=message.topic,
         transmission=transmission,
         reliable=message.reliable,
-        acknowledgement=f"{transmission}_acknowledgement" if transmission and is_acknowledged else None,
+        acknowledgement=acknowledgement_name(transmission) if transmission and is_acknowledged else None,
         waits=timeout is not None,
         timeout=timeout,
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.executors import Executor
@@ -16,17 +17,33 @@ from amalthea_uros.uros.tasks import PlannedTask
 _INEXACT = SleepTicks(early=1, late=1)
 
 
-def slept(sleep: Time, os: Os) -> tuple[Time, Time]:
-    """The least and the greatest time that a thread sleeps when it asks for some time.
+class Sleep(NamedTuple):
+    """How long a thread sleeps when it asks for some time.
+
+    Attributes
+    ----------
+    pace : minimum time between the ends of two sleeps that follow each other
+    """
+
+    least: Time
+    most: Time
+    pace: Time
+
+
+def slept(sleep: Time, os: Os) -> Sleep:
+    """How long a thread sleeps when it asks for some time.
 
     Ticks come independently of when the thread starts to sleep. So `vTaskDelay(1)` of FreeRTOS, which ends at the next tick, sleeps
-    for 0 to 1 ticks; sleeps that must not be too short, as in Zephyr, wait for one tick more.
+    for 0 to 1 ticks; sleeps that must not be too short, as in Zephyr, wait for one tick more. As sleeps end at ticks, and the next
+    one is counted from the tick at which it begins or from a later one, the ends of two sleeps are whole ticks apart: at least 1 for
+    `vTaskDelay(1)`, although the sleep between them can take no time.
     """
     if not sleep or os.tick is None:
-        return sleep, sleep
+        return Sleep(sleep, sleep, sleep)
     rule = os.sleep_ticks or _INEXACT
     ticks = -(-sleep // os.tick)
-    return max(0, ticks - rule.early) * os.tick, (ticks + rule.late) * os.tick
+    least, pace = max(0, ticks - rule.early), max(0, ticks - max(0, rule.early - 1))
+    return Sleep(least * os.tick, (ticks + rule.late) * os.tick, pace * os.tick)
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,7 +101,7 @@ def check_sleeps(description: Description, notes: Notes) -> None:
     for executor in _executors(description):
         if executor.loop is None or os.tick is None or executor.loop.sleep % os.tick == 0:
             continue
-        least, most = slept(executor.loop.sleep, os)
+        least, most, _ = slept(executor.loop.sleep, os)
         message = (
             f"{executor.name!r} sleeps {time_text(least)} to {time_text(most)} instead of {time_text(executor.loop.sleep)}: "
             f"{_system(os)} counts in ticks of {time_text(os.tick)}"

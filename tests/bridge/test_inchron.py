@@ -12,8 +12,8 @@ from amalthea_uros.services.check import summaries
 SAMPLES = sorted((ROOT / "samples").glob("*.yaml"))
 
 
-#: What the importer does not take over of what the descriptions ask for: requirements, a policy, statistics of execution
-#: times, a semaphore with a ceiling.
+#: What the importer does not take over of what the descriptions ask for: requirements, costs of accesses, a policy, statistics of
+#: execution times, a semaphore with a ceiling.
 WISHES = {
     "bodas-test-advanced": {"INC-CO-KIND"},
     "bodas-test-hardware": {"INC-CO-KIND", "INC-HW-ACCESS", "INC-OS-ALGORITHM", "INC-SW-TICKS-STAT"},

@@ -25,6 +25,25 @@ def test_what_is_written_for_a_board_is_built_checked_and_schedulable(board, tmp
     assert json.loads(analysis.stdout)["summary"]["schedulable"] == "yes"
 
 
+@pytest.mark.parametrize(
+    ("board", "lines"),
+    [
+        # As in the examples of micro-ROS for the board.
+        ("esp32", ["loop: {spin_some: 100 ms, sleep: 10 ms}", "serial: {baud_rate: 115200}"]),
+        (
+            "teensy41",
+            ["loop: {spin_some: 100 ms, sleep: 100 ms}", "usb_cdc: {latency: {min: 0, max: 1 ms}} # until the host polls"],
+        ),
+        ("rp2040", ["loop: {spin_some: 100 ms}"]),
+        ("olimex-stm32-e407", ["loop: {spin: 1 s}", "serial: {baud_rate: 115200}"]),
+        ("tc389", ["transport: {can: {bitrate: 500 kbit/s}}"]),
+    ],
+)
+def test_a_board_has_the_loop_and_the_transport_of_its_examples(board, lines):
+    written = [line.strip() for line in amuros("init", "-", "--board", board).stdout.splitlines()]
+    assert [line for line in lines if line not in written] == []
+
+
 def test_its_comments_teach_every_part():
     text = amuros("init", "-").stdout
     lines = text.splitlines()

@@ -196,12 +196,18 @@ def test_the_same_input_gives_the_same_page():
 
 def test_the_pools_of_an_app_are_ready_to_copy():
     (listing,) = section(page_of(ADVANCED), "pools").xpath(".//pre")
-    # One node with one subscription: the session, the node, its topic and its subscription.
+    # One node with one subscription and one timer; the executor has a wait set.
     assert re.findall(r"-D(\w+)=(\d+)", listing.text_content()) == [
         ("RMW_UXRCE_MAX_SESSIONS", "1"),
         ("RMW_UXRCE_MAX_NODES", "1"),
         ("RMW_UXRCE_MAX_TOPICS", "1"),
+        ("RMW_UXRCE_MAX_PUBLISHERS", "0"),
         ("RMW_UXRCE_MAX_SUBSCRIPTIONS", "1"),
+        ("RMW_UXRCE_MAX_SERVICES", "0"),
+        ("RMW_UXRCE_MAX_CLIENTS", "0"),
+        ("RMW_UXRCE_MAX_WAIT_SETS", "1"),
+        ("RMW_UXRCE_MAX_GUARD_CONDITION", "1"),
+        ("RMW_UXRCE_MAX_HISTORY", "1"),
     ]
 
 

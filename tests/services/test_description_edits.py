@@ -216,3 +216,15 @@ def test_times_are_exact():
     assert "offset: 500 ns" in result.text
     assert describe_text(result.text).system.stimuli_by_name
     assert 5 * MILLISECOND == 5_000_000_000
+
+
+def test_a_priority_is_written_as_the_operating_system_counts():
+    text = (
+        "amuros: 1\nname: a\nhardware: {frequency: 1 MHz}\nos: {rtos: zephyr}\ntasks:\n"
+        "  - {name: A, period: 10 ms, priority: 3, execution_time: 1 ms}\n"
+        "  - {name: B, period: 20 ms, priority: 5, execution_time: 1 ms}\n"
+    )
+    # In the system, A has priority 14 - 3 = 11 and B 14 - 5 = 9; 12 is above both, and 2 in the file.
+    result = edited(text, "B.priority=12")
+    assert changed_lines(text, result.text) == ["  - {name: B, period: 20 ms, priority: 2, execution_time: 1 ms}"]
+    assert {each.task: each.priority for each in describe_text(result.text).system.mapping.tasks} == {"A": 11, "B": 12}

@@ -2,14 +2,15 @@
 
 import ast
 
+import yaml
 from support import ROOT
 
 from amalthea_uros.spec import description as description  # with all its sections
 from amalthea_uros.spec import platforms as platforms
 from amalthea_uros.spec.section import Section
 
-#: The version of the format, for which there is only one value.
-WITHOUT_EFFECT = {"amuros"}
+#: The version of the format, for which there is only one value, and where figures come from, for readers.
+WITHOUT_EFFECT = {"amuros", "sources"}
 
 
 def test_every_key_is_read_somewhere():
@@ -24,7 +25,12 @@ def sections(base):
 
 
 def names_read_in(folder):
-    """The attributes and texts in the code of a folder; keys are read as `task.period`, or by their names from a table."""
+    """The attributes and texts in the code of a folder; keys are read as `task.period`, or by their names from a table.
+
+    Build options are read by the names in the tables of their middlewares.
+    """
+    for path in folder.rglob("options.yaml"):
+        yield from (row["name"] for group in yaml.safe_load(path.read_text()) for row in group["options"])
     for path in folder.rglob("*.py"):
         for node in ast.walk(ast.parse(path.read_text())):
             if isinstance(node, ast.Attribute):

@@ -67,15 +67,18 @@ def test_entities_in_the_order_of_creation(author):
 
 
 def test_what_the_application_needs(author):
-    pools = {pool.option: (pool.needed, pool.available) for pool in author.describe(app("RMW_UXRCE_MAX_NODES: 2")).pools}
+    pools = {pool.name: (pool.needed, pool.available) for pool in author.describe(app("RMW_UXRCE_MAX_NODES: 2")).pools}
     assert pools == {
         "RMW_UXRCE_MAX_SESSIONS": (1, 1),
         "RMW_UXRCE_MAX_NODES": (1, 2),
-        "RMW_UXRCE_MAX_TOPICS": (3, 3),
+        "RMW_UXRCE_MAX_TOPICS": (3, 8),  # -1: as many as publishers and subscriptions together
         "RMW_UXRCE_MAX_PUBLISHERS": (1, 4),
         "RMW_UXRCE_MAX_SUBSCRIPTIONS": (2, 4),
         "RMW_UXRCE_MAX_SERVICES": (1, 4),
         "RMW_UXRCE_MAX_CLIENTS": (0, 4),
+        "RMW_UXRCE_MAX_WAIT_SETS": (1, 4),
+        "RMW_UXRCE_MAX_GUARD_CONDITION": (1, 4),  # of the timer
+        "RMW_UXRCE_MAX_HISTORY": (3, 8),  # both subscriptions and the service
     }
 
 

@@ -11,13 +11,24 @@ from dataclasses import replace
 
 from amalthea_uros.perf.activities import Trigger, walk
 from amalthea_uros.perf.distributions import Boundaries, Uniform
-from amalthea_uros.perf.executors import Executor, HandleKind
-from amalthea_uros.perf.stimuli import Custom, InterProcess, Periodic, RelativePeriodic, Stimulus
+from amalthea_uros.perf.executors import Executor, HandleKind, Loop
+from amalthea_uros.perf.stimuli import (
+    ArrivalCurve,
+    ArrivalCurvePoint,
+    Custom,
+    InterProcess,
+    Periodic,
+    RelativePeriodic,
+    Stimulus,
+)
 from amalthea_uros.perf.system import System
 from amalthea_uros.units import Time
 from amalthea_uros.uros.activities import trigger_name
 from amalthea_uros.uros.callbacks import Callback, CallbackKind
 from amalthea_uros.uros.executors.loops import is_paced, polls
+
+#: Rounds whose distances are stated; of more, the distances follow from these, a little too short.
+_PACED_ROUNDS = 20
 
 
 def round_trigger_name(executor: str) -> str:
@@ -47,7 +58,7 @@ def activation(executor: Executor, callbacks: Sequence[Callback], least_round: T
     loop, name = executor.loop, f"rounds_of_{executor.name}"
     reason = polls(executor)
     if loop.sleep:
-        yield _at_least(name, loop.sleep + least_round)
+        yield _after_sleeps(name, loop, least_round)
     elif loop.period is not None and is_paced(loop):
         # A round executes when its wait ends.
         yield Periodic(name=name, period=loop.period, offset=offset, jitter=Boundaries(lower=0, upper=loop.timeout))
@@ -68,6 +79,15 @@ def _of_callback(executor: Executor, callback: Callback) -> Iterator[Stimulus]:
         name = message_stimulus_name(callback.name)
         unknown = Custom(name=name, description=f"the rate of {callback.name!r} is not specified")
         yield unknown if callback.interval is None else _at_least(name, callback.min_interval)
+
+
+def _after_sleeps(name: str, loop: Loop, least_round: Time) -> Stimulus:
+    """Rounds between sleeps; the first of several can wait for long, so that the second follows after the shortest sleep."""
+    shortest = loop.sleep - loop.sleep_early + least_round
+    if loop.pace <= shortest:
+        return _at_least(name, shortest)
+    points = (ArrivalCurvePoint(occurrences=2 + more, lower=shortest + more * loop.pace) for more in range(_PACED_ROUNDS - 1))
+    return ArrivalCurve(name=name, points=(ArrivalCurvePoint(occurrences=1, lower=0), *points))
 
 
 def _at_least(name: str, distance: Time) -> Stimulus:

@@ -135,7 +135,7 @@ def _can_be_lost(guard: Handle, executor: Executor) -> bool:
 def _check_timers(executor: Executor, callbacks: Iterable[Callback], notes: Notes) -> None:
     """A timer is called once per round, and periods that it missed are skipped (ros2/rcl `rcl/src/rcl/timer.c`)."""
     loop = executor.loop
-    least = loop.sleep or (loop.period if is_paced(loop) else None)
+    least = max(loop.pace, loop.sleep - loop.sleep_early) or (loop.period if is_paced(loop) else None)
     origins = {callback.name: callback.origin for callback in callbacks}
     for handle in executor.handles:
         if handle.kind is HandleKind.TIMER and handle.interval is not None and least and handle.interval < least:

@@ -9,12 +9,21 @@ from __future__ import annotations
 from amalthea_uros.perf.executors import Executor as LoopingExecutor
 from amalthea_uros.perf.executors import HandleKind, Loop, LoopKind, TriggerCondition, TriggerKind, Waiting
 from amalthea_uros.spec import executors as spec
+from amalthea_uros.spec.os import Os
+from amalthea_uros.uros.rtos import slept
 
 
-def loop_of(section: spec.Loop, waiting: Waiting) -> Loop:
-    """The loop that a section describes."""
+def loop_of(section: spec.Loop, waiting: Waiting, os: Os) -> Loop:
+    """The loop that a section describes, on an operating system that counts sleeps in ticks."""
     if section.spin_some is not None:
-        return Loop(kind=LoopKind.SPIN_SOME, timeout=section.spin_some, sleep=section.sleep)
+        least, most, pace = slept(section.sleep, os)
+        return Loop(
+            kind=LoopKind.SPIN_SOME,
+            timeout=section.spin_some,
+            sleep=most,
+            sleep_early=most - least,
+            pace=pace if pace > least else 0,
+        )
     if section.spin_period is not None:
         timeout = section.timeout if section.timeout is not None else waiting.default_timeout
         return Loop(kind=LoopKind.SPIN_PERIOD, timeout=timeout, period=section.spin_period)

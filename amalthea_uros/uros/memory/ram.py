@@ -14,7 +14,7 @@ from amalthea_uros.spec.hardware import Hardware
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.uros.memory.entities import executors_of
 from amalthea_uros.uros.memory.stack import StackUse, StackUser, separate_stacks, shared_stacks
-from amalthea_uros.uros.middleware.profile import MemoryUse
+from amalthea_uros.uros.middleware.profile import MemoryUse, MiddlewareThread, Profile
 from amalthea_uros.uros.notes import Notes
 
 #: Bytes of a handle, from ros2/rclc rclc/include/rclc/executor_handle.h on a 32-bit target; allocated when the executor is initialised.
@@ -52,17 +52,17 @@ class Memory(Brief):
         return not self.stacks.unknown
 
 
-def memory_of(description: Description, hardware: Hardware, system: System, static: Iterable[MemoryUse]) -> Memory:
+def memory_of(description: Description, hardware: Hardware, system: System, profile: Profile) -> Memory:
     """The memory of an application.
 
     Parameters
     ----------
     hardware : of the description, completed by its platform
-    static : of the middleware
     """
     application, middleware = description.application, description.middleware
     handles = _handles(application, middleware) if application.nodes else ()
-    stacks = stacks_of(description, system)
+    static = profile.memory(application, middleware)
+    stacks = stacks_of(description, system, profile.threads(middleware))
     others = {section.name for section in (*description.tasks, *description.isrs)}
     return Memory(
         uses=(*(static if application.nodes else ()), *handles, *_parameters(application)),
@@ -88,9 +88,15 @@ def check_memory(memory: Memory, hardware: Hardware, notes: Notes) -> None:
     notes.warning("UR129", message, hardware.location(key), advice)
 
 
-def stacks_of(description: Description, system: System) -> StackUse:
-    """The stacks of all tasks and interrupt service routines: one per core if the operating system says so, as OSEK does."""
-    sizes = dict(_stated(description))
+def stacks_of(description: Description, system: System, threads: Iterable[MiddlewareThread]) -> StackUse:
+    """The stacks of all tasks and interrupt service routines: one per core if the operating system says so, as OSEK does.
+
+    Parameters
+    ----------
+    threads : of the middleware, with what the description says of them
+    """
+    own_threads = {thread.name: thread.stack for thread in threads} if description.application.nodes else {}
+    sizes = dict(_stated(description)) | own_threads
     stack = description.os.stack
     if stack == "shared" or (stack is None and description.middleware.policy == "OSEK"):
         return shared_stacks(system, sizes)
@@ -98,14 +104,12 @@ def stacks_of(description: Description, system: System) -> StackUse:
     tasks = [task.name for task in system.software.tasks if task.name not in messages]
     # Interrupt service routines run on the stack of the interrupts, or of the task that they interrupt: those that state one count.
     own = [isr.name for isr in system.software.isrs if sizes.get(isr.name) is not None]
-    threads = [name for name in sizes if name not in system.processes and sizes[name] is not None]
-    return separate_stacks(StackUser(name=name, size=sizes.get(name)) for name in dict.fromkeys([*tasks, *own, *threads]))
+    return separate_stacks(StackUser(name=name, size=sizes.get(name)) for name in dict.fromkeys([*tasks, *own, *own_threads]))
 
 
 def _stated(description: Description) -> Iterator[tuple[str, int | None]]:
     middleware = description.middleware
     stated = [(each.name, each.stack) for each in executors_of(middleware)]
-    stated += [(each.name, each.stack) for each in middleware.tasks]
     stated += [(each.name, each.stack) for each in description.tasks]
     stated += [(each.name, each.stack) for each in description.isrs]
     for name, stack in stated:

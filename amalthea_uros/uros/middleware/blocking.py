@@ -20,7 +20,7 @@ def check_blocking(callbacks: Sequence[Callback], middleware: Middleware, profil
     outside = [callback for callback in senders if not (callback.in_executor and callback.executor in loops)]
     _check_waiting_outside(outside, middleware, profile, notes)
     _check_recovery(callbacks, middleware, profile, notes)
-    if len(loops) > 1 or (loops and outside):
+    if loops and (outside or len(stated_executors(middleware)) > 1):
         _check_threads(senders, tuple(loops.values()), middleware, profile, notes)
 
 

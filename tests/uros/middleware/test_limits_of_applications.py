@@ -72,9 +72,8 @@ def test_histories_are_shared(author):
     # Reliable messages have a depth of 10 by default; the pool has 8 slots.
     ((severity, message),) = reported(author, "UR125")
     assert severity == "info"
-    assert message.startswith(
-        "by default, the histories of 'Cmd', 'Ask' are deeper than the storage for messages of all callbacks, 8: "
-    )
+    text = "by default, the histories of 'Cmd', 'Ask' are deeper than the storage for messages of all callbacks, 8: "
+    assert message.startswith(text)
     enough = LOOP + "\n  limits: {RMW_UXRCE_MAX_HISTORY: 10}"
     assert reported(author, "UR125", middleware=enough) == []
     ((severity, message),) = reported(author, "UR125", middleware=enough, more=", depth: 11, history: keep-all")
@@ -90,8 +89,8 @@ def test_a_lost_message_is_sent_again_only_without_input(author):
     found = reported(author, "UR124", transport="loses_messages: true", reliability="reliable")
     text = "waits up to 1 s: it is sent again after 100 ms without input, but 'cmd' can arrive every 50 ms"
     assert [message for _, message in found] == [
-        f"if a message of 'Ask' is lost, 'Ask' {text}",
         f"if a message of 'state' is lost, 'Report' {text}",
+        f"if a message of 'Ask' is lost, 'Ask' {text}",
     ]
     often = LOOP + "\n  limits: {UCLIENT_MIN_HEARTBEAT_TIME_INTERVAL: 50 ms}"
     assert reported(author, "UR124", transport="loses_messages: true", reliability="reliable", middleware=often) == []
@@ -103,7 +102,7 @@ def test_threads_of_one_session(author):
     assert reported(author, "UR124", timer=", runs_in: own-task") == [("warning", unprotected)]
     two = "executors: [{name: A, loop: {spin_some: 80 ms}}, {name: B, loop: {spin: 1 s}}]"
     assert reported(author, "UR124", middleware=two, timer=", runs_in: B") == [("warning", unprotected)]
-    held = "a thread that waits for messages keeps the session for up to 1 s; others that send wait for it: 'Ask', 'Report'"
+    held = "a thread that waits for messages keeps the session for up to 1 s; others that send wait for it: 'Report', 'Ask'"
     several = two + "\n  multithread: true"
     assert reported(author, "UR124", middleware=several, timer=", runs_in: B") == [("warning", held)]
     zenoh = two + "\n  profile: zenoh-pico\n  tasks: [{name: zenoh_read, priority: 3}]"

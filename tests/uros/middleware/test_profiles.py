@@ -135,3 +135,11 @@ def test_threads_are_those_of_the_profile_and_of_the_port():
     # FreeRTOS: 5120 words of 4 B.
     assert profile_of(Middleware(profile="zenoh-pico")).threads(Middleware())[0].stack == 20480
     assert profile_of(Middleware()).threads(Middleware()) == ()
+
+
+@pytest.mark.parametrize("name", KNOWN)
+def test_a_message_that_cannot_be_sent_is_not_cut(name):
+    described = Middleware(profile=name)
+    content = 2**60
+    (part,) = profile_of(described).parts(MessageKind.PUBLICATION, content, reliable=True, middleware=described)
+    assert part.length > content

@@ -28,7 +28,8 @@ def parts(kind: MessageKind, content: int, *, reliable: bool, middleware: Middle
     """What is sent for a message; one that cannot be sent is a single part, which is longer than the MTU allows."""
     acknowledgement = size(data, "acknowledgement") if reliable else None
     headers, body = _headers(data), _body(kind, content, middleware, data)
-    if not reliable or headers + body <= _capacity(True, middleware, data):
+    is_whole = headers + body <= _capacity(True, middleware, data)
+    if not reliable or is_whole or body > size(data, "longest_payload"):
         return (Part(length=headers + body, acknowledgement=acknowledgement),)
     piece = _piece(middleware, data)
     full, rest = divmod(size(data, "submessage_header") + body, piece)

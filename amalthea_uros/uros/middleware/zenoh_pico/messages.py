@@ -23,9 +23,11 @@ _BITS_OF_LENGTH = 7
 
 
 def parts(kind: MessageKind, content: int, *, reliable: bool, middleware: Middleware, data: ProfileData) -> Sequence[Part]:
-    """What is sent for a message, without the length that precedes it on TCP."""
+    """What is sent for a message, without the length that precedes it on TCP; one that cannot be sent is a single part."""
     frame = sum(size(data, name) for name in _FRAME)
     message = _overhead(kind, reliable, data) + _length_of_length(content, data) + content
+    if content > _limit("FRAG_MAX_SIZE", middleware, data):
+        return (Part(length=frame + message),)
     piece = max(1, batch(middleware, data) - frame)
     full, rest = divmod(message, piece)
     return tuple(Part(length=frame + length) for length in (*repeat(piece, full), *([rest] if rest else [])))

@@ -1,0 +1,310 @@
+"""Files for the build of the firmware: the smallest that hold, and nothing that the check of such files does not find."""
+
+import json
+import re
+import shutil
+import subprocess
+
+import pytest
+import yaml
+from effort import every
+from support import ROOT
+
+from amalthea_uros.errors import ReadError, WriteError
+from amalthea_uros.services.generate import check_colcon_meta, generate
+from amalthea_uros.services.init import example_names
+
+SAMPLES = [ROOT / "samples" / f"{name}.yaml" for name in example_names()]
+RCLC = ROOT / "samples" / "rclc-in-executor.yaml"
+#: Everything that an application can have, with settings that the figures depend on.
+FULL = """
+amuros: 1
+name: full "*/ name
+hardware: {platform: single-core, frequency: 100 MHz}
+middleware:
+  executor: {period: 10 ms}
+  multithread: true
+  reliable: {timeout: 200 ms}
+  transport: {serial: {}}
+  limits:
+    UCLIENT_CUSTOM_TRANSPORT_MTU: 1 kB
+    RMW_UXRCE_STREAM_HISTORY: 8
+    RMW_UXRCE_GRAPH: true
+    RMW_UXRCE_MAX_SUBSCRIPTIONS: 20
+application:
+  nodes:
+    - name: node
+      subscriptions:
+        - name: A
+          topic: a/long/name/of/a/topic/that/needs/more/than/usual/for/names
+          message_size: 4 B
+          interval: 10 ms
+          execution_time: 2 us
+        - {name: B, topic: b, message_size: 600 B, reliability: best-effort, interval: 10 ms, execution_time: 2 us}
+      publishers:
+        - {topic: p-q, message_size: 4 B}
+        - {topic: p_q, message_size: 8 B}
+      timers:
+        - {name: T, period: 10 ms, execution_time: 2 us, publishes: [p-q, p_q]}
+      services:
+        - {name: Ask, rate: 1 Hz, request_size: 4 B, response_size: 4 B, execution_time: 2 us}
+      parameter_server: {execution_time: 1 us, rate: 1 Hz}
+      lifecycle: {execution_time: 1 us, rate: 1 Hz}
+"""
+
+
+@pytest.fixture
+def full(tmp_path):
+    path = tmp_path / "full.yaml"
+    path.write_text(FULL)
+    return path
+
+
+def arguments(text):
+    return [argument for package in json.loads(text)["names"].values() for argument in package["cmake-args"]]
+
+
+def checked(app, text, folder):
+    path = folder / "colcon.meta"
+    path.write_text(text)
+    return check_colcon_meta(app, path).findings
+
+
+def rules(findings):
+    return [finding.rule for finding in findings]
+
+
+@pytest.mark.parametrize("sample", SAMPLES, ids=lambda path: path.stem)
+def test_what_is_generated_holds_and_nothing_in_it_can_be_smaller(sample, tmp_path):
+    assert_smallest(sample, tmp_path)
+
+
+def test_so_it_is_for_an_application_with_everything(full, tmp_path):
+    assert_smallest(full, tmp_path)
+
+
+def assert_smallest(app, folder):
+    text = generate(app).texts["colcon.meta"]
+    assert checked(app, text, folder) == ()
+    numbers = [argument for argument in arguments(text) if re.fullmatch(r"-D\w+=[1-9]\d*", argument)]
+    assert len(numbers) > 3
+    for argument in every(2, numbers):
+        name, _, value = argument.partition("=")
+        findings = checked(app, text.replace(argument, f"{name}={int(value) - 1}"), folder)
+        assert any(finding.severity in ("error", "warning") and name[2:] in finding.message for finding in findings), argument
+
+
+def test_settings_that_are_described_are_kept(full):
+    assert {
+        "-DUCLIENT_CUSTOM_TRANSPORT_MTU=1000",
+        "-DRMW_UXRCE_STREAM_HISTORY=8",
+        "-DRMW_UXRCE_GRAPH=ON",
+        "-DUCLIENT_PROFILE_MULTITHREAD=ON",
+        "-DRMW_UXRCE_PUBLISH_RELIABLE_TIMEOUT=200",
+        "-DRMW_UXRCE_TRANSPORT=custom",
+        "-DRMW_UXRCE_MAX_SUBSCRIPTIONS=2",
+        # The longest name, a slash and a terminator.
+        f"-DRMW_UXRCE_TOPIC_NAME_MAX_LENGTH={len('a/long/name/of/a/topic/that/needs/more/than/usual/for/names') + 2}",
+    } <= set(arguments(generate(full).texts["colcon.meta"]))
+
+
+def test_colcon_reads_what_is_generated(full):
+    """colcon reads it as YAML; other tools as JSON."""
+    text = generate(full).texts["colcon.meta"]
+    assert yaml.safe_load(text) == json.loads(text)
+
+
+@pytest.mark.skipif(shutil.which("gcc") is None, reason="needs a compiler")
+@pytest.mark.parametrize(("language", "standard"), [("c", "c11"), ("c++", "c++11")])
+def test_the_compiler_finds_a_library_with_smaller_pools(language, standard, full, tmp_path):
+    generate(full, tmp_path / "out")
+    config = tmp_path / "rmw_microxrcedds_c" / "config.h"
+    config.parent.mkdir()
+    values = [argument[2:].split("=") for argument in arguments((tmp_path / "out" / "colcon.meta").read_text())]
+    numbers = {name: int(value) for name, value in values if value.isdigit()} | {"UXR_CONFIG_CUSTOM_TRANSPORT_MTU": 1000}
+
+    def compiles(macros):
+        config.write_text("".join(f"#define {name} {value}\n" for name, value in macros.items()))
+        run = subprocess.run(
+            ["gcc", f"-std={standard}", "-x", language, "-Wall", "-Werror", "-fsyntax-only", "-I", tmp_path, "-"],
+            input='#include "out/amuros_limits.h"\n',
+            capture_output=True,
+            check=False,
+            text=True,
+        )
+        return run.returncode == 0, run.stderr
+
+    assert compiles(numbers) == (True, "")
+    fine, errors = compiles(numbers | {"RMW_UXRCE_MAX_SERVICES": 11})
+    # The service, six of the parameter server and five of the lifecycle.
+    assert not fine
+    assert "RMW_UXRCE_MAX_SERVICES: at least 12" in errors
+    assert compiles(numbers | {"RMW_UXRCE_MAX_TOPICS": -1})[0]
+
+
+def test_names_that_are_alike_in_c_stay_apart(full):
+    header = generate(full).texts["amuros_limits.h"]
+    assert "#define AMUROS_SIZE_P_Q 4 /* p-q */\n#define AMUROS_SIZE_P_Q_2 8 /* p_q */\n" in header
+
+
+META = '{{"names": {{"rmw_microxrcedds": {{"cmake-args": [{}]}}, "microxrcedds_client": {{"cmake-args": [{}]}}}}}}'
+#: What the example needs: one node, two subscriptions, a publisher, two timers.
+ENOUGH = [f"-DRMW_UXRCE_MAX_{name}" for name in ("SERVICES=0", "CLIENTS=0", "PUBLISHERS=1", "SUBSCRIPTIONS=2", "HISTORY=2")]
+
+
+def meta(*options, client=()):
+    return META.format(*(", ".join(map(json.dumps, each)) for each in ((*ENOUGH, *options), client)))
+
+
+@pytest.mark.parametrize(
+    ("options", "client", "expected"),
+    [
+        ([], [], []),
+        (["-DRMW_UXRCE_MAX_NODES=1", "-DRMW_UXRCE_TRANSPORT=custom"], ["-DUCLIENT_PROFILE_UDP=OFF", "-DUCLIENT_PIC=OFF"], []),
+        (["-DRMW_UXRCE_MAX_PUBLISHERS:STRING=1"], [], ["GEN005"]),  # the same option again
+        (["-DRMW_UXRCE_MAX_NODES=0"], [], ["GEN004"]),
+        (["-DRMW_UXRCE_MAX_TOPICS=2"], [], ["GEN001"]),
+        (["-DRMW_UXRCE_MAX_TOPICS=-1"], [], []),
+        (["-DRMW_UXRCE_MAX_GUARD_CONDITION=1"], [], ["GEN001"]),
+        (["-DRMW_UXRCE_MAX_GUARD_CONDITION=9"], [], ["GEN002"]),
+        (["-DRMW_UXRCE_MAX_TIMERS=2"], [], ["GEN003"]),
+        ([], ["-DUCLIENT_MIN_HEARTBEAT_TIME_INTERVALL=1"], ["GEN003"]),
+        (["-DRMW_UXRCE_STREAM_HISTORY=5"], [], ["GEN004"]),
+        (["-DRMW_UXRCE_MAX_NODES=one"], [], ["GEN004"]),
+        (["-DRMW_UXRCE_MAX_NODES=" + "9" * 5000], [], ["GEN004"]),
+        (["-DRMW_UXRCE_XML_BUFFER_LENGTH=400"], [], ["GEN005"]),
+        (["-DRMW_UXRCE_STREAM_HISTORY_INPUT=4"], [], ["GEN005"]),
+        ([], ["-DUCLIENT_UDP_TRANSPORT_MTU=1024"], ["GEN005"]),
+        (["-DUCLIENT_CUSTOM_TRANSPORT_MTU=512"], [], ["GEN005"]),  # an option of the other package
+        ([], ["-DUCLIENT_CUSTOM_TRANSPORT_MTU=1024"], ["GEN008"]),
+        # A best-effort message of 320 B with 12 B of headers.
+        ([], ["-DUCLIENT_CUSTOM_TRANSPORT_MTU=256"], ["GEN001"]),
+        (["-DRMW_UXRCE_PUBLISH_RELIABLE_TIMEOUT=10"], [], ["GEN008"]),
+        (["-DRMW_UXRCE_NODE_NAME_MAX_LENGTH=5"], [], ["GEN001"]),  # "robot" with its terminator
+        (["-DRMW_UXRCE_NODE_NAME_MAX_LENGTH=6"], [], []),
+    ],
+)
+def test_a_file_of_somebody(options, client, expected, tmp_path):
+    text = meta(*options, client=client)
+    assert rules(checked(RCLC, text, tmp_path)) == expected
+
+
+def test_without_a_value_the_default_counts(tmp_path):
+    findings = checked(RCLC, '{"names": {}}', tmp_path)
+    assert findings == ()  # 4 of each by default
+    app = tmp_path / "app.yaml"
+    timers = "".join(f"        - {{name: T{number}, period: 10 ms, execution_time: 1 us}}\n" for number in range(5))
+    head = "amuros: 1\nname: a\nhardware: {platform: single-core, frequency: 100 MHz}\n"
+    app.write_text(f"{head}application:\n  nodes:\n    - name: n\n      timers:\n{timers}")
+    (finding,) = checked(app, '{"names": {}}', tmp_path)
+    assert finding.message.startswith("RMW_UXRCE_MAX_GUARD_CONDITION is 4 by default, but the application needs 5")
+
+
+def test_the_bytes_to_save(tmp_path):
+    (finding,) = checked(RCLC, meta("-DRMW_UXRCE_MAX_WAIT_SETS=3"), tmp_path)
+    assert finding.help == "Set it to 1 to save 56 B."  # 28 B each
+    (finding,) = checked(RCLC, meta("-DRMW_UXRCE_MAX_HISTORY=5").replace('"-DRMW_UXRCE_MAX_HISTORY=2", ', ""), tmp_path)
+    assert finding.help == f"Set it to 2 to save {3 * (512 * 4 + 64)} B."
+
+
+def test_comments_that_colcon_takes_for_values(tmp_path):
+    lines = ("[ # fine", ' "-DRMW_UXRCE_MAX_NODES=1", // lost', ' "-DRMW_UXRCE_MAX_HISTORY=2",]')
+    text = '{"names": {"rmw_microxrcedds": {"cmake-args": ' + "\n".join(lines) + "}}}"
+    assert yaml.safe_load(text)["names"]["rmw_microxrcedds"]["cmake-args"][1].startswith("// lost")
+    (finding,) = checked(RCLC, text, tmp_path)
+    assert (finding.rule, finding.location.line, finding.location.column) == ("GEN007", 2, 29)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        *(
+            "",
+            "{",
+            "[]",
+            "1",
+            '{"names": 1}',
+            '{"names"}',
+            '{"names": {"a": }}',
+            '{"names": {,}}',
+            '{"names": {}} x',
+            "\x00",
+            '"\\x"',
+        ),
+        *(
+            '{"names": {"a": {"cmake-args": ["-DA=1" "-DB=2"]}}}',
+            "[" * 100_000,
+            '{"a":' * 100_000,
+            "/*" * 10_000,
+            '"' + "\\" * 9_999,
+        ),
+    ],
+    ids=lambda text: repr(text[:12]),
+)
+def test_what_is_no_colcon_meta(text, tmp_path):
+    with pytest.raises(ReadError) as caught:
+        checked(RCLC, text, tmp_path)
+    assert rules(caught.value.findings) == ["GEN006"]
+
+
+def test_settings_of_other_packages_and_forms_are_nothing_to_complain_about(tmp_path):
+    text = """{"names": {
+        "tracetools": {"cmake-args": ["-DTRACETOOLS_DISABLED=ON"]}, "rcutils": {"cmake-args": "x"}, "rcl": {}, "a": [1, null, {}],
+        "rmw_microxrcedds": {"cmake-args": ["--no-warn-unused-cli", 5, "-DRMW_UXRCE_DEFAULT_UDP_PORT=8888"]}}}"""
+    assert checked(RCLC, text, tmp_path) == ()
+
+
+def test_large_files_are_checked_quickly(tmp_path):
+    options = "\n".join(f'"-DRMW_UXRCE_MAX_NODE{number}=1", // x' for number in range(20_000))
+    findings = checked(RCLC, META.format(options + "\n", ""), tmp_path)
+    assert len(findings) == 100
+    with pytest.raises(ReadError, match="") as caught:
+        checked(RCLC, " " * (2 << 20), tmp_path)
+    assert "larger than" in caught.value.findings[0].message
+
+
+def test_files_of_others_are_not_replaced(tmp_path):
+    mine = tmp_path / "out" / "colcon.meta"
+    mine.parent.mkdir()
+    mine.write_text('{"names": {}}')
+    with pytest.raises(WriteError) as caught:
+        generate(RCLC, mine.parent)
+    assert [finding.location.path for finding in caught.value.findings] == [mine]
+    assert [path.name for path in mine.parent.iterdir()] == ["colcon.meta"]
+    generate(RCLC, mine.parent, force=True)
+    assert sorted(path.name for path in mine.parent.iterdir()) == ["amuros_limits.h", "colcon.meta"]
+    generate(ROOT / "samples" / "drive-and-lift.yaml", mine.parent)  # replaces what it wrote itself
+    assert "drive-and-lift" in mine.read_text()
+
+
+def test_without_an_application_there_is_nothing_to_generate(tmp_path):
+    app = tmp_path / "app.yaml"
+    app.write_text(
+        "amuros: 1\nname: a\nhardware: {platform: generic}\ntasks:\n  - {name: T, period: 1 ms, execution_time: 1 us}\n"
+    )
+    with pytest.raises(ReadError) as caught:
+        generate(app)
+    assert rules(caught.value.findings) == ["GEN009"]
+
+
+def test_zenoh_has_options_for_cmake(tmp_path):
+    app = tmp_path / "app.yaml"
+    text = RCLC.read_text().replace(
+        "middleware:\n", "middleware:\n  profile: zenoh-pico\n  tasks: [{name: zenoh_read, priority: 5}]\n"
+    )
+    app.write_text(text.replace("RMW_UXRCE_MTU: 512 B", "BATCH_UNICAST_SIZE: 1 kB, Z_FEATURE_BATCHING: false"))
+    texts = generate(app).texts
+    assert list(texts) == ["zenoh_options.cmake", "amuros_limits.h"]
+    found = re.findall(r"^set\((\w+) (\d+) CACHE STRING", texts["zenoh_options.cmake"], re.MULTILINE)
+    assert found == [("BATCH_UNICAST_SIZE", "1000"), ("Z_FEATURE_BATCHING", "0")]
+    assert "rmw_microxrcedds" not in texts["amuros_limits.h"]
+
+
+def test_results_are_tables(tmp_path):
+    result = generate(RCLC, tmp_path)
+    rows = {row["option"]: (row["generated"], row["described"]) for row in result.to_records()}
+    assert rows["RMW_UXRCE_MAX_TOPICS"] == ("3", "8")
+    assert "RMW_UXRCE_MAX_TOPICS" in str(result)
+    check = check_colcon_meta(RCLC, tmp_path / "colcon.meta")
+    assert (check.to_records(), check.is_fine) == ([], True)
+    assert "holds for" in str(check)
