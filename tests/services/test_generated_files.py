@@ -324,3 +324,11 @@ def test_pools_of_a_board_that_are_too_small_are_no_obstacle(tmp_path):
     assert "-DRMW_UXRCE_MAX_PUBLISHERS=3" in arguments(result.texts["colcon.meta"])
     assert not {"UR120", "UR127"} & set(rules(result.findings))
     assert checked(app, result.texts["colcon.meta"], tmp_path) == ()
+
+
+def test_a_history_that_the_build_refuses_is_not_generated(tmp_path):
+    app = tmp_path / "app.yaml"
+    app.write_text(RCLC.read_text().replace("limits: {", "limits: {RMW_UXRCE_STREAM_HISTORY: 3, "))
+    text = generate(app).texts["colcon.meta"]
+    assert "-DRMW_UXRCE_STREAM_HISTORY=4" in arguments(text)
+    assert checked(app, text, tmp_path) == ()
