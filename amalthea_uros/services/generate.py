@@ -16,19 +16,23 @@ from amalthea_uros.errors import ReadError, WriteError
 from amalthea_uros.findings.suppression import unsuppressed
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.services.build import describe
-from amalthea_uros.services.paths import StrPath
+from amalthea_uros.services.paths import StrPath, folder_of
 from amalthea_uros.spec.application import Application, Node
-from amalthea_uros.uros.assemble import Assembly
+from amalthea_uros.spec.platforms import complete
+from amalthea_uros.spec.read import read_description
+from amalthea_uros.uros.assemble import Assembly, assemble
 from amalthea_uros.uros.colcon_meta import parse_meta
 from amalthea_uros.uros.generated_options import check_meta, values_of, with_generated_options
 from amalthea_uros.uros.memory.entities import LIFECYCLE_SERVICES, PARAMETER_SERVICES, executors_of
 from amalthea_uros.uros.memory.ram import Memory
-from amalthea_uros.uros.middleware.profile import Option
-from amalthea_uros.uros.pools import static_memory_of
+from amalthea_uros.uros.middleware.profile import Option, OptionRole
+from amalthea_uros.uros.pools import option_table, static_memory_of
 
 META, HEADER, CMAKE = "colcon.meta", "amuros_limits.h", "zenoh_options.cmake"
 #: In each file, by which it can be told from those that people wrote.
 _MARK = "Written by amuros generate"
+#: Findings about sizes, which the files set.
+_SOLVED = ("UR120", "UR127")
 #: Packages of options that the header of rmw_microxrcedds repeats.
 _WITH_HEADER = "rmw_microxrcedds"
 _MTU = re.compile(r"UCLIENT_(\w+_TRANSPORT_MTU)")
@@ -54,8 +58,8 @@ class GenerateResult(Brief, Shown):
 
     @property
     def findings(self) -> tuple[Finding, ...]:
-        """Warnings and notes about the description, except those that comments in it accept."""
-        return unsuppressed(self.assembly.findings)
+        """Warnings and notes about the description, except about sizes that the files set, and those that comments in it accept."""
+        return unsuppressed(finding for finding in self.assembly.findings if finding.rule not in _SOLVED)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -86,7 +90,7 @@ def generate(path: StrPath, folder: StrPath | None = None, platform: str | None 
     ReadError : the description cannot be read, something in it is wrong, or it has no micro-ROS application.
     WriteError : a file cannot be written, or would be replaced.
     """
-    assembly = describe(path, platform)
+    assembly = _described(path, platform)
     if not assembly.description.application.nodes:
         message, advice = "no micro-ROS application: nothing to generate", "Add nodes under 'application'."
         raise ReadError([Finding("GEN009", Severity.ERROR, message, Location(Path(path)), advice)])
@@ -113,7 +117,7 @@ def check_colcon_meta(path: StrPath, meta: StrPath, platform: str | None = None)
     ------
     ReadError : one of the files cannot be read.
     """
-    description = describe(path, platform).description
+    description = _described(path, platform).description
     file = Path(meta)
     try:
         text = read_text(file, SETTINGS_SIZE)
@@ -130,6 +134,21 @@ def generated_memory(assembly: Assembly) -> Memory:
     generated = static_memory_of(application, with_generated_options(middleware, assembly.options))
     rest = [use for use in assembly.memory.uses if use not in described]
     return replace(assembly.memory, uses=(*generated, *rest))
+
+
+def _described(path: StrPath, platform: str | None) -> Assembly:
+    """The system of a description; pools that are too small are no obstacle, as the files are to set others."""
+    try:
+        return describe(path, platform)
+    except ReadError as error:
+        if any(finding.severity is Severity.ERROR and finding.rule not in _SOLVED for finding in error.findings):
+            raise
+    whole, name, _ = complete(read_description(Path(path)), folder_of(Path(path)), platform)
+    middleware = whole.middleware
+    sizes = [row.name for row in option_table(middleware).values() if row.role is not OptionRole.SETTING]
+    limits = middleware.limits.model_copy(update=dict.fromkeys(name for name in sizes if middleware.limits.states(name)))
+    whole = whole.model_copy(update={"middleware": middleware.model_copy(update={"limits": limits})})
+    return assemble(whole, whole.hardware, name)
 
 
 def texts_of(assembly: Assembly) -> dict[str, str]:

@@ -35,7 +35,8 @@ def value_of(option: Option) -> int | None:
     if option.role in _COUNTED:
         return option.smallest
     if option.is_stated:
-        return option.available if option.words else max(option.available, option.smallest or 0)
+        value = option.available if option.words else max(option.available, option.smallest or 0)
+        return 1 << (value - 1).bit_length() if option.is_power_of_two else value
     return option.smallest if option.is_exceeded else None
 
 

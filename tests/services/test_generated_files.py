@@ -308,3 +308,27 @@ def test_results_are_tables(tmp_path):
     check = check_colcon_meta(RCLC, tmp_path / "colcon.meta")
     assert (check.to_records(), check.is_fine) == ([], True)
     assert "holds for" in str(check)
+
+
+def test_pools_of_a_board_that_are_too_small_are_no_obstacle(tmp_path):
+    app = tmp_path / "app.yaml"
+    publishers = "".join(
+        f"        - {{topic: p{number}, message_size: 4 B, reliability: best-effort}}\n" for number in range(3)
+    )
+    # ESP-IDF has two publishers by default.
+    head = "amuros: 1\nname: a\nhardware: {platform: esp32}\nmiddleware: {transport: {serial: {}}}\n"
+    head += "application:\n  nodes:\n    - name: n\n"
+    timers = "      timers: [{name: T, period: 100 ms, execution_time: 1 us, publishes: [p0, p1, p2]}]\n"
+    app.write_text(f"{head}      publishers:\n{publishers}{timers}")
+    result = generate(app)
+    assert "-DRMW_UXRCE_MAX_PUBLISHERS=3" in arguments(result.texts["colcon.meta"])
+    assert not {"UR120", "UR127"} & set(rules(result.findings))
+    assert checked(app, result.texts["colcon.meta"], tmp_path) == ()
+
+
+def test_a_history_that_the_build_refuses_is_not_generated(tmp_path):
+    app = tmp_path / "app.yaml"
+    app.write_text(RCLC.read_text().replace("limits: {", "limits: {RMW_UXRCE_STREAM_HISTORY: 3, "))
+    text = generate(app).texts["colcon.meta"]
+    assert "-DRMW_UXRCE_STREAM_HISTORY=4" in arguments(text)
+    assert checked(app, text, tmp_path) == ()
