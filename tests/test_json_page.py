@@ -25,6 +25,7 @@ RUNS = {
         ("analyze", ADVANCED, "--scale", "80", "--explain", "Control_Function"),
         ("analyze", "rclc-in-executor.yaml", "--explain", "On_Command_Callback"),
         ("analyze", "unknown.amxmi", "--explain", "Empty"),
+        ("analyze", "arduino.yaml", "--explain", "Control_Callback"),
         ("analyze", "rclc-in-executor.yaml", "--explain", "rclc_executor"),
         ("analyze", "drive-and-lift.yaml", "--explain", "valve-to-log"),
         ("analyze", "unknown.amxmi", "--set", "Control_Function.execution_time=500us"),
@@ -76,6 +77,7 @@ RUNS = {
     "amuros build": (
         ("build", "bodas-test-hardware.yaml", "-o", "built.amxmi"),
         ("build", "drive-and-lift.yaml", "-o", "too.amxmi"),
+        ("build", "loops.yaml", "-o", "loops.amxmi"),
     ),
     "amuros calibrate": (
         ("calibrate", "bodas-test-measured.yaml", "bodas-test-measured.log", "--markers", "bodas-test-measured.markers.yml"),
@@ -138,6 +140,38 @@ def values(found: Any, path: Place = ()) -> Iterator[tuple[Place, Any]]:
         yield path, found
 
 
+LOOPS = """
+amuros: 1
+name: loops
+hardware: {platform: single-core, frequency: 100 MHz}
+middleware:
+  multithread: true
+  executors:
+    - {name: Fast, loop: {spin_some: 10 ms, sleep: 1 ms}}
+    - {name: Slow, loop: {spin_period: 20 ms, timeout: 5 ms}}
+application:
+  nodes:
+    - name: node
+      subscriptions: [{name: On_Command, topic: command, rate: 20 Hz, message_size: 8 B, execution_time: 4 us}]
+      timers: [{name: Control, period: 40 ms, execution_time: 4 us, runs_in: Slow}]
+      guard_conditions: [{name: Stop, execution_time: 4 us}]
+"""
+
+#: A loop whose sleep is longer than the period of its timer.
+ARDUINO = """
+amuros: 1
+name: robot
+hardware: {platform: single-core, frequency: 100 MHz}
+middleware:
+  executor: {loop: {spin_some: 100 ms, sleep: 100 ms}, execution_time: {base: 12 us}}
+application:
+  nodes:
+    - name: node
+      subscriptions: [{name: On_Command, topic: command, rate: 5 Hz, message_size: 8 B, execution_time: 4 us}]
+      timers: [{name: Control, period: 10 ms, execution_time: 4 us}]
+"""
+
+
 @pytest.fixture
 def folder(tmp_path):
     for path in (ROOT / "samples").iterdir():
@@ -157,6 +191,8 @@ def folder(tmp_path):
     process = model[am.Task, "Control_Function"]
     model.root.constraints_model.requirements.append(am.ProcessRequirement(name="preemptions", process=process, limit=count))
     save(model, tmp_path / "counted.amxmi")
+    (tmp_path / "loops.yaml").write_text(LOOPS)
+    (tmp_path / "arduino.yaml").write_text(ARDUINO)
     (tmp_path / "stopwatch.csv").write_text(
         "object,kind,quantity,value_us\nControl_Function,process,response_time,16\nControl_Function,process,response_time,1200\n"
     )

@@ -30,6 +30,7 @@ VERSIONS = [version for version in supported_versions() if version_key(version) 
 )
 @click.option("--platform", help="Platform to use instead of the one in APP.YAML: a known name or a file.")
 @click.option("--force", is_flag=True, help="Without -o: also replace a model that was not built by amuros, or edited since.")
+@click.option("--bus", "with_bus", is_flag=True, help="Also write the CAN bus, as a core whose tasks are the messages.")
 @click.option("--compress", is_flag=True, help="Write a ZIP, as APP4MC does for big models.")
 @output_option(BuildResult)
 def command(
@@ -38,6 +39,7 @@ def command(
     version: str,
     platform: str | None,
     force: bool,
+    with_bus: bool,
     compress: bool,
     outputs: tuple[Output, ...],
 ) -> None:
@@ -48,7 +50,7 @@ def command(
     """
     is_filter = target is None and description == STANDARD_INPUT
     outputs = beside_files(outputs, [("-o", STANDARD_OUTPUT if is_filter else target)])
-    result = build_file(description, target, version, platform, compress, force)
+    result = build_file(description, target, version, platform, compress, force, with_bus=with_bus)
     show_findings(result.findings)
     show_summaries(result.model, project_settings(description).targets)
     write_outputs(outputs, result)

@@ -40,10 +40,12 @@ class Wire(Named):
     Attributes
     ----------
     cores : that stand for it: one per direction if both can send at the same time, else one
+    loses_messages : whether frames can be lost on it
     """
 
     kind: WireKind
     cores: tuple[str, ...]
+    loses_messages: bool = False
 
 
 class Direction(StrEnum):
@@ -72,8 +74,10 @@ class Transmission(Named):
     callback : that receives or sends it
     length : in bytes, of the message of the middleware with its headers
     link : time besides that on the core of the wire: in switches, access points, and until a host polls
-    driver : time in the driver of the controller, when sending or receiving it, that is not execution time, such as waiting for ticks
+    driver : time in the driver of the controller after its receipt that is not execution time, such as waiting for ticks; while it is
+        sent, the driver keeps the wire busy, so that this time is part of that on the wire
     processes : that a message passes before the executor sees it: interrupt service routines, then tasks of the middleware
+    keeps_sender : whether the thread of the controller that sends it waits until it is on the wire
     agent : time in the agent: from the host to the wire, from the wire to the host, or from a message to its acknowledgement
     """
 
@@ -86,6 +90,7 @@ class Transmission(Named):
     link: Span = field(default_factory=lambda: Span(most=0))
     driver: Span = field(default_factory=lambda: Span(most=0))
     processes: tuple[str, ...] = ()
+    keeps_sender: bool = False
     agent: Span = field(default_factory=Span)
 
 

@@ -11,7 +11,7 @@ from amalthea_uros._internal.files import STANDARD_INPUT, STANDARD_OUTPUT, is_fi
 from amalthea_uros._internal.garbage import paused_garbage_collection
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.diagnostics import Finding, Location, Severity
-from amalthea_uros.errors import AmurosError, ReadError, WriteError
+from amalthea_uros.errors import AmurosError, InvalidArgumentError, ReadError, WriteError
 from amalthea_uros.findings.suppression import unsuppressed
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.services.paths import StrPath, folder_of
@@ -19,6 +19,7 @@ from amalthea_uros.uros.assemble import Assembly, assemble
 
 if TYPE_CHECKING:
     from amalthea_uros.metamodel.model import Document, Model
+    from amalthea_uros.perf.system import System
     from amalthea_uros.spec.description import Description
     from amalthea_uros.spec.read import Draft
 
@@ -104,11 +105,12 @@ def _assembly(draft: Draft[Description], folder: Path, platform: str | None = No
 
 
 def _assembled(description: Description, folder: Path, platform: str | None) -> Assembly:
+    from amalthea_uros.services.bus_database import database_frames
     from amalthea_uros.spec.platforms import complete
 
     whole, name, findings = complete(description, folder, platform)
     try:
-        assembly = assemble(whole, whole.hardware, name)
+        assembly = assemble(whole, whole.hardware, name, database_frames(whole, folder))
     except ReadError as error:
         raise ReadError([*findings, *error.findings]) from None
     if findings:
@@ -116,24 +118,44 @@ def _assembled(description: Description, folder: Path, platform: str | None) -> 
     return assembly
 
 
-def build(path: StrPath, version: str | None = None, platform: str | None = None) -> BuildResult:
+def system_with_bus(assembly: Assembly, path: StrPath) -> System:
+    """The system of a description with its wire.
+
+    Parameters
+    ----------
+    path : of the description
+
+    Raises
+    ------
+    InvalidArgumentError : no wire is described.
+    """
+    system = assembly.system_with_bus()
+    if system is None:
+        raise InvalidArgumentError(f"no CAN bus is described in {path}; set 'middleware.transport.can.bitrate'")
+    return system
+
+
+def build(path: StrPath, version: str | None = None, platform: str | None = None, *, with_bus: bool = False) -> BuildResult:
     """The AMALTHEA model of an `app.yaml`.
 
     Parameters
     ----------
     version : AMALTHEA version from 1.2.0 on; the newest one if none is given
     platform : replaces the platform that the file names
+    with_bus : also with the CAN bus, if it is not a part of the system anyway
 
     Raises
     ------
     ReadError : the file cannot be read, or something in it is wrong; carries a finding for each mistake.
     WriteError : the version cannot hold the model.
+    InvalidArgumentError : a bus is wanted, but not described.
     """
     from amalthea_uros.bridge.build import build_model
 
     with paused_garbage_collection():
         assembly = describe(path, platform)
-        return BuildResult(description=Path(path), model=build_model(assembly.system, version), assembly=assembly)
+        system = system_with_bus(assembly, path) if with_bus else assembly.system
+        return BuildResult(description=Path(path), model=build_model(system, version), assembly=assembly)
 
 
 def build_file(
@@ -143,13 +165,15 @@ def build_file(
     platform: str | None = None,
     compress: bool = False,
     force: bool = False,
+    *,
+    with_bus: bool = False,
 ) -> BuildResult:
     """Build the AMALTHEA model of an `app.yaml` and write it.
 
     Parameters
     ----------
     target : the file to write; None: beside the description, with the suffix `.amxmi`, or standard output for standard input
-    version, platform : as for `build`
+    version, platform, with_bus : as for `build`
     compress : write a ZIP
     force : without a target, also replace a model that this function would not write
 
@@ -160,7 +184,7 @@ def build_file(
     """
     from amalthea_uros.xmi.save import save
 
-    result = build(path, version, platform)
+    result = build(path, version, platform, with_bus=with_bus)
     result.document.path = _beside(Path(path), force) if target is None else Path(target)
     save(result.model, compress=compress)
     return result

@@ -95,12 +95,10 @@ def open_system(paths: Sequence[StrPath], *, with_bus: bool = False) -> SystemIn
     InvalidArgumentError : a bus is wanted, but not described.
     """
     if _is_one_description(paths):
-        from amalthea_uros.services.build import describe
+        from amalthea_uros.services.build import describe, system_with_bus
 
         assembly = describe(paths[0])
-        system = assembly.system_with_bus() if with_bus else assembly.system
-        if system is None:
-            raise InvalidArgumentError(f"no CAN bus is described in {paths[0]}; set 'middleware.transport.can.bitrate'")
+        system = system_with_bus(assembly, paths[0]) if with_bus else assembly.system
         return described_input(assembly, system)
     if with_bus:
         raise InvalidArgumentError("only an app.yaml describes the messages on a CAN bus; AMALTHEA models do not")

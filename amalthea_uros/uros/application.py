@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from amalthea_uros.perf.activities import Call
+from amalthea_uros.perf.network import Direction
 from amalthea_uros.perf.software import Runnable
 from amalthea_uros.perf.stimuli import InterProcess
 from amalthea_uros.spec.executors import Executor
@@ -34,6 +35,7 @@ from amalthea_uros.uros.periods import (
 )
 from amalthea_uros.uros.phases import ExecutorPhases, own_task_counter
 from amalthea_uros.uros.tasks import PlannedIsr, PlannedTask
+from amalthea_uros.uros.transports.costs import driver_costs
 
 
 def add_callbacks(context: AssemblyContext, callbacks: Sequence[Callback]) -> tuple[PeriodChoice, ...]:
@@ -129,7 +131,9 @@ def _executor_calls(
     phases: ExecutorPhases,
     core: str,
 ) -> list[PlannedCall]:
-    runnables = ExecutorRunnables(executor=executor, converter=context.converter, core=core, channels=context.channels)
+    runnables = ExecutorRunnables(
+        executor=executor, description=context.description, converter=context.converter, core=core, channels=context.channels
+    )
     return [
         PlannedCall(runnable=runnables.spin((*outside, *inside))),
         *own_task_calls(outside, runnables, phases),
@@ -176,6 +180,7 @@ def _body(context: AssemblyContext, callback: Callback, executor_core: str) -> R
     """The runnable of a callback: it reads, computes and publishes, and writes."""
     section, publish = callback.section, context.description.middleware.publish
     sending = [cost for message in callback.outgoing for cost in message_cost(publish, message.size)]
+    sending += driver_costs(context.description, callback, Direction.TO_AGENT)
     core = _core(context, callback, executor_core)
     activities = activity_sequence(
         context.converter.execute([section.execution_time, *sending], core, section.location("execution_time")),

@@ -28,8 +28,9 @@ from amalthea_uros.uros.can import CanBus
 from amalthea_uros.uros.chain_elements import chain_elements
 from amalthea_uros.uros.chains import Chains
 from amalthea_uros.uros.context import AssemblyContext
-from amalthea_uros.uros.executors.activation import triggered_rounds
+from amalthea_uros.uros.executors.activation import is_triggered, round_trigger_name, triggered_rounds
 from amalthea_uros.uros.executors.deadlines import deadlines
+from amalthea_uros.uros.executors.serving import placement
 from amalthea_uros.uros.hardware import controller_of
 from amalthea_uros.uros.initialisation import Initialisation, initialisation
 from amalthea_uros.uros.labels import check_misspelled_labels, labels_of, placements
@@ -47,6 +48,8 @@ from amalthea_uros.uros.priorities import check_shared_priorities
 from amalthea_uros.uros.requirements import requirements
 from amalthea_uros.uros.rtos import PriorityScale, check_sleeps
 from amalthea_uros.uros.tasks import PlannedIsr, PlannedTask
+from amalthea_uros.uros.transports.foreign import ForeignFrame
+from amalthea_uros.uros.transports.network import PlannedNetwork, planned_network, with_network
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,7 +60,8 @@ class Assembly(Brief):
     ----------
     description : what was assembled
     choices : the periods of executors without a loop and of the callbacks' tasks, with reasons
-    bus, messages : the CAN bus, None if there is none, and what is sent on it
+    placement : where callbacks run that do not say so, and who decided it; "" without callbacks
+    bus, messages : the classic CAN bus, None if there is none, and what is sent on it
     options : build options of the middleware
     memory : what micro-ROS takes of it
     findings : of severity warning and info
@@ -68,6 +72,7 @@ class Assembly(Brief):
     description: Description
     system: System
     choices: tuple[PeriodChoice, ...]
+    placement: str
     messages: tuple[BusMessage, ...]
     bus: CanBus | None
     initialisation: Initialisation | None
@@ -83,17 +88,25 @@ class Assembly(Brief):
         return pools_of(self.options)
 
     def system_with_bus(self) -> System | None:
-        """The system with the CAN bus as a further core, whose tasks are the messages; None if there is no bus."""
+        """The system with its wire as further cores, whose tasks are the messages; None if there is no wire.
+
+        A classic CAN bus is left out of the system if nothing in the description depends on it, and added here.
+        """
+        if self.system.network.wires:
+            return self.system
         return None if self.bus is None else with_traffic(self.system, self.bus, self.messages)
 
 
-def assemble(description: Description, hardware: Hardware, platform: str | None) -> Assembly:
+def assemble(
+    description: Description, hardware: Hardware, platform: str | None, database: Sequence[ForeignFrame] = ()
+) -> Assembly:
     """The system that a description describes.
 
     Parameters
     ----------
     hardware : of the description, completed by its platform
     platform : the name that execution times use for the hardware; None if it has none
+    database : frames of others on the CAN bus, from the DBC file that the description names
 
     Raises
     ------
@@ -105,7 +118,8 @@ def assemble(description: Description, hardware: Hardware, platform: str | None)
     profile = _profile(description.middleware, notes)
     if target is None or profile is None:
         raise ReadError(notes.findings)
-    assembly = _assembly(AssemblyContext(description=description, controller=target, notes=notes, profile=profile), hardware)
+    context = AssemblyContext(description=description, controller=target, notes=notes, profile=profile)
+    assembly = _assembly(context, hardware, database)
     if notes.has_errors:
         raise ReadError(notes.findings)
     return assembly
@@ -120,18 +134,27 @@ def _profile(middleware: Middleware, notes: Notes) -> Profile | None:
         return None
 
 
-def _assembly(context: AssemblyContext, hardware: Hardware) -> Assembly:
+def _assembly(context: AssemblyContext, hardware: Hardware, database: Sequence[ForeignFrame]) -> Assembly:
     application, middleware = context.description.application, context.description.middleware
     callbacks = callbacks_of(application, middleware, context.notes)
     messages = bus_messages(callbacks, middleware.transport)
-    check_bus_load(messages, middleware.transport, context.notes)
     check_identifiers(messages, middleware.transport, context.notes)
     options = options_of(application, middleware)
     check_options(options, middleware, context.notes)
     check_middleware(callbacks, middleware, context.profile, context.notes)
     context.channels = internal_channels(callbacks)
     choices = add_callbacks(context, callbacks)
-    add_interrupt(context, messages)
+    network = planned_network(
+        context,
+        callbacks,
+        context.profile,
+        tick=context.description.os.tick,
+        wakes=[round_trigger_name(each.name) for each in context.executors if is_triggered(each)],
+        database=database,
+    )
+    if network is None:
+        check_bus_load(messages, middleware.transport, context.notes)
+        add_interrupt(context, messages)
     add_background_tasks(context)
     add_overheads(context)
     check_sleeps(context.description, context.notes)
@@ -139,7 +162,7 @@ def _assembly(context: AssemblyContext, hardware: Hardware) -> Assembly:
         advice = "Define callbacks under 'application', or tasks under 'tasks'."
         message = "no callback, task or interrupt service routine is defined"
         context.notes.error("APP009", message, context.description.location(), advice)
-    system = _system(context, callbacks)
+    system = _system(context, callbacks, network)
     memory = memory_of(context.description, hardware, system, static_memory_of(application, middleware))
     check_memory(memory, hardware, context.notes)
     response_time = middleware.initialisation.response_time
@@ -148,6 +171,7 @@ def _assembly(context: AssemblyContext, hardware: Hardware) -> Assembly:
         description=context.description,
         system=system,
         choices=choices,
+        placement=placement(context.description, context.controller.platform) if callbacks else "",
         messages=messages,
         bus=bus_of(middleware.transport.can) if middleware.transport.can is not None else None,
         initialisation=initialisation(application, first.period, response_time) if first else None,
@@ -159,14 +183,14 @@ def _assembly(context: AssemblyContext, hardware: Hardware) -> Assembly:
     )
 
 
-def _system(context: AssemblyContext, callbacks: Sequence[Callback]) -> System:
+def _system(context: AssemblyContext, callbacks: Sequence[Callback], network: PlannedNetwork | None) -> System:
     """The system of all that has been added to the context."""
     description, notes = context.description, context.notes
     check_misspelled_labels(description, context.runnables, notes)
     labels = labels_of(description, callbacks, context.runnables)
     check_unique_data(labels, context.channels.values(), notes)
     elements = chain_elements(context, callbacks)
-    system = _without_demands(context, labels)
+    system = triggered_rounds(with_network(_without_demands(context, labels), network, context))
     check_shared_priorities(system, context.tasks, notes, context.priority_scale)
     chains = Chains(elements, Dataflow(system), notes)
     limits = chains.add_all(description.chains)
@@ -180,7 +204,7 @@ def _system(context: AssemblyContext, callbacks: Sequence[Callback]) -> System:
 
 def _without_demands(context: AssemblyContext, labels: Sequence[Label]) -> System:
     """The system without event chains and requirements."""
-    system = System(
+    return System(
         hardware=context.controller.hardware,
         os=os_of(context),
         stimuli=Stimuli(stimuli=context.stimuli.stimuli),
@@ -198,7 +222,6 @@ def _without_demands(context: AssemblyContext, labels: Sequence[Label]) -> Syste
         ),
         executors=tuple(context.executors),
     )
-    return triggered_rounds(system)
 
 
 def _task(planned: PlannedTask) -> Task:

@@ -17,7 +17,7 @@ from amalthea_uros.units import Time
 from amalthea_uros.uros.application import body_name
 from amalthea_uros.uros.bus_messages import BusMessage
 from amalthea_uros.uros.bus_system import Transmission, with_bus
-from amalthea_uros.uros.can import BLOCK_BYTES, FRAME_BYTES, CanBus
+from amalthea_uros.uros.can import CanBus, block_bytes
 
 #: Greater than all identifiers.
 _OF_CLIENT = 2**29
@@ -51,12 +51,6 @@ def transmission_name(message: BusMessage) -> str:
     return f"{message.message.channel}_{'to' if message.incoming else 'from'}_{message.message.callback}"
 
 
-def block_bytes(length: int) -> list[tuple[int, int]]:
-    """Minimum and maximum data bytes of the frames of a message: a transport may pad the last block."""
-    full, rest = divmod(max(1, length) - 1, BLOCK_BYTES)
-    return [*[(FRAME_BYTES, FRAME_BYTES)] * full, (rest + 2, FRAME_BYTES)]
-
-
 def _end_of_callback(message: BusMessage, name: str) -> RunnableEvent:
     return RunnableEvent(name=name, runnable=body_name(message.message.callback), change=RunnableChange.TERMINATE)
 
@@ -65,11 +59,11 @@ def _stimulus(message: BusMessage, name: str, system: System) -> Stimulus:
     interval = message.message.interval
     if message.incoming:
         return RelativePeriodic(name=name, distance=Constant(interval), has_maximum=False)
-    every = _runs_per_message(message.message.callback, interval, system)
+    every = runs_per_message(message.message.callback, interval, system)
     return EventTriggered(name=name, events=(name,), counter=Counter(prescaler=every) if every > 1 else None)
 
 
-def _runs_per_message(callback: str, interval: Time, system: System) -> int:
+def runs_per_message(callback: str, interval: Time, system: System) -> int:
     """How often a callback runs for each message: more than once if it runs in every activation of a task of its own."""
     task = system.processes.get(callback)
     if task is None or any(isinstance(each, Call) and each.counter is not None for each in task.activities):

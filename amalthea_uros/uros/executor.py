@@ -5,8 +5,8 @@ in a buffer. Callbacks inside the executor run as in rclc: one after the other i
 taken just before its callback, or (LET) all messages taken first. With a trigger condition nothing is taken or called until it holds.
 
 The cost of an activation is a base, a part for each handle and one for each timer that is checked, a part for each callback that is
-ready, and for each message that is taken a fixed part and a part per byte. What does not happen in every activation is a runnable that is called only
-every n-th time.
+ready, and for each message that is taken a fixed part and a part per byte. What does not happen in every activation is a runnable
+that is called only every n-th time.
 """
 
 from __future__ import annotations
@@ -15,8 +15,10 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from amalthea_uros.perf.activities import AccessKind, Activity, Call, LabelAccess, Receive, ReceiveOperation, Trigger
+from amalthea_uros.perf.network import Direction
 from amalthea_uros.perf.software import Runnable
 from amalthea_uros.perf.stimuli import Counter
+from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.execution_time import ExecutionTime
 from amalthea_uros.spec.executors import Executor, MessageCost
 from amalthea_uros.units import DataSize, Time
@@ -25,6 +27,7 @@ from amalthea_uros.uros.callbacks import Callback, CallbackKind
 from amalthea_uros.uros.demand import DemandConverter
 from amalthea_uros.uros.executors.counts import handle_count
 from amalthea_uros.uros.phases import ExecutorPhases
+from amalthea_uros.uros.transports.costs import driver_costs
 
 _BITS_PER_BYTE = 8
 
@@ -52,6 +55,7 @@ class ExecutorRunnables:
     """
 
     executor: Executor
+    description: Description
     converter: DemandConverter
     core: str
     channels: Collection[str]
@@ -74,6 +78,7 @@ class ExecutorRunnables:
         cost = self.executor.execution_time
         message = callback.incoming
         parts = [cost.per_ready_callback, *message_cost(cost.per_message, message.size if message else None)]
+        parts += driver_costs(self.description, callback, Direction.TO_CONTROLLER)
         activities: list[Activity] = []
         if message is not None and message.channel in self.channels:
             activities.append(Receive(channel=message.channel, operation=ReceiveOperation.FIFO_TAKE))

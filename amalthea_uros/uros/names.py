@@ -10,6 +10,7 @@ from amalthea_uros.spec.description import Description
 from amalthea_uros.uros.callbacks import sections_of
 from amalthea_uros.uros.executors.serving import stated_executors
 from amalthea_uros.uros.notes import Notes
+from amalthea_uros.uros.transports.line import receive_interrupt
 
 
 def check_unique_names(description: Description, notes: Notes) -> None:
@@ -30,9 +31,9 @@ def _processes(description: Description) -> Iterable[tuple[str, Location | None]
     if nodes:
         for executor in stated_executors(description.middleware):
             yield executor.name, executor.location("name")
-        can = description.middleware.transport.can
-        if can is not None and can.interrupt is not None:
-            yield can.interrupt.name, can.interrupt.location("name")
+        interrupt = receive_interrupt(description.middleware.transport)
+        if interrupt is not None:
+            yield interrupt.name, interrupt.location("name")
     for process in (*description.tasks, *description.isrs):
         yield process.name, process.location("name")
     for node in nodes:

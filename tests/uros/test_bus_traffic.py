@@ -21,8 +21,7 @@ from amalthea_uros.simulate.system import simulate_system
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import SECOND
 from amalthea_uros.uros.bus_system import Transmission, with_bus
-from amalthea_uros.uros.bus_traffic import block_bytes
-from amalthea_uros.uros.can import CanBus, frames
+from amalthea_uros.uros.can import CanBus, block_bytes, frames
 
 SAMPLES = ROOT / "samples"
 

@@ -141,6 +141,8 @@ class _CoreAnalysis:
         """The processes, if all releases are known and there is no blocking; otherwise nothing."""
         if len({item.rank for item in here}) < len(here) or Blocking.of(here, self.solution).is_possible:
             return []
+        if self.context.has_loops(self.core):
+            return []
         found = [self._released(item, rank) for rank, item in enumerate(reversed(here))]
         return [] if None in found else [task for task in reversed(found) if task is not None]
 
@@ -178,7 +180,19 @@ class _CoreAnalysis:
                 window = BlockedWindow(notes, self.time_base, blocking, usable, [*tasks, *decisions], waits[index], supply)
                 found[index] = window.response(index, item, found[index])
         # The methods are exact for independent activations; offsets can make the worst case impossible.
-        return [replace(response, claim=Claim.BOUND) for response in found[: len(usable)]]
+        bounds = [replace(response, claim=Claim.BOUND) for response in found[: len(usable)]]
+        return [self._without_rounds(item, response) for item, response in zip(usable, bounds, strict=True)]
+
+    def _without_rounds(self, item: ScheduledProcess | Server, response: Response) -> Response:
+        """A response time; an overload is not certain if rounds of executors are counted that need not be as long and as dense."""
+        executors = self.context.system.executor_of_task
+        if response.is_overload and any(
+            each.name in executors and each.rank >= item.rank for each in self.context.on_core(item.core)
+        ):
+            return replace(
+                response, is_overload=False, reason=f"{response.reason}, if each round of an executor is the longest"
+            )
+        return response
 
     def _task(self, item: ScheduledProcess | Server, ranks: Sequence[Rank]) -> Task:
         """A process or server as the methods see it; a job of a server uses its budget."""

@@ -37,7 +37,7 @@ def round_trigger_name(executor: str) -> str:
 
 
 def message_stimulus_name(callback: str) -> str:
-    """The name of the stimulus that stands for the arrival of messages at an executor that blocks, if nothing described receives them."""
+    """The name of the stimulus that stands for the arrival of messages, if nothing that is described receives them."""
     return f"messages_for_{callback}"
 
 

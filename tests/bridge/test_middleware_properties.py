@@ -1,0 +1,148 @@
+"""Executors and the network are kept in models, as properties; what cannot be read is a finding and never taken for less."""
+
+from dataclasses import replace
+
+import pytest
+from effort import examples
+from hypothesis import given
+from hypothesis import strategies as st
+
+from amalthea_uros.bridge.build import build_model
+from amalthea_uros.bridge.extract import extract
+from amalthea_uros.bridge.json_text import MalformedError, from_text, to_text
+from amalthea_uros.diagnostics import Location
+from amalthea_uros.errors import WriteError
+from amalthea_uros.metamodel import classes as am
+from amalthea_uros.perf.executors import Executor, Handle, HandleKind, Loop, LoopKind, TriggerCondition, TriggerKind
+from amalthea_uros.perf.hardware import Core, Hardware, Structure
+from amalthea_uros.perf.network import Direction, Network, Purpose, Span, Transmission, Wire, WireKind
+from amalthea_uros.perf.software import Runnable, Software, Task
+from amalthea_uros.perf.stimuli import Custom
+from amalthea_uros.perf.system import System
+from amalthea_uros.xmi.load import load
+from amalthea_uros.xmi.save import save
+
+EXECUTOR = Executor(
+    name="Main loop",
+    task="Main",
+    spin="Spin",
+    loop=Loop(kind=LoopKind.SPIN_SOME, timeout=10**11, sleep=10**10),
+    handles=(
+        Handle(name='A "quoted"\tname', kind=HandleKind.SUBSCRIPTION, runnable="On_A", take="Take", interval=None, always=True),
+        Handle(name="ü", kind=HandleKind.TIMER, runnable="On_A", interval=2**60 + 1, phase=0),
+    ),
+    trigger=TriggerCondition(kind=TriggerKind.CUSTOM, sets=(frozenset({"b", "a"}), frozenset())),
+)
+NETWORK = Network(
+    agent="Agent of mine",
+    wires=(Wire(name="W", kind=WireKind.SERIAL, cores=("C",)),),
+    transmissions=(
+        Transmission(
+            name="Sent", wire="W", direction=Direction.TO_AGENT, purpose=Purpose.DATA, topic="t", length=20, processes=("Main",)
+        ),
+        Transmission(name="Received", wire="W", direction=Direction.TO_CONTROLLER, agent=Span(least=5, most=7)),
+    ),
+)
+SYSTEM = System(
+    hardware=Hardware(structures=(Structure(name="S", cores=(Core(name="C"),)),)),
+    software=Software(
+        tasks=(Task(name="Main"), Task(name="Sent"), Task(name="Received")),
+        runnables=(Runnable(name="Spin"), Runnable(name="On_A"), Runnable(name="Take")),
+    ),
+    executors=(EXECUTOR,),
+    network=NETWORK,
+)
+
+
+st.register_type_strategy(Location, st.none())  # where something comes from has no part in what it is
+EXECUTORS, NETWORKS = st.from_type(Executor), st.from_type(Network)
+
+
+def extracted(system, path, change=lambda text: text):
+    """What a file of a system is extracted to, with its text changed before it is read."""
+    save(build_model(system), path)
+    path.write_text(change(path.read_text()))
+    return extract(load(path))
+
+
+def test_executors_and_the_network_come_back(tmp_path):
+    found = extracted(SYSTEM, tmp_path / "model.amxmi")
+    assert found.findings == ()
+    assert found.system == SYSTEM
+    assert found.system.executors[0].origin.path == tmp_path / "model.amxmi"
+
+
+@given(data=st.data())
+@examples(30)
+def test_any_executor_comes_back_from_its_text(data):
+    executor = data.draw(EXECUTORS)
+    assert from_text(Executor, to_text(executor, without=("task",)), task=executor.task) == executor
+    network = data.draw(NETWORKS)
+    assert from_text(Network, to_text(network)) == network
+
+
+def test_a_system_without_them_has_no_properties():
+    model = build_model(replace(SYSTEM, executors=(), network=Network()))
+    assert not [element for element in model.walk() if isinstance(element, am.CustomProperty)]
+
+
+def test_an_executor_needs_its_task():
+    with pytest.raises(WriteError, match="undefined process 'Gone'"):
+        build_model(replace(SYSTEM, executors=(replace(EXECUTOR, task="Gone"),)))
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "message"),
+    [
+        ("&quot;spin&quot;:&quot;Spin&quot;", "&quot;spin&quot;:1", "Executor.spin is not of type str"),
+        ("&quot;spin&quot;:&quot;Spin&quot;", "&quot;spin&quot;:&quot;Gone&quot;", "undefined runnable 'Gone'"),
+        ("&quot;spin&quot;:&quot;Spin&quot;,", "", "Executor needs 'spin'"),
+        ("&quot;spin&quot;:", "&quot;spun&quot;:1,&quot;spin&quot;:", "Executor has no 'spun'"),
+        ("&quot;always&quot;:true", "&quot;always&quot;:1", "Handle.always is not of type bool"),
+        ("spin_some", "spin_more", "'spin_more' is not a value of Loop.kind"),
+        ("[&quot;a&quot;,&quot;b&quot;]", "[[],&quot;b&quot;]", "TriggerCondition.sets is not of type str"),
+        ("[&quot;a&quot;,&quot;b&quot;]", "3", "TriggerCondition.sets is not a list"),
+        ("{&quot;name&quot;:&quot;Main loop", "{", "not valid JSON"),
+    ],
+)
+def test_an_executor_that_cannot_be_read_is_a_finding_and_its_task_unknown(before, after, message, tmp_path):
+    def change(text):
+        assert before in text
+        return text.replace(before, after)
+
+    found = extracted(SYSTEM, tmp_path / "model.amxmi", change)
+    (finding,) = [finding for finding in found.findings if finding.rule == "EXT005"]
+    assert message in finding.message
+    assert finding.object == "Main"
+    assert found.system.executors == ()
+    assert found.system.network == NETWORK
+    (stimulus,) = found.system.processes["Main"].stimuli
+    assert isinstance(found.system.stimuli_by_name[stimulus], Custom)
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "message", "left"),
+    [
+        ("&quot;cores&quot;:[&quot;C&quot;]", "&quot;cores&quot;:[&quot;D&quot;]", "undefined core 'D'", set()),
+        (
+            "&quot;processes&quot;:[&quot;Main&quot;]",
+            "&quot;processes&quot;:[&quot;X&quot;]",
+            "undefined process 'X'",
+            {"Received"},
+        ),
+    ],
+)
+def test_a_network_that_cannot_be_read_is_a_finding(before, after, message, left, tmp_path):
+    def change(text):
+        assert before in text
+        return text.replace(before, after)
+
+    found = extracted(SYSTEM, tmp_path / "model.amxmi", change)
+    assert message in "\n".join(finding.message for finding in found.findings)
+    assert set(found.system.transmissions) == left
+
+
+@pytest.mark.parametrize("text", ["", "[]", "1", "null", "{}", "[" * 100_000, '{"name": null}', '{"name": "x", "loop": []}'])
+def test_no_text_is_a_crash(text):
+    with pytest.raises(MalformedError):
+        from_text(Executor, text, task="T")
