@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
+from amalthea_uros.spec.application import Application, Node
 from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.executors import Loop
 from amalthea_uros.spec.hardware import Hardware
@@ -15,7 +16,8 @@ from amalthea_uros.units import MICROSECOND, MILLISECOND, SECOND, Time, frequenc
 
 def looping_values(board: str) -> Mapping[str, str] | None:
     """The clock, the loop and the transport of a board whose executor spins in a loop; None if that of the board does not."""
-    named = Description(amuros=1, name=board, hardware=Hardware(platform=board))
+    application = Application(nodes=[Node(name="robot")])
+    named = Description(amuros=1, name=board, hardware=Hardware(platform=board), application=application)
     whole = complete(named, Path()).description
     loop, frequency = whole.middleware.executor.loop, whole.hardware.frequency
     if loop is None:

@@ -69,6 +69,8 @@ def _completed(
     models: Sequence[Middleware],
     findings: Iterable[Finding],
 ) -> CompleteDescription:
+    if not description.application.nodes:
+        models = [_policy(model) for model in models]
     update = {
         "hardware": description.hardware if platform is None else _hardware(description.hardware, platform.hardware),
         "os": merged(description.os, *systems),
@@ -76,6 +78,11 @@ def _completed(
     }
     name = None if platform is None else platform.platform
     return CompleteDescription(description.model_copy(update=update), name, tuple(findings))
+
+
+def _policy(model: Middleware) -> Middleware:
+    """What a generic micro-ROS model says about software without micro-ROS."""
+    return Middleware(policy=model.policy) if model.states("policy") else Middleware()
 
 
 def _platform_file(stated: Hardware, folder: Path, other: str | None, findings: list[Finding]) -> Path | None:

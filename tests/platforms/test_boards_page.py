@@ -5,6 +5,7 @@ from pathlib import Path
 from support import ROOT
 
 from amalthea_uros._internal.resources import RTOSES, known_platforms, known_rtoses
+from amalthea_uros.spec.application import Application, Node
 from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.executors import Loop
 from amalthea_uros.spec.hardware import Hardware
@@ -42,7 +43,9 @@ def row(*cells):
 
 
 def board(name):
-    whole = complete(Description(amuros=1, name="a", hardware=Hardware(platform=name)), Path()).description
+    application = Application(nodes=[Node(name="n")])
+    description = Description(amuros=1, name="a", hardware=Hardware(platform=name), application=application)
+    whole = complete(description, Path()).description
     hardware, os, middleware = whole.hardware, whole.os, whole.middleware
     memories = [memory for memory in hardware.memories or () if memory.kind == "SRAM"]
     limits, loop = middleware.limits, middleware.executor.loop

@@ -23,7 +23,7 @@ from amalthea_uros.analyze.executors.window import NoWindowError, Window
 from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.perf.executors import Executor, Handle, LoopKind
 from amalthea_uros.perf.network import Span
-from amalthea_uros.timing.executors.loops import SLEEP_RESOLUTION, least_sleep
+from amalthea_uros.timing.executors.loops import SLEEP_RESOLUTION, least_sleep, longest_sleep
 from amalthea_uros.timing.executors.readiness import at_once, is_exclusive, stores
 from amalthea_uros.timing.executors.rounds import RoundCosts, round_costs
 from amalthea_uros.timing.executors.sending import Suspension, suspension_of, together
@@ -109,7 +109,7 @@ class Cycle:
     @property
     def sleep(self) -> Time:
         """The sleep after each round."""
-        return least_sleep(self.executor)
+        return longest_sleep(self.executor)
 
     def suspension(self, handle: Handle) -> Suspension:
         """The suspension of a callback."""
@@ -203,13 +203,13 @@ class Cycle:
     @cached_property
     def shortest(self) -> Time:
         """The shortest cycle: nothing is called."""
-        return self.sleep + self.costs.spin.best // self.time_base
+        return least_sleep(self.executor) + self.costs.spin.best // self.time_base
 
     @cached_property
     def shortest_with_message(self) -> Time:
         """The shortest cycle of a round that calls a callback for a message."""
         costs = [self.costs.of(handle).best for handle in self.executor.handles if is_message(handle)]
-        return self.sleep + (self.costs.spin.best + min(costs, default=0)) // self.time_base
+        return least_sleep(self.executor) + (self.costs.spin.best + min(costs, default=0)) // self.time_base
 
     @property
     def unbounded(self) -> str:

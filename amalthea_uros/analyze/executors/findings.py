@@ -9,7 +9,7 @@ from amalthea_uros.analyze.executors.results import ExecutorResult, HandleResult
 from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.perf.executors import Executor, HandleKind, LoopKind
 from amalthea_uros.timing.executors.arrivals import certain_rate
-from amalthea_uros.timing.executors.loops import least_sleep
+from amalthea_uros.timing.executors.loops import least_pace, longest_sleep
 from amalthea_uros.timing.executors.readiness import keeps_back, shares_session, stores
 from amalthea_uros.timing.executors.sessions import ASSUMPTION as SESSION_ASSUMPTION
 from amalthea_uros.timing.executors.wait import greatest_wait, messages, timers
@@ -55,8 +55,8 @@ def _note_loop(executor: Executor, result: ExecutorResult, notes: Notes) -> None
             f"messages wait longer and longer in {executor.name!r}: {growing.response.reason.removeprefix('overload: ')}{age}"
         )
         notes.error("EXE012", message, executor)
-    elif executor.waiting.messages_per_wait == 1 and messages(executor) and least_sleep(executor):
-        most, arriving = Fraction(1, least_sleep(executor)), certain_rate(executor)
+    elif executor.waiting.messages_per_wait == 1 and messages(executor) and least_pace(executor):
+        most, arriving = Fraction(1, least_pace(executor)), certain_rate(executor)
         if arriving > most * NEAR_CAPACITY:
             message = (
                 f"{executor.name!r} takes at most one message per round, so at most {float(most * SECOND):.4g} messages/s "
@@ -116,7 +116,7 @@ def _note_handle(handle: HandleResult, executor: Executor, notes: Notes) -> None
     lost = handle.lost
     model = next(each for each in executor.handles if each.name == handle.name)
     if lost is None:
-        sleep = least_sleep(executor)
+        sleep = longest_sleep(executor)
         if handle.lateness is not None and handle.interval and sleep > handle.interval * LATE:
             most = handle.lateness.most
             late = "an unknown time" if most is None else rounded_time_text(most, Rounding.UP)

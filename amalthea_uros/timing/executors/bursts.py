@@ -8,7 +8,7 @@ A loop with a period catches up after a round that took longer, with rounds that
 from __future__ import annotations
 
 from amalthea_uros.perf.executors import Executor, LoopKind
-from amalthea_uros.timing.executors.loops import least_sleep
+from amalthea_uros.timing.executors.loops import least_pace
 from amalthea_uros.timing.executors.readiness import shares_session
 from amalthea_uros.timing.executors.wait import greatest_wait
 from amalthea_uros.units import Time
@@ -21,7 +21,7 @@ def dense_rounds(executor: Executor, others: tuple[Executor, ...], longest: Time
     ----------
     longest : greatest execution time of a round
     """
-    if least_sleep(executor):
+    if least_pace(executor):
         return ""
     waiting = [publication.topic for handle in executor.handles for publication in handle.publications if publication.waits]
     if waiting:

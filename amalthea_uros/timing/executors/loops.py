@@ -17,14 +17,24 @@ from amalthea_uros.units import MILLISECOND, Time
 SLEEP_RESOLUTION = MILLISECOND
 
 
+def longest_sleep(executor: Executor) -> Time:
+    """The longest sleep between two rounds."""
+    return executor.loop.sleep if executor.loop.kind is LoopKind.SPIN_SOME else 0
+
+
 def least_sleep(executor: Executor) -> Time:
     """The shortest sleep between two rounds."""
-    return executor.loop.sleep if executor.loop.kind is LoopKind.SPIN_SOME else 0
+    return longest_sleep(executor) - executor.loop.sleep_early
+
+
+def least_pace(executor: Executor) -> Time:
+    """The time per round that a loop with sleeps takes at least in the long run; 0 for a loop without sleeps."""
+    return max(least_sleep(executor), executor.loop.pace)
 
 
 def never_rests(executor: Executor) -> str:
     """Why the thread of an executor can occupy its core without end, although nothing is to be done; "" if it cannot."""
-    if least_sleep(executor) or executor.loop.kind is LoopKind.SPIN_PERIOD:
+    if least_pace(executor) or executor.loop.kind is LoopKind.SPIN_PERIOD:
         return ""
     if not timeout_of(executor):
         what = "it has only timers" if not messages(executor) else "its timeout is below the resolution of the middleware"

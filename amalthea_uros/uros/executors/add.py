@@ -19,7 +19,6 @@ from amalthea_uros.uros.executors.handles import handle_names, handles_of
 from amalthea_uros.uros.executors.loops import loop_of
 from amalthea_uros.uros.executors.rounds import has_one_message_per_round, polls_before_timers, round_activities
 from amalthea_uros.uros.executors.triggers import trigger_of
-from amalthea_uros.uros.rtos import slept
 from amalthea_uros.uros.tasks import PlannedTask
 
 #: Rounds are executed one after the other, however many are due.
@@ -46,9 +45,7 @@ def add_looping_executor(
     core = context.core(section.core, section.location("core"))
     executor = _executor(context, section, callbacks, bodies, activates, core)
     poll = _poll(context, executor, core) if polls_before_timers(executor) else None
-    # A sleep that ends with a tick is counted from the tick with which the one before ended, not from the end of the round.
-    is_exact = slept(executor.loop.sleep, context.description.os)[0] >= executor.loop.sleep
-    least = _least_time(context.runnables[executor.spin], core, context) if is_exact else 0
+    least = _least_time(context.runnables[executor.spin], core, context)
     exclusive = has_one_message_per_round(executor, is_alone)
     check_executor(executor, section, callbacks, context.notes)
     context.executors.append(executor)

@@ -153,9 +153,17 @@ def test_a_deadline_of_a_callback_is_a_requirement_on_its_runnable():
     assert (requirement.runnable, requirement.limit.value) == ("Control_Callback", 15 * MILLISECOND)
 
 
-def test_with_ticks_rounds_are_only_apart_by_the_sleep():
-    # vTaskDelay of 10 ticks of 1 ms, called at any time between two ticks, ends with the 10th tick from the one before.
+def test_with_ticks_rounds_are_apart_by_whole_ticks_but_the_first_two():
     text = f"{SLEEPING}, execution_time: 20 us"
-    for tick, apart in (("", 10 * MILLISECOND + 20 * MICROSECOND), ("os: {tick: 1 ms}\n", 10 * MILLISECOND)):
-        system = described(f"{{name: Main, {text}}}", more=f"publish: 1 us\n{tick}").system
-        assert system.stimuli_by_name["rounds_of_Main"].distance.lower == apart
+    exact = described(f"{{name: Main, {text}}}", more="publish: 1 us\n").system
+    assert exact.stimuli_by_name["rounds_of_Main"].distance.lower == 10 * MILLISECOND + 20 * MICROSECOND
+    # vTaskDelay of 10 ticks of 1 ms, called at any time between two ticks, ends with the 10th tick from the one before: a sleep of 9 ms
+    # or more. Of three rounds, the second sleep ends 10 ms after the first.
+    ticks = described(f"{{name: Main, {text}}}", more="publish: 1 us\nos: {tick: 1 ms}\n").system
+    points = ticks.stimuli_by_name["rounds_of_Main"].points
+    shortest = 9 * MILLISECOND + 20 * MICROSECOND
+    assert [(point.occurrences, point.lower) for point in points[:3]] == [
+        (1, 0),
+        (2, shortest),
+        (3, shortest + 10 * MILLISECOND),
+    ]
