@@ -26,6 +26,7 @@ WITH_A_FILE = {
     "compare": ["{}", "{}"],
     "diff": ["{}", str(BRAKE)],
     "fmt": ["{}"],
+    "import": ["{}"],
     "info": ["{}"],
     "measure": ["{}", "--start", "1", "--end", "2"],
     "migrate": ["{}"],
