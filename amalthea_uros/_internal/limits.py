@@ -48,4 +48,4 @@ SOURCES_SIZE = _FACTOR * 32 * 2**20
 #: Files of source code.
 SOURCE_FILES = _FACTOR * 5_000
 #: Nodes of syntax trees that are visited, those of a function once for each of its calls.
-SOURCE_NODES = _FACTOR * 2_000_000
+SOURCE_NODES = _FACTOR * 500_000

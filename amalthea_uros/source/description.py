@@ -8,7 +8,7 @@ from collections.abc import Collection, Iterator
 from pathlib import Path
 
 from amalthea_uros.diagnostics import Location
-from amalthea_uros.source.facts import Entity, Executor, Facts, Handle, Kind, SpinKind
+from amalthea_uros.source.facts import Entity, Executor, Facts, Handle, Kind, SpinKind, Thread
 from amalthea_uros.source.messages import MessageType, length_of
 from amalthea_uros.source.names import Names
 from amalthea_uros.units import Time, time_text
@@ -112,10 +112,7 @@ def _executor(executor: Executor, facts: Facts, names: Names) -> Iterator[str]:
     if executor.max_handles:
         yield f"max_handles: {executor.max_handles}{_at(executor.place)}"
     if executor.thread is not None:
-        for key in ("stack", "priority"):
-            value = getattr(executor.thread, key)
-            if value is not None:
-                yield f"{key}: {value}{' B' if key == 'stack' else ''}{_at(executor.thread.place)}"
+        yield from _thread(executor.thread)
     yield from _loop(executor)
     yield "callbacks: in-executor"
     order = [names.handles[handle.entity] for handle in executor.handles if handle.entity in names.handles]
@@ -125,6 +122,14 @@ def _executor(executor: Executor, facts: Facts, names: Names) -> Iterator[str]:
         yield f"semantics: {executor.semantics}"
     yield from _trigger(executor, names)
     yield f"execution_time: {{base: {GAP}, per_message: {GAP}}} # of a round, and of taking a message"
+
+
+def _thread(thread: Thread) -> Iterator[str]:
+    if thread.stack is not None:
+        yield f"stack: {thread.stack} B{_at(thread.place)}"
+    yield f"priority: {GAP if thread.priority is None else thread.priority}{_at(thread.place)}"
+    if thread.core is not None:
+        yield f"core: {GAP}{_at(thread.place, f'pinned to core {thread.core}')}"
 
 
 def _loop(executor: Executor) -> Iterator[str]:

@@ -10,8 +10,10 @@ from amalthea_uros.source.entities import CREATIONS, RELIABLE
 from amalthea_uros.source.executors import ACTIONS
 from amalthea_uros.source.facts import Executor, Facts, Kind, SpinKind
 from amalthea_uros.source.walk import Call, Walk
-from amalthea_uros.units import time_text
+from amalthea_uros.units import Time, time_text
 
+#: Functions of micro-ROS/rmw_microxrcedds that wait for an answer of the agent.
+_ROUND_TRIPS = ("rmw_uros_ping_agent", "rmw_uros_ping_agent_options", "rmw_uros_sync_session")
 _MILLISECOND = 10**9
 _SECOND = 10**12
 _WITH_HANDLES = (
@@ -45,6 +47,7 @@ def flaws(facts: Facts, walk: Walk) -> Iterator[Finding]:
         yield from _timers(executor, facts)
         yield from _triggers(executor)
     yield from _blocking(facts, walk)
+    yield from _pings(walk)
 
 
 def _unchecked(calls: list[Call]) -> Iterator[Finding]:
@@ -116,7 +119,7 @@ def _waiting(executor: Executor) -> Iterator[Finding]:
             yield Finding(
                 "IMP009", Severity.WARNING, message, spin.place, "The timeout is in nanoseconds: write RCL_MS_TO_NS(10)."
             )
-        if spin.kind is SpinKind.PERIOD and spin.time is not None and (executor.timeout or _SECOND) >= spin.time:
+        if spin.kind is SpinKind.PERIOD and spin.time is not None and _timeout(executor) >= spin.time:
             stated = time_text(executor.timeout) if executor.timeout else "1 s by default"
             message = f"the executor waits up to {stated} per round, longer than its period of {time_text(spin.time)}"
             yield Finding(
@@ -139,6 +142,11 @@ def _waiting(executor: Executor) -> Iterator[Finding]:
         yield Finding("IMP004", Severity.WARNING, message, spin.place, "Check 'loop' in the description.")
 
 
+def _timeout(executor: Executor) -> Time:
+    """What a round waits at most, 0 if the code sets something that cannot be read."""
+    return Time(_SECOND) if executor.timeout_place is None else executor.timeout or Time(0)
+
+
 def _timers(executor: Executor, facts: Facts) -> Iterator[Finding]:
     spin = next(iter(executor.spins), None)
     least = None if spin is None else spin.time if spin.kind is SpinKind.PERIOD else spin.sleep
@@ -154,6 +162,15 @@ def _triggers(executor: Executor) -> Iterator[Finding]:
         message = f"the condition of the trigger '{executor.trigger.function}' cannot be read from the code"
         advice = "Write the sets of callbacks that it waits for as trigger: {custom: [[A, B], [C]]}."
         yield Finding("IMP014", Severity.WARNING, message, executor.trigger.place, advice)
+
+
+def _pings(walk: Walk) -> Iterator[Finding]:
+    for call in walk.calls:
+        if call.name in _ROUND_TRIPS and (call.loops or (call.root is not None and call.root.name == "loop")):
+            message = f"'{call.name}' in a loop waits for the agent, which the description does not have"
+            yield Finding(
+                "IMP013", Severity.WARNING, message, call.place, "Allow for its timeout where the loop has to be quick."
+            )
 
 
 def _blocking(facts: Facts, walk: Walk) -> Iterator[Finding]:

@@ -110,6 +110,9 @@ class Expression:
         bound = own.bindings.get(own.text) if own.node.type == "identifier" else None
         if isinstance(bound, Expression) and own.depth <= _MAX_DEPTH:
             return bound.name
+        if own.node.type == "subscript_expression" and (array := own.node.child_by_field_name("argument")) is not None:
+            index = own._index()
+            return f"{own.at(array).name.rstrip('_')}_{index.number if index is not None and index.number is not None else 'n'}"
         text = own.text.replace("->", ".").replace("this.", "")
         return text.rpartition("::")[2]
 

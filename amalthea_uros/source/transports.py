@@ -34,14 +34,15 @@ def transport_of(calls: Iterable[Call], program: Program) -> Transport | None:
         return _serial(rate, call)
     framed = call.argument(0)
     names = " ".join(argument.text for argument in call.arguments).lower()
-    if framed is not None and framed.resolved.text in ("true", "1"):
+    is_framed = framed is not None and framed.resolved.text in ("true", "1")
+    if is_framed or any(word in names for word in ("serial", "uart", "usb", "cdc")):
         is_usb = "usb" in names or "cdc" in names
         return Transport(key="usb_cdc", values=(), note="full speed", place=call.place) if is_usb else _serial(rate, call)
     if "udp" in names:
         return Transport(
             key="udp", values=(("bitrate", None),), note="bit rate of the link of the controller", place=call.place
         )
-    return Transport(key=None, values=(), note="custom transport without framing", place=call.place)
+    return Transport(key=None, values=(), note="custom transport", place=call.place)
 
 
 def _serial(rate: int | None, call: Call) -> Transport:

@@ -26,6 +26,8 @@ _MAX_DEPTH = 350
 _MAX_ITERATIONS = 64
 _LOOPS = ("while_statement", "do_statement", "for_statement", "for_range_loop")
 _CHOICES = ("if_statement", "switch_statement", "conditional_expression")
+#: Calls of functions of the sources that are followed; those of functions that call others twice grow without limit.
+_MAX_ENTRIES = 5_000
 #: Functions of the application are followed if they lead to calls whose names begin so, or are among these.
 _RELEVANT = ("rclc_", "rcl_", "rmw_", "set_microros_")
 
@@ -92,15 +94,22 @@ class Walk:
         self.lambdas: dict[str, Function] = {}
         self.findings: list[Finding] = []
         self._left = SOURCE_NODES
+        self._entries = _MAX_ENTRIES
         self._relevant = relevant_functions(program, names)
 
     def all(self) -> None:
         """Walk from code outside of functions, then from each function that no other one calls."""
         for file, root in self.program.files:
             self._children(root, _Context(file, None, {}))
+        for group in self.program.functions.values():
+            group[:] = [function for function in group if not self._is_inactive(function)]
         for function in self.program.every_function():
             if function.name not in self._relevant.called and function in self._relevant.functions:
                 self.function(function)
+
+    def _is_inactive(self, function: Function) -> bool:
+        path, position = str(function.file.path), function.body.start_byte
+        return any(path == other and start <= position < end for other, start, end in self.inactive)
 
     def function(self, function: Function) -> None:
         """Walk through a function."""
@@ -144,7 +153,7 @@ class Walk:
             self._children(node, context)
 
     def _stop(self, node: Node, context: _Context) -> None:
-        reason = "there is too much code" if self._left < 0 else "the code is nested too deeply"
+        reason = "there is too much code" if min(self._left, self._entries) < 0 else "the code is nested too deeply"
         if not any(finding.message.startswith(reason) for finding in self.findings):
             place = location_of(context.file, node)
             message = f"{reason}; the rest is not read"
@@ -263,6 +272,10 @@ class Walk:
         return None
 
     def _enter(self, callee: Function, arguments: tuple[Expression, ...], context: _Context) -> None:
+        self._entries -= 1
+        if self._entries < 0:
+            self._stop(callee.body, context)
+            return
         bindings: dict[str, Binding] = dict(zip(callee.parameters, arguments, strict=False))
         bindings.pop("", None)
         inner = replace(context, file=callee.file, function=callee, bindings=bindings, stack=(*context.stack, callee))
