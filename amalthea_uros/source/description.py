@@ -275,6 +275,9 @@ def _servers(node: Entity, own: list[Entity], facts: Facts, names: Names) -> Ite
             yield f"parameter_server:{_at(entity.place)}"
             yield f"  rate: {GAP} # of requests"
             yield f"  execution_time: {GAP}"
+            executor = names.handle_by_entity[entity.key][1] if entity.key in names.handle_by_entity else None
+            if executor is not None and executor != next(iter(names.executors.values())):
+                yield f"  runs_in: {quoted(executor)}"
             for key, option in (("events", "notify_changed_over_dds"), ("low_memory", "low_mem_mode")):
                 if option in stated:
                     yield f"  {key}: {str(stated[option]).lower()}"
