@@ -86,6 +86,8 @@ def _middleware(facts: Facts, names: Names, options: Collection[str]) -> Iterato
         yield "executors:"
         for executor in executors:
             yield from _item(_executor(executor, facts, names), "  ")
+    else:
+        yield f"executor: {GAP} # none is initialised in these files"
     option = facts.options.get("UCLIENT_PROFILE_MULTITHREAD")
     if option is not None and option.value.upper() in ("ON", "1", "TRUE"):
         yield f"multithread: true{_at(option.place)}"
