@@ -25,6 +25,7 @@ ROOMS = {
     "changes": (*BASE, "perf", "timing"),
     "spec": BASE,
     "uros": (*BASE, "perf", "spec", "timing"),
+    "source": BASE,
     "metamodel": BASE,
     "xmi": (*BASE, "metamodel"),
     "bridge": (*BASE, "metamodel", "perf"),

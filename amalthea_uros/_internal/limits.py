@@ -41,3 +41,11 @@ RULES_SIZE = _FACTOR * 5 * 2**20
 BASELINE_SIZE = _FACTOR * 128 * 2**20
 #: Characters of a line of a trace; traces themselves are read part by part, and may be of any size.
 TRACE_LINE = _FACTOR * 2**16
+#: A file of source code, in bytes.
+SOURCE_SIZE = _FACTOR * 4 * 2**20
+#: All files of source code together, in bytes; a syntax tree takes about ten times as much.
+SOURCES_SIZE = _FACTOR * 32 * 2**20
+#: Files of source code.
+SOURCE_FILES = _FACTOR * 5_000
+#: Nodes of syntax trees that are visited, those of a function once for each of its calls.
+SOURCE_NODES = _FACTOR * 500_000

@@ -31,6 +31,7 @@ COMMANDS = {
     "explain": "Explain a rule or another finding.",
     "fmt": "Rewrite models in canonical form.",
     "generate": "Write or check build options of the firmware: colcon.meta.",
+    "import": "Write an app.yaml from C or C++ sources that use rclc.",
     "info": "Show the content of a model.",
     "init": "Write a commented app.yaml to begin with, or copy an example.",
     "lsp": "Run the language server, for editors.",
@@ -43,6 +44,9 @@ COMMANDS = {
     "simulate": "Simulate the system, once or for many variants and seeds.",
     "sweep": "Analyze the system with many values of its properties.",
 }
+
+#: Modules that cannot have the name of their command, because it is a word of Python.
+_MODULES = {"import": "import_"}
 
 
 class LazyGroup(click.Group):
@@ -100,7 +104,7 @@ def cli() -> None:
 def _load(name: str) -> click.Command:
     from amalthea_uros.cli.common_options import with_common_options
 
-    command: click.Command = import_module(f"amalthea_uros.cli.{name}").command
+    command: click.Command = import_module(f"amalthea_uros.cli.{_MODULES.get(name, name)}").command
     return with_common_options(command)
 
 

@@ -28,6 +28,7 @@ FAMILIES = {
     "CAL": "Putting measured values into a description",
     "RUL": "Loading user-made rules",
     "CHK": "Running rules",
+    "IMP": "Importing source code",
 }
 
 _ID = re.compile(r"([A-Z]{3})\d{3}")

@@ -15,6 +15,7 @@ from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.spec.content import nodes_of
 from amalthea_uros.spec.description import Description
+from amalthea_uros.spec.gaps import gaps, is_gap
 from amalthea_uros.spec.mistakes import Mistake, finding_of, without_consequences
 from amalthea_uros.spec.nodes import MAX_FINDINGS, Node, Scalar, Source, plain, read_nodes
 from amalthea_uros.spec.repair import repair
@@ -93,11 +94,12 @@ def content_draft(content: Mapping[Any, Any], kind: type[S]) -> Draft[S]:
 
 
 def _draft(node: Node, source: Source, findings: list[Finding], kind: type[S]) -> Draft[S]:
+    findings += gaps(node, source)
     section, mistakes = _validated(node, kind)
     if section is not None:
         attach_locations(section, node, source)
         return Draft(section, _in_order(findings))
-    findings += [finding_of(mistake, source, kind) for mistake in mistakes]
+    findings += [finding_of(mistake, source, kind) for mistake in mistakes if not is_gap(mistake.path[-1])]
     touched = repair(mistakes, kind)
     if touched is None:
         return Draft(None, _in_order(findings))
@@ -107,7 +109,7 @@ def _draft(node: Node, source: Source, findings: list[Finding], kind: type[S]) -
     if section is not None:
         attach_locations(section, node, source)
         return rest
-    return Draft(None, rest.with_more(finding_of(mistake, source, kind) for mistake in mistakes))
+    return Draft(None, rest.with_more(finding_of(mistake, source, kind) for mistake in mistakes if not is_gap(mistake.path[-1])))
 
 
 def _validated(node: Node, kind: type[S]) -> tuple[S | None, list[Mistake]]:

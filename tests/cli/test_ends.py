@@ -27,6 +27,7 @@ WITH_A_FILE = {
     "diff": ["{}", str(BRAKE)],
     "fmt": ["{}"],
     "generate": [str(YAML), "--check", "{}"],
+    "import": ["{}"],
     "info": ["{}"],
     "measure": ["{}", "--start", "1", "--end", "2"],
     "migrate": ["{}"],

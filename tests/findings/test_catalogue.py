@@ -12,6 +12,7 @@ from amalthea_uros.bridge.extract import extract
 from amalthea_uros.errors import ReadError
 from amalthea_uros.findings import catalogue
 from amalthea_uros.services.generate import check_colcon_meta
+from amalthea_uros.services.import_code import import_code
 from amalthea_uros.services.settings import project_settings
 from amalthea_uros.trace.state_charts import check_trace
 from amalthea_uros.validate import registry
@@ -93,6 +94,12 @@ def reported(example, family, folder):
                 return check_colcon_meta(ROOT / "samples" / "rclc-in-executor.yaml", folder / "colcon.meta").findings
             case "CAN" | "MEA" | "TRC":
                 return found_in_trace(example, folder)
+            case "IMP" if not example.startswith("\namuros:"):
+                (folder / "main.c").write_text(example)
+                return import_code([folder / "main.c"]).findings
+            case "IMP":
+                (folder / "app.yaml").write_text(example)
+                return build(folder / "app.yaml").assembly.findings
         path = folder / "model.amxmi"
         whole = example.lstrip().startswith(("<am:", "<!"))
         path.write_text(example.lstrip() if whole else MODEL.format(example))

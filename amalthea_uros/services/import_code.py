@@ -1,0 +1,65 @@
+"""Source code -> a description of its application, with gaps for what the code cannot tell."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from amalthea_uros._internal.files import is_stream
+from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros.errors import WriteError
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ImportResult:
+    """A description that was made of source code.
+
+    Attributes
+    ----------
+    path : the file that was written, None if it was not
+    text : its content
+    gaps : number of values to fill in
+    findings : flaws of the code, and what was not understood
+    """
+
+    path: Path | None
+    text: str
+    gaps: int
+    findings: tuple[Finding, ...]
+
+
+def import_code(
+    paths: Iterable[Path], target: Path | None = None, *, board: str | None = None, force: bool = False
+) -> ImportResult:
+    """Read the sources of an application that uses rclc, and describe it.
+
+    Parameters
+    ----------
+    paths : C and C++ files, or folders with them; files `*.meta` for colcon in folders are read, too
+    target : the file to write; None: nothing is written
+    board : the name of a platform; None: its clock is a gap
+    force : replace a file that exists
+
+    Raises
+    ------
+    ReadError : the sources cannot be read, or the parsers are not installed.
+    WriteError : the file exists, or cannot be written.
+    """
+    from amalthea_uros.source.description import GAP, description_text
+    from amalthea_uros.source.files import read_sources
+    from amalthea_uros.source.read import read_facts
+    from amalthea_uros.spec.middleware import PoolSizes
+    from amalthea_uros.xmi.files import FileText, write_texts
+
+    given = list(paths)
+    facts = read_facts(read_sources(given))
+    name = given[0].resolve().stem if given else "app"
+    text = description_text(facts, name.strip() or "app", board, PoolSizes.model_fields)
+    if target is not None:
+        if not force and not is_stream(target) and target.exists():
+            advice = "Use --force to replace it, or name another file."
+            raise WriteError([Finding("XMI101", Severity.ERROR, "the file exists already", Location(target), advice)])
+        write_texts({target: FileText(text)})
+    gaps = sum(line.partition(" #")[0].count(f": {GAP}") for line in text.splitlines())
+    return ImportResult(path=target, text=text, gaps=gaps, findings=tuple(dict.fromkeys(facts.findings)))

@@ -1,0 +1,294 @@
+"""Facts -> the text of an app.yaml, with a comment about the source of each value; what the code cannot tell is `TODO`."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Collection, Iterator
+from pathlib import Path
+
+from amalthea_uros.diagnostics import Location
+from amalthea_uros.source.facts import Entity, Executor, Facts, Handle, Kind, SpinKind, Thread
+from amalthea_uros.source.messages import MessageType, length_of
+from amalthea_uros.source.names import Names
+from amalthea_uros.units import Time, time_text
+
+GAP = "TODO"
+_PLAIN = re.compile(r"[A-Za-z/][\w/.-]*", re.ASCII)
+_WORDS = ("true", "false", "null", "yes", "no", "on", "off", "y", "n", "todo")
+_LISTS = {
+    Kind.SUBSCRIPTION: "subscriptions",
+    Kind.TIMER: "timers",
+    Kind.SERVICE: "services",
+    Kind.CLIENT: "clients",
+    Kind.GUARD_CONDITION: "guard_conditions",
+    Kind.ACTION_SERVER: "action_servers",
+    Kind.ACTION_CLIENT: "action_clients",
+}
+_NOT_ARRIVING = (Kind.TIMER, Kind.GUARD_CONDITION)
+
+
+def description_text(facts: Facts, name: str, board: str | None, options: Collection[str]) -> str:
+    """The description.
+
+    Parameters
+    ----------
+    board : the name of a platform, if it is known
+    options : build options of the middleware that a description can have
+    """
+    names = Names(facts)
+    lines = [
+        "# Imported from source code. Each TODO is a value that the code cannot tell: replace all of them, then run amuros check.",
+        "amuros: 1",
+        f"name: {quoted(name)}",
+        *_hardware(board),
+        *([f"os: {{rtos: {facts.rtos}}}"] if facts.rtos else []),
+        "middleware:",
+        *(f"  {line}" for line in _middleware(facts, names, options)),
+        "application:",
+        *(f"  {line}" for line in _application(facts, names)),
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def quoted(text: str) -> str:
+    """A text as YAML."""
+    is_plain = _PLAIN.fullmatch(text) is not None and text.lower() not in _WORDS
+    return text if is_plain else json.dumps(text)
+
+
+def _at(place: Location | None, note: str = "") -> str:
+    """A comment with the place of a value."""
+    where = f"{Path(place.path).name}:{place.line}" if place is not None else ""
+    text = "; ".join(filter(None, (where, note)))
+    return f" # {''.join(each if each.isprintable() else '?' for each in text)}" if text else ""
+
+
+def _time(time: Time | None) -> str:
+    return time_text(time) if time is not None else GAP
+
+
+def _hardware(board: str | None) -> Iterator[str]:
+    if board is not None:
+        yield f"hardware: {{platform: {quoted(board)}}}"
+        return
+    yield "hardware:"
+    yield "  platform: generic"
+    yield f"  frequency: {GAP} # clock of the cores"
+
+
+def _middleware(facts: Facts, names: Names, options: Collection[str]) -> Iterator[str]:
+    executors = list(facts.executors.values())
+    if len(executors) == 1:
+        yield "executor:"
+        yield from (f"  {line}" for line in _executor(executors[0], facts, names))
+    elif executors:
+        yield "executors:"
+        for executor in executors:
+            yield from _item(_executor(executor, facts, names), "  ")
+    else:
+        yield f"executor: {GAP} # none is initialised in these files"
+    option = facts.options.get("UCLIENT_PROFILE_MULTITHREAD")
+    if option is not None and option.value.upper() in ("ON", "1", "TRUE"):
+        yield f"multithread: true{_at(option.place)}"
+    yield from _transport(facts)
+    known = [option for name, option in facts.options.items() if name in options and option.value.isdecimal()]
+    if known:
+        yield "limits:"
+        yield from (f"  {option.name}: {option.value}{_at(option.place)}" for option in known)
+
+
+def _transport(facts: Facts) -> Iterator[str]:
+    transport = facts.transport
+    if transport is None or transport.key is None:
+        note = transport.note if transport is not None else "not set in these files"
+        yield f"transport: {GAP}{_at(transport.place if transport is not None else None, note)}"
+        return
+    values = ", ".join(f"{key}: {value or GAP}" for key, value in transport.values)
+    yield "transport:"
+    yield f"  {transport.key}: {{{values}}}{_at(transport.place, transport.note)}"
+
+
+def _executor(executor: Executor, facts: Facts, names: Names) -> Iterator[str]:
+    yield f"name: {quoted(names.executors[executor.key])}{_at(executor.place)}"
+    if executor.max_handles:
+        yield f"max_handles: {executor.max_handles}{_at(executor.place)}"
+    if executor.thread is not None:
+        yield from _thread(executor.thread)
+    yield from _loop(executor)
+    yield "callbacks: in-executor"
+    order = [names.handles[handle.entity] for handle in executor.handles if handle.entity in names.handles]
+    if len(order) > 1:
+        yield f"order: [{', '.join(map(quoted, order))}]"
+    if executor.semantics != "ROS":
+        yield f"semantics: {executor.semantics}"
+    yield from _trigger(executor, names)
+    yield f"execution_time: {{base: {GAP}, per_message: {GAP}}} # of a round, and of taking a message"
+
+
+def _thread(thread: Thread) -> Iterator[str]:
+    if thread.stack is not None:
+        yield f"stack: {thread.stack} B{_at(thread.place)}"
+    yield f"priority: {GAP if thread.priority is None else thread.priority}{_at(thread.place)}"
+    if thread.core is not None:
+        yield f"core: {GAP}{_at(thread.place, f'pinned to core {thread.core}')}"
+
+
+def _loop(executor: Executor) -> Iterator[str]:
+    if not executor.spins:
+        yield f"loop: {GAP} # no call lets it spin"
+        return
+    spin = executor.spins[0]
+    if spin.kind is SpinKind.ENDLESS:
+        is_default = executor.timeout_place is None
+        time = Time(10**12) if is_default else executor.timeout
+        yield f"loop: {{spin: {_time(time)}}}{_at(spin.place, 'the default timeout' if is_default else '')}"
+        return
+    parts = [f"{spin.kind}: {_time(spin.time)}"]
+    if spin.kind is SpinKind.SOME:
+        sleep = spin.sleep if spin.is_in_loop else None
+        parts += [f"sleep: {_time(sleep)}"] if sleep != 0 else []
+    elif executor.timeout_place is not None:
+        parts.append(f"timeout: {_time(executor.timeout)}")
+    others = ", ".join(f"sleep in line {place.line}" for place in spin.sleeps)
+    yield f"loop: {{{', '.join(parts)}}}{_at(spin.place, others)}"
+
+
+def _trigger(executor: Executor, names: Names) -> Iterator[str]:
+    trigger = executor.trigger
+    if trigger is None or trigger.function == "any":
+        return
+    if trigger.is_custom:
+        yield f"trigger: {GAP}{_at(trigger.place, f'function {trigger.function}')}"
+    elif trigger.function == "one":
+        target = names.handles.get(trigger.object)
+        yield f"trigger: {{one: {quoted(target) if target is not None else GAP}}}{_at(trigger.place)}"
+    else:
+        yield f"trigger: {trigger.function}{_at(trigger.place)}"
+
+
+def _application(facts: Facts, names: Names) -> Iterator[str]:
+    nodes = facts.of_kind(Kind.NODE)
+    if not nodes:
+        yield f"nodes: {GAP} # no node is created in these files"
+        return
+    yield "nodes:"
+    for node in nodes:
+        yield from _item(_node(node, node is nodes[0], facts, names), "  ")
+
+
+def _item(lines: Iterator[str], indent: str) -> Iterator[str]:
+    for index, line in enumerate(lines):
+        yield f"{indent}{'  ' if index else '- '}{line}"
+
+
+def _node(node: Entity, is_first: bool, facts: Facts, names: Names) -> Iterator[str]:
+    # The code of a timer or guard condition does not say which node it belongs to; nothing depends on it.
+    own = [each for each in facts.entities.values() if each.node == node.key or (is_first and not each.node)]
+    yield f"name: {quoted(node.name) if node.name else GAP}{_at(node.place)}"
+    publishers = [each for each in own if each.kind is Kind.PUBLISHER]
+    if publishers:
+        yield "publishers:"
+        for publisher in publishers:
+            yield from _item(_publisher(publisher), "  ")
+    handles = names.handle_by_entity
+    for kind, key in _LISTS.items():
+        entities = [each for each in own if each.kind is kind and each.key in handles]
+        if entities:
+            yield f"{key}:"
+        for entity in entities:
+            yield from _item(_callback(entity, *handles[entity.key], facts, names), "  ")
+    yield from _servers(node, own, facts, names)
+
+
+def _publisher(entity: Entity) -> Iterator[str]:
+    yield f"topic: {quoted(entity.name) if entity.name else GAP}{_at(entity.place)}"
+    yield _size("message_size", entity.type)
+    yield f"reliability: {entity.reliability or GAP}"
+
+
+def _size(key: str, kind: MessageType | None) -> str:
+    if kind is None:
+        return f"{key}: {GAP}"
+    length = length_of(kind)
+    if length is None:
+        return f"{key}: {GAP}{_at(None, str(kind))}"
+    if not length.is_fixed:
+        return f"{key}: {GAP}{_at(None, f'{kind}: {length.bytes} B with empty strings and sequences')}"
+    return f"{key}: {length.bytes} B{_at(None, str(kind))}"
+
+
+def _callback(entity: Entity, handle: Handle, executor: str, facts: Facts, names: Names) -> Iterator[str]:
+    yield f"name: {quoted(names.handles[entity.key])}{_at(handle.place)}"
+    yield from _content(entity)
+    if entity.kind is Kind.TIMER:
+        yield f"period: {_time(entity.period)}{_at(entity.place)}"
+    elif entity.kind not in _NOT_ARRIVING:
+        yield f"rate: {GAP} # how often messages arrive at most"
+    if handle.always:
+        yield "invocation: always"
+    if executor != next(iter(names.executors.values())):
+        yield f"runs_in: {quoted(executor)}"
+    yield f"execution_time: {GAP}"
+    yield from _outputs(entity, handle, facts, names)
+
+
+def _content(entity: Entity) -> Iterator[str]:
+    named = quoted(entity.name) if entity.name else GAP
+    match entity.kind:
+        case Kind.SUBSCRIPTION:
+            yield f"topic: {named}{_at(entity.place)}"
+            yield _size("message_size", entity.type)
+            yield f"reliability: {entity.reliability or GAP}"
+        case Kind.SERVICE | Kind.CLIENT:
+            if entity.kind is Kind.CLIENT:
+                yield f"service: {named}{_at(entity.place)}"
+            for key, suffix in (("request_size", "Request"), ("response_size", "Response")):
+                yield _size(key, entity.type.part(suffix) if entity.type is not None else None)
+        case Kind.ACTION_SERVER | Kind.ACTION_CLIENT:
+            if entity.kind is Kind.ACTION_CLIENT:
+                yield f"action: {named}{_at(entity.place)}"
+            for key in ("goal_size", "result_size", "feedback_size"):
+                yield f"{key}: {GAP}{_at(None, str(entity.type or ''))}"
+
+
+def _outputs(entity: Entity, handle: Handle, facts: Facts, names: Names) -> Iterator[str]:
+    callbacks = [*handle.callbacks, *([entity.callback] if entity.callback is not None else [])]
+    used: dict[str, Location] = {}
+    for callback in callbacks:
+        if callback.function is not None:
+            used |= facts.publishes.get(callback.function.scope, {})
+    for key, kind in (("publishes", Kind.PUBLISHER), ("requests", Kind.CLIENT)):
+        found = [(facts.entities[each], place) for each, place in used.items() if each in facts.entities]
+        values = [(_target(each, names), place) for each, place in found if each.kind is kind]
+        if values:
+            yield f"{key}: [{', '.join(value for value, _ in values)}]{_at(values[0][1])}"
+
+
+def _target(entity: Entity, names: Names) -> str:
+    name = entity.name if entity.kind is Kind.PUBLISHER else names.handles.get(entity.key)
+    return quoted(name) if name else GAP
+
+
+def _servers(node: Entity, own: list[Entity], facts: Facts, names: Names) -> Iterator[str]:
+    for entity in own:
+        if entity.kind is Kind.PARAMETER_SERVER:
+            stated = dict(entity.options)
+            yield f"parameter_server:{_at(entity.place)}"
+            yield f"  rate: {GAP} # of requests"
+            yield f"  execution_time: {GAP}"
+            executor = names.handle_by_entity[entity.key][1] if entity.key in names.handle_by_entity else None
+            if executor is not None and executor != next(iter(names.executors.values())):
+                yield f"  runs_in: {quoted(executor)}"
+            for key, option in (("events", "notify_changed_over_dds"), ("low_memory", "low_mem_mode")):
+                if option in stated:
+                    yield f"  {key}: {str(stated[option]).lower()}"
+        elif entity.kind is Kind.LIFECYCLE:
+            services = [
+                handle for executor in facts.executors.values() for handle in executor.handles if handle.kind is Kind.LIFECYCLE
+            ]
+            if services:
+                yield f"lifecycle:{_at(entity.place)}"
+                yield f"  services: {len(services)}"
+                yield f"  rate: {GAP} # of requests"
+                yield f"  execution_time: {GAP}"

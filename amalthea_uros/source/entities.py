@@ -1,0 +1,150 @@
+"""What functions of rclc create: nodes, publishers, subscriptions, timers and more."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from amalthea_uros.source.facts import Callback, Entity, Kind
+from amalthea_uros.source.messages import MessageType
+from amalthea_uros.source.scope import Expression, called
+from amalthea_uros.source.syntax import descendants, text_of
+from amalthea_uros.source.walk import Call, Walk
+from amalthea_uros.units import Time
+
+RELIABLE, BEST_EFFORT = "reliable", "best-effort"
+_BY_PROFILE = "by profile"
+_TYPE_SUPPORTS = {
+    "ROSIDL_GET_MSG_TYPE_SUPPORT": "msg",
+    "ROSIDL_GET_SRV_TYPE_SUPPORT": "srv",
+    "ROSIDL_GET_ACTION_TYPE_SUPPORT": "action",
+}
+#: Quality of service profiles: ros2/rmw rmw/include/rmw/qos_profiles.h.
+_PROFILES = {
+    "rmw_qos_profile_default": RELIABLE,
+    "rmw_qos_profile_services_default": RELIABLE,
+    "rmw_qos_profile_parameters": RELIABLE,
+    "rmw_qos_profile_sensor_data": BEST_EFFORT,
+}
+_NANOSECOND = 1000
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Creation:
+    """A function that creates something.
+
+    Attributes
+    ----------
+    node, type, name, period, callback : positions of these arguments; None: it has none
+    quality : the reliability, or `by profile`: the fifth argument says it
+    """
+
+    kind: Kind
+    node: int | None = None
+    type: int | None = None
+    name: int | None = None
+    period: int | None = None
+    callback: int | None = None
+    quality: str | None = None
+
+
+def _with_quality(kind: Kind, prefix: str) -> dict[str, _Creation]:
+    qualities = {"_init_default": RELIABLE, "_init_best_effort": BEST_EFFORT, "_init": _BY_PROFILE}
+    return {
+        prefix + suffix: _Creation(kind=kind, node=1, type=2, name=3, quality=quality) for suffix, quality in qualities.items()
+    }
+
+
+_TIMER = _Creation(kind=Kind.TIMER, period=2, callback=3)
+#: ros2/rclc rclc/include/rclc/*.h, rclc_parameter, rclc_lifecycle.
+CREATIONS: Mapping[str, _Creation] = {
+    "rclc_node_init_default": _Creation(kind=Kind.NODE, name=1),
+    "rclc_node_init_with_options": _Creation(kind=Kind.NODE, name=1),
+    "rclc_make_node_a_lifecycle_node": _Creation(kind=Kind.LIFECYCLE, node=1),
+    "rclc_timer_init_default": _TIMER,
+    "rclc_timer_init_default2": _TIMER,
+    "rcl_guard_condition_init": _Creation(kind=Kind.GUARD_CONDITION),
+    "rclc_action_server_init_default": _Creation(kind=Kind.ACTION_SERVER, node=1, type=3, name=4),
+    "rclc_action_client_init_default": _Creation(kind=Kind.ACTION_CLIENT, node=1, type=2, name=3),
+    "rclc_parameter_server_init_default": _Creation(kind=Kind.PARAMETER_SERVER, node=1),
+    "rclc_parameter_server_init_with_option": _Creation(kind=Kind.PARAMETER_SERVER, node=1),
+    **_with_quality(Kind.PUBLISHER, "rclc_publisher"),
+    **_with_quality(Kind.SUBSCRIPTION, "rclc_subscription"),
+    **_with_quality(Kind.SERVICE, "rclc_service"),
+    **_with_quality(Kind.CLIENT, "rclc_client"),
+}
+
+
+def entity_of(call: Call, walk: Walk) -> Entity | None:
+    """What a call creates; None if it lacks the first argument."""
+    form, variable = CREATIONS[call.name], call.argument(0)
+    if variable is None:
+        return None
+    parts = {name: _argument(call, getattr(form, name)) for name in ("node", "type", "name", "period", "callback")}
+    nanoseconds = parts["period"].number if parts["period"] is not None else None
+    return Entity(
+        kind=form.kind,
+        key=variable.key,
+        variable=variable.name,
+        place=call.place,
+        node=parts["node"].key if parts["node"] is not None else "",
+        name=parts["name"].string if parts["name"] is not None else None,
+        type=message_type(parts["type"]) if parts["type"] is not None else None,
+        reliability=_reliability(call, form.quality),
+        period=Time(nanoseconds * _NANOSECOND) if nanoseconds is not None and nanoseconds > 0 else None,
+        callback=callback_of(parts["callback"], walk) if parts["callback"] is not None else None,
+        options=_options(call),
+    )
+
+
+def _argument(call: Call, index: int | None) -> Expression | None:
+    return call.argument(index) if index is not None else None
+
+
+def message_type(given: Expression) -> MessageType | None:
+    """The type whose support an expression is."""
+    own = given.resolved
+    if own.node.type != "call_expression":
+        return None
+    name, arguments = called(own.node)
+    names = [text_of(argument) for argument in arguments]
+    if name not in _TYPE_SUPPORTS:
+        return None
+    if len(names) == 2:
+        names.insert(1, _TYPE_SUPPORTS[name])
+    return MessageType(*names) if len(names) == 3 else None
+
+
+def callback_of(given: Expression, walk: Walk) -> Callback | None:
+    """The function that an expression names; None for NULL."""
+    own = given.core
+    if own.node.type == "lambda_expression":
+        function = walk.lambdas.get(text_of(own.node))
+        return Callback(name=function.name if function is not None else "lambda", function=function)
+    name = given.name
+    if name in ("NULL", "nullptr", "0"):
+        return None
+    found = walk.program.functions.get(name, [])
+    near = [each for each in found if each.file is given.file] or found
+    return Callback(name=name, function=near[0] if len(near) == 1 else None)
+
+
+def _reliability(call: Call, quality: str | None) -> str | None:
+    if quality != _BY_PROFILE:
+        return quality
+    profile = call.argument(4)
+    return _PROFILES.get(profile.resolved.name) if profile is not None else None
+
+
+def _options(call: Call) -> tuple[tuple[str, bool], ...]:
+    """The options of a parameter server, as far as their initialiser shows them."""
+    given = call.argument(2)
+    if call.name != "rclc_parameter_server_init_with_option" or given is None:
+        return ()
+    found = []
+    for pair in descendants(given.resolved.node):
+        if pair.type == "initializer_pair" and (value := pair.child_by_field_name("value")) is not None:
+            designator = pair.child_by_field_name("designator")
+            if designator is not None and text_of(value) in ("true", "false", "1", "0"):
+                found.append((text_of(designator).lstrip("."), text_of(value) in ("true", "1")))
+    return tuple(found)

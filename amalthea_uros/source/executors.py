@@ -1,0 +1,160 @@
+"""Executors: their handles in the order of the calls that add them, and how they spin."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from fractions import Fraction
+
+from amalthea_uros.source.delays import SLEEPS, sleep_time
+from amalthea_uros.source.entities import callback_of
+from amalthea_uros.source.facts import Callback, Executor, Facts, Handle, Kind, Spin, SpinKind, Trigger
+from amalthea_uros.source.walk import Call, Walk
+from amalthea_uros.units import Time
+
+_NANOSECOND = 1000
+_ADD = "rclc_executor_add_"
+#: What is added -> its kind, and the positions of its callbacks.
+_ADDED: Mapping[str, tuple[Kind, tuple[int, ...]]] = {
+    "subscription": (Kind.SUBSCRIPTION, (3,)),
+    "subscription_with_context": (Kind.SUBSCRIPTION, (3,)),
+    "timer": (Kind.TIMER, ()),
+    "service": (Kind.SERVICE, (4,)),
+    "service_with_request_id": (Kind.SERVICE, (4,)),
+    "service_with_context": (Kind.SERVICE, (4,)),
+    "client": (Kind.CLIENT, (3,)),
+    "client_with_request_id": (Kind.CLIENT, (3,)),
+    "guard_condition": (Kind.GUARD_CONDITION, (2,)),
+    "action_server": (Kind.ACTION_SERVER, (5, 6)),
+    "action_client": (Kind.ACTION_CLIENT, (5, 6, 7, 8)),
+    "parameter_server": (Kind.PARAMETER_SERVER, (2,)),
+    "parameter_server_with_context": (Kind.PARAMETER_SERVER, (2,)),
+}
+#: RCLC_EXECUTOR_PARAMETER_SERVER_HANDLES of ros2/rclc rclc_parameter/rclc_parameter.h.
+_PARAMETER_SERVER_HANDLES = 6
+_SPINS = {
+    "rclc_executor_spin": SpinKind.ENDLESS,
+    "rclc_executor_spin_some": SpinKind.SOME,
+    "rclc_executor_spin_period": SpinKind.PERIOD,
+    "rclc_executor_spin_period_with_exit": SpinKind.PERIOD,
+    "rclc_executor_spin_one_period": SpinKind.PERIOD,
+}
+_LIFECYCLE = (
+    "rclc_lifecycle_init_get_state_server",
+    "rclc_lifecycle_init_get_available_states_server",
+    "rclc_lifecycle_init_change_state_server",
+)
+_TRIGGER_PREFIX = "rclc_executor_trigger_"
+_BUILT_IN = ("any", "all", "one", "always")
+
+Action = Callable[[Facts, Call, Walk], None]
+
+
+def _init(facts: Facts, call: Call, _walk: Walk) -> None:
+    variable, number = call.argument(0), call.argument(2)
+    if variable is not None and variable.key not in facts.executors:
+        handles = number.number if number is not None else None
+        facts.executors[variable.key] = Executor(
+            key=variable.key, variable=variable.name, place=call.place, max_handles=handles
+        )
+
+
+def _executor(facts: Facts, call: Call, index: int = 0) -> Executor | None:
+    variable = call.argument(index)
+    return facts.executors.get(variable.key) if variable is not None else None
+
+
+def _add(facts: Facts, call: Call, walk: Walk) -> None:
+    executor, entity = _executor(facts, call), call.argument(1)
+    if executor is None or entity is None:
+        return
+    kind, positions = _ADDED[call.name.removeprefix(_ADD)]
+    callbacks: list[Callback] = []
+    for position in positions:
+        given = call.argument(position)
+        callback = callback_of(given, walk) if given is not None else None
+        callbacks += [callback] if callback is not None else []
+    last = call.argument(-1)
+    handle = Handle(
+        kind=kind,
+        entity=entity.key,
+        callbacks=tuple(callbacks),
+        place=call.place,
+        count=_PARAMETER_SERVER_HANDLES if kind is Kind.PARAMETER_SERVER else 1,
+        always=kind is Kind.SUBSCRIPTION and last is not None and last.resolved.text == "ALWAYS",
+    )
+    if not any(each.entity == handle.entity and each.kind is kind for each in executor.handles):
+        executor.handles.append(handle)
+
+
+def _add_lifecycle(facts: Facts, call: Call, _walk: Walk) -> None:
+    executor = _executor(facts, call, 1)
+    if executor is not None:
+        handle = Handle(kind=Kind.LIFECYCLE, entity=call.name, callbacks=(), place=call.place)
+        if all(each.entity != call.name for each in executor.handles):
+            executor.handles.append(handle)
+
+
+def _timeout(facts: Facts, call: Call, _walk: Walk) -> None:
+    executor, given = _executor(facts, call), call.argument(1)
+    if executor is not None and given is not None:
+        number = given.number
+        executor.timeout = Time(number * _NANOSECOND) if number is not None and number > 0 else None
+        executor.timeout_place = call.place
+
+
+def _trigger(facts: Facts, call: Call, _walk: Walk) -> None:
+    executor, function, target = _executor(facts, call), call.argument(1), call.argument(2)
+    if executor is not None and function is not None:
+        name = function.name.removeprefix(_TRIGGER_PREFIX)
+        is_custom = name not in _BUILT_IN
+        executor.trigger = Trigger(
+            function=name, object=target.key if target is not None else "", is_custom=is_custom, place=call.place
+        )
+
+
+def _semantics(facts: Facts, call: Call, _walk: Walk) -> None:
+    executor, given = _executor(facts, call), call.argument(1)
+    if executor is not None and given is not None and given.resolved.text in ("LET", "RCLCPP_EXECUTOR"):
+        executor.semantics = "LET" if given.resolved.text == "LET" else "ROS"
+
+
+#: What the functions of the executor do, beside spinning.
+ACTIONS: Mapping[str, Action] = {
+    "rclc_executor_init": _init,
+    "rclc_executor_set_timeout": _timeout,
+    "rclc_executor_set_trigger": _trigger,
+    "rclc_executor_set_semantics": _semantics,
+    **dict.fromkeys((_ADD + name for name in _ADDED), _add),
+    **dict.fromkeys(_LIFECYCLE, _add_lifecycle),
+}
+SPINS = frozenset(_SPINS)
+
+
+def note_spins(facts: Facts, calls: Sequence[Call], tick_rate: Fraction | None) -> None:
+    """Add to each executor how it spins, with the sleeps in the same loop."""
+    for call in calls:
+        if call.name in _SPINS and (executor := _executor(facts, call)) is not None:
+            if any(spin.place == call.place for spin in executor.spins):
+                continue
+            executor.spins.append(_spin(call, calls, tick_rate))
+
+
+def _spin(call: Call, calls: Sequence[Call], tick_rate: Fraction | None) -> Spin:
+    kind, given = _SPINS[call.name], call.argument(1)
+    number = given.number if given is not None else None
+    time = Time(number * _NANOSECOND) if number is not None and number >= 0 else None
+    is_loop = call.root is not None and call.root.name == "loop"
+    beside = [each for each in calls if each.name in SLEEPS and each.root is call.root and each.loops == call.loops]
+    # A sleep before an endless loop, or one in setup(), is not part of the round.
+    sleeps = beside if call.loops or is_loop else []
+    durations = [
+        sleep_time(each, tick_rate) if each.conditions == call.conditions[: len(each.conditions)] else None for each in sleeps
+    ]
+    return Spin(
+        kind=kind,
+        time=time,
+        place=call.place,
+        sleep=None if None in durations else Time(sum(filter(None, durations))),
+        sleeps=tuple(each.place for each in sleeps),
+        is_in_loop=(kind is not SpinKind.SOME and call.name != "rclc_executor_spin_one_period") or bool(call.loops) or is_loop,
+    )

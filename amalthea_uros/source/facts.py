@@ -1,0 +1,228 @@
+"""What sources say about an application of micro-ROS, each with its place."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import StrEnum
+from fractions import Fraction
+
+from amalthea_uros.diagnostics import Finding, Location
+from amalthea_uros.source.messages import MessageType
+from amalthea_uros.source.program import Function
+from amalthea_uros.units import Time
+
+
+class Kind(StrEnum):
+    """What is created."""
+
+    NODE = "node"
+    PUBLISHER = "publisher"
+    SUBSCRIPTION = "subscription"
+    TIMER = "timer"
+    SERVICE = "service"
+    CLIENT = "client"
+    GUARD_CONDITION = "guard condition"
+    ACTION_SERVER = "action server"
+    ACTION_CLIENT = "action client"
+    PARAMETER_SERVER = "parameter server"
+    LIFECYCLE = "lifecycle node"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Entity:
+    """Something that a function of rclc creates.
+
+    Attributes
+    ----------
+    key : the variable that holds it
+    variable : what it is called in the code
+    node : the key of its node; "" for a node, and where the code does not say it
+    name : of a node, topic, service or action; None if it is not constant
+    type : of its messages; None if it cannot be read
+    reliability : None if it cannot be read
+    period : of a timer; None if it is not constant
+    callback : key of the function that a timer calls
+    options : of a parameter server: names with their value
+    """
+
+    kind: Kind
+    key: str
+    variable: str
+    place: Location
+    node: str = ""
+    name: str | None = None
+    type: MessageType | None = None
+    reliability: str | None = None
+    period: Time | None = None
+    callback: Callback | None = None
+    options: tuple[tuple[str, bool], ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Callback:
+    """A function that an executor calls.
+
+    Attributes
+    ----------
+    name : as it is called in the code
+    function : None if the sources do not define it
+    """
+
+    name: str
+    function: Function | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Handle:
+    """Something that was added to an executor.
+
+    Attributes
+    ----------
+    entity : its key
+    callbacks : those that were given when it was added
+    count : number of handles that it takes
+    always : whether its callback is called without a message, too
+    """
+
+    kind: Kind
+    entity: str
+    callbacks: tuple[Callback, ...]
+    place: Location
+    count: int = 1
+    always: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Thread:
+    """A task or thread of the operating system.
+
+    Attributes
+    ----------
+    stack : in bytes; None if it is not constant
+    priority, core : None if they are not stated, or not constant
+    """
+
+    name: str
+    entry: Function | None
+    place: Location
+    stack: int | None = None
+    priority: int | None = None
+    core: int | None = None
+    notes: tuple[str, ...] = ()
+
+
+class SpinKind(StrEnum):
+    """How an executor spins, as `app.yaml` calls it."""
+
+    SOME = "spin_some"
+    PERIOD = "spin_period"
+    ENDLESS = "spin"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Spin:
+    """A call that lets an executor spin.
+
+    Attributes
+    ----------
+    time : timeout or period; None if it is not constant
+    sleep : what the thread sleeps in the same loop; None if that is not constant
+    sleeps : where it sleeps
+    is_in_loop : whether it is repeated
+    """
+
+    kind: SpinKind
+    time: Time | None
+    place: Location
+    sleep: Time | None
+    sleeps: tuple[Location, ...]
+    is_in_loop: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Trigger:
+    """The trigger of an executor.
+
+    Attributes
+    ----------
+    function : name without the prefix of rclc: any, all, one, always; else a function of the application
+    object : key of what `one` waits for
+    """
+
+    function: str
+    object: str
+    is_custom: bool
+    place: Location
+
+
+@dataclass(slots=True, kw_only=True)
+class Executor:
+    """An executor.
+
+    Attributes
+    ----------
+    max_handles : what it was initialised with; None if that is not constant
+    timeout : set explicitly
+    """
+
+    key: str
+    variable: str
+    place: Location
+    max_handles: int | None
+    handles: list[Handle] = field(default_factory=list)
+    timeout: Time | None = None
+    timeout_place: Location | None = None
+    trigger: Trigger | None = None
+    semantics: str = "ROS"
+    spins: list[Spin] = field(default_factory=list)
+    thread: Thread | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Transport:
+    """The transport that the code sets.
+
+    Attributes
+    ----------
+    key : as `app.yaml` calls it; None if the code does not say it
+    values : its keys with values; None: to be filled in
+    """
+
+    key: str | None
+    values: tuple[tuple[str, str | None], ...]
+    note: str
+    place: Location | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Option:
+    """A build option of the middleware."""
+
+    name: str
+    value: str
+    place: Location
+
+
+@dataclass(slots=True, kw_only=True)
+class Facts:
+    """Everything.
+
+    Attributes
+    ----------
+    publishes : keys of publishers and clients by the functions that use them, with the places
+    rtos : the operating system, "" if unknown
+    tick_rate : its ticks per second
+    """
+
+    entities: dict[str, Entity] = field(default_factory=dict)
+    executors: dict[str, Executor] = field(default_factory=dict)
+    publishes: dict[str, dict[str, Location]] = field(default_factory=dict)
+    transport: Transport | None = None
+    options: dict[str, Option] = field(default_factory=dict)
+    rtos: str = ""
+    tick_rate: Fraction | None = None
+    findings: list[Finding] = field(default_factory=list)
+
+    def of_kind(self, kind: Kind) -> list[Entity]:
+        """What was created of a kind, in order."""
+        return [entity for entity in self.entities.values() if entity.kind is kind]

@@ -1,0 +1,114 @@
+"""The files of source code that paths stand for, and their text."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from amalthea_uros._internal.files import FileError, is_directory, read_bytes
+from amalthea_uros._internal.limits import ADVICE, SOURCE_FILES, SOURCE_SIZE, SOURCES_SIZE
+from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros.errors import ReadError
+
+_C = (".c",)
+#: What is not C for certain is read as C++, which is nearly a superset.
+_CPP = (".h", ".hpp", ".hh", ".cpp", ".cc", ".cxx", ".ino")
+SUFFIXES = (*_C, *_CPP)
+META = ".meta"
+
+
+@dataclass(frozen=True, slots=True)
+class SourceFile:
+    """A file of source code.
+
+    Attributes
+    ----------
+    text : its bytes; positions in syntax trees count bytes
+    """
+
+    path: Path
+    text: bytes
+
+    @property
+    def is_c(self) -> bool:
+        """Whether it is C, not C++."""
+        return self.path.suffix.lower() in _C
+
+    def location(self, row: int, column: int) -> Location:
+        """A place in it, by row and column from 0, with the text of its line."""
+        lines = self.text.split(b"\n", row + 1)
+        line = lines[row].decode("utf-8", "replace").rstrip("\r") if row < len(lines) else ""
+        return Location(self.path, row + 1, column + 1, line)
+
+
+@dataclass(frozen=True, slots=True)
+class Sources:
+    """All files that were given.
+
+    Attributes
+    ----------
+    meta : files with build options of colcon
+    findings : files that cannot be read
+    """
+
+    code: tuple[SourceFile, ...]
+    meta: tuple[SourceFile, ...]
+    findings: tuple[Finding, ...]
+
+
+def read_sources(paths: Iterable[Path]) -> Sources:
+    """Read files, and what is in folders.
+
+    Raises
+    ------
+    ReadError : a path does not exist, there is no source code, or there is too much of it.
+    """
+    code: list[SourceFile] = []
+    meta: list[SourceFile] = []
+    findings: list[Finding] = []
+    size = 0
+    for path in _found(paths):
+        try:
+            text = read_bytes(path, SOURCE_SIZE)
+        except FileError as error:
+            findings.append(_unreadable(path, error.reason, error.advice))
+            continue
+        if b"\0" in text:
+            findings.append(_unreadable(path, "this is not text: it has zero bytes", "Give files of C or C++ source code."))
+            continue
+        size += len(text)
+        if size > SOURCES_SIZE:
+            raise ReadError([_unreadable(path, "there is too much source code", f"Give only the application. {ADVICE}")])
+        (meta if path.suffix == META else code).append(SourceFile(path, text))
+    if not code:
+        advice = f"Give C or C++ files ({', '.join(SUFFIXES)}) or folders with them."
+        raise ReadError(findings or [Finding("IMP002", Severity.ERROR, "there is no source code", None, advice)])
+    return Sources(tuple(code), tuple(meta), tuple(findings))
+
+
+def _found(paths: Iterable[Path]) -> list[Path]:
+    """The files that were named, and the source code in folders, each once."""
+    found: dict[Path, None] = {}
+    for path in paths:
+        for each in sorted(_in_folder(path)) if is_directory(path) else [path]:
+            found[each] = None
+            if len(found) > SOURCE_FILES:
+                raise ReadError([_unreadable(path, f"there are more than {SOURCE_FILES:,} files", f"Give fewer. {ADVICE}")])
+    return list(found)
+
+
+def _in_folder(folder: Path) -> Iterator[Path]:
+    """Source code in a folder and those in it, without hidden ones; links are not followed out of it."""
+    for place, folders, names in os.walk(folder):
+        folders[:] = sorted(name for name in folders if not name.startswith("."))
+        for name in names:
+            if name.lower().endswith((*SUFFIXES, META)) and not name.startswith("."):
+                path = Path(place, name)
+                if not path.is_symlink():
+                    yield path
+
+
+def _unreadable(path: Path, reason: str, advice: str) -> Finding:
+    return Finding("IMP002", Severity.ERROR, reason, Location(path), advice)

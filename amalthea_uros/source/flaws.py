@@ -1,0 +1,196 @@
+"""Mistakes in the code that show before any analysis."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros._internal.plural import counted
+from amalthea_uros.diagnostics import Finding, Severity
+from amalthea_uros.source.entities import CREATIONS, RELIABLE
+from amalthea_uros.source.executors import ACTIONS
+from amalthea_uros.source.facts import Executor, Facts, Kind, SpinKind
+from amalthea_uros.source.walk import Call, Walk
+from amalthea_uros.units import Time, time_text
+
+#: Functions of micro-ROS/rmw_microxrcedds that wait for an answer of the agent.
+_ROUND_TRIPS = ("rmw_uros_ping_agent", "rmw_uros_ping_agent_options", "rmw_uros_sync_session")
+_MILLISECOND = 10**9
+_SECOND = 10**12
+_WITH_HANDLES = (
+    Kind.SUBSCRIPTION,
+    Kind.TIMER,
+    Kind.SERVICE,
+    Kind.CLIENT,
+    Kind.GUARD_CONDITION,
+    Kind.ACTION_SERVER,
+    Kind.ACTION_CLIENT,
+)
+#: Defaults of micro-ROS/rmw_microxrcedds rmw_microxrcedds_c/CMakeLists.txt; each timer needs a guard condition.
+_POOLS = {
+    "RMW_UXRCE_MAX_NODES": (4, (Kind.NODE,)),
+    "RMW_UXRCE_MAX_PUBLISHERS": (4, (Kind.PUBLISHER,)),
+    "RMW_UXRCE_MAX_SUBSCRIPTIONS": (4, (Kind.SUBSCRIPTION,)),
+    "RMW_UXRCE_MAX_SERVICES": (4, (Kind.SERVICE,)),
+    "RMW_UXRCE_MAX_CLIENTS": (4, (Kind.CLIENT,)),
+    "RMW_UXRCE_MAX_GUARD_CONDITION": (4, (Kind.TIMER, Kind.GUARD_CONDITION)),
+}
+
+
+def flaws(facts: Facts, walk: Walk) -> Iterator[Finding]:
+    """The findings about the application itself."""
+    yield from _unchecked(walk.calls)
+    yield from _pools(facts)
+    yield from _never_called(facts)
+    for executor in facts.executors.values():
+        yield from _handles(executor)
+        yield from _waiting(executor)
+        yield from _timers(executor, facts)
+        yield from _triggers(executor)
+    yield from _blocking(facts, walk)
+    yield from _pings(walk)
+
+
+def _unchecked(calls: list[Call]) -> Iterator[Finding]:
+    names = {*CREATIONS, *(name for name in ACTIONS if "_add_" in name or name.endswith("_init"))}
+    for call in calls:
+        if call.unchecked and call.name in names:
+            message = f"the return code of '{call.name}' is not checked, so nobody sees that a pool is exhausted"
+            yield Finding("IMP008", Severity.WARNING, message, call.place, "Compare it with RCL_RET_OK.")
+
+
+def _pools(facts: Facts) -> Iterator[Finding]:
+    for name, (default, kinds) in _POOLS.items():
+        used = [entity for entity in facts.entities.values() if entity.kind in kinds]
+        option = facts.options.get(name)
+        size = int(option.value) if option is not None and option.value.isdecimal() else default
+        if len(used) > size:
+            stated = f"in {option.place.path}" if option is not None else "by default"
+            message = f"{counted(len(used), kinds[0].value)} need {name}={len(used)}, which is {size} {stated}"
+            if len(kinds) > 1:
+                message = f"the timers and guard conditions need {name}={len(used)}, which is {size} {stated}"
+            advice = "Set it in colcon.meta and rebuild libmicroros from scratch."
+            severity = Severity.ERROR if option is not None else Severity.WARNING
+            yield Finding("IMP007", severity, message, used[size].place, advice)
+
+
+def _never_called(facts: Facts) -> Iterator[Finding]:
+    added = {handle.entity for executor in facts.executors.values() for handle in executor.handles}
+    for entity in facts.entities.values():
+        if entity.kind in _WITH_HANDLES and entity.key not in added:
+            message = f"the {entity.kind} '{entity.variable}' is never added to an executor, so its callback never runs"
+            yield Finding("IMP017", Severity.WARNING, message, entity.place, "Add it to an executor, or remove it.")
+    for executor in facts.executors.values():
+        if not executor.spins:
+            message = f"the executor '{executor.variable}' never spins in these files"
+            yield Finding(
+                "IMP017",
+                Severity.WARNING,
+                message,
+                executor.place,
+                "Give the file that calls a function such as rclc_executor_spin_some.",
+            )
+        for handle in executor.handles:
+            if handle.kind in _WITH_HANDLES and handle.entity not in facts.entities:
+                message = f"the {handle.kind} that is added here is not created by a function that is understood"
+                yield Finding("IMP017", Severity.WARNING, message, handle.place, "Add it to the description by hand.")
+
+
+def _handles(executor: Executor) -> Iterator[Finding]:
+    if executor.max_handles is None:
+        message = f"the number of handles of '{executor.variable}' is not constant"
+        yield Finding("IMP004", Severity.WARNING, message, executor.place, "Add max_handles to the description.")
+        return
+    total = 0
+    for handle in executor.handles:
+        total += handle.count
+        if total > executor.max_handles:
+            message = (
+                f"'{executor.variable}' is initialised with {counted(executor.max_handles, 'handle')}; this one exceeds them"
+            )
+            advice = f"Give rclc_executor_init {sum(each.count for each in executor.handles)}; else the callback never runs."
+            yield Finding("IMP006", Severity.ERROR, message, handle.place, advice)
+            return
+
+
+def _waiting(executor: Executor) -> Iterator[Finding]:
+    for spin in executor.spins:
+        if spin.kind is SpinKind.SOME and spin.time is not None and spin.time < _MILLISECOND:
+            message = f"the timeout of {time_text(spin.time)} is below 1 ms, so the executor polls instead of waiting"
+            yield Finding(
+                "IMP009", Severity.WARNING, message, spin.place, "The timeout is in nanoseconds: write RCL_MS_TO_NS(10)."
+            )
+        if spin.kind is SpinKind.PERIOD and spin.time is not None and _timeout(executor) >= spin.time:
+            stated = time_text(executor.timeout) if executor.timeout else "1 s by default"
+            message = f"the executor waits up to {stated} per round, longer than its period of {time_text(spin.time)}"
+            yield Finding(
+                "IMP010", Severity.WARNING, message, spin.place, "Call rclc_executor_set_timeout with less than the period."
+            )
+        if spin.kind is SpinKind.SOME and spin.is_in_loop and spin.sleep == 0:
+            message = "the loop does not sleep; with timers only, some versions of the middleware never wait either"
+            yield Finding(
+                "IMP018",
+                Severity.INFO,
+                message,
+                spin.place,
+                "Sleep in the loop if other tasks with lower priority have to run.",
+            )
+        if not spin.is_in_loop:
+            message = "no loop is found around this call, so how often it is repeated is unknown"
+            yield Finding("IMP004", Severity.WARNING, message, spin.place, "Complete 'loop' in the description.")
+    for spin in executor.spins[1:]:
+        message = f"'{executor.variable}' spins in several places; the description has the first one"
+        yield Finding("IMP004", Severity.WARNING, message, spin.place, "Check 'loop' in the description.")
+
+
+def _timeout(executor: Executor) -> Time:
+    """What a round waits at most, 0 if the code sets something that cannot be read."""
+    return Time(_SECOND) if executor.timeout_place is None else executor.timeout or Time(0)
+
+
+def _timers(executor: Executor, facts: Facts) -> Iterator[Finding]:
+    spin = next(iter(executor.spins), None)
+    least = None if spin is None else spin.time if spin.kind is SpinKind.PERIOD else spin.sleep
+    for handle in executor.handles:
+        entity = facts.entities.get(handle.entity)
+        if entity is not None and entity.period is not None and least is not None and entity.period < least:
+            message = f"the period {time_text(entity.period)} is shorter than a round of the loop, {time_text(least)}: periods are lost"
+            yield Finding("IMP011", Severity.WARNING, message, entity.place, "Sleep less in the loop, or use a longer period.")
+
+
+def _triggers(executor: Executor) -> Iterator[Finding]:
+    if executor.trigger is not None and executor.trigger.is_custom:
+        message = f"the condition of the trigger '{executor.trigger.function}' cannot be read from the code"
+        advice = "Write the sets of callbacks that it waits for as trigger: {custom: [[A, B], [C]]}."
+        yield Finding("IMP014", Severity.WARNING, message, executor.trigger.place, advice)
+
+
+def _pings(walk: Walk) -> Iterator[Finding]:
+    for call in walk.calls:
+        if call.name in _ROUND_TRIPS and (call.loops or (call.root is not None and call.root.name == "loop")):
+            message = f"'{call.name}' in a loop waits for the agent, which the description does not have"
+            yield Finding(
+                "IMP013", Severity.WARNING, message, call.place, "Allow for its timeout where the loop has to be quick."
+            )
+
+
+def _blocking(facts: Facts, walk: Walk) -> Iterator[Finding]:
+    published = {place for places in facts.publishes.values() for place in places.values()}
+    told = set()
+    for call in walk.calls:
+        given = call.argument(0)
+        entity = facts.entities.get(given.key) if call.name == "rcl_publish" and given is not None else None
+        if entity is None or call.place in told:
+            continue
+        told.add(call.place)
+        if call.place not in published:
+            message = f"'{entity.variable}' publishes outside of callbacks, which the description does not have"
+            yield Finding(
+                "IMP013", Severity.WARNING, message, call.place, "Describe it as a timer, or publish in a timer callback."
+            )
+        elif entity.reliability == RELIABLE:
+            message = (
+                f"publishing with '{entity.variable}' is reliable: the callback waits for the acknowledgement of the agent"
+            )
+            yield Finding(
+                "IMP012", Severity.INFO, message, call.place, "Use rclc_publisher_init_best_effort where losses are harmless."
+            )

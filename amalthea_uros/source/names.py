@@ -1,0 +1,49 @@
+"""Names in the description: those of the code, each once."""
+
+from __future__ import annotations
+
+from amalthea_uros.source.facts import Facts, Handle
+
+_LONGEST = 150
+
+
+class Names:
+    """The names of executors and callbacks.
+
+    Attributes
+    ----------
+    executors : by key
+    handles : names of callbacks by the key of what they were added with
+    handle_by_entity : the handle of an entity, and the name of its executor
+    """
+
+    def __init__(self, facts: Facts) -> None:
+        self._used: set[str] = set()
+        self.executors: dict[str, str] = {}
+        self.handles: dict[str, str] = {}
+        self.handle_by_entity: dict[str, tuple[Handle, str]] = {}
+        for executor in facts.executors.values():
+            name = executor.thread.name if executor.thread is not None else executor.variable
+            self.executors[executor.key] = self._unique(name, executor.variable)
+        for executor in facts.executors.values():
+            for handle in executor.handles:
+                entity = facts.entities.get(handle.entity)
+                if entity is None or handle.entity in self.handles:
+                    continue
+                callback = next(iter(handle.callbacks), entity.callback)
+                name = callback.name if callback is not None else entity.variable
+                self.handle_by_entity[entity.key] = handle, self.executors[executor.key]
+                if entity.kind.value not in ("parameter server", "lifecycle node"):
+                    self.handles[entity.key] = self._unique(name, entity.variable)
+
+    def _unique(self, name: str, variable: str) -> str:
+        text = "".join(each if each.isprintable() else "?" for each in name).strip()[:_LONGEST] or "unnamed"
+        if text in self._used:
+            text = f"{text}_{variable}"[:_LONGEST]
+        number = 2
+        plain = text
+        while text in self._used:
+            text = f"{plain}_{number}"
+            number += 1
+        self._used.add(text)
+        return text

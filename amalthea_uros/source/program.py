@@ -1,0 +1,184 @@
+"""What sources define: functions, constants, members of classes; the code between them is read by `walk`."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from amalthea_uros.source.files import SourceFile
+from amalthea_uros.source.syntax import descendants, parse, text_of
+
+if TYPE_CHECKING:
+    from tree_sitter import Node
+
+_CLASSES = ("class_specifier", "struct_specifier")
+_NESTED = ("pointer_declarator", "array_declarator", "reference_declarator", "parenthesized_declarator", "init_declarator")
+_CHANGES = ("assignment_expression", "update_expression")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Function:
+    """A function, a method or a lambda.
+
+    Attributes
+    ----------
+    owner : the class of a method, "" for other functions
+    parameters : their names, in order; "" for one without
+    locals : names that are declared in it, parameters included
+    """
+
+    name: str
+    file: SourceFile
+    body: Node
+    owner: str = ""
+    parameters: tuple[str, ...] = ()
+    locals: frozenset[str] = frozenset()
+
+    @property
+    def scope(self) -> str:
+        """A name for what is declared in it."""
+        return f"{self.file.path}:{self.body.start_byte}:"
+
+
+@dataclass(slots=True, eq=False)
+class Program:
+    """Everything that sources define.
+
+    Attributes
+    ----------
+    macros : texts of macros without parameters; with several ones the value is unknown
+    function_macros : those with parameters, with the texts
+    functions : by name; several of one name in different files or classes
+    members : of classes
+    statics : names that are known in one file only, with its path
+    values : what variables are initialised with, by their keys
+    changed : names that something assigns to, or whose address is taken: what they are initialised with may not be their value
+    """
+
+    files: list[tuple[SourceFile, Node]] = field(default_factory=list)
+    macros: dict[str, set[str]] = field(default_factory=lambda: defaultdict(set))
+    function_macros: dict[str, tuple[SourceFile, Node]] = field(default_factory=dict)
+    functions: dict[str, list[Function]] = field(default_factory=lambda: defaultdict(list))
+    members: dict[str, set[str]] = field(default_factory=lambda: defaultdict(set))
+    statics: set[tuple[str, str]] = field(default_factory=set)
+    values: dict[str, tuple[Node, Function | SourceFile]] = field(default_factory=dict)
+    changed: set[str] = field(default_factory=set)
+
+    def every_function(self) -> Iterator[Function]:
+        """All functions."""
+        for group in self.functions.values():
+            yield from group
+
+
+def read_program(files: tuple[SourceFile, ...]) -> Program:
+    """What files define.
+
+    Raises
+    ------
+    ReadError : the parsers are not installed.
+    """
+    program = Program()
+    for file in files:
+        root = parse(file)
+        program.files.append((file, root))
+        for node in descendants(root):
+            _note(program, file, node)
+    return program
+
+
+def _note(program: Program, file: SourceFile, node: Node) -> None:
+    match node.type:
+        case "preproc_def":
+            name, value = node.child_by_field_name("name"), node.child_by_field_name("value")
+            if name is not None:
+                program.macros[text_of(name)].add(text_of(value).strip() if value is not None else "")
+        case "preproc_function_def":
+            if (name := node.child_by_field_name("name")) is not None:
+                program.function_macros[text_of(name)] = file, node
+        case "function_definition":
+            _note_function(program, file, node)
+        case "declaration":
+            if _enclosing(node, ("function_definition", "lambda_expression")) is None:
+                _note_variables(program, file, node)
+        case "field_declaration":
+            owner = _class_around(node)
+            program.members[owner].update(text_of(name) for name, _ in declared(node))
+        case "enumerator":
+            name, value = node.child_by_field_name("name"), node.child_by_field_name("value")
+            if name is not None and value is not None:
+                program.values[text_of(name)] = value, file
+        case "assignment_expression" | "update_expression":
+            _note_change(program, node)
+
+
+def _note_function(program: Program, file: SourceFile, node: Node) -> None:
+    declarator, body = node.child_by_field_name("declarator"), node.child_by_field_name("body")
+    while declarator is not None and declarator.type != "function_declarator":
+        declarator = declarator.child_by_field_name("declarator")
+    named = declarator.child_by_field_name("declarator") if declarator is not None else None
+    if declarator is None or named is None or body is None:
+        return
+    qualified = text_of(named).split("::")
+    owner = qualified[-2] if len(qualified) > 1 else _class_around(node)
+    function = function_of(qualified[-1].strip(), file, declarator, body, owner)
+    program.functions[function.name].append(function)
+    for statement in descendants(body):
+        if statement.type == "declaration":
+            for name, value in declared(statement):
+                if value is not None:
+                    program.values[function.scope + text_of(name)] = value, function
+
+
+def function_of(name: str, file: SourceFile, declarator: Node | None, body: Node, owner: str) -> Function:
+    """A function with a declarator, which has its parameters, and a body."""
+    listed = declarator.child_by_field_name("parameters") if declarator is not None else None
+    parameters = tuple(
+        next((text_of(name) for name, _ in declared(each)), "")
+        for each in (listed.named_children if listed is not None else ())
+        if each.type in ("parameter_declaration", "optional_parameter_declaration")
+    )
+    inner = {text_of(name) for each in descendants(body) if each.type == "declaration" for name, _ in declared(each)}
+    return Function(name, file, body, owner, parameters, frozenset({*inner, *parameters}))
+
+
+def _note_variables(program: Program, file: SourceFile, node: Node) -> None:
+    is_static = any(child.type == "storage_class_specifier" and text_of(child) == "static" for child in node.children)
+    for name, value in declared(node):
+        key = text_of(name)
+        if is_static:
+            program.statics.add((str(file.path), key))
+            key = f"{file.path}:{key}"
+        if value is not None:
+            program.values[key] = value, file
+
+
+def _note_change(program: Program, node: Node) -> None:
+    target = node.child_by_field_name("left") or node.child_by_field_name("argument")
+    if target is not None:
+        program.changed.add(text_of(target).rpartition(".")[2].rpartition(">")[2])
+
+
+def declared(node: Node) -> Iterator[tuple[Node, Node | None]]:
+    """The variables that a declaration declares, with what they are initialised with."""
+    for declarator in node.children_by_field_name("declarator"):
+        value = declarator.child_by_field_name("value")
+        inner: Node | None = declarator
+        while inner is not None and inner.type in _NESTED:
+            inner = inner.child_by_field_name("declarator") or next(iter(inner.named_children), None)
+        if inner is not None and inner.type in ("identifier", "field_identifier"):
+            yield inner, value
+
+
+def _class_around(node: Node) -> str:
+    around = _enclosing(node, _CLASSES)
+    name = around.child_by_field_name("name") if around is not None else None
+    return text_of(name) if name is not None else ""
+
+
+def _enclosing(node: Node, types: tuple[str, ...]) -> Node | None:
+    parent = node.parent
+    while parent is not None and parent.type not in types:
+        parent = parent.parent
+    return parent

@@ -1,0 +1,134 @@
+"""Sources -> facts."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from fractions import Fraction
+
+from amalthea_uros.diagnostics import Finding, Severity
+from amalthea_uros.source.delays import SLEEPS
+from amalthea_uros.source.entities import CREATIONS, entity_of
+from amalthea_uros.source.executors import ACTIONS, SPINS, note_spins
+from amalthea_uros.source.facts import Callback, Facts, Option, Thread
+from amalthea_uros.source.files import SourceFile, Sources
+from amalthea_uros.source.flaws import flaws
+from amalthea_uros.source.not_understood import not_understood
+from amalthea_uros.source.program import Program, read_program
+from amalthea_uros.source.threads import FORMS, thread_of
+from amalthea_uros.source.transports import SETTERS, transport_of
+from amalthea_uros.source.walk import Call, Walk
+
+_NAMES = frozenset({*SLEEPS, *FORMS, *SETTERS, "Serial.begin"})
+_SENDS = ("rcl_publish", "rcl_send_request")
+#: How the entry of a program can be called; two of one name are two programs.
+_ENTRIES = ("main", "app_main", "appMain", "setup")
+_OPTION = re.compile(r'"\s*-D\s*(\w+)(?::\w+)?=([^"]*)"')
+_COMMENT = re.compile(r'("(?:[^"\\\n]|\\.)*")|//[^\n]*|/\*.*?\*/', re.DOTALL)
+
+
+def read_facts(sources: Sources) -> Facts:
+    """What sources say about their application.
+
+    Raises
+    ------
+    ReadError : the parsers are not installed.
+    """
+    program = read_program(sources.code)
+    walk = Walk(program, _NAMES)
+    walk.all()
+    facts = Facts()
+    facts.findings += [*sources.findings, *walk.findings, *_several_programs(program)]
+    facts.rtos, facts.tick_rate = _operating_system(walk.calls), _tick_rate(program)
+    _note_objects(facts, walk)
+    note_spins(facts, walk.calls, facts.tick_rate)
+    _note_threads(facts, walk)
+    _note_publications(facts, walk)
+    facts.transport = transport_of(walk.calls, program)
+    for file in sources.meta:
+        facts.options |= _options(file)
+    facts.findings += [*not_understood(walk, facts), *flaws(facts, walk)]
+    return facts
+
+
+def _note_objects(facts: Facts, walk: Walk) -> None:
+    for call in walk.calls:
+        if call.name in CREATIONS:
+            entity = entity_of(call, walk)
+            if entity is not None and entity.key not in facts.entities:
+                facts.entities[entity.key] = entity
+    # All executors first: functions that are called later can come earlier in the files.
+    _act(facts, walk, {"rclc_executor_init"})
+    _act(facts, walk, ACTIONS.keys() - {"rclc_executor_init"})
+
+
+def _act(facts: Facts, walk: Walk, names: Iterable[str]) -> None:
+    wanted = frozenset(names)
+    for call in walk.calls:
+        if call.name in wanted:
+            ACTIONS[call.name](facts, call, walk)
+
+
+def _note_threads(facts: Facts, walk: Walk) -> None:
+    """Give each executor the thread whose entry leads to its spin."""
+    is_idf = any(b'"freertos/' in file.text or b"<freertos/" in file.text for file, _ in walk.program.files)
+    threads = [thread_of(call, walk, not is_idf) for call in walk.calls if call.name in FORMS]
+    by_entry: dict[str, Thread] = {each.entry.scope: each for each in threads if each is not None and each.entry is not None}
+    for call in walk.calls:
+        given = call.argument(0)
+        executor = facts.executors.get(given.key) if call.name in SPINS and given is not None else None
+        if executor is not None and call.root is not None:
+            executor.thread = executor.thread or by_entry.get(call.root.scope)
+
+
+def _note_publications(facts: Facts, walk: Walk) -> None:
+    """What callbacks publish, also by functions that they call."""
+    callbacks: list[Callback] = [entity.callback for entity in facts.entities.values() if entity.callback is not None]
+    for executor in facts.executors.values():
+        for handle in executor.handles:
+            callbacks += handle.callbacks
+    for callback in callbacks:
+        if callback.function is not None and callback.function.scope not in facts.publishes:
+            facts.publishes[callback.function.scope] = {
+                given.key: call.place
+                for call in walk.calls_from(callback.function)
+                if call.name in _SENDS and (given := call.argument(0)) is not None
+            }
+
+
+def _operating_system(calls: Iterable[Call]) -> str:
+    """The operating system that is used, as `app.yaml` calls it."""
+    hints = {name: form.rtos for name, form in FORMS.items() if form.rtos} | dict.fromkeys(
+        ("vTaskDelay", "osDelay"), "freertos"
+    )
+    hints |= dict.fromkeys(("k_sleep", "k_msleep", "k_usleep"), "zephyr")
+    return next((hints[call.name] for call in calls if call.name in hints), "")
+
+
+def _tick_rate(program: Program) -> Fraction | None:
+    texts = program.macros.get("configTICK_RATE_HZ", set()) | program.macros.get("CONFIG_FREERTOS_HZ", set())
+    numbers = {number for text in texts for number in re.findall(r"\d+", text)}
+    rate = next(iter(numbers)) if len(numbers) == 1 else "0"
+    return Fraction(int(rate)) if 0 < len(rate) < 10 and int(rate) else None
+
+
+def _several_programs(program: Program) -> list[Finding]:
+    found = []
+    for name in _ENTRIES:
+        entries = [each for each in program.functions.get(name, ()) if not each.owner]
+        if len({each.file.path for each in entries}) > 1:
+            place = entries[1].file.location(entries[1].body.start_point.row, 0)
+            message = f"several programs: {name}() is defined in {entries[0].file.path} and {entries[1].file.path}"
+            found.append(Finding("IMP016", Severity.ERROR, message, place, "Give the files of one program."))
+    return found
+
+
+def _options(file: SourceFile) -> dict[str, Option]:
+    """The options in a file for colcon, which may have comments; anything else in it is ignored."""
+    text = _COMMENT.sub(lambda match: match[1] or "", file.text.decode("utf-8", "replace"))
+    lines = file.text.decode("utf-8", "replace").split("\n")
+    found = {}
+    for name, value in _OPTION.findall(text):
+        row = next((row for row, line in enumerate(lines) if f"-D{name}" in line.replace(" ", "")), 0)
+        found[name] = Option(name=name, value=value, place=file.location(row, 0))
+    return found

@@ -1,0 +1,241 @@
+"""What expressions stand for: objects, numbers and texts, as far as they are constant."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, TypeAlias
+
+from amalthea_uros.source.files import SourceFile
+from amalthea_uros.source.program import Function, Program
+from amalthea_uros.source.syntax import parse_expression, text_of
+
+if TYPE_CHECKING:
+    from tree_sitter import Node
+
+#: Constants that refer to others, nested calls; more is no code that people write.
+_MAX_DEPTH = 40
+_GREATEST = 2**64
+
+#: Functions and macros of rclc, FreeRTOS, Zephyr and C++ that only change the unit: value -> factor to the value.
+_FACTORS = {
+    **dict.fromkeys(("RCL_S_TO_NS", "RCUTILS_S_TO_NS"), 10**9),
+    **dict.fromkeys(("RCL_MS_TO_NS", "RCUTILS_MS_TO_NS"), 10**6),
+    **dict.fromkeys(("RCL_US_TO_NS", "RCUTILS_US_TO_NS"), 10**3),
+}
+_WRAPPERS = ("parenthesized_expression", "cast_expression", "pointer_expression")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Expression:
+    """An expression at a place where names have a meaning.
+
+    Attributes
+    ----------
+    function : the function that it is in; None outside of functions
+    bindings : parameters of the function, with the arguments of its call; counters of loops, with their value in one iteration
+    """
+
+    program: Program
+    node: Node
+    file: SourceFile
+    function: Function | None = None
+    bindings: Mapping[str, Binding] = field(default_factory=dict)
+    depth: int = 0
+
+    def at(self, node: Node) -> Expression:
+        """Another expression at the same place."""
+        return Expression(self.program, node, self.file, self.function, self.bindings, self.depth + 1)
+
+    @property
+    def text(self) -> str:
+        """As it is written, in one line."""
+        return " ".join(text_of(self.node).split())
+
+    @property
+    def core(self) -> Expression:
+        """Without parentheses, casts and the operators `&` and `*`."""
+        node = self.node
+        while node.type in _WRAPPERS:
+            inner = node.child_by_field_name("value") or node.child_by_field_name("argument")
+            if inner is None:
+                inner = next((child for child in node.named_children if child.type != "comment"), None)
+            if inner is None:
+                break
+            node = inner
+        return self.at(node) if node is not self.node else self
+
+    @property
+    def key(self) -> str:
+        """A name for the object that it stands for, the same wherever it is used."""
+        own = self.core
+        if own.depth > _MAX_DEPTH:
+            return own.text
+        node = own.node
+        if node.type == "identifier":
+            return own._key_of_name(text_of(node))
+        if node.type == "field_expression":
+            holder, member = node.child_by_field_name("argument"), node.child_by_field_name("field")
+            if holder is not None and member is not None:
+                if holder.type == "this":
+                    return own._key_of_name(text_of(member))
+                return f"{own.at(holder).key}.{text_of(member)}"
+        if node.type == "subscript_expression" and (array := node.child_by_field_name("argument")) is not None:
+            index = own._index()
+            number = index.number if index is not None else None
+            return f"{own.at(array).key}[{number if number is not None else index.text if index is not None else ''}]"
+        return own.text
+
+    def _index(self) -> Expression | None:
+        node = self.node.child_by_field_name("index") or self.node.child_by_field_name("indices")
+        if node is not None and node.type == "subscript_argument_list":
+            node = next(iter(node.named_children), None)
+        return self.at(node) if node is not None else None
+
+    def _key_of_name(self, name: str) -> str:
+        bound = self.bindings.get(name)
+        if isinstance(bound, Expression):
+            return bound.key
+        if self.function is not None:
+            if name in self.function.locals:
+                return self.function.scope + name
+            if name in self.program.members.get(self.function.owner, ()) and self.function.owner:
+                return f"{self.function.owner}::{name}"
+        return f"{self.file.path}:{name}" if (str(self.file.path), name) in self.program.statics else name
+
+    @property
+    def name(self) -> str:
+        """The last part of what it is called in the code."""
+        own = self.core
+        bound = own.bindings.get(own.text) if own.node.type == "identifier" else None
+        if isinstance(bound, Expression) and own.depth <= _MAX_DEPTH:
+            return bound.name
+        if own.node.type == "subscript_expression" and (array := own.node.child_by_field_name("argument")) is not None:
+            index = own._index()
+            return f"{own.at(array).name.rstrip('_')}_{index.number if index is not None and index.number is not None else 'n'}"
+        text = own.text.replace("->", ".").replace("this.", "")
+        return text.rpartition("::")[2]
+
+    @property
+    def resolved(self) -> Expression:
+        """What a constant or parameter stands for, else itself."""
+        own = self.core
+        if own.node.type not in ("identifier", "field_expression") or own.depth > _MAX_DEPTH:
+            return own
+        name = text_of(own.node)
+        bound = own.bindings.get(name)
+        if isinstance(bound, Expression):
+            return bound.resolved
+        values = self.program.values
+        found = values.get(own.key)
+        if found is not None and name.rpartition(".")[2].rpartition(">")[2] not in self.program.changed:
+            node, place = found
+            function = place if isinstance(place, Function) else None
+            file = place.file if isinstance(place, Function) else place
+            bindings = own.bindings if function is own.function else {}
+            return Expression(self.program, node, file, function, bindings, own.depth + 1).resolved
+        texts = self.program.macros.get(name, ())
+        if len(texts) == 1 and (parsed := parse_expression(next(iter(texts)))) is not None:
+            return own.at(parsed).resolved
+        return own
+
+    @property
+    def string(self) -> str | None:
+        """The text that it stands for, None if that is not constant."""
+        own = self.resolved
+        if own.node.type == "concatenated_string":
+            strings = [own.at(child).string for child in own.node.named_children]
+            known = [each for each in strings if each is not None]
+            return "".join(known) if len(known) == len(strings) else None
+        if own.node.type != "string_literal":
+            return None
+        parts = []
+        for child in own.node.named_children:
+            if child.type != "string_content":
+                return None
+            parts.append(text_of(child))
+        return "".join(parts)
+
+    @property
+    def number(self) -> int | None:
+        """The whole number that it stands for, None if that is not constant."""
+        own = self.resolved
+        node = own.node
+        if own.depth > _MAX_DEPTH:
+            return None
+        if node.type == "identifier":
+            bound = own.bindings.get(text_of(node))
+            return bound if isinstance(bound, int) else None
+        if node.type == "number_literal":
+            return literal(text_of(node))
+        if node.type == "unary_expression" and (inner := node.child_by_field_name("argument")) is not None:
+            value = own.at(inner).number
+            return None if value is None else {"-": -value, "+": value}.get(text_of(node.children[0]))
+        if node.type == "binary_expression":
+            return own._operation()
+        if node.type == "call_expression":
+            return own._converted()
+        return None
+
+    def _operation(self) -> int | None:
+        left, right = (self.node.child_by_field_name(side) for side in ("left", "right"))
+        operator = self.node.child_by_field_name("operator")
+        if left is None or right is None or operator is None:
+            return None
+        first, second = self.at(left).number, self.at(right).number
+        if first is None or second is None:
+            return None
+        result = _calculated(first, text_of(operator), second)
+        return result if result is not None and abs(result) < _GREATEST else None
+
+    def _converted(self) -> int | None:
+        function, arguments = called(self.node)
+        if function not in _FACTORS or len(arguments) != 1:
+            return None
+        value = self.at(arguments[0]).number
+        return None if value is None else value * _FACTORS[function]
+
+
+#: What a name stands for: an argument, or the value of a counter.
+Binding: TypeAlias = Expression | int
+
+
+def called(node: Node) -> tuple[str, list[Node]]:
+    """The name of the function that a call calls, as it is written, and the arguments."""
+    function, arguments = node.child_by_field_name("function"), node.child_by_field_name("arguments")
+    given = [child for child in arguments.named_children if child.type != "comment"] if arguments is not None else []
+    return (text_of(function) if function is not None else ""), given
+
+
+def literal(text: str) -> int | None:
+    """The value of a number in C, None if it is not a whole one."""
+    digits = text.replace("'", "").lower().rstrip("ulz")
+    try:
+        number = int(digits, 8) if digits.startswith("0") and digits.isdecimal() else int(digits, 0)
+        return number if number < _GREATEST else None
+    except ValueError:
+        pass
+    try:
+        real = float(digits.rstrip("f"))
+    except ValueError:
+        return None
+    return int(real) if abs(real) < _GREATEST and real == int(real) else None
+
+
+def _calculated(first: int, operator: str, second: int) -> int | None:
+    match operator:
+        case "+":
+            return first + second
+        case "-":
+            return first - second
+        case "*":
+            return first * second
+        case "/" if second:
+            return abs(first) // abs(second) * (1 if (first < 0) is (second < 0) else -1)
+        case "%" if second > 0 and first >= 0:
+            return first % second
+        case "<<" if 0 <= second < 64:
+            return first << second
+        case ">>" if 0 <= second < 64:
+            return first >> second
+    return None

@@ -1,0 +1,341 @@
+"""The calls in sources in the order in which they are made, from each function that no other one calls."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, TypeAlias
+
+from amalthea_uros._internal.limits import SOURCE_NODES
+from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros.source.files import SourceFile
+from amalthea_uros.source.preprocessor import branches, is_conditional
+from amalthea_uros.source.program import Function, Program, declared, function_of
+from amalthea_uros.source.scope import Binding, Expression, called
+from amalthea_uros.source.syntax import descendants, location_of, text_of
+
+if TYPE_CHECKING:
+    from tree_sitter import Node
+
+#: The place of a loop or choice: its file and its first byte.
+Mark: TypeAlias = tuple[str, int]
+
+#: Nested nodes, those of called functions included.
+_MAX_DEPTH = 350
+#: Iterations of a loop that are followed one by one, because they create something each.
+_MAX_ITERATIONS = 64
+_LOOPS = ("while_statement", "do_statement", "for_statement", "for_range_loop")
+_CHOICES = ("if_statement", "switch_statement", "conditional_expression")
+#: Calls of functions of the sources that are followed; those of functions that call others twice grow without limit.
+_MAX_ENTRIES = 5_000
+#: Functions of the application are followed if they lead to calls whose names begin so, or are among these.
+_RELEVANT = ("rclc_", "rcl_", "rmw_", "set_microros_")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Call:
+    """A call of a function that the sources do not define.
+
+    Attributes
+    ----------
+    name : of the function
+    arguments : as they are written
+    place : where it is
+    root : the function at whose start the path begins that leads here; None for code outside of functions
+    function : the function that it is in
+    loops : the loops around it, the outermost first, those around the calls that lead here included
+    conditions : the places of the choices that it depends on
+    uncertain : whether it is compiled only under a condition that the sources do not decide
+    unchecked : whether its result is not used
+    """
+
+    name: str
+    arguments: tuple[Expression, ...]
+    place: Location
+    root: Function | None
+    function: Function | None
+    loops: tuple[Mark, ...]
+    conditions: tuple[Mark, ...]
+    uncertain: bool
+    unchecked: bool
+
+    def argument(self, index: int) -> Expression | None:
+        """An argument, None if there are fewer."""
+        return self.arguments[index] if -len(self.arguments) <= index < len(self.arguments) else None
+
+
+@dataclass(frozen=True, slots=True)
+class _Context:
+    file: SourceFile
+    function: Function | None
+    bindings: Mapping[str, Binding]
+    stack: tuple[Function, ...] = ()
+    loops: tuple[Mark, ...] = ()
+    conditions: tuple[Mark, ...] = ()
+    uncertain: bool = False
+    depth: int = 0
+
+
+class Walk:
+    """Walks through the functions of a program.
+
+    Attributes
+    ----------
+    calls : in order, those of each root together
+    seen : places of all calls that were visited
+    findings : code that is nested too deeply, or too much
+    """
+
+    def __init__(self, program: Program, names: frozenset[str]) -> None:
+        self.program = program
+        self.calls: list[Call] = []
+        self.seen: set[tuple[str, int]] = set()
+        self.inactive: set[tuple[str, int, int]] = set()
+        self.lambdas: dict[str, Function] = {}
+        self.findings: list[Finding] = []
+        self._left = SOURCE_NODES
+        self._entries = _MAX_ENTRIES
+        self._relevant = relevant_functions(program, names)
+
+    def all(self) -> None:
+        """Walk from code outside of functions, then from each function that no other one calls."""
+        for file, root in self.program.files:
+            self._children(root, _Context(file, None, {}))
+        for group in self.program.functions.values():
+            group[:] = [function for function in group if not self._is_inactive(function)]
+        for function in self.program.every_function():
+            if function.name not in self._relevant.called and function in self._relevant.functions:
+                self.function(function)
+
+    def _is_inactive(self, function: Function) -> bool:
+        path, position = str(function.file.path), function.body.start_byte
+        return any(path == other and start <= position < end for other, start, end in self.inactive)
+
+    def function(self, function: Function) -> None:
+        """Walk through a function."""
+        self._visit(function.body, _Context(function.file, function, {}, (function,)))
+
+    def calls_from(self, function: Function) -> list[Call]:
+        """The calls on the paths that begin with a function."""
+        found = [call for call in self.calls if call.root is function]
+        if found or function not in self._relevant.functions | frozenset(self.lambdas.values()):
+            return found
+        before = len(self.calls)
+        self.function(function)
+        found = self.calls[before:]
+        # They were found already on the paths of the callers.
+        del self.calls[before:]
+        return found
+
+    def _children(self, node: Node, context: _Context) -> None:
+        for child in node.named_children:
+            self._visit(child, context)
+
+    def _visit(self, node: Node, context: _Context) -> None:
+        self._left -= 1
+        if self._left < 0 or context.depth > _MAX_DEPTH:
+            self._stop(node, context)
+            return
+        context = replace(context, depth=context.depth + 1)
+        if is_conditional(node):
+            self._conditional(node, context)
+        elif node.type == "call_expression":
+            self._call(node, context)
+        elif node.type in _LOOPS:
+            self._loop(node, context)
+        elif node.type in _CHOICES:
+            self._choice(node, context)
+        elif node.type == "lambda_expression":
+            self._lambda(node, context)
+        elif node.type == "function_definition" or (node.type == "field_declaration_list" and context.function is not None):
+            return
+        else:
+            self._children(node, context)
+
+    def _stop(self, node: Node, context: _Context) -> None:
+        reason = "there is too much code" if min(self._left, self._entries) < 0 else "the code is nested too deeply"
+        if not any(finding.message.startswith(reason) for finding in self.findings):
+            place = location_of(context.file, node)
+            message = f"{reason}; the rest is not read"
+            self.findings.append(Finding("IMP003", Severity.WARNING, message, place, "Give only the files of the application."))
+
+    def _conditional(self, node: Node, context: _Context) -> None:
+        def value(condition: Node) -> int | None:
+            return Expression(self.program, condition, context.file).number
+
+        taken = set()
+        for child, unknown in branches(node, self.program.macros, value):
+            taken.add(child.id)
+            self._visit(child, replace(context, uncertain=context.uncertain or unknown))
+        self._note_inactive(node, taken, context.file)
+
+    def _note_inactive(self, node: Node, taken: set[int], file: SourceFile) -> None:
+        current: Node | None = node
+        while current is not None:
+            for child in current.named_children:
+                if child.id not in taken and child.type not in ("preproc_elif", "preproc_elifdef", "preproc_else"):
+                    self.inactive.add((str(file.path), child.start_byte, child.end_byte))
+            current = current.child_by_field_name("alternative")
+
+    def _loop(self, node: Node, context: _Context) -> None:
+        header = [node.child_by_field_name(name) for name in ("initializer", "condition", "update", "right")]
+        for part in header:
+            if part is not None:
+                self._visit(part, context)
+        body = node.child_by_field_name("body")
+        if body is None:
+            return
+        counted = self._iterations(node, context)
+        if counted is not None:
+            name, values = counted
+            for value in values:
+                self._visit(body, replace(context, bindings={**context.bindings, name: value}))
+        else:
+            self._visit(body, replace(context, loops=(*context.loops, _mark(node, context))))
+
+    def _iterations(self, node: Node, context: _Context) -> tuple[str, range] | None:
+        """The counter of a loop that counts up from one constant to another, and its values."""
+        start, condition, update = (node.child_by_field_name(name) for name in ("initializer", "condition", "update"))
+        if start is None or condition is None or update is None or condition.type != "binary_expression":
+            return None
+        name, first = _start(start)
+        left, right = condition.child_by_field_name("left"), condition.child_by_field_name("right")
+        operator = condition.child_by_field_name("operator")
+        if not name or first is None or left is None or right is None or operator is None or text_of(left) != name:
+            return None
+        if "".join(text_of(update).split()) not in (f"{name}++", f"++{name}", f"{name}+=1"):
+            return None
+        low, high = self._expression(first, context).number, self._expression(right, context).number
+        if low is None or high is None or text_of(operator) not in ("<", "<=", "!="):
+            return None
+        values = range(low, high + (text_of(operator) == "<="))
+        return (name, values) if len(values) <= _MAX_ITERATIONS else None
+
+    def _choice(self, node: Node, context: _Context) -> None:
+        condition = node.child_by_field_name("condition")
+        if condition is not None:
+            self._visit(condition, context)
+        for child in node.named_children:
+            if condition is None or child.id != condition.id:
+                self._visit(child, replace(context, conditions=(*context.conditions, _mark(child, context))))
+
+    def _lambda(self, node: Node, context: _Context) -> None:
+        """Code that is called later; what creates a callback of it finds it by its place."""
+        body = node.child_by_field_name("body")
+        if body is not None:
+            name = f"lambda_in_line_{node.start_point.row + 1}"
+            owner = context.function.owner if context.function is not None else ""
+            declarator = node.child_by_field_name("declarator")
+            self.lambdas[text_of(node)] = function_of(name, context.file, declarator, body, owner)
+
+    def _expression(self, node: Node, context: _Context) -> Expression:
+        return Expression(self.program, node, context.file, context.function, context.bindings)
+
+    def _call(self, node: Node, context: _Context) -> None:
+        self.seen.add((str(context.file.path), node.start_byte))
+        name, arguments = called(node)
+        for argument in arguments:
+            self._visit(argument, context)
+        callee = self._callee(name, context)
+        expressions = tuple(self._expression(argument, context) for argument in arguments)
+        if callee is not None:
+            if callee not in context.stack and callee in self._relevant.functions:
+                self._enter(callee, expressions, context)
+            return
+        plain = name.removeprefix("::").removeprefix("std::").rpartition("this->")[2]
+        self.calls.append(
+            Call(
+                plain,
+                expressions,
+                location_of(context.file, node),
+                context.stack[0] if context.stack else None,
+                context.function,
+                context.loops,
+                context.conditions,
+                context.uncertain,
+                _is_unused(node),
+            )
+        )
+
+    def _callee(self, name: str, context: _Context) -> Function | None:
+        """The function of the sources that is called: in the same class, else the same file, else the only one."""
+        short = name.rpartition("::")[2].rpartition(".")[2].rpartition(">")[2]
+        found = self.program.functions.get(short, [])
+        owner = context.function.owner if context.function is not None else ""
+        for close in (
+            [each for each in found if each.owner and each.owner == owner],
+            [each for each in found if each.file is context.file],
+            found,
+        ):
+            if len(close) == 1:
+                return close[0]
+        return None
+
+    def _enter(self, callee: Function, arguments: tuple[Expression, ...], context: _Context) -> None:
+        self._entries -= 1
+        if self._entries < 0:
+            self._stop(callee.body, context)
+            return
+        bindings: dict[str, Binding] = dict(zip(callee.parameters, arguments, strict=False))
+        bindings.pop("", None)
+        inner = replace(context, file=callee.file, function=callee, bindings=bindings, stack=(*context.stack, callee))
+        self._visit(callee.body, inner)
+
+
+@dataclass(frozen=True, slots=True)
+class Relevance:
+    """Which functions matter.
+
+    Attributes
+    ----------
+    functions : those that lead to calls that matter
+    called : names of functions that others call
+    """
+
+    functions: frozenset[Function]
+    called: frozenset[str]
+
+
+def relevant_functions(program: Program, names: frozenset[str]) -> Relevance:
+    """The functions that lead to calls of micro-ROS, of delays and of the operating system."""
+    calls = {function: frozenset(_called_names(function.body)) for function in program.every_function()}
+    callers: dict[str, set[Function]] = {}
+    for function, inner in calls.items():
+        for name in inner:
+            if name in program.functions and name != function.name:
+                callers.setdefault(name, set()).add(function)
+    found = {function for function, inner in calls.items() if any(n.startswith(_RELEVANT) or n in names for n in inner)}
+    waiting = list(found)
+    while waiting:
+        for caller in callers.get(waiting.pop().name, ()):
+            if caller not in found:
+                found.add(caller)
+                waiting.append(caller)
+    return Relevance(frozenset(found), frozenset(callers))
+
+
+def _called_names(body: Node) -> Iterator[str]:
+    for node in descendants(body):
+        if node.type == "call_expression":
+            yield called(node)[0].rpartition("::")[2].rpartition(".")[2].rpartition(">")[2]
+
+
+def _mark(node: Node, context: _Context) -> Mark:
+    return str(context.file.path), node.start_byte
+
+
+def _start(node: Node) -> tuple[str, Node | None]:
+    """The counter that a loop begins with, and its first value."""
+    if node.type == "declaration":
+        return next(((text_of(name), value) for name, value in declared(node)), ("", None))
+    if node.type == "assignment_expression" and (left := node.child_by_field_name("left")) is not None:
+        return text_of(left), node.child_by_field_name("right")
+    return "", None
+
+
+def _is_unused(node: Node) -> bool:
+    """Whether the result of a call is a statement of its own, or cast to nothing."""
+    parent = node.parent
+    while parent is not None and parent.type in ("parenthesized_expression", "cast_expression"):
+        parent = parent.parent
+    return parent is not None and parent.type == "expression_statement"
