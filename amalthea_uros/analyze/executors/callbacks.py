@@ -53,6 +53,8 @@ def _worst_of(handles: Sequence[HandleResult]) -> Response:
 def of_rounds(process: ProcessResult, executor: ExecutorResult, deadline: Time | None) -> ProcessResult:
     """The result of the process that executes the rounds of an executor: its response time is that of a round, after its wait.
 
+    Without a deadline, it is met if all callbacks have a bound, and nothing is lost.
+
     Parameters
     ----------
     deadline : that is stated for it; it has no implicit one, because its rounds follow each other
@@ -82,7 +84,7 @@ def of_rounds(process: ProcessResult, executor: ExecutorResult, deadline: Time |
         verdict, failure, reason = failing
         return replace(found, verdict=verdict, failure=failure, reason=reason)
     if deadline is None:
-        return found
+        return replace(found, verdict=Verdict.MET)
     verdict = decide(worst_response(found), deadline, is_upper=True)
     failure = Failure.MISSED if verdict is Verdict.MISSED else None
     reason = executor.reason or (undecided(worst_response(found), is_upper=True) if verdict is Verdict.UNKNOWN else "")
