@@ -103,3 +103,10 @@ def _failing(executor: ExecutorResult) -> tuple[Verdict, Failure | None, str] | 
         return (Verdict.MISSED, Failure.LOST, reason) if loss.is_certain else (Verdict.UNKNOWN, None, reason)
     unknown = next((handle for handle in executor.handles if handle.response.worst is None), None)
     return None if unknown is None else (Verdict.UNKNOWN, None, f"{unknown.name!r}: {unknown.response.reason}")
+
+
+def without_doubtful_losses(process: ProcessResult) -> ProcessResult:
+    """The result of a process that rounds of an executor activate: as it may be activated less often, losses are not certain."""
+    if process.failure not in (Failure.LOST, Failure.OVERLOAD):
+        return process
+    return replace(process, verdict=Verdict.UNKNOWN, failure=None)
