@@ -61,8 +61,12 @@ def analyze_system(system: System, settings: Settings | None = None) -> Analysis
     note_executors(executors, solution)
     every = _of_all_phases(solution, unknown, executors)
     found = every or _analysis(solution, JobBudget(), executors)
-    phases = phase_assumptions(system, are_all_evaluated=every is not None)
-    return replace(found, assumptions=tuple(dict.fromkeys((*found.assumptions, *phases))))
+    phases, notes = phase_assumptions(system, are_all_evaluated=every is not None), solution.context.notes
+    return replace(
+        found,
+        assumptions=tuple(dict.fromkeys((*found.assumptions, *notes.assumptions, *phases))),
+        findings=tuple(dict.fromkeys((*found.findings, *notes.found))),
+    )
 
 
 def _of_all_phases(solution: Solution, unknown: Sequence[Occurrence], executors: Results[ExecutorResult]) -> Analysis | None:
