@@ -22,6 +22,8 @@ from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.event_models import Delayed, EventModel, OutputEventModel, Periodic
 from amalthea_uros.timing.executors.bursts import dense_rounds
+from amalthea_uros.timing.executors.loops import least_sleep
+from amalthea_uros.timing.executors.workload import workload
 from amalthea_uros.timing.limits import MAX_INPUT
 from amalthea_uros.timing.scheduling import ScheduledProcess
 from amalthea_uros.units import Time
@@ -96,7 +98,7 @@ def _event_models(solution: Solution, diverging: set[str], responses: Mapping[st
             continue
         try:
             _require_known_rounds(name, context)
-            events = context.activations.of(scheduled.process, output)
+            events = _workload(scheduled, context.activations.of(scheduled.process, output), context)
             if isinstance(events, Periodic) and events.jitter * context.time_base(name) > MAX_INPUT:
                 raise UnknownActivationError("its jitter exceeds the supported range of times")
             found[name] = events
@@ -104,6 +106,14 @@ def _event_models(solution: Solution, diverging: set[str], responses: Mapping[st
             context.notes.warning("ANA005", f"the activation pattern of {name!r} is unknown: {error}", scheduled.process)
             solution.mark_unknown(name, str(error))
     return found
+
+
+def _workload(item: ScheduledProcess, events: EventModel, context: TimingContext) -> EventModel:
+    """The activations of a process; of the rounds of an executor with a sleep, those of rounds that all are the longest."""
+    executor, demand = context.system.executor_of_task.get(item.name), context.demands.get(item.name)
+    if executor is None or demand is None:
+        return events
+    return workload(executor, events, -(-demand.worst // context.time_base(item.name)))
 
 
 def _require_known_rounds(name: str, context: TimingContext) -> None:
@@ -133,11 +143,16 @@ def _triggers_others(item: ScheduledProcess, context: TimingContext) -> bool:
 
 def _output(solution: Solution, responses: Mapping[str, Response]) -> Output:
     """The events caused by the jobs of processes."""
+    context = solution.context
 
     def output(process: Process, activations: Callable[[], EventModel]) -> EventModel:
         if process.name in solution.reasons:
             raise UnknownActivationError(f"it is triggered by {process.name!r}, which could not be analysed")
         events = activations()
+        executor = context.system.executor_of_task.get(process.name)
+        if executor is not None and least_sleep(executor):
+            # Between two rounds are the sleep and at least a whole round, from any point of the one to that of the other.
+            return events
         response = responses.get(process.name)
         if response is None:
             return events

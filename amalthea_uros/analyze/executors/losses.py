@@ -75,7 +75,7 @@ def with_lost_messages(
 ) -> list[HandleResult]:
     """The results with the messages that can be lost because there is no room for them."""
     executor = cycle.executor
-    if not cycle.stores and executor.waiting.messages_per_wait == 1:
+    if not cycle.stores and executor.waiting.messages_per_wait == 1 and executor.waiting.slots != 0:
         # Each round calls the message that its wait took.
         return list(results)
     stored = {

@@ -57,6 +57,13 @@ def test_one_message_per_round_limits_the_loop_of_the_arduino_examples_to_ten_me
     assert "after 60 s they are at least 5.4 s old" in overload.message
 
 
+def test_an_executor_that_serves_everything_is_met():
+    found = analyze_system(looping(message("a", 500_000, 1000), timer("t", 500_000, 1000)))
+    assert found.processes["Executor"].verdict is Verdict.MET
+    assert found.summary.schedulable == "yes"
+    assert found.executors[0].handles["a"].lost is None
+
+
 def test_messages_of_all_topics_share_the_rounds():
     found = evaluate(looping(message("a", 250_000), message("b", 250_000), message("c", 250_000)))
     assert all(handle.response.is_overload for handle in found.handles)
