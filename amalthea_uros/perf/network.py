@@ -40,10 +40,12 @@ class Wire(Named):
     Attributes
     ----------
     cores : that stand for it: one per direction if both can send at the same time, else one
+    loses_messages : whether frames can be lost on it
     """
 
     kind: WireKind
     cores: tuple[str, ...]
+    loses_messages: bool = False
 
 
 class Direction(StrEnum):

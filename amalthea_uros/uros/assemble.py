@@ -25,6 +25,7 @@ from amalthea_uros.uros.bus_traffic import with_traffic
 from amalthea_uros.uros.callbacks import Callback, callbacks_of, internal_channels
 from amalthea_uros.uros.can import CanBus
 from amalthea_uros.uros.chain_elements import chain_elements
+from amalthea_uros.uros.chain_topics import Topics
 from amalthea_uros.uros.chains import Chains
 from amalthea_uros.uros.context import AssemblyContext
 from amalthea_uros.uros.hardware import controller_of
@@ -149,7 +150,7 @@ def _system(context: AssemblyContext, callbacks: Sequence[Callback]) -> System:
         ),
     )
     check_shared_priorities(system, context.tasks, notes)
-    chains = Chains(elements, Dataflow(system), notes)
+    chains = Chains(elements, Topics.of(callbacks, system.network), Dataflow(system), notes)
     limits = chains.add_all(description.chains)
     return replace(
         system,
