@@ -239,13 +239,15 @@ def _loads(core: str, solution: Solution) -> tuple[Fraction, Fraction, Fraction]
 
 
 def _certain_load(items: Iterable[ScheduledProcess], solution: Solution) -> Fraction:
-    """The worst load of processes of a core, without what modes may exclude for ever."""
+    """The worst load of processes of a core, without what modes may exclude for ever, and without rounds that wait for something."""
     context = solution.context
+    executors = context.system.executor_of_task
     return _sum(
         context.demands[item.name].mean_occurring
         * solution.event_models[item.name].rate
         / context.demand_model.time_base(item.core)
         for item in items
+        if item.name not in executors
     )
 
 

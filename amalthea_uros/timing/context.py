@@ -17,6 +17,7 @@ from amalthea_uros.timing.critical_sections import Locks, Protection, protection
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.timing.demand import DemandModel
 from amalthea_uros.timing.event_models import EventModel
+from amalthea_uros.timing.executors.loops import never_rests
 from amalthea_uros.timing.limits import MAX_INPUT
 from amalthea_uros.timing.multiframe import MultiframeDemand
 from amalthea_uros.timing.notes import Notes, UnknownDemandError
@@ -234,6 +235,9 @@ class TimingContext:
         model = self.demand_model
         for name, scheduled in self.scheduled.items():
             try:
+                executor = self.system.executor_of_task.get(name)
+                if executor is not None and (reason := never_rests(executor)):
+                    raise UnknownDemandError(reason)
                 demand = model.of_process(scheduled.process, scheduled.core)
                 if not states_execution_time(scheduled.process, self.system):
                     raise UnknownDemandError("it has no execution time, and neither have the runnables that it calls")

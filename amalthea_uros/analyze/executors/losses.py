@@ -1,0 +1,124 @@
+"""What can be lost: periods of timers, triggers of guard conditions, and messages for which there is no room.
+
+Each loss comes with a sequence that leads to it. If the response time of a message is at most R, at most eta+(R) messages of its handle
+wait at the same time, stored or not. If they do not exceed the depth, and those of all handles not the slots, no message is lost in the
+middleware. What waits before it, in buffers of the driver and of the agent, is assumed to have room.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+from amalthea_uros.analyze.executors.cycle import Cycle
+from amalthea_uros.analyze.executors.results import HandleResult, Loss
+from amalthea_uros.perf.executors import Handle
+from amalthea_uros.perf.network import Span
+from amalthea_uros.timing.executors.arrivals import UnknownArrivalsError, arrivals
+from amalthea_uros.timing.executors.slots import LIFESPAN, can_exceed_depth, can_exceed_slots
+from amalthea_uros.timing.executors.readiness import keeps_back
+from amalthea_uros.timing.executors.timers import lost_periods, next_expiration
+from amalthea_uros.timing.executors.wait import is_message
+from amalthea_uros.units import Rounding, Time, rounded_time_text, time_text
+
+
+def loss_of_timer(handle: Handle, cycle: Cycle, lateness: Span) -> Loss | None:
+    """The periods of a timer that can be lost: those that pass before the call for an earlier one begins."""
+    period = handle.interval
+    if not period:
+        return None
+    if lateness.most is None:
+        return Loss(what="periods", is_certain=False, most=None, sequence=f"the lateness of {handle.name} has no bound")
+    if lateness.most < period:
+        return None
+    count = lost_periods(lateness.most, period)
+    following = next_expiration(0, lateness.most, period)
+    sequence = (
+        f"{handle.name} is due at 0 s, just after a round has checked its timers; the rest of the round"
+        f"{f' and the sleep of {time_text(cycle.sleep)}' if cycle.sleep else ''}, then the next round up to the callback, end at "
+        f"{_text(lateness.most)}; what was due until then at {_multiples(count, period)} is lost, the next call is due at {time_text(following)}"
+    )
+    return Loss(what="periods", is_certain=cycle.shortest > period, most=count, sequence=sequence)
+
+
+def _multiples(count: int, period: Time) -> str:
+    shown = [time_text(number * period) for number in range(1, min(count, 3) + 1)]
+    return ", ".join([*shown, *(["..."] if count > 3 else [])])
+
+
+def loss_of_triggers(handle: Handle, cycle: Cycle, seen_after: Time | None) -> Loss | None:
+    """The triggers of a guard condition that can be lost: it is a flag that is cleared when it is seen."""
+    if keeps_back(cycle.executor):
+        sequence = f"{handle.name} is triggered; the next round sees and clears it, but the trigger condition of the executor is false"
+        return Loss(what="triggers", is_certain=False, most=None, sequence=sequence)
+    if handle.interval is None or seen_after is None or handle.interval > seen_after:
+        return None
+    sequence = (
+        f"{handle.name} is triggered at 0 s and {time_text(handle.interval)}; "
+        f"the executor sees it only after {_text(seen_after)}, and calls it once"
+    )
+    return Loss(what="triggers", is_certain=False, most=seen_after // handle.interval if handle.interval else None, sequence=sequence)
+
+
+def with_lost_messages(
+    results: Sequence[HandleResult], cycle: Cycle, extra_jitter: Mapping[str, Time | None]
+) -> list[HandleResult]:
+    """The results with the messages that can be lost because there is no room for them."""
+    executor = cycle.executor
+    if not cycle.stores and executor.waiting.messages_per_wait == 1:
+        # Each round calls the message that its wait took.
+        return list(results)
+    stored = {
+        handle.name: _stored(handle, result, extra_jitter)
+        for handle, result in zip(executor.handles, results, strict=True)
+        if is_message(handle)
+    }
+    known = {name: count for name, count in stored.items() if count is not None}
+    is_pool_enough = len(known) == len(stored) and not can_exceed_slots(executor, known)
+    is_pool_enough = is_pool_enough or executor.waiting.slots is None
+    return [
+        replace(result, lost=_lost(handle, result, cycle, stored[handle.name], is_pool_enough)) if handle.name in stored else result
+        for handle, result in zip(executor.handles, results, strict=True)
+    ]
+
+
+def _stored(handle: Handle, result: HandleResult, extra_jitter: Mapping[str, Time | None]) -> int | None:
+    """How many messages of a handle can wait at the same time; None if that is not known."""
+    if result.response.worst is None:
+        return None
+    try:
+        return arrivals(handle, extra_jitter).eta_plus(result.response.worst)
+    except UnknownArrivalsError:
+        return None
+
+
+def _lost(handle: Handle, result: HandleResult, cycle: Cycle, stored: int | None, is_pool_enough: bool) -> Loss | None:
+    executor = cycle.executor
+    if handle.depth is not None and (stored is None or can_exceed_depth(handle, stored)):
+        count = f"{stored} messages" if stored is not None else "an unknown number of messages"
+        what = "overwrites the oldest one" if handle.overwrites else "is dropped"
+        sequence = f"{_while_nothing_is_taken(cycle)}{count} for {handle.name} can wait; it keeps {handle.depth}, and a further one {what}"
+        return Loss(what="messages", is_certain=False, most=None if stored is None else stored - handle.depth, sequence=sequence)
+    if result.response.worst is not None and result.response.worst > LIFESPAN:
+        sequence = f"a message for {handle.name} can wait for {_text(result.response.worst)}; stored for {time_text(LIFESPAN)}, it is removed"
+        return Loss(what="messages", is_certain=False, most=None, sequence=sequence)
+    if is_pool_enough:
+        return None
+    sequence = (
+        f"{_while_nothing_is_taken(cycle)}messages for all handles of {executor.name} together use its {executor.waiting.slots} slots; "
+        f"a new one for {handle.name} is dropped then"
+    )
+    return Loss(what="messages", is_certain=False, most=None, sequence=sequence)
+
+
+def _while_nothing_is_taken(cycle: Cycle) -> str:
+    """What happens while messages are stored and none is taken."""
+    if keeps_back(cycle.executor):
+        return "while the trigger condition is false, "
+    if cycle.whole.suspension.why:
+        return f"while {cycle.whole.suspension.why}, "
+    return "while a round executes, "
+
+
+def _text(value: Time) -> str:
+    return rounded_time_text(value, Rounding.UP)

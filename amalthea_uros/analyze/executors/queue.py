@@ -1,0 +1,97 @@
+"""How many cycles pass until a message is served.
+
+Messages wait first in first out in the buffer of the transport, and a wait takes one of them, so that a round serves one. Let a busy
+period begin when a message arrives and no other one waits. The running cycle ends at most one cycle L later, and each following one takes
+one message as long as any waits. So the n-th message of the busy period is ready at most n L after its beginning; it arrives no earlier
+than delta-(n) of all messages of the executor, and the busy period goes on as long as the next one arrives before.
+
+If messages can be stored before the round that takes them, they do not end the wait: each cycle can wait for W before it looks at them.
+The count remains the same, because each cycle serves one message that came before, or the one in question: one of the handle of the
+message that the wait took, or, if it took none, the oldest of its handle. If a wait takes all messages that are there, only those of the
+same handle delay each other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+
+from amalthea_uros.analyze.executors.cycle import Cycle
+from amalthea_uros.perf.executors import Handle
+from amalthea_uros.timing.event_models import EventModel, aggregated
+from amalthea_uros.timing.executors.arrivals import UnknownArrivalsError, arrivals
+from amalthea_uros.timing.executors.wait import messages
+from amalthea_uros.units import SECOND, Time
+
+#: A busy period with more messages is considered unbounded: rounds are then hardly faster than messages.
+MAX_MESSAGES = 10_000
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Delay:
+    """The longest delay until a message is ready.
+
+    Attributes
+    ----------
+    cycles : None if there is no bound, for the `reason`
+    earlier : by how much it arrives after the first message of the busy period
+    is_overload : whether messages arrive faster than rounds can serve them, for certain
+    """
+
+    cycles: int | None
+    earlier: Time = 0
+    reason: str = ""
+    is_overload: bool = False
+
+
+def competing(handle: Handle, cycle: Cycle, extra_jitter: Mapping[str, Time | None]) -> EventModel:
+    """The messages that can be served before one of a handle, with those of the handle.
+
+    Raises
+    ------
+    UnknownArrivalsError : it is unknown how many there are.
+    """
+    everyone = [handle] if cycle.executor.waiting.messages_per_wait is None else messages(cycle.executor)
+    return aggregated(tuple(arrivals(each, extra_jitter) for each in everyone))
+
+
+def delay_of(handle: Handle, cycle: Cycle, length: Time, extra_jitter: Mapping[str, Time | None]) -> Delay:
+    """The longest delay of a message until it is ready.
+
+    Parameters
+    ----------
+    length : of a cycle, with the wait if it does not end for messages that are stored
+    """
+    try:
+        events = competing(handle, cycle, extra_jitter)
+    except UnknownArrivalsError as error:
+        return Delay(cycles=None, reason=str(error))
+    if events.rate * length >= 1:
+        return _growing(cycle, events, length)
+    worst, found, count = Time(-1), Delay(cycles=1), 0
+    while count < MAX_MESSAGES:
+        count += 1
+        arrival = events.delta_min(count)
+        if count * length - arrival > worst:
+            worst, found = count * length - arrival, Delay(cycles=count, earlier=arrival)
+        if events.delta_min(count + 1) > count * length:
+            return found
+    return Delay(cycles=None, reason=f"more than {MAX_MESSAGES:,} messages can wait: rounds are hardly faster than messages")
+
+
+def _growing(cycle: Cycle, events: EventModel, length: Time) -> Delay:
+    rate = f"{float(events.rate * SECOND):.4g} messages/s arrive"
+    certain = certain_rate(cycle)
+    if cycle.executor.waiting.messages_per_wait == 1 and certain * cycle.shortest_with_message > 1:
+        served = float(Fraction(SECOND, cycle.shortest_with_message))
+        reason = f"overload: {rate}, and rounds serve at most {served:.4g} per second, so that messages wait longer and longer"
+        return Delay(cycles=None, reason=reason, is_overload=True)
+    served = float(Fraction(SECOND, length))
+    return Delay(cycles=None, reason=f"{rate}, and rounds may serve only {served:.4g} per second")
+
+
+def certain_rate(cycle: Cycle) -> Fraction:
+    """How many messages per time arrive for certain: those that are periodic."""
+    periods = (handle.interval for handle in messages(cycle.executor) if handle.is_periodic)
+    return sum((Fraction(1, period) for period in periods if period), Fraction(0))

@@ -1,0 +1,112 @@
+"""How long the thread of an executor needs to execute something, with preemption by others, blocking and suspensions.
+
+Let the thread become ready at t1 and end at t2, executing C in between, suspended for S in all, and resumed n times, at t1 included. Let
+t0 be the last time until t1 at which no process of at least its rank is pending. At every moment from t0 to t2 the core executes one of
+these, all of whose jobs were activated since t0; or the thread; or the thread is suspended; or a process of lower rank keeps others off,
+which can happen once after each resumption, because then either the thread or a process of higher rank follows. So t2 - t1 is at most
+the least w with
+
+    w = S + n B + C + sum over the others of C_j(eta_j(w))
+
+(the busy window of `response_times.fixed_priority`, in which suspensions count like execution). If the thread itself keeps others off,
+what it still executed before it was suspended can delay them, and then count as blocking.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from amalthea_uros.analyze.response_times.blocking import Blocking
+from amalthea_uros.analyze.response_times.busy_window import Interference
+from amalthea_uros.analyze.response_times.polling import polling_tasks
+from amalthea_uros.analyze.response_times.task import Task
+from amalthea_uros.analyze.solution import Solution
+from amalthea_uros.timing.event_models import rescaled
+from amalthea_uros.timing.scheduling import ScheduledProcess
+from amalthea_uros.units import Time
+
+METHOD = "busy window of the rounds of an executor"
+
+
+class NoWindowError(Exception):
+    """Nothing is known of when a thread executes; the text says why."""
+
+
+@dataclass(frozen=True, slots=True)
+class Window:
+    """The processor as the thread of an executor sees it; execution demands are in its time base, times in picoseconds."""
+
+    others: Interference
+    blocking: Time
+    time_base: int
+
+    @classmethod
+    def of(cls, task: str, solution: Solution) -> Window:
+        """The window of a task.
+
+        Raises
+        ------
+        NoWindowError : it is not scheduled, or something unknown can delay it.
+        """
+        context = solution.context
+        scheduled = context.scheduled.get(task)
+        if scheduled is None:
+            raise NoWindowError(context.reasons.get(task, "its task is not allocated to a scheduler"))
+        here = context.served(scheduled.core, scheduled.server)
+        processes = [item for item in here if isinstance(item, ScheduledProcess)]
+        if scheduled.server is not None or len(processes) < len(here):
+            raise NoWindowError("its core is shared by servers with budgets, which is not supported for executors in loops")
+        blocking = Blocking.of(processes, solution)
+        level = blocking.level(scheduled)
+        above = [item for item in processes if item.rank >= level.rank and item.name != task]
+        obstacle = context.unanalysable_cores.get((scheduled.core, True)) or context.unanalysable_cores.get((scheduled.core, False))
+        unknown = obstacle or next((item.name for item in above if not solution.is_analysable(item.name)), "")
+        if unknown:
+            raise NoWindowError(f"{unknown!r}, which could not be analysed, can preempt it")
+        if blocking.unknown and (keeping := blocking.obstacle(scheduled)):
+            raise NoWindowError(f"{keeping!r}, which could not be analysed, can block it")
+        own = context.demand_model.of_process(scheduled.process, scheduled.core).worst if blocking.keeps_off_others(scheduled) else 0
+        time_base = context.time_base(task)
+        return cls(
+            Interference.of([*(_task(item, solution) for item in above), *_decisions(scheduled.core, solution), *polling_tasks(above, solution)]),
+            blocking.time(scheduled) + own,
+            time_base,
+        )
+
+    def time(self, demand: Time, suspended: Time | None = 0, resumed: int = 1) -> Time | None:
+        """The longest time to execute a demand; None if it is not bounded.
+
+        Parameters
+        ----------
+        suspended : maximum time of all suspensions; None if it is not known
+        resumed : how often it can become ready, the first time included
+        """
+        if suspended is None:
+            return None
+        fixed = suspended * self.time_base + resumed * self.blocking + demand
+        if not fixed and not self.others.task_count:
+            return 0
+        found = self.others.window(fixed, 0)
+        return None if found is None else -(-found // self.time_base)
+
+
+def _task(item: ScheduledProcess, solution: Solution) -> Task:
+    return Task(
+        name=item.name,
+        events=rescaled(solution.event_models[item.name], solution.context.time_base(item.name)),
+        demand=solution.context.demands[item.name],
+    )
+
+
+def _decisions(core: str, solution: Solution) -> list[Task]:
+    """The decisions of schedulers at activations of tasks, which precede everything else."""
+    context = solution.context
+    return [
+        Task(
+            name=f"decision for {item.name}",
+            events=rescaled(solution.event_models[item.name], context.time_base(item.name)),
+            demand=context.decisions[item.name],
+        )
+        for item in context.on_core(core)
+        if item.name in context.decisions and item.name in solution.event_models
+    ]

@@ -1,0 +1,33 @@
+"""When the messages of a handle arrive at the controller."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from amalthea_uros.perf.executors import Handle
+from amalthea_uros.timing.event_models import EventModel, Periodic, Sporadic
+from amalthea_uros.units import Time
+
+
+class UnknownArrivalsError(Exception):
+    """It is not known how many messages a handle can receive in a time; the text says why."""
+
+
+def arrivals(handle: Handle, extra_jitter: Mapping[str, Time | None]) -> EventModel:
+    """The event model of the messages of a handle.
+
+    Parameters
+    ----------
+    extra_jitter : by which messages of a handle are late besides what is stated for it, from the wire and the agent
+
+    Raises
+    ------
+    UnknownArrivalsError : the interval or a jitter is not known.
+    """
+    if not handle.interval:
+        raise UnknownArrivalsError(f"the minimum time between two messages for {handle.name!r} is not stated")
+    extra = extra_jitter.get(handle.name, None if handle.transmission is not None else 0)
+    if extra is None:
+        raise UnknownArrivalsError(f"the jitter of the messages for {handle.name!r} on their way is not known")
+    kind = Periodic if handle.is_periodic else Sporadic
+    return kind(handle.interval, handle.jitter + extra)

@@ -1,0 +1,53 @@
+"""Which callbacks a round calls.
+
+What is ready is fixed once, after the wait; then the trigger decides whether anything is called (ros2/rclc, rclc/src/rclc/executor.c).
+A handle takes one message in a round, whatever is stored for it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from amalthea_uros.perf.executors import Executor, Handle, TriggerKind
+from amalthea_uros.timing.executors.wait import messages
+
+
+def is_exclusive(executor: Executor, others: Iterable[Executor]) -> bool:
+    """Whether at most one of the handles that receive messages is ready in a round.
+
+    A wait takes one message, and it is called in the same round. Nothing is stored for later if no publication waits for an
+    acknowledgement, the trigger keeps nothing back, and no other executor receives in the same session.
+    """
+    return executor.waiting.messages_per_wait == 1 and not stores(executor, others)
+
+
+def stores(executor: Executor, others: Iterable[Executor]) -> bool:
+    """Whether messages can be stored before a round that takes them: see `is_exclusive`."""
+    return (
+        keeps_back(executor)
+        or shares_session(executor, others)
+        or any(publication.waits for handle in executor.handles for publication in handle.publications)
+    )
+
+
+def keeps_back(executor: Executor) -> bool:
+    """Whether the trigger can prevent that what is ready is called."""
+    return executor.trigger.kind not in (TriggerKind.ANY, TriggerKind.ALWAYS)
+
+
+def starts_alone(handle: Handle, executor: Executor) -> bool:
+    """Whether a handle is called in the next round once it is ready, whatever the others are."""
+    return not keeps_back(executor) or frozenset((handle.name,)) in executor.trigger.sets
+
+
+def shares_session(executor: Executor, others: Iterable[Executor]) -> bool:
+    """Whether another executor uses the same session."""
+    return executor.session is not None and any(
+        other.session == executor.session for other in others if other.name != executor.name
+    )
+
+
+def at_once(executor: Executor) -> tuple[Handle, ...]:
+    """The handles that can be ready in every round besides messages that exclude each other."""
+    excluded = {handle.name for handle in messages(executor) if not handle.always}
+    return tuple(handle for handle in executor.handles if handle.name not in excluded)
