@@ -19,6 +19,7 @@ from amalthea_uros.units import Frequency, Time, time_text
 if TYPE_CHECKING:
     from amalthea_uros.analyze.solution import Solution
     from amalthea_uros.analyze.summary import Summary
+    from amalthea_uros.analyze.ways.results import Way
 
 
 class Claim(StrEnum):
@@ -310,6 +311,7 @@ class Analysis(Shown):
         what comes from outside
     worst_solutions : for each process the solution of the phase in which its response time is the worst; empty if all are known
     summary : whether everything is met, and what is missed or unknown
+    ways : chains over wires, the agent or executors that loop; those with limits first
     assumptions : on which the numbers are based
     findings : what the analysis does not take into account
     """
@@ -325,6 +327,7 @@ class Analysis(Shown):
     assumptions: tuple[str, ...]
     findings: tuple[Finding, ...]
     worst_solutions: Mapping[str, Solution] = field(default_factory=dict, repr=False, compare=False)
+    ways: Results[Way] = field(default_factory=Results)
 
     def __repr__(self) -> str:
         parts = [counted(len(self.processes), "process"), counted(len(self.chains), "chain")]

@@ -19,6 +19,9 @@ from amalthea_uros.analyze.requirements import evaluate_requirements
 from amalthea_uros.analyze.results import Analysis, ChainResult, Claim, ProcessorResult, ProcessResult, Response, Results
 from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.analyze.summary import summarize
+from amalthea_uros.analyze.ways.chain_results import chain_result
+from amalthea_uros.analyze.ways.evaluate import evaluate_ways
+from amalthea_uros.analyze.ways.results import Way
 from amalthea_uros.perf.events import EventChain
 from amalthea_uros.perf.software import Preemption, Task
 from amalthea_uros.perf.system import System
@@ -53,25 +56,35 @@ def analyze_system(system: System, settings: Settings | None = None) -> Analysis
     solution = solve(TimingContext.of(system, settings))
     system = solution.context.system
     unknown = unknown_phases(system)
-    every = _of_all_phases(solution, unknown)
-    found = every or _analysis(solution, JobBudget())
-    phases = phase_assumptions(system, are_all_evaluated=every is not None)
-    return replace(found, assumptions=tuple(dict.fromkeys((*found.assumptions, *phases))))
+    _, ways = evaluate_ways(solution)
+    every = _of_all_phases(solution, unknown, Results(ways))
+    found = every or _analysis(solution, JobBudget(), Results(ways))
+    phases, notes = phase_assumptions(system, are_all_evaluated=every is not None), solution.context.notes
+    return replace(
+        found,
+        assumptions=tuple(dict.fromkeys((*found.assumptions, *notes.assumptions, *phases))),
+        findings=tuple(dict.fromkeys((*found.findings, *notes.found))),
+    )
 
 
-def _of_all_phases(solution: Solution, unknown: Sequence[Occurrence]) -> Analysis | None:
+def _of_all_phases(solution: Solution, unknown: Sequence[Occurrence], ways: Results[Way]) -> Analysis | None:
     """The analysis over all combinations of unknown phases; None if there are too many."""
     phases = Phases.of(solution, unknown)
     if phases is None:
         return None
     cases, budget = phases.cases, JobBudget()
     return merged(
-        {number: _analysis(each, budget) for number, each in phases.solutions(cases.of_everything())}, cases, solution
+        {number: _analysis(each, budget, ways) for number, each in phases.solutions(cases.of_everything())}, cases, solution
     )
 
 
-def _analysis(solution: Solution, budget: JobBudget) -> Analysis:
-    """The analysis of a system; chains are evaluated for all phases of the jobs that they pass, other unknown phases are any job."""
+def _analysis(solution: Solution, budget: JobBudget, ways: Results[Way]) -> Analysis:
+    """The analysis of a system; chains are evaluated for all phases of the jobs that they pass, other unknown phases are any job.
+
+    Parameters
+    ----------
+    ways : of the chains that cross wires, the agent or executors that loop, for all phases
+    """
     context = solution.context
     system = context.system
     _note_ignored(solution)
@@ -79,7 +92,8 @@ def _analysis(solution: Solution, budget: JobBudget) -> Analysis:
     schedules = evaluation.timing.schedules
     processes = Results(_processes(solution, schedules))
     callbacks = Results(CallbackEvaluator(solution, schedules).all())
-    chains = Results(_chain(chain, evaluation) for chain in system.events.chains)
+    of_ways = {way.name: chain_result(way) for way in ways}
+    chains = Results(of_ways.get(chain.name) or _chain(chain, evaluation) for chain in system.events.chains)
     verdicts = evaluate_requirements(system, processes, callbacks, context.notes)
     requirements = Results((*verdicts, *ConstraintEvaluator(evaluation, {chain.name: chain for chain in chains}).all()))
     processors = Results(_processors(solution))
@@ -93,6 +107,7 @@ def _analysis(solution: Solution, budget: JobBudget) -> Analysis:
         summary=summarize(processors, processes, requirements),
         assumptions=tuple(context.notes.assumptions),
         findings=tuple(context.notes.found),
+        ways=ways,
     )
 
 

@@ -263,8 +263,12 @@ class Chains:
     def _write_event(self, writer: str, label: str) -> str:
         """The event of a write access to a label."""
         title = f"{label}_written_by_{writer}"
-        process = self.elements[writer].process if writer in self.elements else None
-        self.events.setdefault(title, perf.LabelEvent(name=title, label=label, change=perf.LabelChange.WRITE, process=process))
+        element = self.elements.get(writer)
+        process = element.process if element is not None else None
+        # Other callbacks of an executor that loops can write it, too, and run at other times.
+        runnable = element.runnable if element is not None and process in self.dataflow.system.executor_of_task else None
+        event = perf.LabelEvent(name=title, label=label, change=perf.LabelChange.WRITE, process=process, runnable=runnable)
+        self.events.setdefault(title, event)
         return title
 
     # Chains of chains

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from amalthea_uros.analyze.ways.executor_times import ExecutorTimes, HandleTimes
+from amalthea_uros.analyze.executors.results import ExecutorResult, HandleResult
 from amalthea_uros.analyze.ways.results import Hop, HopKind, Part
 from amalthea_uros.analyze.ways.stations import Callback
 from amalthea_uros.perf.executors import HandleKind
@@ -28,23 +28,22 @@ class CallbackHops:
     jitter : of the arrivals at handles, by name, besides what is stated; None if it is unknown
     """
 
-    executors: Sequence[ExecutorTimes]
+    executors: Sequence[ExecutorResult]
     jitter: Mapping[str, Time | None]
 
     def response(self, station: Callback) -> Hop:
         """From the arrival of a message, or from when a timer is due, to the end of the callback."""
         name, executor = station.handle.name, station.executor.name
-        found = self._times(station)
-        bounds = None if found is None else found.response
-        if found is None or bounds is None or bounds.worst is None:
-            why = bounds.reason if bounds is not None and bounds.reason else "it was not analysed"
+        found = self._result(station)
+        bounds = found.response
+        if bounds.worst is None:
             return Hop(
                 kind=HopKind.EXECUTOR,
                 name=executor,
-                best=bounds.best if bounds is not None else 0,
+                best=bounds.best,
                 worst=None,
                 source="",
-                reason=f"the response time of {name!r} in {executor!r} has no bound: {why}",
+                reason=f"the response time of {name!r} in {executor!r} has no bound: {bounds.reason or 'it was not analysed'}",
                 remedy=f"See the results of the executor {executor!r}.",
             )
         return Hop(
@@ -52,14 +51,14 @@ class CallbackHops:
             name=executor,
             best=bounds.best,
             worst=bounds.worst,
-            source=f"response time of {name}",
+            source=f"response time of {name}: {bounds.method} ({bounds.source})",
             parts=tuple(Part(name=each.name, least=each.least, most=each.most, why=each.why) for each in found.terms),
         )
 
     def loss(self, station: Callback) -> str:
         """How messages of a callback can be lost; "" if none can."""
-        found = self._times(station)
-        return f"messages of {station.handle.name!r} can be lost" if found is not None and found.lost is not None else ""
+        lost, name = self._result(station).lost, station.handle.name
+        return "" if lost is None else f"{lost.what} of {name!r} can be lost: {lost.sequence}"
 
     def sampling(self, station: Callback) -> Hop:
         """From a write of data that a callback reads to the end of the callback that reads them, or newer ones."""
@@ -88,9 +87,9 @@ class CallbackHops:
             parts=(wait, *(response.parts or (Part(name=f"response time of {handle.name}", least=0, most=response.worst),))),
         )
 
-    def _times(self, station: Callback) -> HandleTimes | None:
-        of_executor = (each.handles for each in self.executors if each.name == station.executor.name)
-        return next((found for handles in of_executor for found in handles if found.name == station.handle.name), None)
+    def _result(self, station: Callback) -> HandleResult:
+        executor = next(each for each in self.executors if each.name == station.executor.name)
+        return executor.handles[station.handle.name]
 
     def _longest_interval(self, station: Callback) -> Time | None:
         """The maximum time between two nominal arrivals, or expirations; None if there is none."""

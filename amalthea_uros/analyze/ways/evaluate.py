@@ -2,24 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
+from amalthea_uros.analyze.executors.evaluate import evaluate_executors
+from amalthea_uros.analyze.executors.results import ExecutorResult
 from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.analyze.ways.arrivals import arrival_jitter
 from amalthea_uros.analyze.ways.callbacks import CallbackHops
-from amalthea_uros.analyze.ways.executor_times import ExecutorEvaluation, Executors
 from amalthea_uros.analyze.ways.passages import PassageHops
 from amalthea_uros.analyze.ways.publications import sending_times
 from amalthea_uros.analyze.ways.results import Way
 from amalthea_uros.analyze.ways.stations import crosses
 from amalthea_uros.analyze.ways.walk import Walk
+from amalthea_uros.perf.constraints import LatencyConstraint
 
 
-def evaluate_ways(
-    solution: Solution, evaluate_executors: ExecutorEvaluation[Executors]
-) -> tuple[Sequence[Executors], tuple[Way, ...]]:
-    """The results of all executors that loop, and the ways of all chains that cross them, wires or the agent.
+def evaluate_ways(solution: Solution) -> tuple[tuple[ExecutorResult, ...], tuple[Way, ...]]:
+    """The results of all executors that loop, and the ways of all chains that cross them, wires or the agent; those with limits first.
 
     Parameters
     ----------
@@ -28,7 +26,12 @@ def evaluate_ways(
     jitter, sending = arrival_jitter(solution), sending_times(solution)
     executors = evaluate_executors(solution, sending=sending, extra_jitter=jitter)
     walk = Walk(PassageHops(ChainEvaluator(solution)), CallbackHops(executors, jitter), sending)
-    chains = (chain for chain in solution.context.system.events.chains if crosses(chain, solution.context))
+    system = solution.context.system
+    limited = {each.chain for each in system.constraints.constraints if isinstance(each, LatencyConstraint)}
+    chains = sorted(
+        (chain for chain in system.events.chains if crosses(chain, solution.context)),
+        key=lambda chain: chain.name not in limited,
+    )
     ways = tuple(walk.way(chain) for chain in chains)
     for way in ways:
         _note(way, solution)

@@ -77,7 +77,7 @@ def stations_of(chain: EventChain, context: TimingContext) -> list[Station]:
         raise UnknownWayError("it has parallel paths, whose latency over wires and executors is not computed; split the chain")
     found: list[Station] = []
     for name in ways[0]:
-        station = _station(context.system.events_by_name[name], context)
+        station = _station(context.system.events_by_name[name], found[-1] if found else None, context)
         if isinstance(station, Passage) and found and isinstance(found[-1], Passage):
             before = found.pop()
             assert isinstance(before, Passage)
@@ -95,12 +95,15 @@ def _processes(event: Event, context: TimingContext) -> set[str]:
         return set()
 
 
-def _station(event: Event, context: TimingContext) -> Station:
+def _station(event: Event, before: Station | None, context: TimingContext) -> Station:
+    """Where an event occurs; if that can be in several places, the station before it if it is one of these."""
     try:
         occurrences = context.dataflow.events.of(event)
     except UnresolvedError as error:
         raise UnknownWayError(str(error)) from None
     found = {_station_at(event, occurrence, context) for occurrence in occurrences}
+    if before in found:
+        return before
     if len(found) != 1:
         raise UnknownWayError(f"the event {event.name!r} can occur in several places; set its process")
     return found.pop()
@@ -134,12 +137,12 @@ def handle_around(position: ActivityPosition, executor: Executor, context: Timin
     return around[-1] if around else None
 
 
-def name_of(station: Station) -> str:
-    """What people call a station."""
+def name_of(station: Station, *, is_end: bool = False) -> str:
+    """What people call a station: its topic, its callback, its first or its last process."""
     match station:
         case Message(transmission):
             return transmission.topic or transmission.name
         case Callback(_, handle):
             return handle.name
         case Passage(_, processes):
-            return processes[0]
+            return processes[-1 if is_end else 0]

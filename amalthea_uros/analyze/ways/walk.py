@@ -59,7 +59,7 @@ class Walk:
         return Way(
             name=chain.name,
             start=name_of(stations[0]),
-            end=name_of(stations[-1]),
+            end=name_of(stations[-1], is_end=True),
             hops=tuple(hops),
             assumptions=(_SUM, *assumptions),
             reason=unknown.reason if unknown is not None else "",

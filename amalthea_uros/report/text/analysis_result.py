@@ -14,6 +14,7 @@ from amalthea_uros.report.process_order import by_core_and_priority
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.report.text import impact
 from amalthea_uros.report.text.metrics import write_callbacks, write_metrics
+from amalthea_uros.report.ways import write_ways
 from amalthea_uros.services.analyze import AnalysisResult
 from amalthea_uros.units import Rounding, Time, frequency_text, rounded_time_text, time_text
 
@@ -24,6 +25,7 @@ _BADNESS = (Verdict.UNBOUNDED, Verdict.MISSED, Verdict.UNKNOWN, Verdict.MET, Non
 def write(result: AnalysisResult, terminal: Terminal) -> None:
     """Write tables of loads, response times, chains and requirements, with methods, assumptions and the verdict."""
     analysis = result.analysis
+    write_ways(analysis.ways, terminal)
     _processors(terminal, analysis)
     _processes(terminal, analysis)
     write_callbacks(terminal, analysis.callbacks)
