@@ -15,8 +15,15 @@ def resource_folder(name: str) -> Path:
 
 #: The folder of the platforms, which are data and no code.
 PLATFORMS = _PACKAGE / "platforms"
+#: The folder of the operating systems, which are data, too.
+RTOSES = PLATFORMS / "rtos"
 
 
 def known_platforms() -> list[str]:
     """The names of the platforms that come with this package."""
     return sorted(path.stem for path in PLATFORMS.glob("*.yaml"))
+
+
+def known_rtoses() -> list[str]:
+    """The names of the operating systems that come with this package."""
+    return sorted(path.stem for path in RTOSES.glob("*.yaml"))

@@ -28,13 +28,15 @@ class Loop(Brief):
     Attributes
     ----------
     timeout : of each wait
-    sleep : after each round, for `spin_some`; 0 for a bare loop
+    sleep : minimum time after each round, for `spin_some`; 0 for a bare loop
+    sleep_jitter : additional time that a sleep can last, as operating systems count in ticks
     period : of `spin_period`; None for the others
     """
 
     kind: LoopKind
     timeout: Time
     sleep: Time = 0
+    sleep_jitter: Time = 0
     period: Time | None = None
 
 

@@ -104,11 +104,11 @@ def _assembly(draft: Draft[Description], folder: Path, platform: str | None = No
 
 
 def _assembled(description: Description, folder: Path, platform: str | None) -> Assembly:
-    from amalthea_uros.spec.platforms import whole_hardware
+    from amalthea_uros.spec.platforms import complete
 
-    hardware, name, findings = whole_hardware(description.hardware, folder, platform)
+    whole, name, findings = complete(description, folder, platform)
     try:
-        assembly = assemble(description, hardware, name)
+        assembly = assemble(whole, whole.hardware, name)
     except ReadError as error:
         raise ReadError([*findings, *error.findings]) from None
     if findings:

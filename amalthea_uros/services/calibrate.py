@@ -141,7 +141,7 @@ def calibrate_text(text: str, path: Path, measurements: Sequence[Measurement], o
         raise InvalidArgumentError("nothing was measured; give at least one trace")
     mark = _BOM if text.startswith(_BOM) else ""
     before = described(text.removeprefix(_BOM), path)
-    places = Places(before.description, before.platform, before.core_types)
+    places = Places(before.description, before.platform, before.core_types, before.assembly.priority_scale)
     measured = [Measured(series, measurement) for measurement in measurements for series in measurement.series]
     choices = before.assembly.choices
     period = choices[0].period if choices else None

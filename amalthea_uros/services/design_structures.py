@@ -21,6 +21,7 @@ from amalthea_uros.services.paths import is_description
 from amalthea_uros.services.subject import Subject, paths_of
 from amalthea_uros.spec.executors import Executor
 from amalthea_uros.uros.callbacks import Callback, callbacks_of, registration_order
+from amalthea_uros.uros.executors.serving import stated_executors
 from amalthea_uros.uros.notes import Notes
 
 #: Each structure is built before the search begins.
@@ -58,18 +59,18 @@ class DescribedCallbacks:
 
     @property
     def executor(self) -> Executor:
-        """The executor."""
-        return self.whole.description.middleware.executor
+        """The first executor."""
+        return stated_executors(self.whole.description.middleware)[0]
 
     @property
     def callbacks(self) -> tuple[Callback, ...]:
         """All callbacks, in the order of the file."""
-        return callbacks_of(self.whole.description.application, self.executor, Notes())
+        return callbacks_of(self.whole.description.application, self.whole.description.middleware, Notes())
 
     @property
     def inside(self) -> list[str]:
-        """The callbacks that run in the executor, in their order."""
-        inside = (callback for callback in self.callbacks if callback.in_executor)
+        """The callbacks that run in the first executor, in their order."""
+        inside = (each for each in self.callbacks if each.in_executor and each.executor == self.executor.name)
         return [callback.name for callback in registration_order(inside, self.executor, Notes())]
 
     def placements(self) -> Iterator[Choice]:

@@ -87,10 +87,13 @@ def init_from_board(target: Path, board: str = DEFAULT_BOARD, *, force: bool = F
     """
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
+    from amalthea_uros.services.board_values import looping_values
+
     folder = resource_folder("templates/init")
     environment = Environment(loader=FileSystemLoader(folder), undefined=StrictUndefined, keep_trailing_newline=True)
-    text = environment.get_template(FILE_NAME).render(
-        board=board, summary=_offered(PLATFORMS / f"{board}.yaml").summary, documentation=DOCUMENTATION
+    looping = looping_values(board)
+    text = environment.get_template(FILE_NAME if looping is None else "looping.yaml").render(
+        board=board, summary=_offered(PLATFORMS / f"{board}.yaml").summary, documentation=DOCUMENTATION, **(looping or {})
     )
     path = _place(target)
     _write({path: text}, force)

@@ -91,8 +91,12 @@ class Hardware(Shorthand):
     shorthand = ("platform",)
     plain_value = "A known platform, or a file."
 
-    platform: Name | None = Field(None, examples=["bodas-rc18-12-40", "generic", "single-core", "./my-controller.yaml"])
-    """A known platform (`bodas-rc18-12-40`, `generic` or `single-core`), or a file, e.g. `./my-controller.yaml`."""
+    platform: Name | None = Field(
+        None, examples=["esp32", "nucleo-f446re", "bodas-rc18-12-40", "generic", "./my-controller.yaml"]
+    )
+    """A known platform (`bodas-rc18-12-40`, `esp32`, `esp32-s3`, `generic`, `host`, `nucleo-f446re`, `nucleo-f746zg`,
+    `nucleo-f767zi`, `nucleo-h743zi`, `olimex-stm32-e407`, `rp2040`, `single-core`, `tc389` or `teensy41`), or a file, e.g.
+    `./my-controller.yaml`."""
     title: Name | None = None
     """Full name of the controller."""
     microcontroller: Name | None = None
@@ -107,6 +111,8 @@ class Hardware(Shorthand):
     """The memories."""
     label_memory: Name | None = None
     """Memory of all labels without a `memory`; default: the first SRAM."""
+    ram_budget: Size | None = None
+    """Memory that is left for micro-ROS: its pools, heap and stacks."""
 
 
 class Platform(Section):
@@ -122,7 +128,7 @@ class Platform(Section):
     """The operating system that is usual on it; keys of the application override it."""
     middleware: Middleware = Field(default_factory=Middleware)
     """The generic micro-ROS model as ported to it; keys of the application override it, key by key."""
-    ram_budget: Size | None = None
-    """Memory that is left for micro-ROS: its pools, heap and stacks."""
     source: str | None = None
     """Source of the figures."""
+    sources: dict[Name, str] = Field(default_factory=dict)
+    """Sources of single figures, by their keys."""

@@ -51,6 +51,8 @@ class PoolSizes(Section):
     """Service servers."""
     RMW_UXRCE_MAX_CLIENTS: CountOrNone | None = None
     """Service clients."""
+    RMW_UXRCE_MAX_HISTORY: Count | None = None
+    """Messages that are kept for all subscriptions, services and clients together."""
     RMW_UXRCE_MTU: Size | None = None
     """Maximum size of a message of the transport."""
     RMW_UXRCE_STREAM_HISTORY: Count | None = None

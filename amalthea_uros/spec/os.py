@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, model_validator
 
 from amalthea_uros.spec.execution_time import ExecutionTime
 from amalthea_uros.spec.section import Section, Shorthand
-from amalthea_uros.spec.values import Duration, Name, OffsetOrNumberZero, described
+from amalthea_uros.spec.values import CountOrNone, Duration, Name, OffsetOrNumberZero, PriorityNumber, described, problem
 
 
 class OverheadTime(ExecutionTime):
@@ -68,10 +68,36 @@ _DIRECTIONS = described(
 )
 
 
+class PriorityRange(Section):
+    """The numbers that priorities of tasks can have."""
+
+    lowest: PriorityNumber
+    """Lowest number."""
+    highest: PriorityNumber
+    """Highest number."""
+
+    @model_validator(mode="after")
+    def _is_ordered(self) -> Self:
+        if self.lowest > self.highest:
+            raise problem("'lowest' is greater than 'highest'")
+        return self
+
+
+class SleepTicks(Section):
+    """How exactly a task sleeps: the time is rounded up to ticks, and the sleep ends at a tick before or after that."""
+
+    early: CountOrNone = 0
+    """Number of ticks by which a sleep can be shorter than the ticks it is rounded up to."""
+    late: CountOrNone = 0
+    """Number of ticks by which a sleep can be longer than the ticks it is rounded up to."""
+
+
 class Os(Section):
     """The operating system."""
 
-    rtos: Annotated[Name, Field(examples=["freertos", "zephyr", "nuttx", "bare-metal", "osek", "posix"])] | None = None
+    rtos: (
+        Annotated[Name, Field(examples=["freertos", "zephyr", "nuttx", "bare-metal", "osek", "posix-fifo", "posix-rr"])] | None
+    ) = None
     """The operating system by name, or a file that describes it; default: that of the platform."""
     tick: Duration | None = None
     """Its tick, in which delays and timeouts are counted; default: that of the operating system."""
@@ -79,5 +105,11 @@ class Os(Section):
     """Whether tasks have stacks of their own; default: that of the operating system."""
     priorities: Annotated[Literal["higher-is-more-urgent", "lower-is-more-urgent"], _DIRECTIONS] | None = None
     """What priorities in this file mean; default: that of the operating system, else `higher-is-more-urgent`."""
+    priority_range: PriorityRange | None = None
+    """Numbers that priorities of tasks can have; default: those of the operating system."""
+    time_slice: OffsetOrNumberZero | None = None
+    """Time after which ready tasks of the same priority take turns; `0`: they do not; default: that of the operating system."""
+    sleep_ticks: SleepTicks | None = None
+    """How exactly a task sleeps; default: as the operating system does; without a tick, exactly as long as asked."""
     overhead: OsOverhead = Field(default_factory=OsOverhead)
     """What it costs to activate and end tasks and interrupt service routines; default: nothing."""

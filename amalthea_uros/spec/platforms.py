@@ -1,90 +1,117 @@
-"""The platforms that come with amuros, and platform files of users."""
+"""Platforms and operating systems that descriptions refer to by name, and what they add to a description."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from amalthea_uros._internal.resources import PLATFORMS, known_platforms
-from amalthea_uros._internal.similar import similar
+from amalthea_uros._internal.resources import PLATFORMS, RTOSES, known_platforms, known_rtoses
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.errors import ReadError
+from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.hardware import Hardware, Platform
+from amalthea_uros.spec.known_files import KnownFiles
+from amalthea_uros.spec.merging import merged, merged_middleware
+from amalthea_uros.spec.middleware import Middleware
+from amalthea_uros.spec.os import Os
 from amalthea_uros.spec.read import read_section
-from amalthea_uros.spec.repair import CERTAIN
-
-_SUFFIXES = (".yaml", ".yml")
+from amalthea_uros.spec.rtos import Rtos
 
 
-class WholeHardware(NamedTuple):
-    """The hardware of an application, completed by its platform.
+class CompleteDescription(NamedTuple):
+    """A description, completed by its platform and its operating system.
 
     Attributes
     ----------
     platform : name of the platform; None if there is none
-    findings : a misspelled platform, in whose place the one that was probably meant is used
+    findings : misspelled names, in whose place those that were probably meant are used
     """
 
-    hardware: Hardware
+    description: Description
     platform: str | None
     findings: tuple[Finding, ...] = ()
 
 
-def whole_hardware(stated: Hardware, folder: Path, other: str | None = None) -> WholeHardware:
-    """The hardware of an application, completed by its platform.
+def complete(description: Description, folder: Path, other: str | None = None) -> CompleteDescription:
+    """A description, completed by its platform and its operating system.
+
+    What the application states counts first, then what its platform states, then what its operating system does. An application
+    that chooses another operating system than that of its platform gets the properties of the chosen one, and of the generic
+    micro-ROS models that of the chosen one before that of the platform.
 
     Parameters
     ----------
-    folder : the directory of the application; platform files are relative to it
+    folder : the directory of the application; files of platforms and operating systems are relative to it
     other : replaces the platform of the application
 
     Raises
     ------
-    ReadError : the platform is not known, or its file is wrong.
+    ReadError : a name is not known, or a file is wrong.
     """
-    named = other or stated.platform
-    if named is None:
-        return WholeHardware(stated, None)
-    path, findings = _file(stated, named, folder)
+    findings: list[Finding] = []
+    path = _platform_file(description.hardware, folder, other, findings)
+    platform = None if path is None else _platform(path)
+    if path is None or platform is None:
+        rtos = _rtos(description.os, folder, findings)
+        return _completed(description, None, [rtos.os], [rtos.middleware], findings)
+    if description.os.rtos in (None, platform.os.rtos):
+        rtos = _rtos(platform.os, path.parent, findings)
+        return _completed(description, platform, [platform.os, rtos.os], [platform.middleware, rtos.middleware], findings)
+    rtos = _rtos(description.os, folder, findings)
+    return _completed(description, platform, [rtos.os], [rtos.middleware, platform.middleware], findings)
+
+
+def _completed(
+    description: Description,
+    platform: Platform | None,
+    systems: Sequence[Os],
+    models: Sequence[Middleware],
+    findings: Iterable[Finding],
+) -> CompleteDescription:
+    update = {
+        "hardware": description.hardware if platform is None else _hardware(description.hardware, platform.hardware),
+        "os": merged(description.os, *systems),
+        "middleware": merged_middleware(description.middleware, *models),
+    }
+    name = None if platform is None else platform.platform
+    return CompleteDescription(description.model_copy(update=update), name, tuple(findings))
+
+
+def _platform_file(stated: Hardware, folder: Path, other: str | None, findings: list[Finding]) -> Path | None:
+    name = other or stated.platform
+    if name is None:
+        return None
+    advice = "use 'generic' with 'frequency' and 'cores', or a file, e.g. ./mine.yaml."
+    files = KnownFiles(kind="platform", folder=PLATFORMS, names=known_platforms(), advice=advice)
+    path, mistakes = files.find(name, folder, stated.location("platform"))
+    findings += mistakes
+    return path
+
+
+def _platform(path: Path) -> Platform:
     platform = read_section(path, Platform)
-    _refuse_base(platform)
-    added = {key: getattr(platform.hardware, key) for key in platform.hardware.model_fields_set - stated.model_fields_set}
-    if stated.frequency is not None and "cores" in added:
-        # One clock for all cores, whatever the platform says.
-        added["cores"] = [core.model_copy(update={"frequency": None}) for core in added["cores"]]
-    return WholeHardware(stated.model_copy(update=added), platform.platform, findings)
-
-
-def _refuse_base(platform: Platform) -> None:
     if platform.hardware.platform is not None:
         message = f"the platform {platform.platform!r} refers to another platform, {platform.hardware.platform!r}"
         advice = "Describe the whole hardware in the platform file."
         raise ReadError([Finding("APP003", Severity.ERROR, message, platform.hardware.location("platform"), advice)])
+    return platform
 
 
-def _file(stated: Hardware, name: str, folder: Path) -> tuple[Path, tuple[Finding, ...]]:
-    """The file of a platform, and what is wrong with its name if it is clear which one is meant."""
-    if name.endswith(_SUFFIXES):
-        path = folder / name
-        if path.is_file():
-            return path, ()
-        message, advice = f"platform file {str(path)!r} not found", "Give a path relative to the directory of this file."
-        raise ReadError([_undefined(stated, message, advice)])
-    known = known_platforms()
-    if name in known:
-        return _known_file(name), ()
-    near = similar(name, known)
-    others = f"Known platforms: {', '.join(known)}; use 'generic' with 'frequency' and 'cores', or a file, e.g. ./mine.yaml."
-    advice = f"Did you mean {near[0]!r}?" if near else others
-    finding = _undefined(stated, f"unknown platform {name!r}", advice)
-    if not similar(name, known, cutoff=CERTAIN):
-        raise ReadError([finding])
-    return _known_file(near[0]), (finding,)
+def _hardware(stated: Hardware, usual: Hardware) -> Hardware:
+    found = merged(stated, usual)
+    if stated.frequency is None or stated.cores is not None or found.cores is None:
+        return found
+    # One clock for all cores, whatever the platform says.
+    return found.model_copy(update={"cores": [core.model_copy(update={"frequency": None}) for core in found.cores]})
 
 
-def _known_file(name: str) -> Path:
-    return PLATFORMS / f"{name}.yaml"
-
-
-def _undefined(stated: Hardware, message: str, advice: str) -> Finding:
-    return Finding("APP001", Severity.ERROR, message, stated.location("platform"), advice)
+def _rtos(stated: Os, folder: Path, findings: list[Finding]) -> Rtos:
+    """The operating system that is stated; one without properties if none is."""
+    if stated.rtos is None:
+        return Rtos(amuros=1, rtos="none", title="none")
+    advice = "or a file that describes another one, e.g. ./my-rtos.yaml."
+    files = KnownFiles(kind="operating system", folder=RTOSES, names=known_rtoses(), advice=advice)
+    path, mistakes = files.find(stated.rtos, folder, stated.location("rtos"))
+    findings += mistakes
+    return read_section(path, Rtos)

@@ -24,6 +24,8 @@ class Section(BaseModel):
     )
 
     _where: tuple[Mapping, Source] | None = PrivateAttr(None)
+    #: The section that gives the keys that this one does not state; see `spec.merging`.
+    _base: Section | None = PrivateAttr(None)
 
     @model_validator(mode="before")
     @classmethod
@@ -43,9 +45,13 @@ class Section(BaseModel):
     def location(self, key: str | None = None, index: int | None = None) -> Location | None:
         """Location of the section, of the value of a key, or of an item of that value; None if it was not read from a file.
 
-        A key that is not given has the location of the section.
+        A key that is not given has the location of the section; one that a platform gives has its location there.
         """
         where = self._where
+        if key is not None and self._base is not None and (where is None or key not in where[0].items):
+            inherited = self._base.location(key, index)
+            if inherited is not None and self._base.states(key):
+                return inherited
         if where is None:
             return None
         own, source = where
@@ -57,7 +63,7 @@ class Section(BaseModel):
         return source.location(node.place)
 
     def states(self, key: str) -> bool:
-        """Whether the author wrote the key."""
+        """Whether the author wrote the key, or that of the platform."""
         return key in self.model_fields_set
 
 

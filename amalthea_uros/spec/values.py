@@ -192,6 +192,8 @@ Count: TypeAlias = Annotated[int, Field(strict=True, ge=1, le=1_000_000)]
 CountOrNone: TypeAlias = Annotated[int, Field(strict=True, ge=0, le=1_000_000)]
 #: A scheduling priority; a higher number is a higher priority.
 Priority: TypeAlias = Annotated[int, Field(strict=True, ge=0, le=2**31 - 1)]
+#: A number that a priority of a task can have in an operating system; threads of Zephyr that nothing preempts have negative ones.
+PriorityNumber: TypeAlias = Annotated[int, Field(strict=True, ge=-(2**31) + 1, le=2**31 - 1)]
 #: An identifier of CAN frames, of 11 or 29 bits: a whole number, or text such as "0x120".
 CanIdentifier: TypeAlias = Annotated[
     int,

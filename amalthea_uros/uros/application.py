@@ -1,14 +1,16 @@
-"""The application: its callbacks in their own tasks or in the executor, and the interrupt that receives their messages."""
+"""The application: its callbacks in their own tasks or in executors, and the interrupt that receives their messages."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from amalthea_uros.perf.activities import Call
 from amalthea_uros.perf.software import Runnable
+from amalthea_uros.perf.stimuli import InterProcess
+from amalthea_uros.spec.executors import Executor
 from amalthea_uros.spec.transports import Interrupt
 from amalthea_uros.units import Time
-from amalthea_uros.uros.activities import activity_sequence
+from amalthea_uros.uros.activities import activity_sequence, trigger_name
 from amalthea_uros.uros.bus_messages import BusMessage, bus_of, receive_stimulus
 from amalthea_uros.uros.callbacks import Callback, registration_order
 from amalthea_uros.uros.context import AssemblyContext
@@ -18,8 +20,11 @@ from amalthea_uros.uros.executor import (
     in_executor_calls,
     message_cost,
     own_task_calls,
-    timer_count,
 )
+from amalthea_uros.uros.executors.activation import is_triggered
+from amalthea_uros.uros.executors.add import add_looping_executor
+from amalthea_uros.uros.executors.checks import check_order, check_threads
+from amalthea_uros.uros.executors.serving import stated_executors
 from amalthea_uros.uros.periods import (
     PeriodChoice,
     check_callbacks_in_executor,
@@ -32,11 +37,60 @@ from amalthea_uros.uros.tasks import PlannedIsr, PlannedTask
 
 
 def add_callbacks(context: AssemblyContext, callbacks: Sequence[Callback]) -> tuple[PeriodChoice, ...]:
-    """Add the executor and the callbacks' own tasks, and return the choice of their periods, that of the executor first."""
-    middleware, converter, notes = context.description.middleware, context.converter, context.notes
-    executor, candidates = middleware.executor, period_candidates(middleware)
+    """Add the executors and the callbacks' own tasks, and return the choice of their periods, that of each executor first."""
+    choices: list[PeriodChoice] = []
+    executors = stated_executors(context.description.middleware)
+    for executor in executors:
+        own = [callback for callback in callbacks if callback.executor == executor.name]
+        inside = [callback for callback in own if callback.in_executor]
+        ordered = registration_order(inside if executor.loop is None else own, executor, context.notes)
+        check_order(executor, context.notes)
+        if not own and (executor.loop is not None or len(executors) > 1):
+            advice = f"Set 'runs_in: {executor.name}' at callbacks or nodes, or remove the executor."
+            context.notes.error("APP003", f"the executor {executor.name!r} serves no callback", executor.location(), advice)
+        elif executor.loop is not None:
+            choices += _add_looping(context, executor, ordered)
+        else:
+            choices += _add_periodic(context, executor, own, ordered)
+    loops = [executor.name for executor in executors if executor.loop is not None]
+    if loops:
+        sending = [callback for callback in callbacks if not callback.in_executor and callback.outgoing]
+        check_threads([executor.name for executor in executors], sending, context.description.middleware, context.notes)
+    return tuple(choices)
+
+
+def _add_looping(context: AssemblyContext, executor: Executor, callbacks: Sequence[Callback]) -> Iterator[PeriodChoice]:
+    """Add an executor with a loop, and the tasks of callbacks that do not run in it: it activates those without a period."""
+    core = context.core(executor.core, executor.location("core"))
+    bodies = {callback.name: _body(context, callback, core) for callback in callbacks}
     outside = [callback for callback in callbacks if not callback.in_executor]
-    inside = registration_order((callback for callback in callbacks if callback.in_executor), executor, notes)
+    triggered = {callback.name: (callback.name,) for callback in outside if callback.section.task_period is None}
+    is_alone = len(stated_executors(context.description.middleware)) == 1 and not any(each.outgoing for each in outside)
+    add_looping_executor(context, executor, callbacks, bodies, triggered, is_alone)
+    for callback in outside:
+        if callback.name in triggered:
+            _add_triggered_task(context, callback, bodies[callback.name])
+        elif callback.interval is not None:
+            candidates = period_candidates(context.description.middleware, executor)
+            choice = choose_task_period(callback, candidates, context.converter, context.notes)
+            if choice is not None:
+                _add_own_task(context, callback, choice.period, bodies[callback.name])
+                yield choice
+
+
+def _add_periodic(
+    context: AssemblyContext, executor: Executor, callbacks: Sequence[Callback], inside: Sequence[Callback]
+) -> tuple[PeriodChoice, ...]:
+    """Add an executor that is activated with a period, and the tasks of callbacks that do not run in it.
+
+    Parameters
+    ----------
+    callbacks : that it serves
+    inside : those that run in it, in their order
+    """
+    converter, notes = context.converter, context.notes
+    outside = [callback for callback in callbacks if not callback.in_executor]
+    candidates = period_candidates(context.description.middleware, executor)
     choices = [
         choice for callback in outside if (choice := choose_task_period(callback, candidates, converter, notes)) is not None
     ]
@@ -48,44 +102,44 @@ def add_callbacks(context: AssemblyContext, callbacks: Sequence[Callback]) -> tu
         return ()
     core = context.core(executor.core, executor.location("core"))
     bodies = {callback.name: _body(context, callback, core) for callback in callbacks}
-    _add_executor(context, _executor_calls(context, outside, inside, bodies, chosen.period, core), chosen.period, core)
+    phases = ExecutorPhases.of(executor, chosen.period, callbacks)
+    calls = _executor_calls(context, executor, outside, inside, bodies, phases, core)
+    _add_executor(context, executor, calls, chosen.period, core)
     periods = {choice.task: choice.period for choice in choices}
     for callback in outside:
         if callback.name in periods:
             _add_own_task(context, callback, periods[callback.name], bodies[callback.name])
-    _check_phases(context, callbacks, chosen.period)
+    _check_phases(context, callbacks, phases)
     return (chosen, *choices)
 
 
-def _check_phases(context: AssemblyContext, callbacks: Sequence[Callback], period: Time) -> None:
+def _check_phases(context: AssemblyContext, callbacks: Sequence[Callback], phases: ExecutorPhases) -> None:
     calls = [call for task in context.tasks for call in task.activities if isinstance(call, Call)]
     counted = {call.counter.source for call in calls if call.counter is not None}
-    phases = ExecutorPhases.of(context.description.middleware.executor, period, callbacks)
     for callback in callbacks:
         phases.check(callback, callback.name in counted, context.notes)
 
 
 def _executor_calls(
     context: AssemblyContext,
+    executor: Executor,
     outside: Sequence[Callback],
     inside: Sequence[Callback],
     bodies: dict[str, Runnable],
-    period: Time,
+    phases: ExecutorPhases,
     core: str,
 ) -> list[PlannedCall]:
-    runnables = ExecutorRunnables(
-        middleware=context.description.middleware, converter=context.converter, core=core, channels=context.channels
-    )
-    phases = ExecutorPhases.of(context.description.middleware.executor, period, (*outside, *inside))
+    runnables = ExecutorRunnables(executor=executor, converter=context.converter, core=core, channels=context.channels)
     return [
-        PlannedCall(runnable=runnables.spin(timer_count((*outside, *inside)))),
+        PlannedCall(runnable=runnables.spin((*outside, *inside))),
         *own_task_calls(outside, runnables, phases),
         *in_executor_calls(inside, bodies, runnables, phases),
     ]
 
 
-def _add_executor(context: AssemblyContext, calls: Sequence[PlannedCall], period: Time, core: str) -> None:
-    executor = context.description.middleware.executor
+def _add_executor(
+    context: AssemblyContext, executor: Executor, calls: Sequence[PlannedCall], period: Time, core: str
+) -> None:
     context.runnables |= {call.runnable.name: call.runnable for call in calls}
     context.tasks.append(
         PlannedTask(
@@ -159,6 +213,29 @@ def _add_own_task(context: AssemblyContext, callback: Callback, period: Time, bo
     )
 
 
+def _add_triggered_task(context: AssemblyContext, callback: Callback, body: Runnable) -> None:
+    """Add the task of a callback that its executor activates when it has taken the message."""
+    section = callback.section
+    for key in ("runs_when", "offset"):
+        if section.states(key):
+            message = f"{key!r} of {callback.name!r} has no effect: its executor activates its task when it is due"
+            context.notes.error("APP003", message, section.location(key), f"Remove {key!r}, or set 'task_period'.")
+    context.runnables[body.name] = body
+    context.tasks.append(
+        PlannedTask(
+            name=callback.name,
+            core=_core(context, callback, context.controller.first_core),
+            stimuli=(context.stimuli.add(InterProcess(name=trigger_name(callback.name), origin=callback.origin)),),
+            activities=(Call(runnable=body.name),),
+            period=None if callback.interval is None else callback.min_interval,
+            priority=section.priority,
+            deadline=section.deadline,
+            overhead=section.overhead,
+            origin=callback.origin,
+        )
+    )
+
+
 def add_interrupt(context: AssemblyContext, messages: Sequence[BusMessage]) -> None:
     """Add the interrupt service routine that receives frames, if it is described."""
     can = context.description.middleware.transport.can
@@ -171,9 +248,10 @@ def add_interrupt(context: AssemblyContext, messages: Sequence[BusMessage]) -> N
 
 
 def _add_isr(context: AssemblyContext, interrupt: Interrupt, stimuli: tuple[str, ...]) -> None:
-    section = interrupt if interrupt.core else context.description.middleware.executor
+    section = interrupt if interrupt.core else stated_executors(context.description.middleware)[0]
     core = context.core(section.core, section.location("core"))
-    activities = activity_sequence(context.converter.execute([interrupt.execution_time], core, interrupt.location()))
+    demand = context.converter.execute([interrupt.execution_time], core, interrupt.location())
+    activities = activity_sequence(demand, triggers=[each.task for each in context.executors if is_triggered(each)])
     handler = Runnable(name=f"{interrupt.name}_Frame", activities=activities, origin=interrupt.location())
     context.runnables[handler.name] = handler
     context.isrs.append(

@@ -11,7 +11,7 @@ from amalthea_uros.perf.constraints import Constraints
 from amalthea_uros.perf.events import Events
 from amalthea_uros.perf.mapping import Mapping
 from amalthea_uros.perf.named import Brief
-from amalthea_uros.perf.software import Isr, Software, Task
+from amalthea_uros.perf.software import Isr, Label, Software, Task
 from amalthea_uros.perf.stimuli import Stimuli
 from amalthea_uros.perf.system import System
 from amalthea_uros.spec.description import Description
@@ -28,9 +28,12 @@ from amalthea_uros.uros.chain_elements import chain_elements
 from amalthea_uros.uros.chain_topics import Topics
 from amalthea_uros.uros.chains import Chains
 from amalthea_uros.uros.context import AssemblyContext
+from amalthea_uros.uros.executors.activation import triggered_rounds
+from amalthea_uros.uros.executors.deadlines import deadlines
 from amalthea_uros.uros.hardware import controller_of
 from amalthea_uros.uros.initialisation import Initialisation, initialisation
 from amalthea_uros.uros.labels import check_misspelled_labels, labels_of, placements
+from amalthea_uros.uros.middleware.check import check_middleware
 from amalthea_uros.uros.names import check_unique_data, check_unique_names
 from amalthea_uros.uros.notes import Notes
 from amalthea_uros.uros.os import isr_allocations, os_of, task_allocations
@@ -39,7 +42,7 @@ from amalthea_uros.uros.periods import PeriodChoice
 from amalthea_uros.uros.pools import Pool, check_pools, pools_of
 from amalthea_uros.uros.priorities import check_shared_priorities
 from amalthea_uros.uros.requirements import requirements
-from amalthea_uros.uros.streams import check_streams
+from amalthea_uros.uros.rtos import PriorityScale, check_sleeps
 from amalthea_uros.uros.tasks import PlannedIsr, PlannedTask
 
 
@@ -49,11 +52,12 @@ class Assembly(Brief):
 
     Attributes
     ----------
-    choices : the periods of the executor and of the callbacks' tasks, with reasons
+    choices : the periods of executors without a loop and of the callbacks' tasks, with reasons
     bus, messages : the CAN bus, None if there is none, and what is sent on it
     pools : static pools of the middleware
     findings : of severity warning and info
     task_periods : those that the middleware offers to tasks; empty if it offers any
+    priority_scale : what priorities of tasks mean in the description
     """
 
     system: System
@@ -64,6 +68,7 @@ class Assembly(Brief):
     pools: tuple[Pool, ...]
     findings: tuple[Finding, ...]
     task_periods: tuple[Time, ...]
+    priority_scale: PriorityScale
 
     def system_with_bus(self) -> System | None:
         """The system with the CAN bus as a further core, whose tasks are the messages; None if there is no bus."""
@@ -95,33 +100,36 @@ def assemble(description: Description, hardware: Hardware, platform: str | None)
 
 def _assembly(context: AssemblyContext) -> Assembly:
     application, middleware = context.description.application, context.description.middleware
-    callbacks = callbacks_of(application, middleware.executor, context.notes)
+    callbacks = callbacks_of(application, middleware, context.notes)
     messages = bus_messages(callbacks, middleware.transport)
     check_bus_load(messages, middleware.transport, context.notes)
     check_identifiers(messages, middleware.transport, context.notes)
     pools = pools_of(application, middleware)
-    check_pools(pools, callbacks, middleware, context.notes)
-    check_streams(callbacks, middleware, context.notes)
+    check_pools(pools, middleware, context.notes)
+    check_middleware(callbacks, middleware, context.notes)
     context.channels = internal_channels(callbacks)
     choices = add_callbacks(context, callbacks)
     add_interrupt(context, messages)
     add_background_tasks(context)
     add_overheads(context)
+    check_sleeps(context.description, context.notes)
     if not context.tasks and not context.isrs and not context.notes.has_errors:
         advice = "Define callbacks under 'application', or tasks under 'tasks'."
         message = "no callback, task or interrupt service routine is defined"
         context.notes.error("APP009", message, context.description.location(), advice)
     system = _system(context, callbacks)
     response_time = middleware.initialisation.response_time
+    first = next((choice for choice in choices if choice.task == choice.executor), None)
     return Assembly(
         system=system,
         choices=choices,
         messages=messages,
         bus=bus_of(middleware.transport.can) if middleware.transport.can is not None else None,
-        initialisation=initialisation(application, choices[0].period, response_time) if choices else None,
+        initialisation=initialisation(application, first.period, response_time) if first else None,
         pools=pools,
         findings=tuple(context.notes.findings),
         task_periods=tuple(middleware.task_periods),
+        priority_scale=context.priority_scale,
     )
 
 
@@ -132,6 +140,20 @@ def _system(context: AssemblyContext, callbacks: Sequence[Callback]) -> System:
     labels = labels_of(description, callbacks, context.runnables)
     check_unique_data(labels, context.channels.values(), notes)
     elements = chain_elements(context, callbacks)
+    system = _without_demands(context, labels)
+    check_shared_priorities(system, context.tasks, notes, context.priority_scale)
+    chains = Chains(elements, Topics.of(callbacks, system.network), Dataflow(system), notes)
+    limits = chains.add_all(description.chains)
+    demanded = (*requirements(description.requirements, elements, notes), *deadlines(context.executors, callbacks))
+    return replace(
+        system,
+        events=Events(events=tuple(chains.events.values()), chains=tuple(chains.chains.values())),
+        constraints=Constraints(constraints=limits, requirements=demanded),
+    )
+
+
+def _without_demands(context: AssemblyContext, labels: Sequence[Label]) -> System:
+    """The system without event chains and requirements."""
     system = System(
         hardware=context.controller.hardware,
         os=os_of(context),
@@ -140,25 +162,17 @@ def _system(context: AssemblyContext, callbacks: Sequence[Callback]) -> System:
             tasks=tuple(map(_task, context.tasks)),
             isrs=tuple(map(_isr, context.isrs)),
             runnables=tuple(context.runnables.values()),
-            labels=labels,
+            labels=tuple(labels),
             channels=tuple(context.channels.values()),
         ),
         mapping=Mapping(
             tasks=tuple(task_allocations(context)),
             isrs=tuple(isr_allocations(context)),
-            placements=tuple(placements(labels, description, context.controller, notes)),
+            placements=tuple(placements(labels, context.description, context.controller, context.notes)),
         ),
+        executors=tuple(context.executors),
     )
-    check_shared_priorities(system, context.tasks, notes)
-    chains = Chains(elements, Topics.of(callbacks, system.network), Dataflow(system), notes)
-    limits = chains.add_all(description.chains)
-    return replace(
-        system,
-        events=Events(events=tuple(chains.events.values()), chains=tuple(chains.chains.values())),
-        constraints=Constraints(
-            constraints=limits, requirements=tuple(requirements(description.requirements, elements, notes))
-        ),
-    )
+    return triggered_rounds(system)
 
 
 def _task(planned: PlannedTask) -> Task:

@@ -1,4 +1,8 @@
-"""The callbacks of an application in one form for all kinds: their interval, the message that makes them ready, what they send."""
+"""The callbacks of an application in one form for all kinds: their interval, the message that makes them ready, what they send.
+
+What the middleware adds to an executor by itself has a callback, too: the services of parameters and of the lifecycle. The sizes of
+their messages are not described.
+"""
 
 from __future__ import annotations
 
@@ -8,10 +12,24 @@ from enum import StrEnum
 
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.perf.software import Channel
-from amalthea_uros.spec.application import Application, Client, MessageCallback, Node, Service, Subscription, Timer
+from amalthea_uros.spec.application import (
+    ActionClient,
+    ActionServer,
+    Application,
+    Client,
+    Lifecycle,
+    MessageCallback,
+    Node,
+    ParameterServer,
+    Service,
+    Subscription,
+    Timer,
+)
 from amalthea_uros.spec.application import Callback as Section
 from amalthea_uros.spec.executors import Executor
+from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.units import SECOND, DataSize, Frequency, Time
+from amalthea_uros.uros.executors.serving import Serving
 from amalthea_uros.uros.notes import Notes
 
 
@@ -22,6 +40,11 @@ class CallbackKind(StrEnum):
     TIMER = "timer"
     SERVICE = "service"
     CLIENT = "client"
+    GUARD_CONDITION = "guard condition"
+    ACTION_SERVER = "action server"
+    ACTION_CLIENT = "action client"
+    PARAMETERS = "parameter server"
+    LIFECYCLE = "lifecycle services"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,16 +75,19 @@ class Callback:
 
     Attributes
     ----------
-    interval : nominal time between two executions, at least
-    incoming : the message that makes it ready; None for timers
+    interval : nominal time between two executions, at least; None if it is not known, which an executor without a loop does not allow
+    executor : the name of the executor that has its handle
+    in_executor : whether that executor runs it; otherwise it has a task of its own
+    incoming : the message that makes it ready; None for timers and guard conditions, and if its size is not described
     outgoing : messages that each execution sends
-    buffer : the label in which the executor leaves the message; None for timers
+    buffer : the label in which the executor leaves the message; None without one
     """
 
     section: Section
     kind: CallbackKind
     node: Node
-    interval: Time
+    interval: Time | None
+    executor: str
     in_executor: bool
     incoming: Message | None
     outgoing: tuple[Message, ...]
@@ -78,9 +104,15 @@ class Callback:
         return (self.section.jitter or 0) if isinstance(self.section, Subscription) else 0
 
     @property
+    def nominal_interval(self) -> Time:
+        """The interval of a callback that has one."""
+        assert self.interval is not None
+        return self.interval
+
+    @property
     def min_interval(self) -> Time:
-        """Minimum time between two messages, or two expirations of its timer."""
-        return self.interval - self.jitter
+        """Minimum time between two messages, or two expirations of its timer, of a callback that has an interval."""
+        return self.nominal_interval - self.jitter
 
     @property
     def runs_when_due(self) -> bool:
@@ -93,42 +125,74 @@ class Callback:
         return self.section.location()
 
 
-def callbacks_of(application: Application, executor: Executor, notes: Notes) -> tuple[Callback, ...]:
+def callbacks_of(application: Application, middleware: Middleware, notes: Notes) -> tuple[Callback, ...]:
     """All valid callbacks in the order of the file; the others get a finding."""
+    serving = Serving.of(middleware, notes)
     found = [
         callback
         for node in application.nodes
-        for kind, section in _sections(node)
-        if (callback := _callback(kind, section, node, executor, notes)) is not None
+        for kind, section in sections_of(node)
+        if (callback := _callback(kind, section, node, serving, notes)) is not None
     ]
     return tuple(found)
 
 
-def _sections(node: Node) -> Iterator[tuple[CallbackKind, Section]]:
+def sections_of(node: Node) -> Iterator[tuple[CallbackKind, Section]]:
+    """The sections of all callbacks of a node."""
     for kind, sections in (
         (CallbackKind.SUBSCRIPTION, node.subscriptions),
         (CallbackKind.TIMER, node.timers),
         (CallbackKind.SERVICE, node.services),
         (CallbackKind.CLIENT, node.clients),
+        (CallbackKind.GUARD_CONDITION, node.guard_conditions),
+        (CallbackKind.ACTION_SERVER, node.action_servers),
+        (CallbackKind.ACTION_CLIENT, node.action_clients),
     ):
         yield from ((kind, section) for section in sections)
+    if node.parameter_server is not None:
+        yield CallbackKind.PARAMETERS, _of_middleware(f"{node.name}_Parameters", node.parameter_server)
+    if node.lifecycle is not None:
+        yield CallbackKind.LIFECYCLE, _of_middleware(f"{node.name}_Lifecycle", node.lifecycle)
 
 
-def _callback(kind: CallbackKind, section: Section, node: Node, executor: Executor, notes: Notes) -> Callback | None:
-    interval = _interval(section, notes)
+def _of_middleware(name: str, section: ParameterServer | Lifecycle) -> Section:
+    """The callback that answers requests to the middleware itself, with the locations of its section."""
+    shared = {key: getattr(section, key) for key in section.model_fields_set & MessageCallback.model_fields.keys()}
+    found = MessageCallback.model_construct(name=name, **shared)
+    found._where = section._where
+    return found
+
+
+def _callback(kind: CallbackKind, section: Section, node: Node, serving: Serving, notes: Notes) -> Callback | None:
+    executor, in_executor = serving.place(section, node, is_of_middleware=kind in _OF_MIDDLEWARE)
+    needs_interval = not _may_be_unknown(section, kind) or executor.loop is None
+    interval = _interval(section, needs_interval, notes)
     outgoing = tuple(_outgoing(section, node, interval or SECOND, notes))
-    if interval is None:
+    if interval is None and needs_interval:
         return None
+    incoming = None if interval is None else _incoming(section, interval)
     return Callback(
         section=section,
         kind=kind,
         node=node,
         interval=interval,
-        in_executor=(section.runs_in or executor.callbacks) in ("executor", "in-executor"),
-        incoming=_incoming(section, interval),
+        executor=executor.name,
+        in_executor=in_executor,
+        incoming=incoming,
         outgoing=outgoing,
-        buffer=(section.buffer or f"{section.name}_message") if isinstance(section, MessageCallback) else None,
+        buffer=(section.buffer or f"{section.name}_message") if incoming and isinstance(section, MessageCallback) else None,
     )
+
+
+#: What the executor serves without a callback of the application.
+_OF_MIDDLEWARE = (CallbackKind.PARAMETERS, CallbackKind.LIFECYCLE)
+
+
+def _may_be_unknown(section: Section, kind: CallbackKind) -> bool:
+    """Whether a callback can do without an interval: nothing else of known rate follows from it."""
+    if kind is CallbackKind.GUARD_CONDITION:
+        return not section.publishes and not section.requests
+    return kind in _OF_MIDDLEWARE
 
 
 def interval_of_rate(rate: Frequency) -> Time:
@@ -136,11 +200,13 @@ def interval_of_rate(rate: Frequency) -> Time:
     return int(SECOND / rate)
 
 
-def _interval(section: Section, notes: Notes) -> Time | None:
+def _interval(section: Section, needed: bool, notes: Notes) -> Time | None:
     key = "period" if isinstance(section, Timer) else "interval"
-    given: Time | None = getattr(section, key)
+    given: Time | None = getattr(section, key, None)
     rate: Frequency | None = getattr(section, "rate", None)
     if given is None and rate is None:
+        if not needed:
+            return None
         message = f"{section.name!r} has neither {key!r} nor 'rate'"
         notes.error("APP003", message, section.location(), f"Set '{key}: 20 ms' or 'rate: 50 Hz'.")
         return None
@@ -173,6 +239,10 @@ def _incoming(section: Section, interval: Time) -> Message | None:
         case Client():
             topic, size, reliable = section.service, section.response_size, True
             channel = _response_channel(topic)
+        case ActionServer():
+            topic, size, reliable, channel = section.name, section.goal_size, True, _request_channel(section.name)
+        case ActionClient():
+            topic, size, reliable, channel = section.action, section.result_size, True, _response_channel(section.action)
         case _:
             return None
     return Message(
@@ -187,7 +257,10 @@ def _incoming(section: Section, interval: Time) -> Message | None:
 
 
 def _outgoing(section: Section, node: Node, interval: Time, notes: Notes) -> Iterator[Message]:
-    """What a callback sends: messages to topics, requests to services, and the response if it is a service."""
+    """What a callback sends: messages to topics, requests to services and goals to actions, and the responses of its own ones.
+
+    An action server sends a feedback message and the result for each goal.
+    """
 
     def message(topic: str, channel: str, size: DataSize, reliable: bool, origin: Location | None) -> Message:
         return Message(
@@ -208,15 +281,23 @@ def _outgoing(section: Section, node: Node, interval: Time, notes: Notes) -> Ite
         else:
             is_reliable = publisher.reliability == "reliable"
             yield message(topic, _topic_channel(topic), publisher.message_size, is_reliable, publisher.location())
+    clients: dict[str, Client | ActionClient] = {
+        **{client.name: client for client in node.clients},
+        **{client.name: client for client in node.action_clients},
+    }
     for index, name in enumerate(section.requests):
-        client = next((client for client in node.clients if client.name == name), None)
-        if client is None:
-            names = [client.name for client in node.clients]
-            notes.undefined("client", name, names, section.location("requests", index), owner=f"node {node.name!r}")
-        else:
-            yield message(client.service, _request_channel(client.service), client.request_size, True, client.location())
+        match clients.get(name):
+            case None:
+                notes.undefined("client", name, clients, section.location("requests", index), owner=f"node {node.name!r}")
+            case Client(service=service, request_size=size) as client:
+                yield message(service, _request_channel(service), size, True, client.location())
+            case ActionClient(action=action, goal_size=size) as client:
+                yield message(action, _request_channel(action), size, True, client.location())
     if isinstance(section, Service):
         yield message(section.name, _response_channel(section.name), section.response_size, True, section.location())
+    if isinstance(section, ActionServer):
+        yield message(section.name, _topic_channel(section.name), section.feedback_size, True, section.location())
+        yield message(section.name, _response_channel(section.name), section.result_size, True, section.location())
 
 
 def _topic_channel(topic: str) -> str:
@@ -250,3 +331,8 @@ def registration_order(callbacks: Iterable[Callback], executor: Executor, notes:
             notes.undefined("callback", name, by_name, executor.location("order", index))
     names = [name for name in executor.order if name in by_name]
     return tuple(by_name[name] for name in dict.fromkeys([*names, *by_name]))
+
+
+def transmission_name_of(message: Message, *, incoming: bool) -> str:
+    """The name of the task that stands for a message on the wire, such as `factor_topic_to_Message_Factor`."""
+    return f"{message.channel}_{'to' if incoming else 'from'}_{message.callback}"

@@ -11,6 +11,7 @@ from amalthea_uros.uros.application import body_name
 from amalthea_uros.uros.callbacks import Callback
 from amalthea_uros.uros.context import AssemblyContext
 from amalthea_uros.uros.executor import notification_name
+from amalthea_uros.uros.executors.serving import stated_executors
 from amalthea_uros.uros.tasks import PlannedIsr, PlannedTask
 
 
@@ -42,7 +43,7 @@ def chain_elements(context: AssemblyContext, callbacks: Sequence[Callback]) -> M
     callers: dict[str, str] = {}
     processes: tuple[PlannedTask | PlannedIsr, ...] = (*context.tasks, *context.isrs)
     for process in processes:
-        called = [context.runnables[call.runnable] for call in process.activities if isinstance(call, Call)]
+        called = [context.runnables[call.runnable] for call in walk(process.activities) if isinstance(call, Call)]
         found[process.name] = _element(process.name, None, called)
         for runnable in called:
             callers.setdefault(runnable.name, process.name)
@@ -57,9 +58,9 @@ def chain_elements(context: AssemblyContext, callbacks: Sequence[Callback]) -> M
         found[callback.name] = element
         if callback.in_executor and body in found:
             found[body] = element
-    executor = context.description.middleware.executor.name
     if callbacks:
-        found.setdefault(executor, _without_accesses(executor))
+        for executor in stated_executors(context.description.middleware):
+            found.setdefault(executor.name, _without_accesses(executor.name))
     return found
 
 

@@ -6,11 +6,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from amalthea_uros.diagnostics import Location
+from amalthea_uros.perf.executors import Executor
 from amalthea_uros.perf.software import Channel, Runnable
 from amalthea_uros.spec.description import Description
 from amalthea_uros.uros.demand import DemandConverter
 from amalthea_uros.uros.hardware import Controller
 from amalthea_uros.uros.notes import Notes
+from amalthea_uros.uros.rtos import PriorityScale, priority_scale
 from amalthea_uros.uros.stimuli import StimulusRegistry
 from amalthea_uros.uros.tasks import PlannedIsr, PlannedTask
 
@@ -23,6 +25,7 @@ class AssemblyContext:
     ----------
     runnables : by name, in the order of their creation
     channels : by name, of the messages that the application sends and receives itself
+    executors : that spin in loops
     """
 
     description: Description
@@ -33,11 +36,17 @@ class AssemblyContext:
     isrs: list[PlannedIsr] = field(default_factory=list)
     runnables: dict[str, Runnable] = field(default_factory=dict)
     channels: Mapping[str, Channel] = field(default_factory=dict)
+    executors: list[Executor] = field(default_factory=list)
 
     @property
     def converter(self) -> DemandConverter:
         """Converts execution times to demands on the controller."""
         return DemandConverter(self.controller, self.notes)
+
+    @property
+    def priority_scale(self) -> PriorityScale:
+        """What the priorities of the tasks mean."""
+        return priority_scale(self.description.os, self.tasks)
 
     def core(self, name: str | None, location: Location | None) -> str:
         """The core of a name; the first core if there is no name, or no core has it."""

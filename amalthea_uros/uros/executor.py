@@ -4,8 +4,8 @@ A callback with its own task (the mapping of the thesis, see `periods`) is only 
 in a buffer. Callbacks inside the executor run as in rclc: one after the other in the order in which they were added, each message
 taken just before its callback, or (LET) all messages taken first. With a trigger condition nothing is taken or called until it holds.
 
-The cost of an activation is a base, a part for each timer that is checked, a part for each callback that is ready, and for each
-message that is taken a fixed part and a part per byte. What does not happen in every activation is a runnable that is called only
+The cost of an activation is a base, a part for each handle and one for each timer that is checked, a part for each callback that is
+ready, and for each message that is taken a fixed part and a part per byte. What does not happen in every activation is a runnable that is called only
 every n-th time.
 """
 
@@ -14,15 +14,16 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from amalthea_uros.perf.activities import AccessKind, Activity, Call, LabelAccess, Receive, ReceiveOperation
+from amalthea_uros.perf.activities import AccessKind, Activity, Call, LabelAccess, Receive, ReceiveOperation, Trigger
 from amalthea_uros.perf.software import Runnable
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.spec.execution_time import ExecutionTime
 from amalthea_uros.spec.executors import Executor, MessageCost
-from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.units import DataSize, Time
+from amalthea_uros.uros.activities import trigger_name
 from amalthea_uros.uros.callbacks import Callback, CallbackKind
 from amalthea_uros.uros.demand import DemandConverter
+from amalthea_uros.uros.executors.counts import handle_count
 from amalthea_uros.uros.phases import ExecutorPhases
 
 _BITS_PER_BYTE = 8
@@ -50,22 +51,27 @@ class ExecutorRunnables:
     channels : names of the channels of messages that the application sends itself
     """
 
-    middleware: Middleware
+    executor: Executor
     converter: DemandConverter
     core: str
     channels: Collection[str]
 
-    def spin(self, timers: int) -> Runnable:
-        """What every activation does."""
-        executor = self.middleware.executor
-        cost = executor.execution_time
-        parts = (cost.base, *([cost.per_timer] * timers))
+    def spin(self, callbacks: Collection[Callback]) -> Runnable:
+        """What every activation does for the callbacks that the executor has handles of."""
+        executor, cost = self.executor, self.executor.execution_time
+        handles = sum(map(handle_count, callbacks))
+        parts = (cost.base, *([cost.per_timer] * timer_count(callbacks)), *([cost.per_handle] * handles))
         activities = self.converter.execute(parts, self.core, executor.location("execution_time"))
-        return Runnable(name=f"{executor.name}_Spin", activities=activities, origin=executor.location())
+        return Runnable(name=spin_name(executor.name), activities=activities, origin=executor.location())
 
-    def take_or_notify(self, callback: Callback) -> Runnable:
-        """What a ready callback adds: its notification, and the transfer of its message to the buffer if it has one."""
-        cost = self.middleware.executor.execution_time
+    def take_or_notify(self, callback: Callback, triggers: Iterable[str] = ()) -> Runnable:
+        """What a ready callback adds: its notification, and the transfer of its message to the buffer if it has one.
+
+        Parameters
+        ----------
+        triggers : tasks that it activates
+        """
+        cost = self.executor.execution_time
         message = callback.incoming
         parts = [cost.per_ready_callback, *message_cost(cost.per_message, message.size if message else None)]
         activities: list[Activity] = []
@@ -74,7 +80,13 @@ class ExecutorRunnables:
         activities += self.converter.execute(parts, self.core, callback.origin)
         if callback.buffer is not None:
             activities.append(LabelAccess(label=callback.buffer, kind=AccessKind.WRITE))
+        activities += [Trigger(stimulus=trigger_name(task)) for task in triggers]
         return Runnable(name=notification_name(callback), activities=tuple(activities), origin=callback.origin)
+
+
+def spin_name(executor: str) -> str:
+    """The name of the runnable that every activation of an executor begins with."""
+    return f"{executor}_Spin"
 
 
 def notification_name(callback: Callback) -> str:
@@ -96,7 +108,7 @@ def own_task_calls(
     for callback in callbacks:
         runnable = runnables.take_or_notify(callback)
         if runnable.activities:
-            yield PlannedCall(runnable=runnable, counter=phases.counter(callback, callback.interval))
+            yield PlannedCall(runnable=runnable, counter=phases.counter(callback, callback.nominal_interval))
 
 
 def in_executor_calls(
@@ -108,7 +120,7 @@ def in_executor_calls(
     ----------
     bodies : the runnable of each callback
     """
-    executor = runnables.middleware.executor
+    executor = runnables.executor
     counters = {callback.name: _triggered_counter(callback, callbacks, executor, phases) for callback in callbacks}
     takes = {
         callback.name: PlannedCall(runnable=runnable, counter=counters[callback.name])
@@ -133,11 +145,11 @@ def _triggered_counter(
     """The counter of the call of a callback under the trigger condition; callbacks that wait for the same event are due together."""
     trigger = executor.trigger
     one = next((other for other in callbacks if other.name == trigger.one), None)
-    if one is not None and one.interval >= callback.interval:
-        return phases.counter(callback, one.interval, waits_for=one.name)
+    if one is not None and one.nominal_interval >= callback.nominal_interval:
+        return phases.counter(callback, one.nominal_interval, waits_for=one.name)
     if trigger.one is None and trigger.when == "all" and len(callbacks) > 1:
-        return phases.counter(callback, max(other.interval for other in callbacks), waits_for=executor.name)
-    return phases.counter(callback, callback.interval)
+        return phases.counter(callback, max(other.nominal_interval for other in callbacks), waits_for=executor.name)
+    return phases.counter(callback, callback.nominal_interval)
 
 
 def timer_count(callbacks: Iterable[Callback]) -> int:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from amalthea_uros.diagnostics import Location
@@ -64,6 +64,10 @@ def controller_of(name: str, section: spec.Hardware, platform: str | None, notes
         frequency = core.frequency or section.frequency
         if frequency is None:
             advice = "Set a frequency, e.g. 'frequency: 300 MHz', or name a platform."
+            if platform is not None:
+                advice = (
+                    f"The platform {platform!r} does not know its clock: set it under 'hardware', e.g. 'frequency: 300 MHz'."
+                )
             notes.error("APP005", f"the frequency of core {core.name!r} is unknown", _origin(core, section), advice)
         elif core.name in frequencies:
             first = next(other for other in cores if other.name == core.name)
@@ -75,6 +79,7 @@ def controller_of(name: str, section: spec.Hardware, platform: str | None, notes
         first_memory = next(other for other in memories if other.name == memory.name)
         if memory is not first_memory:
             notes.duplicate("memory", memory.name, memory.location("name"), first_memory.location("name"))
+    _check_accesses(memories, frequencies, notes)
     label_memory = _label_memory(section, notes)
     if notes.has_errors:
         return None
@@ -107,7 +112,6 @@ def _hardware(
 ) -> Hardware:
     clocks = _clocks(frequencies)
     types = dict.fromkeys(core.type or default_type for core in cores)
-    accesses = tuple(access for memory in section.memories or () for access in _accesses(memory))
     microcontroller = Structure(
         name=section.microcontroller or "Controller",
         kind=StructureKind.MICROCONTROLLER,
@@ -116,7 +120,7 @@ def _hardware(
                 name=core.name,
                 type=core.type or default_type,
                 clock=clocks[frequencies[core.name]].name,
-                accesses=accesses,
+                accesses=tuple(_accesses(core.name, section.memories or ())),
                 origin=_origin(core, section),
             )
             for core in cores
@@ -148,8 +152,33 @@ def _memory(memory: spec.Memory) -> Memory:
     return Memory(name=memory.name, size=memory.size, kind=kind, origin=memory.location())
 
 
-def _accesses(memory: spec.Memory) -> list[Access]:
-    if memory.read_cycles is None and memory.write_cycles is None:
-        return []
-    read, write = (None if cycles is None else Constant(cycles) for cycles in (memory.read_cycles, memory.write_cycles))
-    return [Access(memory=memory.name, latency=Latency(read=read, write=write))]
+def _accesses(core: str, memories: Iterable[spec.Memory]) -> Iterator[Access]:
+    """What it costs a core to access the memories of which that is known."""
+    for memory in memories:
+        cycles = _cycles(core, memory)
+        if cycles != (None, None):
+            read, write = (None if number is None else Constant(number) for number in cycles)
+            yield Access(memory=memory.name, latency=Latency(read=read, write=write))
+
+
+def _cycles(core: str, memory: spec.Memory) -> tuple[int | None, int | None]:
+    """Cycles of a read and of a write: those of the core, else those of all cores."""
+    for own in memory.accesses:
+        if core in own.cores:
+            return own.read_cycles, own.write_cycles
+    return memory.read_cycles, memory.write_cycles
+
+
+def _check_accesses(memories: Iterable[spec.Memory], cores: Mapping[str, Frequency], notes: Notes) -> None:
+    """Report undefined cores, and those for which a memory states two costs."""
+    for memory in memories:
+        seen: set[str] = set()
+        for latencies in memory.accesses:
+            for index, core in enumerate(latencies.cores):
+                location = latencies.location("cores", index)
+                if core not in cores:
+                    notes.undefined("core", core, cores, location)
+                elif core in seen:
+                    message = f"the memory {memory.name!r} states twice what accesses from {core!r} cost"
+                    notes.error("APP003", message, location, "Remove one of them.")
+                seen.add(core)

@@ -7,6 +7,8 @@ from collections.abc import Iterable
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.perf.software import Channel, Label
 from amalthea_uros.spec.description import Description
+from amalthea_uros.uros.callbacks import sections_of
+from amalthea_uros.uros.executors.serving import stated_executors
 from amalthea_uros.uros.notes import Notes
 
 
@@ -26,15 +28,15 @@ def check_unique_data(labels: Iterable[Label], channels: Iterable[Channel], note
 def _processes(description: Description) -> Iterable[tuple[str, Location | None]]:
     nodes = description.application.nodes
     if nodes:
-        executor = description.middleware.executor
-        yield executor.name, executor.location("name")
+        for executor in stated_executors(description.middleware):
+            yield executor.name, executor.location("name")
         can = description.middleware.transport.can
         if can is not None and can.interrupt is not None:
             yield can.interrupt.name, can.interrupt.location("name")
     for process in (*description.tasks, *description.isrs):
         yield process.name, process.location("name")
     for node in nodes:
-        for callback in (*node.subscriptions, *node.timers, *node.services, *node.clients):
+        for _, callback in sections_of(node):
             yield callback.name, callback.location("name")
 
 

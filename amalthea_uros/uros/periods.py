@@ -23,9 +23,15 @@ _SET_BY_USER = "set in app.yaml"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PeriodChoice:
-    """The period of a task, and the reason for it."""
+    """The period of a task, and the reason for it.
+
+    Attributes
+    ----------
+    executor : that serves the callback of the task, or the task itself if it is an executor
+    """
 
     task: str
+    executor: str
     period: Time
     reason: str
 
@@ -48,9 +54,9 @@ class PeriodCandidates:
         return self.periods or (callback.min_interval,)
 
 
-def period_candidates(middleware: Middleware) -> PeriodCandidates:
-    """The task periods that the middleware allows."""
-    return PeriodCandidates(tuple(sorted(set(middleware.task_periods), reverse=True)), middleware.executor.period)
+def period_candidates(middleware: Middleware, executor: Executor) -> PeriodCandidates:
+    """The task periods that the middleware allows for callbacks that an executor serves."""
+    return PeriodCandidates(tuple(sorted(set(middleware.task_periods), reverse=True)), executor.period)
 
 
 def violated_rule(callback: Callback, period: Time, wcet: Time, candidates: PeriodCandidates) -> str | None:
@@ -62,7 +68,7 @@ def violated_rule(callback: Callback, period: Time, wcet: Time, candidates: Peri
         return f"longer than the {due}"
     if period <= wcet:
         return f"not longer than the execution time of {time_text(wcet)}"
-    if is_timer and callback.interval % period:
+    if is_timer and callback.nominal_interval % period:
         return f"not a divisor of the {due}"
     if candidates.executor_period is not None and period < candidates.executor_period:
         return f"shorter than the executor period of {time_text(candidates.executor_period)}"
@@ -81,7 +87,7 @@ def choose_task_period(
         violation = violated_rule(callback, period, wcet, candidates)
         if violation is None:
             reason = _reason(callback, candidates) + _when_it_runs(callback, period)
-            return PeriodChoice(task=callback.name, period=period, reason=reason)
+            return PeriodChoice(task=callback.name, executor=callback.executor, period=period, reason=reason)
         violations.setdefault(violation, []).append(time_text(period))
     reasons = "; ".join(f"{', '.join(periods)} ({violation})" for violation, periods in violations.items())
     message = f"no available task period fits {callback.name!r}: {reasons}"
@@ -103,12 +109,12 @@ def _check_task_period(
     elif violation is not None:
         advice = "Set another period, or remove 'task_period' to have one chosen."
         notes.error("UR102", f"{subject} is {violation}", location, advice)
-    return PeriodChoice(task=callback.name, period=period, reason=_SET_BY_USER + _when_it_runs(callback, period))
+    return PeriodChoice(task=callback.name, executor=callback.executor, period=period, reason=_SET_BY_USER + _when_it_runs(callback, period))
 
 
 def _when_it_runs(callback: Callback, period: Time) -> str:
     """In which activations of its task a callback runs, if that is activated more often than the callback is due."""
-    every = callback.interval // period
+    every = callback.nominal_interval // period
     if every < 2:
         return ""
     return f"; runs in one of {every} activations" if callback.runs_when_due else "; runs in every activation"
@@ -116,7 +122,7 @@ def _when_it_runs(callback: Callback, period: Time) -> str:
 
 def _reason(callback: Callback, candidates: PeriodCandidates) -> str:
     source = "the timer period of" if callback.kind is CallbackKind.TIMER else "messages every"
-    reason = f"keeps up with {source} {time_text(callback.interval)}"
+    reason = f"keeps up with {source} {time_text(callback.nominal_interval)}"
     return f"longest available period that {reason}" if candidates.periods else reason
 
 
@@ -124,8 +130,8 @@ def check_callbacks_in_executor(callbacks: Iterable[Callback], converter: Demand
     """Report callbacks in the executor whose execution time is not shorter than their interval."""
     for callback in callbacks:
         wcet = converter.wcet(callback.section.execution_time)
-        if wcet >= callback.interval:
-            message = f"{callback.name!r} is due every {time_text(callback.interval)}, but executes for up to {time_text(wcet)}"
+        if wcet >= callback.nominal_interval:
+            message = f"{callback.name!r} is due every {time_text(callback.nominal_interval)}, but executes for up to {time_text(wcet)}"
             location = callback.section.location("execution_time")
             notes.error("UR107", message, location, "Reduce its execution time, or run it less often.")
 
@@ -141,18 +147,18 @@ def choose_executor_period(
     inside : the callbacks that run in the executor
     """
     limits = [(choice.period, f"the task of {choice.task}") for choice in tasks]
-    limits += [(callback.interval, callback.name) for callback in inside]
+    limits += [(callback.nominal_interval, callback.name) for callback in inside]
     shortest, fastest = min(limits)
     if executor.period is not None:
         if executor.period > shortest:
             message = f"the executor period {time_text(executor.period)} is longer than the {time_text(shortest)} of {fastest}"
             advice = f"Set a period of {time_text(shortest)} or less."
             notes.error("UR103", message, executor.location("period"), advice)
-        return PeriodChoice(task=executor.name, period=executor.period, reason=_SET_BY_USER)
+        return PeriodChoice(task=executor.name, executor=executor.name, period=executor.period, reason=_SET_BY_USER)
     period = next((period for period in candidates.periods or (shortest,) if period <= shortest), None)
     if period is None:
         message = f"no available task period is short enough for the executor: {fastest} needs {time_text(shortest)} or less"
         advice = f"Add a period of {time_text(shortest)} or less to 'task_periods'."
         notes.error("UR103", message, executor.location(), advice)
         return None
-    return PeriodChoice(task=executor.name, period=period, reason=f"keeps up with {fastest}")
+    return PeriodChoice(task=executor.name, executor=executor.name, period=period, reason=f"keeps up with {fastest}")

@@ -105,4 +105,4 @@ def own_task_counter(callback: Callback, period: Time) -> Counter | None:
     """The counter of a callback in its own task: a phase that is stated is followed by the next activation of the task."""
     phase = callback.section.phase
     first = None if phase is None else max(0, -(-(phase - callback.section.offset) // period)) + 1
-    return call_counter(callback.interval, period, callback.name, first, callback.jitter)
+    return call_counter(callback.nominal_interval, period, callback.name, first, callback.jitter)

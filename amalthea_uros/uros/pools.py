@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from amalthea_uros.spec.application import Application
 from amalthea_uros.spec.middleware import Middleware
-from amalthea_uros.units import data_size_text
-from amalthea_uros.uros.callbacks import Callback, Message
 from amalthea_uros.uros.notes import Notes
-from amalthea_uros.uros.streams import DEFAULT_STREAM_HISTORY
 
 #: Default values of the build options, from the table in the README of micro-ROS/rmw_microxrcedds.
 DEFAULTS: Mapping[str, int] = {
@@ -74,41 +71,11 @@ def pools_of(application: Application, middleware: Middleware) -> tuple[Pool, ..
     return tuple(found)
 
 
-def check_pools(pools: tuple[Pool, ...], callbacks: tuple[Callback, ...], middleware: Middleware, notes: Notes) -> None:
-    """Report pools that are too small, and messages that do not fit into their buffers."""
+def check_pools(pools: tuple[Pool, ...], middleware: Middleware, notes: Notes) -> None:
+    """Report pools that are too small."""
     for pool in filter(lambda pool: pool.is_exceeded, pools):
         default = "" if pool.configured else " by default"
         message = f"{pool.option} is {pool.available}{default}, but the application needs {pool.needed}"
         advice = f"Set {pool.option} to {pool.needed} or more in the build and under 'limits'."
         report = notes.error if pool.configured else notes.warning
         report("UR120", message, middleware.limits.location(pool.option), advice)
-    for sent in _messages(callbacks):
-        _check_size(sent, middleware, notes)
-
-
-def _messages(callbacks: tuple[Callback, ...]) -> Iterator[Message]:
-    """Each message once, even if several callbacks send it."""
-    seen = set()
-    for callback in callbacks:
-        for message in (callback.incoming, *callback.outgoing):
-            if message is not None and (key := (message.topic, message.size, message.origin)) not in seen:
-                seen.add(key)
-                yield message
-
-
-def _check_size(message: Message, middleware: Middleware, notes: Notes) -> None:
-    """Report a best-effort message larger than the MTU, or a reliable one larger than all buffers of its stream."""
-    limits = middleware.limits
-    if limits.RMW_UXRCE_MTU is None:
-        return
-    history = limits.RMW_UXRCE_STREAM_HISTORY or DEFAULT_STREAM_HISTORY
-    capacity = limits.RMW_UXRCE_MTU * (history if message.reliable else 1)
-    size = message.size + middleware.transport.overhead
-    if size > capacity:
-        source, options = "RMW_UXRCE_MTU", "RMW_UXRCE_MTU"
-        if message.reliable:
-            source = f"RMW_UXRCE_MTU times RMW_UXRCE_STREAM_HISTORY ({history})"
-            options = "RMW_UXRCE_MTU or RMW_UXRCE_STREAM_HISTORY"
-        needed, limit = data_size_text(size), data_size_text(capacity)
-        text = f"a message of {message.topic!r} needs {needed} with headers, but the limit is {limit}: {source}"
-        notes.error("UR121", text, message.origin, f"Increase {options}, or reduce the size of the message.")

@@ -16,7 +16,7 @@ SAMPLES = sorted((ROOT / "samples").glob("*.yaml"))
 #: times, a semaphore with a ceiling.
 WISHES = {
     "bodas-test-advanced": {"INC-CO-KIND"},
-    "bodas-test-hardware": {"INC-CO-KIND", "INC-OS-ALGORITHM", "INC-SW-TICKS-STAT"},
+    "bodas-test-hardware": {"INC-CO-KIND", "INC-HW-ACCESS", "INC-OS-ALGORITHM", "INC-SW-TICKS-STAT"},
     "bodas-test-measured": {"INC-CO-KIND"},
     "bodas-test-simple": {"INC-CO-KIND"},
     "drive-and-lift": {"INC-CO-KIND", "INC-OS-SEMA-TYPE"},

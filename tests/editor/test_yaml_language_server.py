@@ -82,7 +82,7 @@ def test_a_mistake_has_a_diagnostic_at_its_place(opened, text, place, message):
     ("text", "offered"),
     [
         (START + "tasks:\n  - name: A\n    ", {"period", "execution_time", "priority", "deadline"}),
-        ("amuros: 1\nname: a\nhardware: ", {"bodas-rc18-12-40", "generic", "single-core"}),
+        ("amuros: 1\nname: a\nhardware: ", {"bodas-rc18-12-40", "generic", "esp32"}),
         (START + "tasks:\n  - name: A\n    preemption: ", {"preemptive", "cooperative", "non-preemptive"}),
         ("", {"amuros", "hardware", "tasks", "chains"}),
     ],

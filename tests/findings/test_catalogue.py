@@ -83,7 +83,7 @@ def reported(example, family, folder):
                 (folder / "amuros.toml").write_text(example)
                 project_settings(folder / "model.amxmi")
                 return []
-            case "YML" | "APP":
+            case "YML" | "APP" | "EXE":
                 path = folder / "app.yaml"
                 path.write_text(example)
                 return build(path).assembly.findings

@@ -83,21 +83,3 @@ def test_a_pool_that_is_too_small(author):
     assert author.findings(app("RMW_UXRCE_MAX_SUBSCRIPTIONS: 1")) == [
         (7, "UR120", "RMW_UXRCE_MAX_SUBSCRIPTIONS is 1, but the application needs 2")
     ]
-
-
-@pytest.mark.parametrize(
-    ("size", "reliability", "fits"),
-    [
-        ("500 B", "best-effort", True),  # with 12 B of headers just the MTU
-        ("501 B", "best-effort", False),
-        ("501 B", "reliable", True),
-        ("1524 B", "reliable", True),  # three buffers
-        ("1525 B", "reliable", False),
-    ],
-)
-def test_messages_fit_into_the_buffers(author, size, reliability, fits):
-    text = app("RMW_UXRCE_MTU: 512 B, RMW_UXRCE_STREAM_HISTORY: 3", size, reliability)
-    if fits:
-        assert author.describe(text)
-    else:
-        assert [(line, rule) for line, rule, _ in author.findings(text)] == [(12, "UR121")]

@@ -106,7 +106,7 @@ def _message(topic: str, samples: Samples, path: Path, description: Described, p
     assert isinstance(section, Subscription)
     stated = next(each.interval for each in places.callbacks if each.section is section)
     grid, target = Grid.of(samples), f"{section.name}.arrival_period"
-    interval = stated if grid.fits(stated) else grid.matching([_round(grid.mean)])
+    interval = stated if stated is not None and grid.fits(stated) else grid.matching([_round(grid.mean)])
     if interval is None:
         mean = rounded_time_text(grid.mean, Rounding.NEAREST)
         reason = f"the mean of {mean} is not that of regular messages; set 'interval' to the minimum distance"

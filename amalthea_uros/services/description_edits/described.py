@@ -9,7 +9,7 @@ from pathlib import Path
 from amalthea_uros.errors import ReadError
 from amalthea_uros.services.paths import folder_of
 from amalthea_uros.spec.description import Description
-from amalthea_uros.spec.platforms import whole_hardware
+from amalthea_uros.spec.platforms import complete
 from amalthea_uros.spec.read import text_draft
 from amalthea_uros.uros.assemble import Assembly, assemble
 
@@ -44,9 +44,9 @@ def described(text: str, path: Path) -> Described:
     draft = text_draft(path, text, Description)
     if draft.section is None or draft.findings:
         raise ReadError(draft.findings)
-    hardware, platform, findings = whole_hardware(draft.section.hardware, folder_of(path))
+    whole, platform, findings = complete(draft.section, folder_of(path))
     if findings:
         raise ReadError(findings)
-    assembly = assemble(draft.section, hardware, platform)
+    assembly = assemble(whole, whole.hardware, platform)
     types = {name: core.type or "" for name, core in assembly.system.cores.items()}
     return Described(draft.section, assembly, platform, types)

@@ -80,7 +80,7 @@ def edit_description(text: str, path: Path = TEXT, changes: Sequence[Change] = (
         return _restructured(text, path, structural, [change for change in changes if change.key not in _STRUCTURAL])
     before = described(text, path)
     expected = changed_system(before.assembly.system, changes, Settings())
-    places = Places(before.description, before.platform, before.core_types)
+    places = Places(before.description, before.platform, before.core_types, before.assembly.priority_scale)
     assignments = [assignment for change in changes for assignment in places.assignments(change)]
     consequences: list[Assignment] = []
     while True:
@@ -101,7 +101,7 @@ def edit_description(text: str, path: Path = TEXT, changes: Sequence[Change] = (
 def _restructured(text: str, path: Path, structural: Sequence[Change], values: Sequence[Change]) -> EditedDescription:
     """The text with changes for which there is no other way than a description, and then with other values of what it describes."""
     before = described(text, path)
-    places = Places(before.description, before.platform, before.core_types)
+    places = Places(before.description, before.platform, before.core_types, before.assembly.priority_scale)
     assignments = [assignment for change in structural for assignment in places.assignments(change)]
     rebuilt = apply_assignments(text, assignments)
     _system(rebuilt, path, structural)

@@ -23,6 +23,7 @@ from amalthea_uros.units import SECOND, Time, data_size_text, parse_time, time_t
 from amalthea_uros.uros import callbacks as uros
 from amalthea_uros.uros.executor import message_cost, timer_count
 from amalthea_uros.uros.notes import Notes
+from amalthea_uros.uros.rtos import PriorityScale
 
 _TICKS = re.compile(r"\d+\s*ticks?", re.ASCII)
 #: Sections under other names than their own.
@@ -54,11 +55,13 @@ class Places:
     ----------
     platform : the name of the hardware in execution times
     core_types : by core
+    scale : what priorities of tasks mean in the description
     """
 
     description: Description
     platform: str | None
     core_types: Mapping[str, str]
+    scale: PriorityScale
 
     def assignments(self, change: Change) -> list[Assignment]:
         """What has to be written for a change.
@@ -196,7 +199,7 @@ class Places:
     @property
     def callbacks(self) -> tuple[uros.Callback, ...]:
         """The callbacks, with their intervals and messages."""
-        return uros.callbacks_of(self.description.application, self.description.middleware.executor, Notes())
+        return uros.callbacks_of(self.description.application, self.description.middleware, Notes())
 
 
 def _constant(parts: Iterable[ExecutionTime | Time | None], name: str) -> Time:
@@ -241,6 +244,10 @@ def _whole(text: str) -> int:
 
 def _word(text: str) -> str:
     return text
+
+
+def _write_priority(places: Places, owner: Owner, change: Change) -> Iterable[Assignment]:
+    yield Assignment(change.target, (*owner.path, "priority"), places.scale.number(_whole(change.value)))
 
 
 def _names(text: str) -> list[str]:
@@ -294,7 +301,7 @@ def _write_process_period(_places: Places, owner: Owner, change: Change) -> Iter
 
 _SHARED: dict[str, _Write] = {
     "offset": _single(_time),
-    "priority": _single(_whole),
+    "priority": _write_priority,
     "core": _single(_word),
     "deadline": _single(_time),
     "execution_time": _write_execution_time,
@@ -329,7 +336,7 @@ _KEYS: Mapping[OwnerKind, Mapping[str, _Write]] = {
     },
     OwnerKind.BODY: _ONLY_EXECUTION_TIME,
     OwnerKind.TASK: {**_PROCESS, "preemption": _single(_word), "activation_limit": _single(_whole)},
-    OwnerKind.ISR: {key: write for key, write in _PROCESS.items() if key != "deadline"},
+    OwnerKind.ISR: {key: write for key, write in _PROCESS.items() if key != "deadline"} | {"priority": _single(_whole)},
     OwnerKind.RUNNABLE: _ONLY_EXECUTION_TIME,
     OwnerKind.INTERRUPT: {"execution_time": _write_execution_time, "priority": _single(_whole), "core": _single(_word)},
 }

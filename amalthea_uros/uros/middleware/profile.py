@@ -93,8 +93,9 @@ class MiddlewareThread(Brief):
 
     Attributes
     ----------
-    priority : None if it is that of the executor that it serves
+    priority : None if it depends on the operating system, and the description does not state it
     period : None if messages activate it
+    stack : in bytes; None if it is not known
     calls_subscribers : whether callbacks of messages run in it, instead of in an executor
     """
 
@@ -117,6 +118,7 @@ class Sending(Brief):
     resends_after : time without an acknowledgement after which the receiver is asked for it; None if the transport cares for losses
     holds_session_while_waiting : whether a thread that waits for messages keeps others from sending, with several threads
     drops_when_busy : whether a message is dropped when another thread is sending
+    is_protected : whether several threads may use the middleware at the same time
     """
 
     waits: bool
@@ -124,14 +126,26 @@ class Sending(Brief):
     resends_after: Time | None
     holds_session_while_waiting: bool
     drops_when_busy: bool
+    is_protected: bool
 
 
 class Profile(Protocol):
     """A middleware; sizes are in bytes, and `content` is the serialised message without headers."""
 
-    name: str
-    title: str
-    source: str
+    @property
+    def name(self) -> str:
+        """Its name."""
+        ...
+
+    @property
+    def title(self) -> str:
+        """Its full name."""
+        ...
+
+    @property
+    def source(self) -> str:
+        """Where its figures come from."""
+        ...
 
     def waiting(self, middleware: Middleware) -> Waiting:
         """How an executor waits."""
@@ -153,8 +167,20 @@ class Profile(Protocol):
         """Length and least interval of messages that are sent while something is not acknowledged, or to keep alive; None for none."""
         ...
 
+    def gives_up_after(self, kind: MessageKind, content: int, *, reliable: bool, middleware: Middleware) -> Time | None:
+        """Time after which the sender of a message stops waiting for its acknowledgement; None if it does not wait."""
+        ...
+
     def largest_content(self, kind: MessageKind, *, reliable: bool, middleware: Middleware) -> int | None:
         """The longest content that can be sent or received; None for no limit."""
+        ...
+
+    def limiting_options(self, *, reliable: bool, middleware: Middleware) -> Sequence[str]:
+        """The build options that limit the content of messages."""
+        ...
+
+    def buffers(self, middleware: Middleware) -> int | None:
+        """The number of buffers in which reliable messages wait for their acknowledgement, a part in each; None for no limit."""
         ...
 
     def options(self, application: Application, middleware: Middleware) -> Sequence[Option]:

@@ -7,13 +7,13 @@ from amalthea_uros.validate.rule import Rule
 
 RULE = Rule(
     id="UR121",
-    title="message that does not fit into the buffers of its stream",
+    title="message that is too long for the middleware",
     severity=Severity.ERROR,
     rationale=(
-        "A best-effort message must fit into the MTU, and a reliable one into all buffers of its stream together. "
-        "Otherwise it cannot be sent."
+        "A best-effort message must fit into the MTU of the transport, and a reliable one that arrives into all buffers of its stream "
+        "together. One that is longer is never sent or received."
     ),
-    remedy="Increase RMW_UXRCE_MTU or RMW_UXRCE_STREAM_HISTORY, or reduce the size of the message.",
+    remedy="Increase the MTU or RMW_UXRCE_STREAM_HISTORY, reduce the size of the message, or send it reliably, in fragments.",
     fails="""
 amuros: 1
 name: app

@@ -10,10 +10,13 @@ RULE = Rule(
     title="reliable message without an acknowledgement time",
     severity=Severity.WARNING,
     rationale=(
-        "A reliable message occupies the stream until the agent acknowledges it. Without the acknowledgement time, "
-        "neither the occupancy of the stream nor the blocking of the sender has an upper bound."
+        "The callback that sends a reliable message waits until the agent has acknowledged it, up to 1 s by default. Without the "
+        "acknowledgement time, nothing shorter than that is certain."
     ),
-    remedy="Set 'acknowledgement' under 'transport', or use 'reliability: best-effort'.",
+    remedy=(
+        "Set 'acknowledgement' under 'transport', use 'reliability: best-effort', or 'reliable: {waits: false}' for ports that do "
+        "not wait."
+    ),
     fails="""
 amuros: 1
 name: app

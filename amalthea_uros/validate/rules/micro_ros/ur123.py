@@ -7,15 +7,19 @@ from amalthea_uros.validate.rule import Rule
 
 RULE = Rule(
     id="UR123",
-    title="reliable stream with too few buffers for unacknowledged messages",
+    title="reliable stream with too few buffers",
     severity=Severity.WARNING,
-    rationale="When all buffers wait for acknowledgement, nothing more can be sent: the sender waits, or the message is lost.",
-    remedy="Increase RMW_UXRCE_STREAM_HISTORY, or send less often.",
+    rationale=(
+        "A message of more fragments than the stream has buffers is sent in steps, and its sender waits for the acknowledgement of "
+        "each. In ports that do not wait, messages are lost when all buffers wait for acknowledgement."
+    ),
+    remedy="Increase RMW_UXRCE_STREAM_HISTORY, or send less data.",
     fails="""
 amuros: 1
 name: app
 hardware: {platform: single-core, frequency: 100 MHz}
 middleware:
+  reliable: {waits: false}
   transport: {acknowledgement: 50 ms}
 application:
   nodes:
@@ -30,8 +34,9 @@ amuros: 1
 name: app
 hardware: {platform: single-core, frequency: 100 MHz}
 middleware:
+  reliable: {waits: false}
   transport: {acknowledgement: 50 ms}
-  limits: {RMW_UXRCE_STREAM_HISTORY: 5}
+  limits: {RMW_UXRCE_STREAM_HISTORY: 8}
 application:
   nodes:
     - name: node

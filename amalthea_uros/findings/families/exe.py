@@ -1,0 +1,121 @@
+"""Findings about executors that spin in loops."""
+
+from __future__ import annotations
+
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.findings.kind import FindingKind
+
+_APPLICATION = """
+amuros: 1
+name: app
+hardware: {{platform: single-core, frequency: 100 MHz}}
+middleware:
+  executor: {executor}
+application:
+  nodes:
+    - name: node
+{callbacks}
+"""
+_TIMER = "      timers: [{name: Control, period: 10 ms, execution_time: 4 us}]"
+_SUBSCRIPTION = "      subscriptions: [{name: On_Command, topic: command, rate: 50 Hz, message_size: 4 B, execution_time: 4 us}]"
+_GUARD = "      guard_conditions: [{name: Stop, execution_time: 4 us}]"
+_ACTION = """      action_servers:
+        - {name: Move, rate: 1 Hz, goal_size: 4 B, result_size: 4 B, feedback_size: 4 B, execution_time: 4 us}"""
+
+
+def _example(executor: str, *callbacks: str) -> str:
+    return _APPLICATION.format(executor=executor, callbacks="\n".join(callbacks))
+
+
+KINDS = (
+    FindingKind(
+        id="EXE001",
+        title="more handles than the executor was initialised with",
+        severity=Severity.ERROR,
+        rationale="The handles are allocated once. Adding one more returns an error, and its callback never runs.",
+        remedy="Increase the number in rclc_executor_init and 'max_handles'; a parameter server needs 6 handles.",
+        fails=_example("{max_handles: 1, loop: {spin: 1 s}}", _TIMER, _SUBSCRIPTION),
+    ),
+    FindingKind(
+        id="EXE002",
+        title="timeout longer than the period of the loop",
+        severity=Severity.WARNING,
+        rationale="rclc_executor_spin_period waits for the timeout of the executor, not for the period. The timeout is 1 s by default, so "
+        "that each round takes 1 s if no message arrives and no timer expires; after that, rounds follow each other without a pause.",
+        remedy="Call rclc_executor_set_timeout with less than the period, and set 'timeout'.",
+        fails=_example("{loop: {spin_period: 10 ms}}", _SUBSCRIPTION),
+    ),
+    FindingKind(
+        id="EXE003",
+        title="executor that does not wait",
+        severity=Severity.WARNING,
+        rationale="The timeout of a wait is cut to whole milliseconds, so that a shorter one is 0. And a timer that is due, but kept back by "
+        "the trigger condition, ends each wait at once. Without a sleep, the loop then uses all the time that other tasks leave it.",
+        remedy="Set a timeout of 1 ms or more, add a sleep, or use the trigger condition 'any'.",
+        fails=_example("{loop: {spin_some: 100 ns}}", _SUBSCRIPTION),
+    ),
+    FindingKind(
+        id="EXE004",
+        title="trigger condition 'one' with actions",
+        severity=Severity.WARNING,
+        rationale="rclc_executor_trigger_one does not know actions: it answers 'false' when it comes to a ready one before its own handle.",
+        remedy="Add the handle to the executor before the actions, or use a trigger function of your own.",
+        fails=_example("{loop: {spin: 1 s}, order: [Move], trigger: {one: On_Command}}", _SUBSCRIPTION, _ACTION),
+    ),
+    FindingKind(
+        id="EXE005",
+        title="guard condition that can be lost",
+        severity=Severity.WARNING,
+        rationale="The middleware clears a guard condition when it has seen it. If the trigger condition is false in that round, its callback "
+        "does not run, then or later.",
+        remedy="Use a trigger condition that the guard condition alone makes true.",
+        fails=_example("{loop: {spin: 1 s}, trigger: all}", _SUBSCRIPTION, _GUARD),
+    ),
+    FindingKind(
+        id="EXE006",
+        title="executor with timers only that does not wait",
+        severity=Severity.WARNING,
+        rationale="Without a subscription, service or client, the wait of rmw_microxrcedds returns at once (rmw_microxrcedds#297), and the loop "
+        "uses all the time that other tasks leave it. With the change #305 it waits for the whole timeout, also if a guard condition is set.",
+        remedy="Add a sleep to the loop, or a subscription, and check which version is built.",
+        fails=_example("{loop: {spin: 1 s}}", _TIMER),
+    ),
+    FindingKind(
+        id="EXE007",
+        title="timer that expires more often than the loop spins",
+        severity=Severity.WARNING,
+        rationale="A timer is called at most once per round, and the periods that it missed are skipped.",
+        remedy="Shorten the sleep or the period of the loop to less than the period of the timer.",
+        fails=_example("{loop: {spin_some: 100 ms, sleep: 100 ms}}", _TIMER, _SUBSCRIPTION),
+    ),
+    FindingKind(
+        id="EXE008",
+        title="several threads, but no locking in the middleware",
+        severity=Severity.WARNING,
+        rationale="Without UCLIENT_PROFILE_MULTITHREAD, the session is not locked: messages of two threads can destroy each other.",
+        remedy="Build with UCLIENT_PROFILE_MULTITHREAD=ON and set 'multithread: true', or use one executor for all callbacks.",
+        fails="""
+amuros: 1
+name: app
+hardware: {platform: single-core, frequency: 100 MHz}
+middleware:
+  executors:
+    - {name: Fast, loop: {spin: 1 s}}
+    - {name: Slow, loop: {spin: 1 s}}
+application:
+  nodes:
+    - name: node
+      subscriptions:
+        - {name: On_Command, topic: command, rate: 50 Hz, message_size: 4 B, execution_time: 4 us}
+        - {name: On_Map, topic: map, rate: 1 Hz, message_size: 4 B, execution_time: 4 us, runs_in: Slow}
+""",
+    ),
+    FindingKind(
+        id="EXE009",
+        title="callback that is listed twice in the order of an executor",
+        severity=Severity.WARNING,
+        rationale="Each handle is added once; the first place counts.",
+        remedy="Remove one of them.",
+        fails=_example("{loop: {spin: 1 s}, order: [On_Command, On_Command]}", _SUBSCRIPTION),
+    ),
+)

@@ -1,0 +1,110 @@
+"""Profiles of middlewares as files: what is a number or a choice in a middleware, with its source."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, TypeVar
+
+from pydantic import Field
+
+from amalthea_uros.spec.section import Section
+from amalthea_uros.spec.values import WHOLE_NUMBER, Count, CountOrNone, Duration, Name, Offset, Priority, Size, SizeOrNothing
+
+S = TypeVar("S", bound=Section)
+
+
+class WaitingData(Section):
+    """How an executor waits for messages and timers."""
+
+    messages_per_wait: Count | None = None
+    """Most messages that a wait takes from the wire; if omitted, all that have arrived."""
+    resolution: Offset = 0
+    """The timeout is cut to whole multiples of it."""
+    stored_data_ends_wait: bool = False
+    """Whether messages that are stored already end the wait at once."""
+    guard_conditions_end_wait: bool = False
+    """Whether a guard condition ends the wait."""
+    polls_without_messages: bool = True
+    """Whether the wait of an executor that only has timers and guard conditions returns at once."""
+    slots: Count | None = None
+    """Messages that can be stored for all handles together; if omitted, any number."""
+    default_timeout: Duration = 10**12
+    """Timeout of executors for which nobody set one."""
+
+
+class SendingData(Section):
+    """How messages are sent."""
+
+    waits: bool = True
+    """Whether a reliable message keeps its sender until it is acknowledged."""
+    timeout: Duration = 10**12
+    """Time after which the sender gives up."""
+    flush_timeout: Duration | None = None
+    """Time after which it gives up to empty full buffers, when a message is longer than all of them together."""
+    resends_after: Duration | None = None
+    """Time without input after which the receiver is asked what it has; if omitted, the transport cares for losses."""
+    heartbeat: Duration | None = None
+    """Least interval of messages that are sent while something is not acknowledged, or to keep a connection alive."""
+    holds_session_while_waiting: bool = False
+    """Whether a thread that waits for messages keeps others from sending, with several threads."""
+    drops_when_busy: bool = False
+    """Whether a message is dropped when another thread is sending."""
+    is_protected: bool = False
+    """Whether several threads may use the middleware at the same time also where it is not built for that with `multithread`."""
+
+
+class ThreadData(Section):
+    """A thread of the middleware, beside the executors."""
+
+    name: Name
+    """Name of its task."""
+    does: str
+    """What it does."""
+    priority: Priority | None = None
+    """Its priority; if omitted, it depends on the operating system, so that applications state it under `tasks`."""
+    period: Duration | None = None
+    """Period of its activation; if omitted, messages activate it."""
+    stack: Size | None = None
+    """Its stack."""
+    calls_subscribers: bool = False
+    """Whether callbacks of messages run in it, instead of in an executor."""
+
+
+class ProfileData(Section):
+    """A profile of a middleware: all of its figures, or those that differ from another profile."""
+
+    amuros: Annotated[Literal[1], WHOLE_NUMBER]
+    """Version of the format."""
+    profile: Name
+    """Its name."""
+    base: Name | None = None
+    """The profile that holds for everything that is not stated here."""
+    title: str = ""
+    """Full name of the middleware."""
+    source: str = ""
+    """Where the figures come from."""
+    sources: dict[Name, str] = Field(default_factory=dict)
+    """Sources of single figures, by their keys."""
+    waiting: WaitingData = Field(default_factory=WaitingData)
+    """How an executor waits."""
+    sending: SendingData = Field(default_factory=SendingData)
+    """How messages are sent."""
+    threads: list[ThreadData] = Field(default_factory=list)
+    """Its threads."""
+    sizes: dict[Name, SizeOrNothing] = Field(default_factory=dict)
+    """Sizes of headers and other parts of its messages."""
+    options: dict[Name, CountOrNone] = Field(default_factory=dict)
+    """Default values of build options that sizes of messages depend on; lengths are in bytes, times in milliseconds."""
+
+
+def completed(own: S, base: S) -> S:
+    """A section with what it does not state from another one, key by key."""
+    added = {}
+    for key in base.model_fields_set:
+        ours, theirs = getattr(own, key), getattr(base, key)
+        if key not in own.model_fields_set:
+            added[key] = theirs
+        elif isinstance(ours, Section):
+            added[key] = completed(ours, theirs)
+        elif isinstance(ours, dict):
+            added[key] = theirs | ours
+    return own.model_copy(update=added)

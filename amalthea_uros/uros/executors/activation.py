@@ -1,0 +1,112 @@
+"""What activates the task of a round: how often rounds can begin at most.
+
+A thread that sleeps begins a round when the sleep after the one before has passed. One that only waits begins a round for each message
+that arrives, each timer that is due, and each timeout; if it does not wait either, whenever the round before has ended.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+from amalthea_uros.perf.activities import Trigger, walk
+from amalthea_uros.perf.distributions import Boundaries, Uniform
+from amalthea_uros.perf.executors import Executor, HandleKind
+from amalthea_uros.perf.stimuli import Custom, InterProcess, Periodic, RelativePeriodic, Stimulus
+from amalthea_uros.perf.system import System
+from amalthea_uros.units import Time
+from amalthea_uros.uros.activities import trigger_name
+from amalthea_uros.uros.callbacks import Callback, CallbackKind
+from amalthea_uros.uros.executors.loops import is_paced, polls
+
+
+def round_trigger_name(executor: str) -> str:
+    """The name of the stimulus by which what receives messages begins a round of an executor that blocks."""
+    return trigger_name(executor)
+
+
+def message_stimulus_name(callback: str) -> str:
+    """The name of the stimulus that stands for the arrival of messages at an executor that blocks, if nothing described receives them."""
+    return f"messages_for_{callback}"
+
+
+def is_triggered(executor: Executor) -> bool:
+    """Whether the arrival of a message begins a round."""
+    return not is_paced(executor.loop) and polls(executor) is None
+
+
+def activation(
+    executor: Executor, callbacks: Sequence[Callback], least_round: Time, offset: Time
+) -> Iterator[Stimulus]:
+    """The stimuli of the task of an executor.
+
+    Parameters
+    ----------
+    callbacks : that the executor has handles of
+    least_round : minimum execution time of a round
+    offset : time of the first round, for a period
+    """
+    loop, name = executor.loop, f"rounds_of_{executor.name}"
+    reason = polls(executor)
+    if loop.sleep:
+        yield _at_least(name, loop.sleep + least_round)
+    elif loop.period is not None and is_paced(loop):
+        # A round executes when its wait ends.
+        yield Periodic(name=name, period=loop.period, offset=offset, jitter=Boundaries(lower=0, upper=loop.timeout))
+    elif reason is not None:
+        unknown = Custom(name=name, description=f"{reason}, and the execution time of a round is not specified")
+        yield _at_least(name, least_round) if least_round else unknown
+    else:
+        yield _at_least(f"timeout_of_{executor.name}", loop.timeout)
+        for callback in callbacks:
+            yield from _of_callback(executor, callback)
+
+
+def _of_callback(executor: Executor, callback: Callback) -> Iterator[Stimulus]:
+    """What a callback adds to the rounds of an executor that blocks."""
+    if callback.kind is CallbackKind.TIMER:
+        yield _at_least(f"due_{callback.name}", callback.min_interval)
+    elif callback.kind is not CallbackKind.GUARD_CONDITION or executor.waiting.guard_conditions_end_wait:
+        name = message_stimulus_name(callback.name)
+        unknown = Custom(name=name, description=f"the rate of {callback.name!r} is not specified")
+        yield unknown if callback.interval is None else _at_least(name, callback.min_interval)
+
+
+def _at_least(name: str, distance: Time) -> Stimulus:
+    # A uniform distribution, as importers of AMALTHEA models know no constant one here.
+    return RelativePeriodic(name=name, distance=Uniform(lower=distance, upper=distance), has_maximum=False)
+
+
+def triggered_rounds(system: System) -> System:
+    """The system, in which what receives messages triggers the rounds of executors that block, if it is described.
+
+    Interrupts and tasks of the middleware may be added to a system with `Trigger(stimulus=round_trigger_name(...))` before; the
+    stimuli that stand for the arrival of messages otherwise are then replaced.
+    """
+    triggered = {
+        activity.stimulus for body in system.software.bodies for activity in walk(body) if isinstance(activity, Trigger)
+    }
+    for executor in system.executors:
+        if round_trigger_name(executor.name) in triggered:
+            system = _triggered(system, executor)
+    return system
+
+
+def _triggered(system: System, executor: Executor) -> System:
+    own = system.processes[executor.task].stimuli
+    guards = {handle.name for handle in executor.handles if handle.kind is HandleKind.GUARD_CONDITION}
+    kept = set(map(message_stimulus_name, guards))
+    replaced = {name for name in own if name.startswith(message_stimulus_name("")) and name not in kept}
+    trigger = InterProcess(name=round_trigger_name(executor.name), origin=executor.origin)
+    stimuli = [each for each in system.stimuli.stimuli if each.name not in replaced]
+    tasks = [
+        replace(task, stimuli=(*(name for name in own if name not in replaced), trigger.name))
+        if task.name == executor.task
+        else task
+        for task in system.software.tasks
+    ]
+    return replace(
+        system,
+        stimuli=replace(system.stimuli, stimuli=(*stimuli, trigger)),
+        software=replace(system.software, tasks=tuple(tasks)),
+    )

@@ -1,0 +1,125 @@
+"""An executor that spins in a loop, added to an assembly: its handles, its runnables, and the task of its rounds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from amalthea_uros.perf.activities import Demand, Execute
+from amalthea_uros.perf.distributions import Boundaries, lowest
+from amalthea_uros.perf.executors import Executor, Handle
+from amalthea_uros.perf.software import Runnable
+from amalthea_uros.spec import executors as spec
+from amalthea_uros.units import SECOND, Time, down, ticks_of_time, up
+from amalthea_uros.uros.callbacks import Callback
+from amalthea_uros.uros.context import AssemblyContext
+from amalthea_uros.uros.executor import ExecutorRunnables, spin_name
+from amalthea_uros.uros.executors.activation import activation
+from amalthea_uros.uros.executors.checks import check_executor
+from amalthea_uros.uros.executors.handles import handle_names, handles_of
+from amalthea_uros.uros.executors.loops import loop_of
+from amalthea_uros.uros.executors.profile import waiting_of
+from amalthea_uros.uros.executors.rounds import has_one_message_per_round, polls_before_timers, round_activities
+from amalthea_uros.uros.executors.triggers import trigger_of
+from amalthea_uros.uros.tasks import PlannedTask
+
+#: Rounds are executed one after the other, however many are due.
+_UNLIMITED = 1_000_000
+
+
+def add_looping_executor(
+    context: AssemblyContext,
+    section: spec.Executor,
+    callbacks: Sequence[Callback],
+    bodies: Mapping[str, Runnable],
+    activates: Mapping[str, Sequence[str]],
+    is_alone: bool,
+) -> None:
+    """Add an executor with a loop, and the task of its rounds.
+
+    Parameters
+    ----------
+    callbacks : that it has handles of, in their order
+    bodies : the runnable of each callback
+    activates : the task that it activates for each callback that has one
+    is_alone : whether no other thread uses the middleware
+    """
+    core = context.core(section.core, section.location("core"))
+    executor = _executor(context, section, callbacks, bodies, activates, core)
+    poll = _poll(context, executor, core) if polls_before_timers(executor) else None
+    least = _least_time(context.runnables[executor.spin], core, context)
+    exclusive = has_one_message_per_round(executor, is_alone)
+    check_executor(executor, section, callbacks, context.notes)
+    context.executors.append(executor)
+    context.tasks.append(
+        PlannedTask(
+            name=executor.task,
+            core=core,
+            stimuli=tuple(map(context.stimuli.add, activation(executor, callbacks, least, section.offset))),
+            activities=round_activities(executor, exclusive=exclusive, poll=poll),
+            # Priorities follow the fastest callback.
+            period=min((each.min_interval for each in callbacks if each.interval is not None), default=None),
+            priority=section.priority,
+            deadline=section.deadline,
+            activation_limit=1 if executor.loop.sleep else _UNLIMITED,
+            overhead=section.overhead,
+            wins_ties=True,
+            origin=section.location(),
+        )
+    )
+
+
+def _executor(
+    context: AssemblyContext,
+    section: spec.Executor,
+    callbacks: Sequence[Callback],
+    bodies: Mapping[str, Runnable],
+    activates: Mapping[str, Sequence[str]],
+    core: str,
+) -> Executor:
+    assert section.loop is not None
+    middleware = context.description.middleware
+    runnables = ExecutorRunnables(executor=section, converter=context.converter, core=core, channels=context.channels)
+    spin = runnables.spin(callbacks)
+    context.runnables[spin.name] = spin
+    handles: list[Handle] = []
+    for callback in callbacks:
+        take = runnables.take_or_notify(callback, activates.get(callback.name, ()))
+        body = bodies[callback.name] if callback.in_executor else take
+        for runnable in (take, body):
+            if runnable.activities or runnable is body:
+                context.runnables[runnable.name] = runnable
+        own_take = take if take.activities and callback.in_executor else None
+        handles += handles_of(callback, own_take, body, middleware)
+    waiting = waiting_of(middleware)
+    return Executor(
+        name=section.name,
+        task=section.name,
+        spin=spin_name(section.name),
+        loop=loop_of(section.loop, waiting),
+        handles=tuple(handles),
+        trigger=trigger_of(section, {callback.name: handle_names(callback) for callback in callbacks}, context.notes),
+        takes_first=section.semantics == "LET",
+        waiting=waiting,
+        session="session" if middleware.multithread else None,
+        origin=section.location(),
+    )
+
+
+def _poll(context: AssemblyContext, executor: Executor, core: str) -> str:
+    """Add the runnable that stands for rounds without a callback, from the end of a wait until the timer for which it ended is due."""
+    most = up(ticks_of_time(executor.waiting.resolution, context.controller.frequencies[core]))
+    name = f"{executor.name}_Poll"
+    activities = (Execute(demand=Demand(ticks=Boundaries(lower=0, upper=most))),)
+    context.runnables[name] = Runnable(name=name, activities=activities, origin=executor.origin)
+    return name
+
+
+def _least_time(runnable: Runnable, core: str, context: AssemblyContext) -> Time:
+    """The minimum execution time of a runnable, without accesses to memory."""
+    kind = context.controller.core_types[core]
+    ticks = 0
+    for activity in runnable.activities:
+        if isinstance(activity, Execute):
+            distribution = dict(activity.demand.by_core_type).get(kind, activity.demand.ticks)
+            ticks += (lowest(distribution) or 0) if distribution is not None else 0
+    return down(SECOND * ticks / context.controller.frequencies[core])

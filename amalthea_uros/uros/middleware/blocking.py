@@ -1,0 +1,95 @@
+"""Senders that wait, and threads that disturb each other when they send."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from amalthea_uros.spec.executors import Executor
+from amalthea_uros.spec.middleware import Middleware
+from amalthea_uros.units import Time, time_text
+from amalthea_uros.uros.callbacks import Callback
+from amalthea_uros.uros.middleware.profile import Profile
+from amalthea_uros.uros.notes import Notes
+
+
+def check_blocking(callbacks: Sequence[Callback], middleware: Middleware, profile: Profile, notes: Notes) -> None:
+    """Report waiting that execution times and response times do not contain, and threads that are not kept apart."""
+    senders = [callback for callback in callbacks if callback.outgoing]
+    loops = [executor for executor in _executors(middleware) if executor.loop is not None]
+    outside = [callback for callback in senders if not (loops and callback.in_executor)]
+    _check_waiting_outside(outside, middleware, profile, notes)
+    _check_recovery(callbacks, middleware, profile, notes)
+    if len(loops) > 1 or (loops and outside):
+        _check_threads(senders, loops, middleware, profile, notes)
+
+
+def _executors(middleware: Middleware) -> Sequence[Executor]:
+    return middleware.executors or [middleware.executor]
+
+
+def _check_waiting_outside(senders: Iterable[Callback], middleware: Middleware, profile: Profile, notes: Notes) -> None:
+    """Report callbacks that wait for acknowledgements of a known time in tasks that are modelled without waiting."""
+    how, acknowledgement = profile.sending(middleware), middleware.transport.acknowledgement
+    if not how.waits or acknowledgement is None:
+        return
+    for callback in senders:
+        topics = [message.topic for message in callback.outgoing if message.reliable]
+        if topics:
+            longest = time_text(min(acknowledgement, how.timeout) * len(topics))
+            text = f"{callback.name!r} waits up to {longest} for acknowledgements, which its response time does not include"
+            advice = (
+                "Describe the 'loop' of the executor that runs it, set 'reliable: {waits: false}' if this port does not wait, "
+                "or use 'reliability: best-effort'."
+            )
+            notes.warning("UR124", text, callback.origin, advice)
+
+
+def _check_recovery(callbacks: Sequence[Callback], middleware: Middleware, profile: Profile, notes: Notes) -> None:
+    """Report incoming traffic that postpones the repetition of lost messages.
+
+    The time without input begins anew with each message that arrives: `uxr_update_output_stream_heartbeat_timestamp` in
+    src/c/core/session/stream/output_reliable_stream.c of eProsima/Micro-XRCE-DDS-Client.
+    """
+    how = profile.sending(middleware)
+    if not (middleware.transport.loses_messages and how.waits) or how.resends_after is None:
+        return
+    incoming = [callback.incoming for callback in callbacks if callback.incoming is not None]
+    dense = min(incoming, key=lambda message: message.interval, default=None)
+    if dense is None or dense.interval >= how.resends_after:
+        return
+    for callback in callbacks:
+        for message in callback.outgoing:
+            if message.reliable:
+                text = (
+                    f"if a message of {message.topic!r} is lost, {callback.name!r} waits up to {time_text(how.timeout)}: it is sent "
+                    f"again after {time_text(how.resends_after)} without input, but {dense.topic!r} can arrive every "
+                    f"{time_text(dense.interval)}"
+                )
+                advice = "Use 'reliability: best-effort', or a shorter timeout: RMW_UXRCE_PUBLISH_RELIABLE_TIMEOUT."
+                notes.warning("UR124", text, message.origin, advice)
+
+
+def _check_threads(
+    senders: Iterable[Callback], loops: Sequence[Executor], middleware: Middleware, profile: Profile, notes: Notes
+) -> None:
+    """Report threads that use the middleware at the same time."""
+    how = profile.sending(middleware)
+    if not how.is_protected:
+        text = "several threads use the middleware, but it is built for one: nothing protects its session"
+        advice = "Set 'multithread: true' and build with UCLIENT_PROFILE_MULTITHREAD=ON, or use one thread."
+        notes.warning("UR124", text, middleware.location("multithread"), advice)
+    elif how.holds_session_while_waiting:
+        default = profile.waiting(middleware).default_timeout
+        timeout = time_text(max(_timeout(executor, default) for executor in loops))
+        text = f"a thread that waits for messages keeps the session for up to {timeout}; others that send wait for it:"
+        names = ", ".join(repr(callback.name) for callback in senders)
+        if names:
+            notes.warning("UR124", f"{text} {names}", middleware.location("multithread"), "Use short timeouts of the loops.")
+
+
+def _timeout(executor: Executor, default: Time) -> Time:
+    loop = executor.loop
+    if loop is None:
+        return 0
+    times = (loop.spin_some, loop.spin, loop.timeout)
+    return next((time for time in times if time is not None), default)

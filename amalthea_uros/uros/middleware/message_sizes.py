@@ -1,0 +1,43 @@
+"""Messages that are too long for the middleware."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from amalthea_uros.spec.middleware import Middleware
+from amalthea_uros.uros.callbacks import Callback, Message
+from amalthea_uros.uros.middleware.kinds import content_bytes, message_kind
+from amalthea_uros.uros.middleware.profile import Profile
+from amalthea_uros.uros.notes import Notes
+
+
+def check_message_sizes(callbacks: Iterable[Callback], middleware: Middleware, profile: Profile, notes: Notes) -> None:
+    """Report messages that cannot be sent or received."""
+    for message, incoming in _messages(callbacks):
+        kind, content = message_kind(message, incoming=incoming), content_bytes(message)
+        limit = profile.largest_content(kind, reliable=message.reliable, middleware=middleware)
+        if limit is None or content <= limit:
+            continue
+        verb = "received" if incoming else "sent"
+        how = "reliably" if message.reliable else "best effort"
+        text = f"a message of {message.topic!r} has {content} B, but at most {limit} B can be {verb} {how}"
+        notes.error("UR121", text, message.origin, _advice(message, middleware, profile))
+
+
+def _advice(message: Message, middleware: Middleware, profile: Profile) -> str:
+    ways = ["reduce the size of the message"]
+    options = profile.limiting_options(reliable=message.reliable, middleware=middleware)
+    if options:
+        ways.append(f"increase {' or '.join(options)} in the build and under 'limits'")
+    if not message.reliable:
+        ways.append("send it reliably, in fragments")
+    text = ", or ".join(ways)
+    return f"{text[0].upper()}{text[1:]}."
+
+
+def _messages(callbacks: Iterable[Callback]) -> Iterator[tuple[Message, bool]]:
+    """Each message with whether it arrives."""
+    for callback in callbacks:
+        if callback.incoming is not None:
+            yield callback.incoming, True
+        yield from ((message, False) for message in callback.outgoing)

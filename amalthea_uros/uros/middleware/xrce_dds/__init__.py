@@ -1,0 +1,1 @@
+"""Micro XRCE-DDS, the middleware of micro-ROS."""

@@ -1,0 +1,1 @@
+"""zenoh-pico, with rmw_zenoh_pico below rclc."""
