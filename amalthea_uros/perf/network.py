@@ -74,7 +74,8 @@ class Transmission(Named):
     callback : that receives or sends it
     length : in bytes, of the message of the middleware with its headers
     link : time besides that on the core of the wire: in switches, access points, and until a host polls
-    driver : time in the driver of the controller, when sending or receiving it, that is not execution time, such as waiting for ticks
+    driver : time in the driver of the controller after its receipt that is not execution time, such as waiting for ticks; while it is
+        sent, the driver keeps the wire busy, so that this time is part of that on the wire
     processes : that a message passes before the executor sees it: interrupt service routines, then tasks of the middleware
     agent : time in the agent: from the host to the wire, from the wire to the host, or from a message to its acknowledgement
     """

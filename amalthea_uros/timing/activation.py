@@ -8,12 +8,13 @@ from typing import NamedTuple, TypeAlias
 
 from amalthea_uros.perf.activities import Trigger
 from amalthea_uros.perf.events import CustomEvent, Event, ModeLabelEvent, RunnableChange, RunnableEvent
+from amalthea_uros.perf.network import Purpose
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Counter, EventTriggered, InterProcess
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.links import Dataflow
-from amalthea_uros.timing.event_models import Downsampled, EventModel, Multiplied, aggregated
+from amalthea_uros.timing.event_models import Delayed, Downsampled, EventModel, Multiplied, aggregated
 from amalthea_uros.timing.event_models.stimuli import event_model_of
 
 
@@ -86,7 +87,17 @@ class Activations:
         found = tuple(self._of_stimulus(name, output, (*above, process.name)) for name in process.stimuli)
         if not found:
             raise UnknownActivationError("it has no stimulus")
-        return aggregated(found)
+        return self._answered(process, aggregated(found))
+
+    def _answered(self, process: Process, messages: EventModel) -> EventModel:
+        """The activations of an acknowledgement: the receiver of the message sends it some time later."""
+        transmission = self.system.transmissions.get(process.name)
+        if transmission is None or transmission.purpose is not Purpose.ACKNOWLEDGEMENT:
+            return messages
+        answer = transmission.agent
+        if answer.most is None:
+            raise UnknownActivationError(f"how long {self.system.network.agent!r} takes to acknowledge a message is not stated")
+        return Delayed(messages, answer.most - answer.least) if answer.most > answer.least else messages
 
     def _of_stimulus(self, name: str, output: Output, above: tuple[str, ...]) -> EventModel:
         stimulus = self.system.stimuli_by_name.get(name)

@@ -28,7 +28,7 @@ from amalthea_uros.uros.chain_elements import chain_elements
 from amalthea_uros.uros.chain_topics import Topics
 from amalthea_uros.uros.chains import Chains
 from amalthea_uros.uros.context import AssemblyContext
-from amalthea_uros.uros.executors.activation import triggered_rounds
+from amalthea_uros.uros.executors.activation import is_triggered, round_trigger_name, triggered_rounds
 from amalthea_uros.uros.executors.deadlines import deadlines
 from amalthea_uros.uros.hardware import controller_of
 from amalthea_uros.uros.initialisation import Initialisation, initialisation
@@ -44,6 +44,9 @@ from amalthea_uros.uros.priorities import check_shared_priorities
 from amalthea_uros.uros.requirements import requirements
 from amalthea_uros.uros.rtos import PriorityScale, check_sleeps
 from amalthea_uros.uros.tasks import PlannedIsr, PlannedTask
+from amalthea_uros.uros.transports.foreign import ForeignFrame
+from amalthea_uros.uros.transports.network import PlannedNetwork, planned_network, with_network
+from amalthea_uros.uros.transports.stand_in import XrceMessages
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -53,7 +56,7 @@ class Assembly(Brief):
     Attributes
     ----------
     choices : the periods of executors without a loop and of the callbacks' tasks, with reasons
-    bus, messages : the CAN bus, None if there is none, and what is sent on it
+    bus, messages : the classic CAN bus, None if there is none, and what is sent on it
     pools : static pools of the middleware
     findings : of severity warning and info
     task_periods : those that the middleware offers to tasks; empty if it offers any
@@ -71,17 +74,25 @@ class Assembly(Brief):
     priority_scale: PriorityScale
 
     def system_with_bus(self) -> System | None:
-        """The system with the CAN bus as a further core, whose tasks are the messages; None if there is no bus."""
+        """The system with its wire as further cores, whose tasks are the messages; None if there is no wire.
+
+        A classic CAN bus is left out of the system if nothing in the description depends on it, and added here.
+        """
+        if self.system.network.wires:
+            return self.system
         return None if self.bus is None else with_traffic(self.system, self.bus, self.messages)
 
 
-def assemble(description: Description, hardware: Hardware, platform: str | None) -> Assembly:
+def assemble(
+    description: Description, hardware: Hardware, platform: str | None, database: Sequence[ForeignFrame] = ()
+) -> Assembly:
     """The system that a description describes.
 
     Parameters
     ----------
     hardware : of the description, completed by its platform
     platform : the name that execution times use for the hardware; None if it has none
+    database : frames of others on the CAN bus, from the DBC file that the description names
 
     Raises
     ------
@@ -92,24 +103,29 @@ def assemble(description: Description, hardware: Hardware, platform: str | None)
     target = controller_of(description.name, hardware, platform, notes)
     if target is None:
         raise ReadError(notes.findings)
-    assembly = _assembly(AssemblyContext(description=description, controller=target, notes=notes))
+    assembly = _assembly(AssemblyContext(description=description, controller=target, notes=notes), database)
     if notes.has_errors:
         raise ReadError(notes.findings)
     return assembly
 
 
-def _assembly(context: AssemblyContext) -> Assembly:
+def _assembly(context: AssemblyContext, database: Sequence[ForeignFrame]) -> Assembly:
     application, middleware = context.description.application, context.description.middleware
     callbacks = callbacks_of(application, middleware, context.notes)
     messages = bus_messages(callbacks, middleware.transport)
-    check_bus_load(messages, middleware.transport, context.notes)
     check_identifiers(messages, middleware.transport, context.notes)
     pools = pools_of(application, middleware)
     check_pools(pools, middleware, context.notes)
     check_middleware(callbacks, middleware, context.notes)
     context.channels = internal_channels(callbacks)
     choices = add_callbacks(context, callbacks)
-    add_interrupt(context, messages)
+    wakes = [round_trigger_name(each.name) for each in context.executors if is_triggered(each)]
+    network = planned_network(
+        context, callbacks, XrceMessages(), tick=context.description.os.tick, wakes=wakes, database=database
+    )
+    if network is None:
+        check_bus_load(messages, middleware.transport, context.notes)
+        add_interrupt(context, messages)
     add_background_tasks(context)
     add_overheads(context)
     check_sleeps(context.description, context.notes)
@@ -117,7 +133,7 @@ def _assembly(context: AssemblyContext) -> Assembly:
         advice = "Define callbacks under 'application', or tasks under 'tasks'."
         message = "no callback, task or interrupt service routine is defined"
         context.notes.error("APP009", message, context.description.location(), advice)
-    system = _system(context, callbacks)
+    system = _system(context, callbacks, network)
     response_time = middleware.initialisation.response_time
     first = next((choice for choice in choices if choice.task == choice.executor), None)
     return Assembly(
@@ -133,7 +149,7 @@ def _assembly(context: AssemblyContext) -> Assembly:
     )
 
 
-def _system(context: AssemblyContext, callbacks: Sequence[Callback]) -> System:
+def _system(context: AssemblyContext, callbacks: Sequence[Callback], network: PlannedNetwork | None) -> System:
     """The system of all that has been added to the context."""
     description, notes = context.description, context.notes
     check_misspelled_labels(description, context.runnables, notes)
@@ -142,6 +158,7 @@ def _system(context: AssemblyContext, callbacks: Sequence[Callback]) -> System:
     elements = chain_elements(context, callbacks)
     system = _without_demands(context, labels)
     check_shared_priorities(system, context.tasks, notes, context.priority_scale)
+    system = with_network(system, network, context)
     chains = Chains(elements, Topics.of(callbacks, system.network), Dataflow(system), notes)
     limits = chains.add_all(description.chains)
     demanded = (*requirements(description.requirements, elements, notes), *deadlines(context.executors, callbacks))

@@ -65,11 +65,11 @@ def _stimulus(message: BusMessage, name: str, system: System) -> Stimulus:
     interval = message.message.interval
     if message.incoming:
         return RelativePeriodic(name=name, distance=Constant(interval), has_maximum=False)
-    every = _runs_per_message(message.message.callback, interval, system)
+    every = runs_per_message(message.message.callback, interval, system)
     return EventTriggered(name=name, events=(name,), counter=Counter(prescaler=every) if every > 1 else None)
 
 
-def _runs_per_message(callback: str, interval: Time, system: System) -> int:
+def runs_per_message(callback: str, interval: Time, system: System) -> int:
     """How often a callback runs for each message: more than once if it runs in every activation of a task of its own."""
     task = system.processes.get(callback)
     if task is None or any(isinstance(each, Call) and each.counter is not None for each in task.activities):

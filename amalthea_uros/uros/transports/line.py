@@ -1,0 +1,112 @@
+"""What all kinds of wires have in common."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Protocol, TypeAlias
+
+from amalthea_uros.perf.network import Direction, Span, WireKind
+from amalthea_uros.spec.transports import Can, CanFd, CustomTransport, Interrupt, Latency, Network, Serial, Transport, UsbCdc
+from amalthea_uros.units import SECOND, Time
+
+#: The sections of wires in a description.
+WireSection: TypeAlias = Can | CanFd | Serial | Network | UsbCdc | CustomTransport
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Frame:
+    """What is on a wire without interruption, in ticks of its clock: the least and the most that it can take.
+
+    The least is 0 if a message can do without it.
+    """
+
+    least: int
+    most: int
+
+    def __post_init__(self) -> None:
+        assert 0 <= self.least <= self.most > 0
+
+
+class Line(Protocol):
+    """A wire of some kind.
+
+    Attributes
+    ----------
+    kind : what it is
+    name : of its core; those of its two directions if both can send at the same time
+    ticks_per_second : of the clock of its cores
+    is_duplex : whether both directions can send at the same time
+    key : in the description
+    section : that describes it
+    link : time besides that on the core, such as in switches
+    """
+
+    @property
+    def kind(self) -> WireKind: ...
+
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def ticks_per_second(self) -> int: ...
+
+    @property
+    def is_duplex(self) -> bool: ...
+
+    @property
+    def key(self) -> str: ...
+
+    @property
+    def section(self) -> WireSection: ...
+
+    @property
+    def link(self) -> Span: ...
+
+    @property
+    def largest(self) -> int | None:
+        """The length of the longest message of the middleware that it can carry, in bytes; None for no limit."""
+        ...
+
+    def frames(self, length: int, direction: Direction) -> Sequence[Frame]:
+        """What is on the wire for a message of the middleware.
+
+        Parameters
+        ----------
+        length : in bytes, with the headers of the middleware
+        """
+        ...
+
+    def reading(self, length: int) -> Span:
+        """How long the controller waits in its driver for a message, in addition to the time on the wire."""
+        ...
+
+
+def wire_sections(transport: Transport) -> Iterator[tuple[str, WireSection]]:
+    """The wires of a description by their keys; a valid one has one at most."""
+    sections: dict[str, WireSection | None] = {
+        "can": transport.can,
+        "can_fd": transport.can_fd,
+        "serial": transport.serial,
+        "udp": transport.udp,
+        "tcp": transport.tcp,
+        "usb_cdc": transport.usb_cdc,
+        "custom": transport.custom,
+    }
+    yield from ((key, section) for key, section in sections.items() if section is not None)
+
+
+def receive_interrupt(transport: Transport) -> Interrupt | None:
+    """The interrupt that receives messages; None if none is described."""
+    return next((section.interrupt for _, section in wire_sections(transport) if section.interrupt is not None), None)
+
+
+def span_of(latency: Latency | None) -> Span:
+    """A stated latency; one that is not stated has no maximum."""
+    return Span() if latency is None else Span(least=latency.min, most=latency.max)
+
+
+def time_on(line: Line, frames: Sequence[Frame]) -> tuple[Time, Time]:
+    """The least and the most time of frames on a wire: rounded down, and up."""
+    least, most = sum(frame.least for frame in frames), sum(frame.most for frame in frames)
+    return least * SECOND // line.ticks_per_second, -(-most * SECOND // line.ticks_per_second)

@@ -1,0 +1,265 @@
+"""The tasks of a wire: what is queued on it, and when.
+
+The agent sends at any time, but never more often than the description says. The controller sends at the end of callbacks. A timer of an
+executor that loops is called once at most between two times at which it is due, and what it sends is sent before its next call: so
+each message is at most two periods late. Acknowledgements follow each part of a reliable message: those of the agent when it has
+processed the part, those of the controller when it has read it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+from amalthea_uros.diagnostics import Location
+from amalthea_uros.perf.executors import HandleKind
+from amalthea_uros.perf.network import Direction, Purpose, Span, Transmission
+from amalthea_uros.perf.stimuli import Counter, InterProcess, Stimulus
+from amalthea_uros.perf.system import System
+from amalthea_uros.spec.middleware import Middleware
+from amalthea_uros.units import Time
+from amalthea_uros.uros.application import body_name
+from amalthea_uros.uros.bus_traffic import runs_per_message
+from amalthea_uros.uros.executor import notification_name
+from amalthea_uros.uros.transports.arrivals import arrivals
+from amalthea_uros.uros.transports.foreign import ForeignFrame
+from amalthea_uros.uros.transports.line import Line, span_of
+from amalthea_uros.uros.transports.messages import Messaging, WireMessage, acknowledgement_name
+
+_AT_ONCE = Span(most=0)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Sender:
+    """A runnable that queues messages at its end.
+
+    Attributes
+    ----------
+    times : how many each time
+    """
+
+    runnable: str
+    times: int = 1
+    counter: Counter | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Queued:
+    """What is queued on a wire.
+
+    Attributes
+    ----------
+    parts : lengths of the messages of the middleware that are sent each time
+    stimulus : None if it is not known when it is queued
+    sender : triggers the stimulus; None if something else does
+    answer : the stimulus that each part triggers when it has been sent
+    interval : minimum time between two of them in the long run; None if it is not known
+    times : how many there are in that interval; 0 for what is only sent when others are late
+    channel : of the identifier; "" for none of its own
+    frame : a frame of others, instead of parts
+    """
+
+    transmission: Transmission
+    parts: tuple[int, ...]
+    stimulus: Stimulus | None
+    interval: Time | None
+    times: int = 1
+    sender: Sender | None = None
+    answer: str | None = None
+    channel: str = ""
+    frame: ForeignFrame | None = None
+    origin: Location | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Queueing:
+    """Decides what is queued on a wire.
+
+    Attributes
+    ----------
+    system : of the application, without the wire
+    receivers : processes that each received message passes
+    """
+
+    line: Line
+    middleware: Middleware
+    profile: Messaging
+    system: System
+    receivers: tuple[str, ...]
+
+    def of(self, messages: Iterable[WireMessage]) -> Iterator[Queued]:
+        """What is queued for the messages of the application."""
+        messages = tuple(messages)
+        for message in messages:
+            yield from self._received(message) if message.direction is Direction.TO_CONTROLLER else self._sent(message)
+        for direction in Direction:
+            if any(each.direction is direction and _is_acknowledged(each) for each in messages):
+                yield from self._heartbeats(direction)
+
+    def foreign(self, frame: ForeignFrame) -> Queued:
+        """A frame of others."""
+        return Queued(
+            transmission=Transmission(
+                name=frame.name,
+                wire=self.line.name,
+                direction=Direction.TO_CONTROLLER,
+                purpose=Purpose.FOREIGN,
+                length=frame.data_bytes,
+                agent=_AT_ONCE,
+            ),
+            parts=(),
+            stimulus=None if frame.period is None else arrivals(frame.name, frame.period, frame.jitter, frame.origin),
+            interval=frame.period,
+            frame=frame,
+            origin=frame.origin,
+        )
+
+    def _received(self, message: WireMessage) -> Iterator[Queued]:
+        agent = span_of(self.middleware.agent.to_controller)
+        # Where the latency of the agent is not stated, interval and jitter are those of the messages that leave it.
+        jitter = message.jitter + (0 if agent.most is None else agent.most - agent.least)
+        yield self._data(message, arrivals(message.name, message.interval, jitter, message.message.origin), agent)
+        if _is_acknowledged(message):
+            takes = self._takes.get(body_name(message.callback.name)) or notification_name(message.callback)
+            reader = takes if takes in self.system.runnables else body_name(message.callback.name)
+            yield self._acknowledgement(message, _AT_ONCE, Sender(runnable=reader, times=len(message.parts)))
+
+    def _sent(self, message: WireMessage) -> Iterator[Queued]:
+        callback, agent = message.callback, span_of(self.middleware.agent.to_host)
+        body = body_name(callback.name)
+        answer = acknowledgement_name(message.name) if _is_acknowledged(message) else None
+        if body in self._looping_timers:
+            stimulus = arrivals(message.name, message.interval, 2 * message.interval, message.message.origin)
+            yield self._data(message, stimulus, agent, answer=answer)
+        else:
+            runs = runs_per_message(callback.name, message.interval, self.system)
+            sender = Sender(runnable=body, counter=Counter(prescaler=runs) if runs > 1 else None)
+            stimulus = InterProcess(name=message.name, origin=message.message.origin)
+            yield self._data(message, stimulus, agent, sender=sender, answer=answer)
+        if answer is not None:
+            yield self._acknowledgement(message, self._answer_time, None)
+
+    @property
+    def _answer_time(self) -> Span:
+        """The time that the agent takes to acknowledge; the limit for the whole of it holds for the part of the agent, too."""
+        stated = self.middleware.agent.acknowledgement
+        return Span(most=self.middleware.transport.acknowledgement) if stated is None else span_of(stated)
+
+    def _data(
+        self,
+        message: WireMessage,
+        stimulus: Stimulus,
+        agent: Span,
+        sender: Sender | None = None,
+        answer: str | None = None,
+    ) -> Queued:
+        return Queued(
+            transmission=self._transmission(
+                message.name, message.direction, Purpose.DATA, tuple(part.length for part in message.parts), agent, message
+            ),
+            parts=tuple(part.length for part in message.parts),
+            stimulus=stimulus,
+            interval=message.interval,
+            sender=sender,
+            answer=answer,
+            channel=message.message.channel,
+            origin=message.message.origin,
+        )
+
+    def _acknowledgement(self, message: WireMessage, agent: Span, sender: Sender | None) -> Queued:
+        name = acknowledgement_name(message.name)
+        length = max(part.acknowledgement or 0 for part in message.parts)
+        return Queued(
+            transmission=self._transmission(
+                name, _opposite(message.direction), Purpose.ACKNOWLEDGEMENT, (length,), agent, message
+            ),
+            parts=(length,),
+            stimulus=InterProcess(name=name, origin=message.message.origin),
+            interval=message.interval,
+            times=len(message.parts),
+            sender=sender,
+            origin=message.message.origin,
+        )
+
+    def _heartbeats(self, direction: Direction) -> Iterator[Queued]:
+        """Heartbeats while something is not acknowledged, and what answers them."""
+        heartbeat = self.profile.heartbeat(self.middleware)
+        if heartbeat is None:
+            return
+        length, interval = heartbeat
+        name = f"heartbeat_of_{'agent' if direction is Direction.TO_CONTROLLER else 'client'}"
+        answer = acknowledgement_name(name)
+        from_client = direction is Direction.TO_AGENT
+        yield Queued(
+            transmission=self._transmission(name, direction, Purpose.HEARTBEAT, (length,), _AT_ONCE),
+            parts=(length,),
+            stimulus=arrivals(name, interval),
+            interval=interval,
+            times=0,
+            answer=answer if from_client else None,
+        )
+        yield Queued(
+            transmission=self._transmission(
+                answer,
+                _opposite(direction),
+                Purpose.ACKNOWLEDGEMENT,
+                (length,),
+                self._answer_time if from_client else _AT_ONCE,
+            ),
+            parts=(length,),
+            # The client answers when it reads: before it has to read the next one.
+            stimulus=InterProcess(name=answer) if from_client else arrivals(answer, interval, interval),
+            interval=interval,
+            times=0,
+        )
+
+    def _transmission(
+        self,
+        name: str,
+        direction: Direction,
+        purpose: Purpose,
+        parts: tuple[int, ...],
+        agent: Span,
+        message: WireMessage | None = None,
+    ) -> Transmission:
+        is_received = direction is Direction.TO_CONTROLLER
+        return Transmission(
+            name=name,
+            wire=self.line.name,
+            direction=direction,
+            purpose=purpose,
+            topic=message.message.topic if message is not None and purpose is Purpose.DATA else None,
+            callback=message.callback.name if message is not None else None,
+            length=sum(parts),
+            link=self.line.link,
+            driver=_sum(self.line.reading(part) for part in parts) if is_received else _AT_ONCE,
+            processes=self.receivers if is_received else (),
+            agent=agent,
+        )
+
+    @cached_property
+    def _takes(self) -> Mapping[str, str]:
+        """The runnables that take messages, by those of their callbacks."""
+        handles = (handle for executor in self.system.executors for handle in executor.handles)
+        return {handle.runnable: handle.take for handle in handles if handle.take is not None}
+
+    @cached_property
+    def _looping_timers(self) -> frozenset[str]:
+        """The runnables of timers that executors call that loop."""
+        handles = (handle for executor in self.system.executors for handle in executor.handles)
+        return frozenset(handle.runnable for handle in handles if handle.kind is HandleKind.TIMER)
+
+
+def _is_acknowledged(message: WireMessage) -> bool:
+    return any(part.acknowledgement is not None for part in message.parts)
+
+
+def _opposite(direction: Direction) -> Direction:
+    return Direction.TO_AGENT if direction is Direction.TO_CONTROLLER else Direction.TO_CONTROLLER
+
+
+def _sum(spans: Iterable[Span]) -> Span:
+    found = list(spans)
+    known = [span.most for span in found if span.most is not None]
+    return Span(least=sum(span.least for span in found), most=sum(known) if len(known) == len(found) else None)

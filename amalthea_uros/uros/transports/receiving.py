@@ -1,0 +1,157 @@
+"""What each received message passes in the controller before an executor sees it: the interrupt, and tasks of the middleware.
+
+The interrupt is triggered by each frame on the wire, each task of the middleware by the process before it, and the last one triggers
+the rounds of executors that wait. Acknowledgements and heartbeats end no wait; the interrupt for them is a process of its own in the
+model, as it triggers nothing. If nothing is described, nothing is passed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+from amalthea_uros.perf.activities import Activity, Call, Demand, Execute, Trigger
+from amalthea_uros.perf.network import Direction
+from amalthea_uros.perf.software import Runnable
+from amalthea_uros.perf.stimuli import InterProcess
+from amalthea_uros.spec.middleware import Middleware, MiddlewareTask
+from amalthea_uros.spec.transports import Interrupt
+from amalthea_uros.uros.activities import activity_sequence, trigger_name
+from amalthea_uros.uros.context import AssemblyContext
+from amalthea_uros.uros.executor import message_cost
+from amalthea_uros.uros.middleware.profile import MiddlewareThread
+from amalthea_uros.uros.tasks import PlannedIsr, PlannedTask
+from amalthea_uros.uros.transports.line import receive_interrupt
+from amalthea_uros.uros.transports.messages import WireMessage
+
+#: No message is lost between the wire and a task of the middleware.
+_UNLIMITED = 1_000_000
+
+
+class Threading(Protocol):
+    """What is asked of a middleware here; its profile answers."""
+
+    def threads(self, middleware: Middleware) -> Sequence[MiddlewareThread]:
+        """Its threads beside the executors."""
+        ...
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Receivers:
+    """The processes that receive.
+
+    Attributes
+    ----------
+    processes : that each message passes, in order
+    frame_triggers : stimuli that each frame of a message triggers
+    message_triggers : stimuli that the end of a message triggers
+    other_triggers : stimuli that acknowledgements and heartbeats trigger
+    """
+
+    processes: tuple[str, ...] = ()
+    frame_triggers: tuple[str, ...] = ()
+    message_triggers: tuple[str, ...] = ()
+    other_triggers: tuple[str, ...] = ()
+
+
+def add_receivers(
+    context: AssemblyContext, messages: Sequence[WireMessage], profile: Threading, wakes: Sequence[str]
+) -> Receivers:
+    """Add the processes that receive messages, and return what triggers them.
+
+    Parameters
+    ----------
+    wakes : the stimuli of the rounds of executors that wait for messages
+    """
+    middleware = context.description.middleware
+    interrupt = receive_interrupt(middleware.transport)
+    incoming = [message for message in messages if message.direction is Direction.TO_CONTROLLER]
+    threads = [thread for thread in profile.threads(middleware) if thread.period is None] if incoming else []
+    triggers = wakes
+    for thread in reversed(threads):
+        triggers = (_add_thread(context, thread, incoming, triggers),)
+    names = tuple(thread.name for thread in threads)
+    if interrupt is None:
+        return Receivers(processes=names, message_triggers=tuple(triggers))
+    is_answered = any(part.acknowledgement is not None for message in messages for part in message.parts)
+    others = (_add_isr(context, interrupt, f"{interrupt.name}_Acknowledgement", ()),) if is_answered else ()
+    if not incoming:
+        return Receivers(other_triggers=others)
+    frames = (_add_isr(context, interrupt, interrupt.name, triggers),)
+    return Receivers(processes=(interrupt.name, *names), frame_triggers=frames, other_triggers=others)
+
+
+def _add_isr(context: AssemblyContext, interrupt: Interrupt, name: str, triggers: Sequence[str]) -> str:
+    """Add an interrupt service routine, and return its stimulus."""
+    section = interrupt if interrupt.core else context.description.middleware.executor
+    core = context.core(section.core, section.location("core"))
+    handler = Runnable(
+        name=f"{interrupt.name}_Frame",
+        activities=activity_sequence(context.converter.execute([interrupt.execution_time], core, interrupt.location())),
+        origin=interrupt.location(),
+    )
+    context.runnables[handler.name] = handler
+    context.isrs.append(
+        PlannedIsr(
+            name=name,
+            core=core,
+            stimuli=(context.stimuli.add(InterProcess(name=trigger_name(name), origin=interrupt.location())),),
+            activities=(Call(runnable=handler.name), *_triggers(triggers)),
+            priority=interrupt.priority,
+            overhead=interrupt.overhead,
+            origin=interrupt.location(),
+        )
+    )
+    return trigger_name(name)
+
+
+def _add_thread(
+    context: AssemblyContext, thread: MiddlewareThread, messages: Sequence[WireMessage], triggers: Sequence[str]
+) -> str:
+    """Add a task of the middleware that handles each received message, and return its stimulus."""
+    middleware = context.description.middleware
+    section = next((task for task in middleware.tasks if task.name == thread.name), None)
+    core = context.core(section.core if section else None, section.location("core") if section else None)
+    stated = section.priority if section else None
+    priority = thread.priority if stated is None else stated
+    origin = section.location() if section else middleware.location()
+    body = Runnable(
+        name=f"{thread.name}_Message", activities=_cost(context, section, thread, messages, core), origin=origin
+    )
+    context.runnables[body.name] = body
+    context.tasks.append(
+        PlannedTask(
+            name=thread.name,
+            core=core,
+            stimuli=(context.stimuli.add(InterProcess(name=trigger_name(thread.name), origin=origin)),),
+            activities=(Call(runnable=body.name), *_triggers(triggers)),
+            period=min(message.interval - message.jitter for message in messages),
+            priority=middleware.executor.priority if priority is None else priority,
+            activation_limit=_UNLIMITED,
+            origin=origin,
+        )
+    )
+    return trigger_name(thread.name)
+
+
+def _cost(
+    context: AssemblyContext,
+    section: MiddlewareTask | None,
+    thread: MiddlewareThread,
+    messages: Sequence[WireMessage],
+    core: str,
+) -> tuple[Activity, ...]:
+    """What a message costs in a task; unknown if it is not stated."""
+    cost = section.execution_time if section else None
+    if section is None or cost is None:
+        text = f"the execution time of {thread.name!r} per message is not specified, so that its response time is unknown"
+        advice = f"Set 'execution_time' of {thread.name!r} under 'tasks' of 'middleware'."
+        context.notes.warning("UR136", text, section.location() if section else context.description.location(), advice)
+        return (Execute(demand=Demand()),)
+    largest = max(message.message.size for message in messages)
+    return activity_sequence(context.converter.execute(message_cost(cost, largest), core, section.location("execution_time")))
+
+
+def _triggers(stimuli: Sequence[str]) -> Iterator[Trigger]:
+    return (Trigger(stimulus=stimulus) for stimulus in stimuli)
