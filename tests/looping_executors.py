@@ -8,9 +8,19 @@ from amalthea_uros.analyze.executors.evaluate import evaluate_executors
 from amalthea_uros.analyze.propagation import solve
 from amalthea_uros.perf.activities import Call, Chance, ProbabilitySwitch
 from amalthea_uros.perf.distributions import Constant
-from amalthea_uros.perf.executors import Executor, Handle, HandleKind, Loop, LoopKind, Publication, TriggerCondition, TriggerKind, Waiting
+from amalthea_uros.perf.executors import (
+    Executor,
+    Handle,
+    HandleKind,
+    Loop,
+    LoopKind,
+    Publication,
+    TriggerCondition,
+    TriggerKind,
+    Waiting,
+)
 from amalthea_uros.perf.software import Runnable
-from amalthea_uros.perf.stimuli import Periodic, RelativePeriodic
+from amalthea_uros.perf.stimuli import Periodic, RelativePeriodic, Stimuli
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
@@ -46,11 +56,9 @@ def waiting_publication(topic="odom", timeout=1000 * MS, **parts):
 def looping(*handles, loop=ARDUINO, spin=0, others=(), priority=5, name="Executor", trigger=None, waiting=None, **parts):
     """A system with one executor and other processes on the same core; handles in the order of the executor."""
     executor, process, runnables, stimulus = _parts(name, handles, loop, spin, priority)
-    executor = replace(
-        executor, trigger=trigger or TriggerCondition(), waiting=waiting or Waiting(), **parts
-    )
-    found = system(process, *others, stimuli=(stimulus,), runnables=runnables)
-    return replace(found, executors=(executor,))
+    executor = replace(executor, trigger=trigger or TriggerCondition(), waiting=waiting or Waiting(), **parts)
+    found = system(process, *others, runnables=runnables)
+    return replace(found, executors=(executor,), stimuli=Stimuli(stimuli=(*found.stimuli.stimuli, stimulus)))
 
 
 def _parts(name, handles, loop, spin, priority):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from amalthea_uros.analyze.execution_shares import ExecutionShare, execution_shares
+from amalthea_uros.analyze.executors.results import HandleResult
 from amalthea_uros.analyze.results import Analysis, CallbackResult, ProcessResult
 
 
@@ -16,11 +17,13 @@ class CallbackExplanation:
     ----------
     process : whose jobs call it
     execution : what these jobs execute up to the callback, in order, with the callback itself last
+    handles : in an executor that spins in a loop, the handles that call it; their terms take the response time apart
     """
 
     callback: CallbackResult
     process: ProcessResult
     execution: tuple[ExecutionShare, ...]
+    handles: tuple[HandleResult, ...] = ()
 
 
 def explain_callback(analysis: Analysis, name: str) -> tuple[CallbackExplanation, ...]:
@@ -29,11 +32,19 @@ def explain_callback(analysis: Analysis, name: str) -> tuple[CallbackExplanation
         CallbackExplanation(
             callback=callback,
             process=analysis.processes[callback.process],
-            execution=_until(execution_shares(analysis.solution.context, callback.process), name),
+            execution=() if handles else _until(execution_shares(analysis.solution.context, callback.process), name),
+            handles=handles,
         )
         for callback in analysis.callbacks
         if callback.name == name
+        for handles in [_handles(analysis, callback)]
     )
+
+
+def _handles(analysis: Analysis, callback: CallbackResult) -> tuple[HandleResult, ...]:
+    """The handles of an executor that spins in a loop that call a callback."""
+    found = (executor for executor in analysis.executors if executor.task == callback.process)
+    return tuple(handle for executor in found for handle in executor.handles if handle.runnable == callback.name)
 
 
 def _until(shares: list[ExecutionShare], name: str) -> tuple[ExecutionShare, ...]:

@@ -17,6 +17,8 @@ import numpy as np
 from amalthea_uros.analyze import metrics
 from amalthea_uros.analyze.chains.completed_work import times_of_completion
 from amalthea_uros.analyze.chains.core_schedule import CoreSchedule, CoreSchedules
+from amalthea_uros.analyze.executors.callbacks import callback_results
+from amalthea_uros.analyze.executors.results import ExecutorResult
 from amalthea_uros.analyze.metrics import Span
 from amalthea_uros.analyze.response_times.schedule import demand_cycle, demand_table, demands_of_jobs
 from amalthea_uros.analyze.results import CallbackResult, Claim, JobMetric, Metric, Response
@@ -44,6 +46,7 @@ class CallbackEvaluator:
 
     solution: Solution
     schedules: CoreSchedules
+    executors: Sequence[ExecutorResult] = ()
     _limits: dict[str, Time | None] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -65,7 +68,11 @@ class CallbackEvaluator:
         wanted = {runnable.name for runnable in self.context.system.software.runnables if runnable.callback} | set(self._limits)
         if not wanted:
             return
+        looping = {executor.task: executor for executor in self.executors}
         for process in self.context.system.processes.values():
+            if process.name in looping:
+                yield from callback_results(looping[process.name], self._limits)
+                continue
             try:
                 positions = self.context.dataflow.events.positions(process.name)
             except UnresolvedError as error:

@@ -145,7 +145,7 @@ def shares(analysis: Analysis, name: str) -> list[Share]:
     """The shares of all processes, largest first; empty if the method does not give them."""
     solution = analysis.solution_of(name)
     response, scheduled = solution.responses.get(name), solution.context.scheduled.get(name)
-    if response is None or response.worst is None or scheduled is None:
+    if response is None or response.worst is None or scheduled is None or name in solution.context.system.executor_of_task:
         return []
     tasks = periodic_tasks(scheduled.core, solution) if response.method == schedule.METHOD else []
     found = _in_schedule(solution, scheduled, tasks) if tasks else _in_window(solution, scheduled, response)

@@ -85,7 +85,7 @@ def _judged(requirement: Requirement, limit: TimeLimit, holders: Sequence[Holder
     is_upper = limit.bound is Bound.UPPER
     ends = _ends(holders, limit.metric, is_upper)
     verdict = decide(ends, limit.value, is_upper)
-    is_overloaded = any(isinstance(holder, ProcessResult) and holder.verdict is Verdict.UNBOUNDED for holder in holders)
+    is_overloaded = any(map(_is_overloaded, holders))
     if is_upper and limit.metric is TimeMetric.RESPONSE_TIME and is_overloaded:
         verdict = Verdict.MISSED
     return RequirementResult(
@@ -99,6 +99,13 @@ def _judged(requirement: Requirement, limit: TimeLimit, holders: Sequence[Holder
         verdict=verdict,
         reason="" if verdict is Verdict.MET else _reason(requirement, limit, holders, ends),
     )
+
+
+def _is_overloaded(holder: Holder) -> bool:
+    """Whether it is certain that response times grow without a limit."""
+    if isinstance(holder, ProcessResult):
+        return holder.verdict is Verdict.UNBOUNDED
+    return holder.response is not None and holder.response.is_overload
 
 
 def _judged_jitter(

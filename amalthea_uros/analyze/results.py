@@ -17,6 +17,7 @@ from amalthea_uros.timing.job_metric import JobMetric as JobMetric
 from amalthea_uros.units import Frequency, Time, time_text
 
 if TYPE_CHECKING:
+    from amalthea_uros.analyze.executors.results import ExecutorResult
     from amalthea_uros.analyze.solution import Solution
     from amalthea_uros.analyze.summary import Summary
     from amalthea_uros.analyze.ways.results import Way
@@ -311,6 +312,7 @@ class Analysis(Shown):
         what comes from outside
     worst_solutions : for each process the solution of the phase in which its response time is the worst; empty if all are known
     summary : whether everything is met, and what is missed or unknown
+    executors : those that spin in loops
     ways : chains over wires, the agent or executors that loop; those with limits first
     assumptions : on which the numbers are based
     findings : what the analysis does not take into account
@@ -327,6 +329,7 @@ class Analysis(Shown):
     assumptions: tuple[str, ...]
     findings: tuple[Finding, ...]
     worst_solutions: Mapping[str, Solution] = field(default_factory=dict, repr=False, compare=False)
+    executors: Results[ExecutorResult] = field(default_factory=Results)
     ways: Results[Way] = field(default_factory=Results)
 
     def __repr__(self) -> str:
@@ -334,6 +337,12 @@ class Analysis(Shown):
         if self.requirements:
             parts.append(counted(len(self.requirements), "requirement"))
         return f"<Analysis of {', '.join(parts)}; schedulable: {self.summary.schedulable}>"
+
+    @property
+    def of_periodic_executors(self) -> tuple[CallbackResult, ...]:
+        """The callbacks without those of executors that spin in loops, of which the executors have more to say."""
+        looping = {executor.task for executor in self.executors}
+        return tuple(callback for callback in self.callbacks if callback.process not in looping)
 
     def solution_of(self, process: str) -> Solution:
         """The solution that the response time of a process is from."""

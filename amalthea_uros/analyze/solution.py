@@ -66,7 +66,8 @@ class Solution:
         found = []
         for name, response in self.responses.items():
             process = self.context.scheduled[name].process
-            if isinstance(process, Task) and (
+            # The rounds of an executor are no activations that could be lost.
+            if (isinstance(process, Task) and name not in self.context.system.executor_of_task) and (
                 response.worst is None or self.event_models[name].eta_plus(response.worst) > process.activation_limit
             ):
                 found.append(name)

@@ -11,6 +11,9 @@ from amalthea_uros.analyze.chains.constraints import ConstraintEvaluator
 from amalthea_uros.analyze.chains.core_schedule import CoreSchedules
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.chains.job_chains import JobBudget
+from amalthea_uros.analyze.executors.callbacks import METRICS_OF_ROUNDS, of_rounds
+from amalthea_uros.analyze.executors.findings import note_executors
+from amalthea_uros.analyze.executors.results import ExecutorResult
 from amalthea_uros.analyze.metrics import MetricEvaluator
 from amalthea_uros.analyze.phases import Phases, merged, merged_chain
 from amalthea_uros.analyze.process_verdicts import judged
@@ -56,9 +59,10 @@ def analyze_system(system: System, settings: Settings | None = None) -> Analysis
     solution = solve(TimingContext.of(system, settings))
     system = solution.context.system
     unknown = unknown_phases(system)
-    _, ways = evaluate_ways(solution)
-    every = _of_all_phases(solution, unknown, Results(ways))
-    found = every or _analysis(solution, JobBudget(), Results(ways))
+    executors, ways = map(Results, evaluate_ways(solution))
+    note_executors(executors, solution)
+    every = _of_all_phases(solution, unknown, executors, ways)
+    found = every or _analysis(solution, JobBudget(), executors, ways)
     phases, notes = phase_assumptions(system, are_all_evaluated=every is not None), solution.context.notes
     return replace(
         found,
@@ -67,22 +71,29 @@ def analyze_system(system: System, settings: Settings | None = None) -> Analysis
     )
 
 
-def _of_all_phases(solution: Solution, unknown: Sequence[Occurrence], ways: Results[Way]) -> Analysis | None:
+def _of_all_phases(
+    solution: Solution, unknown: Sequence[Occurrence], executors: Results[ExecutorResult], ways: Results[Way]
+) -> Analysis | None:
     """The analysis over all combinations of unknown phases; None if there are too many."""
     phases = Phases.of(solution, unknown)
     if phases is None:
         return None
     cases, budget = phases.cases, JobBudget()
     return merged(
-        {number: _analysis(each, budget, ways) for number, each in phases.solutions(cases.of_everything())}, cases, solution
+        {number: _analysis(each, budget, executors, ways) for number, each in phases.solutions(cases.of_everything())},
+        cases,
+        solution,
     )
 
 
-def _analysis(solution: Solution, budget: JobBudget, ways: Results[Way]) -> Analysis:
+def _analysis(
+    solution: Solution, budget: JobBudget, executors: Results[ExecutorResult], ways: Results[Way]
+) -> Analysis:
     """The analysis of a system; chains are evaluated for all phases of the jobs that they pass, other unknown phases are any job.
 
     Parameters
     ----------
+    executors : those that spin in loops, for all phases
     ways : of the chains that cross wires, the agent or executors that loop, for all phases
     """
     context = solution.context
@@ -90,8 +101,8 @@ def _analysis(solution: Solution, budget: JobBudget, ways: Results[Way]) -> Anal
     _note_ignored(solution)
     evaluation = ChainEvaluator(solution, budget)
     schedules = evaluation.timing.schedules
-    processes = Results(_processes(solution, schedules))
-    callbacks = Results(CallbackEvaluator(solution, schedules).all())
+    processes = Results(_processes(solution, schedules, executors))
+    callbacks = Results(CallbackEvaluator(solution, schedules, executors).all())
     of_ways = {way.name: chain_result(way) for way in ways}
     chains = Results(of_ways.get(chain.name) or _chain(chain, evaluation) for chain in system.events.chains)
     verdicts = evaluate_requirements(system, processes, callbacks, context.notes)
@@ -107,6 +118,7 @@ def _analysis(solution: Solution, budget: JobBudget, ways: Results[Way]) -> Anal
         summary=summarize(processors, processes, requirements),
         assumptions=tuple(context.notes.assumptions),
         findings=tuple(context.notes.found),
+        executors=executors,
         ways=ways,
     )
 
@@ -144,17 +156,22 @@ def _note_ignored(solution: Solution) -> None:
             notes.warning("ANA007", message, process)
 
 
-def _processes(solution: Solution, schedules: CoreSchedules) -> Iterator[ProcessResult]:
+def _processes(solution: Solution, schedules: CoreSchedules, executors: Results[ExecutorResult]) -> Iterator[ProcessResult]:
     """The results of all processes."""
     system = solution.context.system
     limits, metrics = response_time_limits(system), MetricEvaluator(solution, schedules)
+    by_task = {executor.task: executor for executor in executors}
     for name in system.processes:
-        found = _process(name, solution, limits)
-        yield replace(found, metrics=metrics.of(found))
+        found = _process(name, solution, limits, by_task.get(name))
+        if name not in by_task:
+            yield replace(found, metrics=metrics.of(found))
+            continue
+        known = metrics.of(found)
+        yield replace(found, metrics={kind: known[kind] for kind in METRICS_OF_ROUNDS if kind in known})
 
 
-def _process(name: str, solution: Solution, limits: Mapping[str, Time]) -> ProcessResult:
-    """The result of a process; execution times are in picoseconds."""
+def _process(name: str, solution: Solution, limits: Mapping[str, Time], executor: ExecutorResult | None) -> ProcessResult:
+    """The result of a process, possibly that of the rounds of an executor; execution times are in picoseconds."""
     context, response = solution.context, _without_doubtful_overload(name, solution)
     process, demand = context.system.processes[name], context.stated_demand(name)
     placement = context.placement(name)
@@ -162,7 +179,7 @@ def _process(name: str, solution: Solution, limits: Mapping[str, Time]) -> Proce
     events = solution.event_models.get(name) or (context.stated_activations(name) if response is None else None)
     scheduled = context.scheduled.get(name)
     stated = scheduled.deadline if scheduled is not None and scheduled.deadline is not None else limits.get(name)
-    implicit = implicit_deadline(events) if stated is None and events is not None else None
+    implicit = implicit_deadline(events) if stated is None and events is not None and executor is None else None
     if implicit is not None:
         context.notes.assume(ASSUMPTION)
     found = ProcessResult(
@@ -183,6 +200,8 @@ def _process(name: str, solution: Solution, limits: Mapping[str, Time]) -> Proce
         min_interarrival=events.delta_min(2) if events is not None else None,
         max_interarrival=events.max_interarrival if events is not None else None,
     )
+    if executor is not None:
+        return of_rounds(found, executor, stated)
     if response is None or not solution.depends_on_losses(name):
         return judged(found, process, events, context.can_borrow(name))
     # Without the lost jobs, others can be earlier, but not later.

@@ -10,6 +10,7 @@ from typing import Any
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros._internal.shown import Record
 from amalthea_uros.analyze.assignment import Proposal
+from amalthea_uros.analyze.executors.results import ExecutorResult, HandleResult
 from amalthea_uros.analyze.impact import Impact
 from amalthea_uros.analyze.results import (
     Analysis,
@@ -34,6 +35,7 @@ from amalthea_uros.report.json import (
     optimization,
     simulation_result,
 )
+from amalthea_uros.report.json.executors import handle_json
 from amalthea_uros.services.analyze import AnalysisResult, Explanation
 from amalthea_uros.services.build import BuildResult
 from amalthea_uros.services.calibrate import Calibration
@@ -131,6 +133,17 @@ def _(process: ProcessResult) -> list[Record]:
 @all_records.register
 def _(callback: CallbackResult) -> list[Record]:
     return [flat(analysis_result.callback_json(callback))]
+
+
+@all_records.register
+def _(executor: ExecutorResult) -> list[Record]:
+    """One row for each handle."""
+    return [{"executor": executor.name} | row for handle in executor.handles for row in all_records(handle)]
+
+
+@all_records.register
+def _(handle: HandleResult) -> list[Record]:
+    return [flat(handle_json(handle))]
 
 
 @all_records.register

@@ -174,6 +174,10 @@ class TimingContext:
             found.setdefault(scheduled.core, []).append(scheduled)
         return found
 
+    def has_loops(self, core: str) -> bool:
+        """Whether an executor that spins in a loop runs on a core: when its rounds begin depends on what they do."""
+        return any(item.name in self.system.executor_of_task for item in self.on_core(core))
+
     def served(self, core: str, server: str | None) -> Sequence[ScheduledProcess | Server]:
         """Processes and servers on a core itself or in the budget of a server, highest rank first."""
         return self._served.get((core, server), ())

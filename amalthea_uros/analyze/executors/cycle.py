@@ -4,12 +4,13 @@ Without the wait, a cycle consists of the rest of the round, what the loop does 
 
 - `spin_some` with a sleep D: D + the time to execute a round
 - `spin`: the time to execute a round
-- `spin_period` with a period P: the invocation time is never later than the moment when the round began, and the thread sleeps until one
-  period after it, or not at all. So it is at most the greater of P and the time to execute a round. As sleeps are cut to whole
+- `spin_period` with a period P: the invocation time is never later than the moment when the round began, and the thread sleeps until
+  one period after it, or not at all. So it is at most the greater of P and the time to execute a round. As sleeps are cut to whole
   milliseconds, a round can begin up to 1 ms before its invocation time, which makes it 1 ms more.
 
-A round executes the overhead of the executor once. Which part of it comes before the wait is unknown, so that its part after the sleep can
-be all of it; the time of a cycle with a sleep is the lesser of two bounds: the sleep in the middle of one window, and two windows.
+A round executes the overhead of the executor once. Which part of it comes before the wait is unknown, so that its part after the
+sleep can be all of it; the time of a cycle with a sleep is the lesser of two bounds: the sleep in the middle of one window, and two
+windows.
 """
 
 from __future__ import annotations
@@ -145,9 +146,7 @@ class Cycle:
         """What a round does before a callback, after it has fixed what is ready; the take of its message included."""
         at = self.executor.handles.index(handle)
         earlier, later = self.executor.handles[:at], self.executor.handles[at + 1 :]
-        found = self._part(
-            *self._possible_with(handle, earlier), self.costs.spin.worst + self.costs.takes[handle.name].worst
-        )
+        found = self._part(*self._possible_with(handle, earlier), self.costs.spin.worst + self.costs.takes[handle.name].worst)
         if not self.executor.takes_first:
             return found
         always, excluded = self._possible_with(handle, later)
@@ -197,9 +196,7 @@ class Cycle:
                 return None if unslept is None else max(unslept, slept)
             case LoopKind.SPIN_SOME if self.sleep:
                 found = [self.sleep + self.busy + beginning]
-                joint = self.window.time(
-                    part.demand, part.suspension.most + held + self.sleep, part.resumed + 1 + contending
-                )
+                joint = self.window.time(part.demand, part.suspension.most + held + self.sleep, part.resumed + 1 + contending)
                 return min([*found, *([] if joint is None else [joint])])
         return self.window.time(part.demand, part.suspension.most + held, part.resumed + contending)
 

@@ -1,9 +1,10 @@
 """The response times of the callbacks of an executor, by the kind of handle.
 
-Let L be the longest cycle without a wait, W the longest wait, and E the time from when it is fixed what is ready to the end of a callback.
+Let L be the longest cycle without a wait, W the longest wait, and E the time from when it is fixed what is ready to the end of a
+callback.
 
-- A timer: once it is due, waits end at once. In the worst case what is ready was fixed just before, so that it is called after one cycle:
-  L + E. That a wait can end up to 1 ms before the timer is due, without a call, is no longer than that.
+- A timer: once it is due, waits end at once. In the worst case what is ready was fixed just before, so that it is called after one
+  cycle: L + E. That a wait can end up to 1 ms before the timer is due, without a call, is no longer than that.
 - A guard condition: a trigger does not end the wait, so that it is seen after one cycle and the wait: L + W + E.
 - A message: after n cycles, see `queue`: n L + E, or n (L + W) + E if messages can be stored before the round that takes them.
 """

@@ -15,8 +15,8 @@ from amalthea_uros.analyze.executors.results import HandleResult, Loss
 from amalthea_uros.perf.executors import Handle
 from amalthea_uros.perf.network import Span
 from amalthea_uros.timing.executors.arrivals import UnknownArrivalsError, arrivals
-from amalthea_uros.timing.executors.slots import LIFESPAN, can_exceed_depth, can_exceed_slots
 from amalthea_uros.timing.executors.readiness import keeps_back
+from amalthea_uros.timing.executors.slots import LIFESPAN, can_exceed_depth, can_exceed_slots
 from amalthea_uros.timing.executors.timers import lost_periods, next_expiration
 from amalthea_uros.timing.executors.wait import is_message
 from amalthea_uros.units import Rounding, Time, rounded_time_text, time_text
@@ -36,7 +36,8 @@ def loss_of_timer(handle: Handle, cycle: Cycle, lateness: Span) -> Loss | None:
     sequence = (
         f"{handle.name} is due at 0 s, just after a round has checked its timers; the rest of the round"
         f"{f' and the sleep of {time_text(cycle.sleep)}' if cycle.sleep else ''}, then the next round up to the callback, end at "
-        f"{_text(lateness.most)}; what was due until then at {_multiples(count, period)} is lost, the next call is due at {time_text(following)}"
+        f"{_text(lateness.most)}; what was due until then at {_multiples(count, period)} is lost, "
+        f"the next call is due at {time_text(following)}"
     )
     return Loss(what="periods", is_certain=cycle.shortest > period, most=count, sequence=sequence)
 
@@ -49,7 +50,9 @@ def _multiples(count: int, period: Time) -> str:
 def loss_of_triggers(handle: Handle, cycle: Cycle, seen_after: Time | None) -> Loss | None:
     """The triggers of a guard condition that can be lost: it is a flag that is cleared when it is seen."""
     if keeps_back(cycle.executor):
-        sequence = f"{handle.name} is triggered; the next round sees and clears it, but the trigger condition of the executor is false"
+        sequence = (
+            f"{handle.name} is triggered; the next round sees and clears it, but the trigger condition of the executor is false"
+        )
         return Loss(what="triggers", is_certain=False, most=None, sequence=sequence)
     if handle.interval is None or seen_after is None or handle.interval > seen_after:
         return None
@@ -57,7 +60,13 @@ def loss_of_triggers(handle: Handle, cycle: Cycle, seen_after: Time | None) -> L
         f"{handle.name} is triggered at 0 s and {time_text(handle.interval)}; "
         f"the executor sees it only after {_text(seen_after)}, and calls it once"
     )
-    return Loss(what="triggers", is_certain=False, most=seen_after // handle.interval if handle.interval else None, sequence=sequence)
+    return Loss(
+        what="triggers",
+        is_certain=False,
+        most=seen_after // handle.interval if handle.interval else None,
+        is_replaced=True,
+        sequence=sequence,
+    )
 
 
 def with_lost_messages(
@@ -77,7 +86,9 @@ def with_lost_messages(
     is_pool_enough = len(known) == len(stored) and not can_exceed_slots(executor, known)
     is_pool_enough = is_pool_enough or executor.waiting.slots is None
     return [
-        replace(result, lost=_lost(handle, result, cycle, stored[handle.name], is_pool_enough)) if handle.name in stored else result
+        replace(result, lost=_lost(handle, result, cycle, stored[handle.name], is_pool_enough))
+        if handle.name in stored
+        else result
         for handle, result in zip(executor.handles, results, strict=True)
     ]
 
@@ -97,10 +108,18 @@ def _lost(handle: Handle, result: HandleResult, cycle: Cycle, stored: int | None
     if handle.depth is not None and (stored is None or can_exceed_depth(handle, stored)):
         count = f"{stored} messages" if stored is not None else "an unknown number of messages"
         what = "overwrites the oldest one" if handle.overwrites else "is dropped"
-        sequence = f"{_while_nothing_is_taken(cycle)}{count} for {handle.name} can wait; it keeps {handle.depth}, and a further one {what}"
-        return Loss(what="messages", is_certain=False, most=None if stored is None else stored - handle.depth, sequence=sequence)
+        limit = f"it keeps {handle.depth}, and a further one {what}"
+        sequence = f"{_while_nothing_is_taken(cycle)}{count} for {handle.name} can wait; {limit}"
+        return Loss(
+            what="messages",
+            is_certain=False,
+            most=None if stored is None else stored - handle.depth,
+            sequence=sequence,
+            is_replaced=handle.overwrites and not handle.reliable,
+        )
     if result.response.worst is not None and result.response.worst > LIFESPAN:
-        sequence = f"a message for {handle.name} can wait for {_text(result.response.worst)}; stored for {time_text(LIFESPAN)}, it is removed"
+        wait = _text(result.response.worst)
+        sequence = f"a message for {handle.name} can wait for {wait}; stored for {time_text(LIFESPAN)}, it is removed"
         return Loss(what="messages", is_certain=False, most=None, sequence=sequence)
     if is_pool_enough:
         return None
@@ -108,7 +127,7 @@ def _lost(handle: Handle, result: HandleResult, cycle: Cycle, stored: int | None
         f"{_while_nothing_is_taken(cycle)}messages for all handles of {executor.name} together use its {executor.waiting.slots} slots; "
         f"a new one for {handle.name} is dropped then"
     )
-    return Loss(what="messages", is_certain=False, most=None, sequence=sequence)
+    return Loss(what="messages", is_certain=False, most=None, sequence=sequence, is_of_pool=True)
 
 
 def _while_nothing_is_taken(cycle: Cycle) -> str:

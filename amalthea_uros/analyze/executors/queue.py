@@ -1,14 +1,14 @@
 """How many cycles pass until a message is served.
 
 Messages wait first in first out in the buffer of the transport, and a wait takes one of them, so that a round serves one. Let a busy
-period begin when a message arrives and no other one waits. The running cycle ends at most one cycle L later, and each following one takes
-one message as long as any waits. So the n-th message of the busy period is ready at most n L after its beginning; it arrives no earlier
-than delta-(n) of all messages of the executor, and the busy period goes on as long as the next one arrives before.
+period begin when a message arrives and no other one waits. The running cycle ends at most one cycle L later, and each following one
+takes one message as long as any waits. So the n-th message of the busy period is ready at most n L after its beginning; it arrives no
+earlier than delta-(n) of all messages of the executor, and the busy period goes on as long as the next one arrives before.
 
-If messages can be stored before the round that takes them, they do not end the wait: each cycle can wait for W before it looks at them.
-The count remains the same, because each cycle serves one message that came before, or the one in question: one of the handle of the
-message that the wait took, or, if it took none, the oldest of its handle. If a wait takes all messages that are there, only those of the
-same handle delay each other.
+If messages can be stored before the round that takes them, they do not end the wait: each cycle can wait for W before it looks at
+them. The count remains the same, because each cycle serves one message that came before, or the one in question: one of the handle of
+the message that the wait took, or, if it took none, the oldest of its handle. If a wait takes all messages that are there, only those
+of the same handle delay each other.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from fractions import Fraction
 from amalthea_uros.analyze.executors.cycle import Cycle
 from amalthea_uros.perf.executors import Handle
 from amalthea_uros.timing.event_models import EventModel, aggregated
-from amalthea_uros.timing.executors.arrivals import UnknownArrivalsError, arrivals
+from amalthea_uros.timing.executors.arrivals import UnknownArrivalsError, arrivals, certain_rate
 from amalthea_uros.timing.executors.wait import messages
 from amalthea_uros.units import SECOND, Time
 
@@ -82,16 +82,10 @@ def delay_of(handle: Handle, cycle: Cycle, length: Time, extra_jitter: Mapping[s
 
 def _growing(cycle: Cycle, events: EventModel, length: Time) -> Delay:
     rate = f"{float(events.rate * SECOND):.4g} messages/s arrive"
-    certain = certain_rate(cycle)
+    certain = certain_rate(cycle.executor)
     if cycle.executor.waiting.messages_per_wait == 1 and certain * cycle.shortest_with_message > 1:
         served = float(Fraction(SECOND, cycle.shortest_with_message))
         reason = f"overload: {rate}, and rounds serve at most {served:.4g} per second, so that messages wait longer and longer"
         return Delay(cycles=None, reason=reason, is_overload=True)
     served = float(Fraction(SECOND, length))
     return Delay(cycles=None, reason=f"{rate}, and rounds may serve only {served:.4g} per second")
-
-
-def certain_rate(cycle: Cycle) -> Fraction:
-    """How many messages per time arrive for certain: those that are periodic."""
-    periods = (handle.interval for handle in messages(cycle.executor) if handle.is_periodic)
-    return sum((Fraction(1, period) for period in periods if period), Fraction(0))

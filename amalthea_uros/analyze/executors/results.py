@@ -37,12 +37,16 @@ class Loss:
     is_certain : whether they are lost in every run; otherwise it cannot be excluded
     most : how many are lost in one go; None if that is not known
     sequence : what has to happen for it, in words
+    is_of_pool : whether messages are dropped because all slots are in use; otherwise by what is kept for a handle
+    is_replaced : whether that is meant: a newer message or trigger takes the place of what is lost
     """
 
     what: str
     is_certain: bool
     most: int | None
     sequence: str
+    is_of_pool: bool = False
+    is_replaced: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -53,7 +57,8 @@ class HandleResult(Shown):
     ----------
     runnable : the callback
     interval : minimum time between two messages or triggers, or the period of a timer; None if it is not known
-    response : from the release to the end of the callback; the release is when a message has arrived at the controller, a timer is due, or
+    response : from the release to the end of the callback; the release is when a message has arrived at the controller, a timer is
+    due, or
         a guard condition is triggered; `worst` is None if there is no finite bound, for the `reason`
     lateness : from when a timer is due to the start of its call; None for others
     lost : None if nothing can be lost

@@ -28,7 +28,9 @@ def terms_of(handle: Handle, cycle: Cycle, *, delay: Delay, wait: Time, waited_f
     stated = [term for term in found if term.most]
     rest = worst - sum(term.most for term in stated)
     if rest:
-        stated.insert(-1, Term(name="preemption", least=0, most=rest, why="processes of higher priority, blocking, and rounding"))
+        stated.insert(
+            -1, Term(name="preemption", least=0, most=rest, why="processes of higher priority, blocking, and rounding")
+        )
     return tuple(stated)
 
 
@@ -66,9 +68,16 @@ def _of_round(handle: Handle, cycle: Cycle) -> list[Term]:
     names = [each.name for each in cycle.executor.handles[: cycle.executor.handles.index(handle)]]
     return [
         Term(name="overhead of the executor", least=0, most=_time(spin, cycle), why="fill the wait set and check all handles"),
-        Term(name="callbacks before it", least=0, most=_time(others, cycle), why=f"in the order of the executor: {', '.join(names)}"),
+        Term(
+            name="callbacks before it",
+            least=0,
+            most=_time(others, cycle),
+            why=f"in the order of the executor: {', '.join(names)}",
+        ),
         Term(name="publications before it", least=0, most=part.suspension.most or 0, why=part.suspension.why),
-        Term(name="take", least=costs.takes[handle.name].best // cycle.time_base, most=_time(take, cycle), why="read its message"),
+        Term(
+            name="take", least=costs.takes[handle.name].best // cycle.time_base, most=_time(take, cycle), why="read its message"
+        ),
         Term(name="publish", least=own.least, most=own.most or 0, why=own.why),
         Term(name="its execution", least=callback.best // cycle.time_base, most=_time(callback.worst, cycle)),
     ]

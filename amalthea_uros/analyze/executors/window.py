@@ -1,10 +1,10 @@
 """How long the thread of an executor needs to execute something, with preemption by others, blocking and suspensions.
 
-Let the thread become ready at t1 and end at t2, executing C in between, suspended for S in all, and resumed n times, at t1 included. Let
-t0 be the last time until t1 at which no process of at least its rank is pending. At every moment from t0 to t2 the core executes one of
-these, all of whose jobs were activated since t0; or the thread; or the thread is suspended; or a process of lower rank keeps others off,
-which can happen once after each resumption, because then either the thread or a process of higher rank follows. So t2 - t1 is at most
-the least w with
+Let the thread become ready at t1 and end at t2, executing C in between, suspended for S in all, and resumed n times, at t1 included.
+Let t0 be the last time until t1 at which no process of at least its rank is pending. At every moment from t0 to t2 the core executes
+one of these, all of whose jobs were activated since t0; or the thread; or the thread is suspended; or a process of lower rank keeps
+others off, which can happen once after each resumption, because then either the thread or a process of higher rank follows. So t2 -
+t1 is at most the least w with
 
     w = S + n B + C + sum over the others of C_j(eta_j(w))
 
@@ -18,7 +18,6 @@ from dataclasses import dataclass
 
 from amalthea_uros.analyze.response_times.blocking import Blocking
 from amalthea_uros.analyze.response_times.busy_window import Interference
-from amalthea_uros.analyze.response_times.polling import polling_tasks
 from amalthea_uros.analyze.response_times.task import Task
 from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.timing.event_models import rescaled
@@ -59,16 +58,22 @@ class Window:
         blocking = Blocking.of(processes, solution)
         level = blocking.level(scheduled)
         above = [item for item in processes if item.rank >= level.rank and item.name != task]
-        obstacle = context.unanalysable_cores.get((scheduled.core, True)) or context.unanalysable_cores.get((scheduled.core, False))
+        obstacle = context.unanalysable_cores.get((scheduled.core, True)) or context.unanalysable_cores.get(
+            (scheduled.core, False)
+        )
         unknown = obstacle or next((item.name for item in above if not solution.is_analysable(item.name)), "")
         if unknown:
             raise NoWindowError(f"{unknown!r}, which could not be analysed, can preempt it")
         if blocking.unknown and (keeping := blocking.obstacle(scheduled)):
             raise NoWindowError(f"{keeping!r}, which could not be analysed, can block it")
-        own = context.demand_model.of_process(scheduled.process, scheduled.core).worst if blocking.keeps_off_others(scheduled) else 0
+        own = (
+            context.demand_model.of_process(scheduled.process, scheduled.core).worst
+            if blocking.keeps_off_others(scheduled)
+            else 0
+        )
         time_base = context.time_base(task)
         return cls(
-            Interference.of([*(_task(item, solution) for item in above), *_decisions(scheduled.core, solution), *polling_tasks(above, solution)]),
+            Interference.of([*(_task(item, solution) for item in above), *_decisions(scheduled.core, solution)]),
             blocking.time(scheduled) + own,
             time_base,
         )

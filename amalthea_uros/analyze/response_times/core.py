@@ -9,7 +9,6 @@ from itertools import groupby
 from amalthea_uros.analyze.response_times import priority_levels, schedule
 from amalthea_uros.analyze.response_times.blocked_window import BlockedWindow
 from amalthea_uros.analyze.response_times.blocking import Blocking
-from amalthea_uros.analyze.response_times.polling import polling_tasks
 from amalthea_uros.analyze.response_times.supply import FULL, Budget, Supply
 from amalthea_uros.analyze.response_times.task import Task
 from amalthea_uros.analyze.results import Claim, Response
@@ -142,8 +141,7 @@ class _CoreAnalysis:
         """The processes, if all releases are known and there is no blocking; otherwise nothing."""
         if len({item.rank for item in here}) < len(here) or Blocking.of(here, self.solution).is_possible:
             return []
-        if any(item.name in self.context.system.executor_of_task for item in here):
-            # When its rounds begin depends on what they do.
+        if self.context.has_loops(self.core):
             return []
         found = [self._released(item, rank) for rank, item in enumerate(reversed(here))]
         return [] if None in found else [task for task in reversed(found) if task is not None]
@@ -176,7 +174,6 @@ class _CoreAnalysis:
             notes.assume("if not all releases on a core are known, all tasks can be released together at the worst moment")
             notes.assume("best cases on such cores hold once all tasks have been released")
         decisions = self._decisions(len(ranks)) if supply is FULL else []
-        decisions += self._polling(usable, ranks)
         found = priority_levels.response_times([*tasks, *decisions], [*waits, *[0] * len(decisions)], supply)
         for index, item in enumerate(usable):
             if isinstance(item, ScheduledProcess):
@@ -189,18 +186,13 @@ class _CoreAnalysis:
     def _without_rounds(self, item: ScheduledProcess | Server, response: Response) -> Response:
         """A response time; an overload is not certain if rounds of executors are counted that need not be as long and as dense."""
         executors = self.context.system.executor_of_task
-        if response.is_overload and any(each.name in executors and each.rank >= item.rank for each in self.context.on_core(item.core)):
-            return replace(response, is_overload=False, reason=f"{response.reason}, if each round of an executor is the longest")
+        if response.is_overload and any(
+            each.name in executors and each.rank >= item.rank for each in self.context.on_core(item.core)
+        ):
+            return replace(
+                response, is_overload=False, reason=f"{response.reason}, if each round of an executor is the longest"
+            )
         return response
-
-    def _polling(self, usable: Sequence[ScheduledProcess | Server], ranks: Sequence[Rank]) -> list[Task]:
-        """What executors execute besides their rounds for messages and timers."""
-        return [
-            task
-            for item in usable
-            if isinstance(item, ScheduledProcess)
-            for task in polling_tasks([item], self.solution, ranks.index(item.rank))
-        ]
 
     def _task(self, item: ScheduledProcess | Server, ranks: Sequence[Rank]) -> Task:
         """A process or server as the methods see it; a job of a server uses its budget."""

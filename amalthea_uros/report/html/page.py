@@ -20,6 +20,7 @@ from amalthea_uros.report.html.blocks import Section, Tone
 from amalthea_uros.report.html.sections import (
     bus,
     changes,
+    executors,
     findings,
     histograms,
     hops,
@@ -43,6 +44,7 @@ _SECTIONS: Sequence[Callable[[ReportContent], Section | None]] = (
     system.section,
     load.section,
     response_times.section,
+    executors.section,
     observed.section,
     worst_window.section,
     histograms.section,

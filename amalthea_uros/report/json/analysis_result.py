@@ -19,7 +19,9 @@ from amalthea_uros.analyze.results import (
 )
 from amalthea_uros.report.closing_line import closing_line
 from amalthea_uros.report.findings import finding_json, joined
-from amalthea_uros.report.json import changes, explanation, impact, ways
+from amalthea_uros.report.json import changes, explanation, impact
+from amalthea_uros.report.json.executors import executor_json
+from amalthea_uros.report.json.ways import way_json
 from amalthea_uros.services.analyze import AnalysisResult
 
 
@@ -33,7 +35,8 @@ def content(result: AnalysisResult) -> dict[str, Any]:
         "processors": [processor_json(processor) for processor in analysis.processors],
         "processes": [process_json(process) for process in analysis.processes],
         "callbacks": [callback_json(callback) for callback in analysis.callbacks],
-        "ways": [ways.way_json(way) for way in analysis.ways],
+        "executors": [executor_json(executor) for executor in analysis.executors],
+        "ways": [way_json(way) for way in analysis.ways],
         "chains": [_chain_json(chain, result.all_methods) for chain in analysis.chains],
         "requirements": [requirement_json(requirement) for requirement in analysis.requirements],
         "summary": summary_json(analysis),

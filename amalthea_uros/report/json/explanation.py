@@ -14,6 +14,7 @@ from amalthea_uros.analyze.explanation import ProcessExplanation
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.report.chain_causes import cause_text
 from amalthea_uros.report.json import changes
+from amalthea_uros.report.json.executors import handle_json
 from amalthea_uros.services.analyze import Explanation
 
 if TYPE_CHECKING:
@@ -64,6 +65,7 @@ def _callback_json(explanation: CallbackExplanation) -> dict[str, Any]:
         "deadline_ps": callback.deadline,
         "reason": callback.reason,
         "execution": [_share_json(share) for share in explanation.execution],
+        "handles": [handle_json(handle) for handle in explanation.handles],
     }
 
 

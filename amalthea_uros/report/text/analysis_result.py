@@ -13,6 +13,7 @@ from amalthea_uros.report.latencies import write_chains
 from amalthea_uros.report.process_order import by_core_and_priority
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.report.text import impact
+from amalthea_uros.report.text.executors import write_executors
 from amalthea_uros.report.text.metrics import write_callbacks, write_metrics
 from amalthea_uros.report.ways import write_ways
 from amalthea_uros.services.analyze import AnalysisResult
@@ -28,7 +29,8 @@ def write(result: AnalysisResult, terminal: Terminal) -> None:
     write_ways(analysis.ways, terminal)
     _processors(terminal, analysis)
     _processes(terminal, analysis)
-    write_callbacks(terminal, analysis.callbacks)
+    write_callbacks(terminal, analysis.of_periodic_executors)
+    write_executors(terminal, analysis.executors)
     if result.with_metrics:
         write_metrics(terminal, analysis.processes)
     write_chains(terminal, analysis.chains)

@@ -10,15 +10,18 @@ from amalthea_uros._internal.plural import counted
 from amalthea_uros.analyze.callback_explanation import CallbackExplanation
 from amalthea_uros.analyze.chains.explanation import ChainExplanation
 from amalthea_uros.analyze.execution_shares import ExecutionShare
+from amalthea_uros.analyze.executors.results import HandleResult
 from amalthea_uros.analyze.explanation import ProcessExplanation
 from amalthea_uros.analyze.results import CallbackResult, ProcessResult, Response, Value
 from amalthea_uros.analyze.unknown_origins import OriginKind
 from amalthea_uros.analyze.verdicts import Verdict
+from amalthea_uros.perf.executors import HandleKind
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.report.chain_causes import cause_text
 from amalthea_uros.report.hops import write_hops
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.report.text import improvements
+from amalthea_uros.report.text.executors import write_terms
 from amalthea_uros.report.ways import write_hops_of_way
 from amalthea_uros.services.analyze import Explanation
 from amalthea_uros.services.improvements import Improvements
@@ -105,14 +108,26 @@ def _callback(explanation: CallbackExplanation, terminal: Terminal) -> None:
     callback, process = explanation.callback, explanation.process
     name = terminal.style(callback.name, "1")
     terminal.line(f"{name}: worst-case response time {_response_text(callback)} ({_claim(callback)}), in {process.name}")
-    if callback.deadline is not None:
+    if callback.deadline is not None and not explanation.handles:
         terminal.line(f"  from the activation of {process.name}; deadline {time_text(callback.deadline)}")
+    for handle in explanation.handles:
+        _handle(handle, terminal)
     if explanation.execution:
         rows = [(share.name, _calls(share), _jobs(share.counter), _time(share.time)) for share in explanation.execution]
         terminal.table(("executed up to its end", "calls", "in jobs", "time"), rows, right=(1, 3))
     if callback.response is not None:
         terminal.line(f"  {callback.response.method}")
         terminal.line(f"  {callback.response.source}")
+
+
+def _handle(handle: HandleResult, terminal: Terminal) -> None:
+    """Write what a handle of an executor that spins in a loop waits for, and how something is lost."""
+    release = "when it is due" if handle.kind is HandleKind.TIMER else "when it has arrived at the controller"
+    interval = "" if handle.interval is None else f"; every {time_text(handle.interval)} at most"
+    terminal.line(f"  {handle.kind.value} {handle.name}, from {release}{interval}")
+    write_terms(terminal, handle)
+    if handle.lost is not None:
+        terminal.line(f"  {handle.lost.what} {'are' if handle.lost.is_certain else 'can be'} lost: {handle.lost.sequence}")
 
 
 def _response_text(callback: CallbackResult) -> str:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from fractions import Fraction
 
-from amalthea_uros.perf.executors import Handle
+from amalthea_uros.perf.executors import Executor, Handle
 from amalthea_uros.timing.event_models import EventModel, Periodic, Sporadic
+from amalthea_uros.timing.executors.wait import messages
 from amalthea_uros.units import Time
 
 
@@ -31,3 +33,9 @@ def arrivals(handle: Handle, extra_jitter: Mapping[str, Time | None]) -> EventMo
         raise UnknownArrivalsError(f"the jitter of the messages for {handle.name!r} on their way is not known")
     kind = Periodic if handle.is_periodic else Sporadic
     return kind(handle.interval, handle.jitter + extra)
+
+
+def certain_rate(executor: Executor) -> Fraction:
+    """How many messages per time arrive at an executor for certain: those that are periodic."""
+    periods = (handle.interval for handle in messages(executor) if handle.is_periodic)
+    return sum((Fraction(1, period) for period in periods if period), Fraction(0))

@@ -2,15 +2,15 @@
 
 - `spin_some` and a sleep: the sleep follows every round.
 - `spin`: the next wait follows at once.
-- `spin_period`: it sleeps until its invocation time plus the period, cut to whole milliseconds, and then the invocation time advances by
-  the period. After an overrun it does not sleep until it has caught up (ros2/rclc, rclc/src/rclc/executor.c,
+- `spin_period`: it sleeps until its invocation time plus the period, cut to whole milliseconds, and then the invocation time advances
+  by the period. After an overrun it does not sleep until it has caught up (ros2/rclc, rclc/src/rclc/executor.c,
   `rclc_executor_spin_one_period`). Its wait uses the timeout of the executor, not the period.
 """
 
 from __future__ import annotations
 
 from amalthea_uros.perf.executors import Executor, LoopKind
-from amalthea_uros.timing.executors.wait import greatest_wait, messages, timeout_of, timers
+from amalthea_uros.timing.executors.wait import messages, timeout_of, timers
 from amalthea_uros.units import MILLISECOND, Time
 
 #: `rclc_sleep_ms` sleeps whole milliseconds.
@@ -32,15 +32,3 @@ def never_rests(executor: Executor) -> str:
     if any(not handle.interval for handle in timers(executor)):
         return "its loop has no sleep, and a timer without a period is always due"
     return ""
-
-
-def catches_up(executor: Executor, busy: Time | None) -> bool:
-    """Whether rounds of `spin_period` can follow each other without a sleep, because one was longer than the period."""
-    if executor.loop.kind is not LoopKind.SPIN_PERIOD:
-        return False
-    return busy is None or greatest_wait(executor) + busy > (executor.loop.period or 0)
-
-
-def polling_time(executor: Executor) -> Time:
-    """How long a loop without a sleep looks for messages again and again before a timer is due, as waits are cut to whole units."""
-    return 0 if least_sleep(executor) or executor.loop.kind is LoopKind.SPIN_PERIOD else executor.waiting.resolution

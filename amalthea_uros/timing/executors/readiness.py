@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from amalthea_uros.perf.executors import Executor, Handle, TriggerKind
-from amalthea_uros.timing.executors.wait import messages
+from amalthea_uros.perf.executors import Executor, Handle, HandleKind, TriggerKind
+from amalthea_uros.timing.executors.wait import is_message
 
 
 def is_exclusive(executor: Executor, others: Iterable[Executor]) -> bool:
@@ -48,6 +48,9 @@ def shares_session(executor: Executor, others: Iterable[Executor]) -> bool:
 
 
 def at_once(executor: Executor) -> tuple[Handle, ...]:
-    """The handles that can be ready in every round besides messages that exclude each other."""
-    excluded = {handle.name for handle in messages(executor) if not handle.always}
-    return tuple(handle for handle in executor.handles if handle.name not in excluded)
+    """The handles that can be ready besides a message that excludes others; an action server also has a timer."""
+    return tuple(
+        handle
+        for handle in executor.handles
+        if handle.always or not is_message(handle) or handle.kind is HandleKind.ACTION_SERVER
+    )

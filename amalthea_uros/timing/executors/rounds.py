@@ -54,7 +54,9 @@ def round_costs(executor: Executor, context: TimingContext) -> RoundCosts:
     """
     scheduled = context.scheduled.get(executor.task)
     if scheduled is None:
-        raise UnknownDemandError(context.reasons.get(executor.task, f"its task {executor.task!r} is not allocated to a scheduler"))
+        raise UnknownDemandError(
+            context.reasons.get(executor.task, f"its task {executor.task!r} is not allocated to a scheduler")
+        )
     process, core = scheduled.process, scheduled.core
     spin = _cost(executor.spin, process, core, context)
     beside = context.demand_model.of_process(process, core).worst - _of_activities(process, core, context)

@@ -1,8 +1,8 @@
 """How long a callback is suspended while it publishes.
 
 A publication that waits for its acknowledgement runs the session until the message is acknowledged, or until its timeout has passed,
-after which it gives up (micro-ROS/rmw_microxrcedds, src/rmw_publish.c): by default after 1 s. The timeout begins when the driver has the
-message.
+after which it gives up (micro-ROS/rmw_microxrcedds, src/rmw_publish.c): by default after 1 s. The timeout begins when the driver has
+the message.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Executors of one session exclude each other.
 
-With several threads, the one that waits for input holds the mutex of the session and of the transport for the rest of its timeout; others
-can neither receive nor publish meanwhile (eProsima/Micro-XRCE-DDS-Client#311).
+With several threads, the one that waits for input holds the mutex of the session and of the transport for the rest of its timeout;
+others can neither receive nor publish meanwhile (eProsima/Micro-XRCE-DDS-Client#311).
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Timers: the grid is kept, and periods that have passed when a call begins are lost.
 
-A timer is due at its first expiration and whole periods later. Whether it is due is checked once in a round, after the wait. A call sets
-the next expiration one period on, and if that has passed, to the next one on the grid (ros2/rcl, rcl/src/rcl/timer.c, `rcl_timer_call`):
-there is no burst of calls afterwards.
+A timer is due at its first expiration and whole periods later. Whether it is due is checked once in a round, after the wait. A call
+sets the next expiration one period on, and if that has passed, to the next one on the grid (ros2/rcl, rcl/src/rcl/timer.c,
+`rcl_timer_call`): there is no burst of calls afterwards.
 """
 
 from __future__ import annotations

@@ -30,7 +30,7 @@ def section(content: ReportContent) -> Section | None:
     blocks: list[Block] = [Figure("responses", draw_responses(analysis, simulation))]
     blocks += [table("Response times by core and priority", titles, [_row(each, terms) for each in ordered])]
     blocks += [_explained(each) for each in _tightest(content)]
-    if analysis.callbacks:
+    if analysis.of_periodic_executors:
         blocks.append(_callbacks(content))
     lead = "From the activation of a task to its end: the worst case is the sum of its own execution and of what delays it."
     return Section("response-times", "Response times", lead, blocks)
@@ -73,7 +73,7 @@ def _explained(explanation: ProcessExplanation) -> Folded:
 
 def _callbacks(content: ReportContent) -> Table:
     rows = []
-    for callback in content.analysis.callbacks:
+    for callback in content.analysis.of_periodic_executors:
         response = callback.response
         rows.append(
             (

@@ -1,0 +1,138 @@
+"""What is worth knowing of executors that spin in loops besides numbers, and what these numbers are based on."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from fractions import Fraction
+
+from amalthea_uros.analyze.executors.results import ExecutorResult, HandleResult
+from amalthea_uros.analyze.solution import Solution
+from amalthea_uros.perf.executors import Executor, HandleKind, LoopKind
+from amalthea_uros.timing.executors.arrivals import certain_rate
+from amalthea_uros.timing.executors.loops import least_sleep
+from amalthea_uros.timing.executors.readiness import keeps_back, shares_session, stores
+from amalthea_uros.timing.executors.sessions import ASSUMPTION as SESSION_ASSUMPTION
+from amalthea_uros.timing.executors.wait import greatest_wait, messages, timers
+from amalthea_uros.timing.notes import Notes
+from amalthea_uros.units import SECOND, Rounding, Time, rounded_time_text, time_text
+
+#: A timer is called late if the sleep of the loop is more than this part of its period.
+LATE = Fraction(1, 10)
+#: The capacity of a loop is worth knowing if messages use more than this part of it.
+NEAR_CAPACITY = Fraction(1, 2)
+
+
+def note_executors(results: Iterable[ExecutorResult], solution: Solution) -> None:
+    """Report what goes wrong in executors, and the assumptions."""
+    notes, executors = solution.context.notes, solution.context.system.executors
+    for executor, result in zip(executors, results, strict=True):
+        _assume(executor, executors, notes)
+        _note_loop(executor, result, notes)
+        _note_waiting(executor, executors, notes)
+        for handle in result.handles:
+            _note_handle(handle, executor, notes)
+
+
+def _assume(executor: Executor, others: Iterable[Executor], notes: Notes) -> None:
+    notes.assume("executors: the wait set is prepared before the first spin, which allocates memory and takes longer otherwise")
+    notes.assume(
+        "executors: the buffers of the driver and of the agent have room for all messages that wait; no call returns an error"
+    )
+    notes.assume("executors: waits and sleeps end on time, whatever the ticks of the operating system are")
+    if executor.loop.kind is LoopKind.SPIN_PERIOD:
+        notes.assume("executors: the real-time clock, by which spin_period sleeps, is not set while it spins")
+    if stores(executor, others):
+        notes.assume("executors: stored messages have different time stamps; with equal ones, they come out in reverse order")
+    if shares_session(executor, others):
+        notes.assume(f"executors: {SESSION_ASSUMPTION}")
+
+
+def _note_loop(executor: Executor, result: ExecutorResult, notes: Notes) -> None:
+    growing = next((handle for handle in result.handles if handle.response.is_overload), None)
+    if growing is not None:
+        age = _age_after(60 * SECOND, executor, result)
+        message = (
+            f"messages wait longer and longer in {executor.name!r}: {growing.response.reason.removeprefix('overload: ')}{age}"
+        )
+        notes.error("EXE012", message, executor)
+    elif executor.waiting.messages_per_wait == 1 and messages(executor) and least_sleep(executor):
+        most, arriving = Fraction(1, least_sleep(executor)), certain_rate(executor)
+        if arriving > most * NEAR_CAPACITY:
+            message = (
+                f"{executor.name!r} takes at most one message per round, so at most {float(most * SECOND):.4g} messages/s "
+                f"of all topics; {float(arriving * SECOND):.4g} arrive"
+            )
+            notes.warning("EXE013", message, executor)
+    period = executor.loop.period
+    if period is not None and (result.round.most is None or greatest_wait(executor) + result.round.most > period):
+        longest = "an unknown time" if result.loop.most is None else rounded_time_text(result.loop.most, Rounding.UP)
+        message = (
+            f"a round of {executor.name!r} can take {longest} with its wait, more than the period of {time_text(period)}; "
+            "then rounds follow each other without a sleep until the loop has caught up"
+        )
+        notes.warning("EXE020", message, executor)
+
+
+def _age_after(time: Time, executor: Executor, result: ExecutorResult) -> str:
+    """How old the messages are that are served after a time: the n-th arrives after n intervals, and is served after n rounds."""
+    served = max(result.loop.least, 1)
+    age = time - Fraction(time) / (served * certain_rate(executor))
+    return f"; after {time_text(time)} they are at least {rounded_time_text(age, Rounding.DOWN)} old" if age > 0 else ""
+
+
+def _note_waiting(executor: Executor, others: Iterable[Executor], notes: Notes) -> None:
+    others = tuple(others)
+    waiting, wait = executor.waiting, time_text(greatest_wait(executor))
+    guards = [handle.name for handle in executor.handles if handle.kind is HandleKind.GUARD_CONDITION]
+    if guards and not waiting.guard_conditions_end_wait and greatest_wait(executor):
+        names = ", ".join(map(repr, guards))
+        message = f"{names} of {executor.name!r} wakes nobody: it is seen after the wait, which lasts up to {wait}"
+        notes.warning("EXE018", message, executor)
+    if stores(executor, others) and messages(executor) and not waiting.stored_data_ends_wait and greatest_wait(executor):
+        message = f"a message for {executor.name!r} that is stored already does not end its wait, which lasts up to {wait}"
+        notes.warning("EXE017", message, executor)
+    if keeps_back(executor) and timers(executor):
+        waited_for = frozenset[str]().union(*executor.trigger.sets)
+        kept = [timer.name for timer in timers(executor) if frozenset((timer.name,)) not in executor.trigger.sets]
+        if kept and (waited_for - {*kept} or not executor.trigger.sets):
+            message = (
+                f"while the trigger condition of {executor.name!r} keeps back {', '.join(map(repr, kept))}, "
+                "waits return at once, so that the thread is busy until it is true"
+            )
+            notes.warning("EXE016", message, executor)
+    if shares_session(executor, others):
+        sharing = [each.name for each in others if each.session == executor.session and each.name != executor.name]
+        longest = max(greatest_wait(each) for each in others if each.name in sharing)
+        publishers = [handle.runnable for handle in executor.handles if handle.publications]
+        if publishers and longest:
+            message = (
+                f"publications of {', '.join(publishers)} in {executor.name!r} wait for the session up to {time_text(longest)}, "
+                f"while {', '.join(sharing)} waits for input"
+            )
+            notes.warning("EXE022", message, executor)
+
+
+def _note_handle(handle: HandleResult, executor: Executor, notes: Notes) -> None:
+    lost = handle.lost
+    model = next(each for each in executor.handles if each.name == handle.name)
+    if lost is None:
+        sleep = least_sleep(executor)
+        if handle.lateness is not None and handle.interval and sleep > handle.interval * LATE:
+            most = handle.lateness.most
+            late = "an unknown time" if most is None else rounded_time_text(most, Rounding.UP)
+            message = (
+                f"{handle.name!r} can be called {late} after it is due, mainly because the loop sleeps for {time_text(sleep)}"
+            )
+            notes.warning("EXE011", message, model)
+        return
+    certainly = "loses" if lost.is_certain else "can lose"
+    message = f"{handle.name!r} {certainly} {lost.what}: {lost.sequence}"
+    match handle.kind:
+        case HandleKind.TIMER:
+            notes.warning("EXE010", message, model)
+        case HandleKind.GUARD_CONDITION:
+            notes.warning("EXE023", message, model)
+        case _ if lost.is_of_pool:
+            notes.warning("EXE014", message, model)
+        case _:
+            notes.warning("EXE015", message, model)

@@ -1,0 +1,47 @@
+"""Executors that spin in loops, for programs."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from amalthea_uros.analyze.executors.results import ExecutorResult, HandleResult, Loss, Term
+
+
+def executor_json(executor: ExecutorResult) -> dict[str, Any]:
+    """The rounds of an executor, and its handles in their order."""
+    return {
+        "name": executor.name,
+        "task": executor.task,
+        "round": {"min_ps": executor.round.least, "max_ps": executor.round.most},
+        "loop": {"min_ps": executor.loop.least, "max_ps": executor.loop.most},
+        "reason": executor.reason,
+        "handles": [handle_json(handle) for handle in executor.handles],
+    }
+
+
+def handle_json(handle: HandleResult) -> dict[str, Any]:
+    """The response time of a handle, and what can be lost."""
+    response, lateness = handle.response, handle.lateness
+    return {
+        "name": handle.name,
+        "kind": handle.kind,
+        "callback": handle.runnable,
+        "interval_ps": handle.interval,
+        "bcrt_ps": response.best,
+        "wcrt_ps": response.worst,
+        "lateness_ps": None if lateness is None else lateness.most,
+        "claim": response.claim,
+        "method": response.method,
+        "source": response.source,
+        "reason": response.reason,
+        "lost": None if handle.lost is None else _loss_json(handle.lost),
+        "terms": [_term_json(term) for term in handle.terms],
+    }
+
+
+def _loss_json(loss: Loss) -> dict[str, Any]:
+    return {"what": loss.what, "is_certain": loss.is_certain, "most": loss.most, "sequence": loss.sequence}
+
+
+def _term_json(term: Term) -> dict[str, Any]:
+    return {"name": term.name, "min_ps": term.least, "max_ps": term.most, "why": term.why}
