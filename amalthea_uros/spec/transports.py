@@ -71,8 +71,8 @@ class ForeignFrame(Section):
     """Its identifier; a lower one wins the arbitration."""
     bytes: Annotated[int, Field(strict=True, ge=0, le=64)] = 8
     """Data bytes."""
-    period: Duration
-    """Minimum time between two of them."""
+    period: Duration | None = None
+    """Minimum time between two of them; default: unknown, so that messages of lower priority have no bound."""
     jitter: Duration | None = None
     """Maximum delay against its nominal time; default: none."""
 

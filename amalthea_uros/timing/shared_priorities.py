@@ -39,6 +39,9 @@ def _level(allocation: TaskAllocation, system: System, cores: Mapping[str, froze
     priority = effective_priority(allocation, system)
     if scheduler is None or priority is None:
         return None
+    # Messages on a wire that have no identifiers are meant to be sent in the order in which they were queued.
+    if allocation.task in system.transmissions:
+        return None
     # Under round robin it is intended that tasks share a priority.
     if not is_by_priority(scheduler.policy) or standard_policy(scheduler.policy) == Policy.PRIORITY_BASED_ROUND_ROBIN:
         return None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from amalthea_uros.diagnostics import Location
-from amalthea_uros.perf.distributions import Boundaries, Constant
+from amalthea_uros.perf.distributions import Uniform
 from amalthea_uros.perf.stimuli import Periodic, RelativePeriodic, Stimulus
 from amalthea_uros.units import Time
 
@@ -14,6 +14,7 @@ def arrivals(name: str, interval: Time, jitter: Time = 0, origin: Location | Non
     Messages that are sent less often are never denser than those that are sent after exactly that time.
     """
     if jitter:
-        late = Boundaries(lower=0, upper=jitter)
+        late = Uniform(lower=0, upper=jitter)
         return Periodic(name=name, period=interval, jitter=late, origin=origin)
-    return RelativePeriodic(name=name, distance=Constant(interval), has_maximum=False, origin=origin)
+    distance = Uniform(lower=interval, upper=interval)
+    return RelativePeriodic(name=name, distance=distance, has_maximum=False, origin=origin)

@@ -22,7 +22,7 @@ from amalthea_uros.uros.can import CanBus, Identifier
 from amalthea_uros.uros.transports.line import Frame
 
 #: Numbers of data bytes that a frame can have.
-SIZES = (*range(9), 12, 16, 20, 24, 32, 48, 64)
+SIZES: tuple[int, ...] = (*range(9), 12, 16, 20, 24, 32, 48, 64)
 #: The longest message of the middleware in a frame: a byte is its length.
 LARGEST = SIZES[-1] - 1
 
@@ -54,7 +54,7 @@ class CanFdLine:
     @property
     def ticks_per_second(self) -> int:
         """The least common multiple of the bit rates."""
-        return lcm(self.section.bitrate, self.section.data_bitrate)
+        return lcm(int(self.section.bitrate), int(self.section.data_bitrate))
 
     def frames(self, length: int, direction: Direction) -> Sequence[Frame]:
         """See `Line`: one frame."""

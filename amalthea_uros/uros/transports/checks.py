@@ -48,7 +48,9 @@ def _check_section(section: WireSection, notes: Notes) -> None:
     match section:
         case CanFd(bitrate=slow, data_bitrate=fast) if fast < slow:
             text = "'data_bitrate' is lower than 'bitrate'"
-            notes.error("APP003", text, section.location("data_bitrate"), "Set the bit rate of the data phase, e.g. '2 Mbit/s'.")
+            notes.error(
+                "APP003", text, section.location("data_bitrate"), "Set the bit rate of the data phase, e.g. '2 Mbit/s'."
+            )
         case CustomTransport(table=rows):
             for index, (row, following) in enumerate(pairwise(rows), 1):
                 if following.size <= row.size:
@@ -71,7 +73,7 @@ def _check_identifiers(section: Can | CanFd, notes: Notes) -> None:
         if frame.bytes > longest:
             text = f"{frame.name!r} has {frame.bytes} data bytes, but a frame on this bus has {longest} at most"
             notes.error("APP003", text, frame.location("bytes"), "Correct the number, or describe the bus under 'can_fd'.")
-        if frame.jitter is not None and frame.jitter >= frame.period:
+        if frame.jitter is not None and frame.period is not None and frame.jitter >= frame.period:
             text = f"the jitter of {frame.name!r} is not shorter than its period"
             notes.error("APP003", text, frame.location("jitter"), "Reduce the jitter, or increase the period.")
         if frame.identifier in first:
@@ -102,7 +104,8 @@ def check_lengths(messages: Iterable[WireMessage], line: Line, notes: Notes) -> 
     for message in messages:
         length = max(part.length for part in message.parts)
         if line.largest is not None and length > line.largest:
-            text = f"{message.message.topic!r} needs {length} bytes in one message of the transport, which carries {line.largest} at most"
+            topic = message.message.topic
+            text = f"{topic!r} needs {length} bytes in one message of the transport, which carries {line.largest} at most"
             advice = "Send a smaller message, or send it reliably, so that it is fragmented."
             if line.key == "custom":
                 advice = f"Add a row for {length} B to 'table', or send a smaller message."
@@ -117,7 +120,9 @@ def _check_buffer(messages: Iterable[WireMessage], line: Line, driver: Driver, n
     if driver.buffer is None:
         return
     size = driver.buffer // _BITS_PER_BYTE
-    is_framed = isinstance(line.section, Serial | UsbCdc) or (isinstance(line.section, CustomTransport) and line.section.framing)
+    is_framed = isinstance(line.section, Serial | UsbCdc) or (
+        isinstance(line.section, CustomTransport) and line.section.framing
+    )
     for message in messages:
         if message.direction is Direction.TO_AGENT:
             continue
@@ -166,30 +171,39 @@ def check_load(plan: WirePlan, transport: Transport, notes: Notes) -> None:
         text = f"overload: the messages need {share} of the CAN bus"
         notes.warning("UR131", text, location, "Increase the bit rate, or send fewer or smaller messages.")
         return
-    direction = "" if not plan.line.is_duplex else (
-        " to the controller" if worst == plan.core(Direction.TO_CONTROLLER) else " to the agent"
+    direction = (
+        ""
+        if not plan.line.is_duplex
+        else (" to the controller" if worst == plan.core(Direction.TO_CONTROLLER) else " to the agent")
     )
     text = f"overload: the messages{direction} need {share} of {plan.name!r}"
     notes.warning("UR132", text, location, _advice(plan, worst, loads[worst]))
 
 
 def _rate_key(plan: WirePlan) -> str:
-    return {"serial": "baud_rate", "can_fd": "data_bitrate", "usb_cdc": "throughput", "custom": "table"}.get(plan.line.key, "bitrate")
+    return {"serial": "baud_rate", "can_fd": "data_bitrate", "usb_cdc": "throughput", "custom": "table"}.get(
+        plan.line.key, "bitrate"
+    )
 
 
 def _loads(plan: WirePlan, purposes: Iterable[Purpose] = tuple(Purpose)) -> Iterator[tuple[str, Fraction]]:
     """The share of each core that messages of some kinds need, 1 for all of it."""
     counted = set(purposes)
     for core in plan.cores:
-        yield core, sum(
-            (
-                Fraction(each.times * _ticks(plan, each.transmission.name) * SECOND, plan.line.ticks_per_second * each.interval)
-                for each in plan.queued
-                if each.interval is not None
-                and each.transmission.purpose in counted
-                and plan.core(each.transmission.direction) == core
+        yield (
+            core,
+            sum(
+                (
+                    Fraction(
+                        each.times * _ticks(plan, each.transmission.name) * SECOND, plan.line.ticks_per_second * each.interval
+                    )
+                    for each in plan.queued
+                    if each.interval is not None
+                    and each.transmission.purpose in counted
+                    and plan.core(each.transmission.direction) == core
+                ),
+                Fraction(0),
             ),
-            Fraction(0),
         )
 
 

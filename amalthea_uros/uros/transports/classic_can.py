@@ -33,9 +33,7 @@ class CanLine:
     def frames(self, length: int, direction: Direction) -> Sequence[Frame]:
         """See `Line`: the blocks of a message."""
         bus = bus_of(self.section)
-        return tuple(
-            Frame(least=bus.min_frame_bits(low), most=bus.max_frame_bits(high)) for low, high in block_bytes(length)
-        )
+        return tuple(Frame(least=bus.min_frame_bits(low), most=bus.max_frame_bits(high)) for low, high in block_bytes(length))
 
     def foreign(self, data_bytes: int, *, extended: bool) -> Frame:
         """A frame of others."""

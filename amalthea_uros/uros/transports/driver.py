@@ -60,3 +60,8 @@ def busy_time(frames: Sequence[Frame], ticks_per_second: int, direction: Directi
     """Execution time that moving a message takes: all of the time on the wire if the processor copies each byte, else none."""
     mode = driver.write if direction is Direction.TO_AGENT else driver.read
     return -(-sum(frame.most for frame in frames) * SECOND // ticks_per_second) if mode == "polling" else 0
+
+
+def bytes_between_reads(baud_rate: int, bits_per_byte: int, gap: Time) -> int:
+    """The most bytes that arrive on a serial line in a time in which nothing is read; a smaller buffer overflows."""
+    return -(-gap * baud_rate // (bits_per_byte * SECOND))

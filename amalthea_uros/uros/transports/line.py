@@ -29,39 +29,42 @@ class Frame:
 
 
 class Line(Protocol):
-    """A wire of some kind.
-
-    Attributes
-    ----------
-    kind : what it is
-    name : of its core; those of its two directions if both can send at the same time
-    ticks_per_second : of the clock of its cores
-    is_duplex : whether both directions can send at the same time
-    key : in the description
-    section : that describes it
-    link : time besides that on the core, such as in switches
-    """
+    """A wire of some kind."""
 
     @property
-    def kind(self) -> WireKind: ...
+    def kind(self) -> WireKind:
+        """What it is."""
+        ...
 
     @property
-    def name(self) -> str: ...
+    def name(self) -> str:
+        """The name of its core, or the beginning of those of its two directions."""
+        ...
 
     @property
-    def ticks_per_second(self) -> int: ...
+    def ticks_per_second(self) -> int:
+        """Of the clock of its cores."""
+        ...
 
     @property
-    def is_duplex(self) -> bool: ...
+    def is_duplex(self) -> bool:
+        """Whether both directions can send at the same time."""
+        ...
 
     @property
-    def key(self) -> str: ...
+    def key(self) -> str:
+        """Its key in a description."""
+        ...
 
     @property
-    def section(self) -> WireSection: ...
+    def section(self) -> WireSection:
+        """What describes it."""
+        ...
 
     @property
-    def link(self) -> Span: ...
+    def link(self) -> Span:
+        """The time besides that on its core, such as in switches."""
+        ...
 
     @property
     def largest(self) -> int | None:

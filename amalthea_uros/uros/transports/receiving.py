@@ -116,9 +116,7 @@ def _add_thread(
     stated = section.priority if section else None
     priority = thread.priority if stated is None else stated
     origin = section.location() if section else middleware.location()
-    body = Runnable(
-        name=f"{thread.name}_Message", activities=_cost(context, section, thread, messages, core), origin=origin
-    )
+    body = Runnable(name=f"{thread.name}_Message", activities=_cost(context, section, thread, messages, core), origin=origin)
     context.runnables[body.name] = body
     context.tasks.append(
         PlannedTask(

@@ -1,6 +1,7 @@
 """Messages over TCP: a stream in which the length precedes each message.
 
-The acknowledgements of TCP itself and what it sends again are not part of the model: it describes a link without losses."""
+The acknowledgements of TCP itself and what it sends again are not part of the model: it describes a link without losses.
+"""
 
 from __future__ import annotations
 

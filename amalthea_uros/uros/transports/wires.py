@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from amalthea_uros.perf.activities import Activity, Demand, Execute, SchedulePoint, Trigger
-from amalthea_uros.perf.distributions import Boundaries, Constant
-from amalthea_uros.perf.hardware import Clock, Core, Structure
+from amalthea_uros.perf.distributions import Boundaries, Constant, Sampling
+from amalthea_uros.perf.hardware import Clock, Core, CoreType, Structure
 from amalthea_uros.perf.mapping import TaskAllocation
 from amalthea_uros.perf.network import Direction, Network, Purpose, Wire
 from amalthea_uros.perf.os import OperatingSystem, Policy, Scheduler
@@ -24,6 +24,8 @@ from amalthea_uros.uros.transports.queueing import Queued
 from amalthea_uros.uros.transports.receiving import Receivers
 
 _UNLIMITED = 1_000_000
+#: The type of the cores.
+_TYPE = "Wire"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,10 +68,11 @@ def with_wire(system: System, plan: WirePlan, agent: str, loses_messages: bool) 
         system,
         hardware=replace(
             system.hardware,
+            core_types=(*system.hardware.core_types, CoreType(name=_TYPE)),
             clocks=(*system.hardware.clocks, Clock(name=plan.name, frequency=Fraction(plan.line.ticks_per_second))),
             structures=(
                 *system.hardware.structures,
-                Structure(name=plan.name, cores=tuple(Core(name=core, clock=plan.name) for core in cores)),
+                Structure(name=plan.name, cores=tuple(Core(name=core, type=_TYPE, clock=plan.name) for core in cores)),
             ),
         ),
         os=replace(system.os, systems=(*system.os.systems, _operating_system(plan.name, cores))),
@@ -139,7 +142,9 @@ def _received(queued: Queued, receivers: Receivers) -> tuple[tuple[str, ...], tu
 
 
 def _execution(frame: Frame) -> Execute:
-    ticks = Constant(frame.most) if frame.least == frame.most else Boundaries(lower=frame.least, upper=frame.most)
+    if frame.least == frame.most:
+        return Execute(demand=Demand(ticks=Constant(frame.most)))
+    ticks = Boundaries(lower=frame.least, upper=frame.most, sampling=Sampling.UNIFORM)
     return Execute(demand=Demand(ticks=ticks))
 
 
