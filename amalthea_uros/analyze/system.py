@@ -59,7 +59,7 @@ def analyze_system(system: System, settings: Settings | None = None) -> Analysis
     solution = solve(TimingContext.of(system, settings))
     system = solution.context.system
     unknown = unknown_phases(system)
-    executors, ways = map(Results, evaluate_ways(solution))
+    executors, ways = evaluate_ways(solution)
     note_executors(executors, solution)
     every = _of_all_phases(solution, unknown, executors, ways)
     found = every or _analysis(solution, JobBudget(), executors, ways)

@@ -35,6 +35,7 @@ from amalthea_uros.uros.initialisation import Initialisation, initialisation
 from amalthea_uros.uros.labels import check_misspelled_labels, labels_of, placements
 from amalthea_uros.uros.middleware.check import check_middleware
 from amalthea_uros.uros.names import check_unique_data, check_unique_names
+from amalthea_uros.uros.middleware.load import profile_of
 from amalthea_uros.uros.notes import Notes
 from amalthea_uros.uros.os import isr_allocations, os_of, task_allocations
 from amalthea_uros.uros.overheads import add_overheads
@@ -46,7 +47,6 @@ from amalthea_uros.uros.rtos import PriorityScale, check_sleeps
 from amalthea_uros.uros.tasks import PlannedIsr, PlannedTask
 from amalthea_uros.uros.transports.foreign import ForeignFrame
 from amalthea_uros.uros.transports.network import PlannedNetwork, planned_network, with_network
-from amalthea_uros.uros.transports.stand_in import XrceMessages
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -121,7 +121,7 @@ def _assembly(context: AssemblyContext, database: Sequence[ForeignFrame]) -> Ass
     choices = add_callbacks(context, callbacks)
     wakes = [round_trigger_name(each.name) for each in context.executors if is_triggered(each)]
     network = planned_network(
-        context, callbacks, XrceMessages(), tick=context.description.os.tick, wakes=wakes, database=database
+        context, callbacks, profile_of(middleware), tick=context.description.os.tick, wakes=wakes, database=database
     )
     if network is None:
         check_bus_load(messages, middleware.transport, context.notes)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from amalthea_uros._internal.by_name import Results
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.executors.evaluate import evaluate_executors
 from amalthea_uros.analyze.executors.results import ExecutorResult
@@ -16,7 +17,7 @@ from amalthea_uros.analyze.ways.walk import Walk
 from amalthea_uros.perf.constraints import LatencyConstraint
 
 
-def evaluate_ways(solution: Solution) -> tuple[tuple[ExecutorResult, ...], tuple[Way, ...]]:
+def evaluate_ways(solution: Solution) -> tuple[Results[ExecutorResult], Results[Way]]:
     """The results of all executors that loop, and the ways of all chains that cross them, wires or the agent; those with limits first.
 
     Parameters
@@ -24,7 +25,7 @@ def evaluate_ways(solution: Solution) -> tuple[tuple[ExecutorResult, ...], tuple
     solution : for unknown phases, in which any job can take what comes from outside
     """
     jitter, sending = arrival_jitter(solution), sending_times(solution)
-    executors = evaluate_executors(solution, sending=sending, extra_jitter=jitter)
+    executors = Results(evaluate_executors(solution, sending=sending, extra_jitter=jitter))
     walk = Walk(PassageHops(ChainEvaluator(solution)), CallbackHops(executors, jitter), sending)
     system = solution.context.system
     limited = {each.chain for each in system.constraints.constraints if isinstance(each, LatencyConstraint)}
@@ -32,7 +33,7 @@ def evaluate_ways(solution: Solution) -> tuple[tuple[ExecutorResult, ...], tuple
         (chain for chain in system.events.chains if crosses(chain, solution.context)),
         key=lambda chain: chain.name not in limited,
     )
-    ways = tuple(walk.way(chain) for chain in chains)
+    ways = Results(walk.way(chain) for chain in chains)
     for way in ways:
         _note(way, solution)
     return executors, ways

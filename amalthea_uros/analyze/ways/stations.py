@@ -141,7 +141,8 @@ def name_of(station: Station, *, is_end: bool = False) -> str:
     """What people call a station: its topic, its callback, its first or its last process."""
     match station:
         case Message(transmission):
-            return transmission.topic or transmission.name
+            topic = transmission.topic
+            return transmission.name if topic is None else f"/{topic.removeprefix('/')}"
         case Callback(_, handle):
             return handle.name
         case Passage(_, processes):

@@ -4,27 +4,26 @@ from __future__ import annotations
 
 from amalthea_uros.perf.executors import Publication, Waiting
 from amalthea_uros.spec.middleware import Middleware
-from amalthea_uros.units import SECOND
 from amalthea_uros.uros.callbacks import Callback, Message, transmission_name_of
 from amalthea_uros.uros.executors.wires import describes_wire
+from amalthea_uros.uros.middleware.load import profile_of
+from amalthea_uros.uros.publications import publications
+from amalthea_uros.uros.transports.messages import acknowledgement_name
 
 
 def waiting_of(middleware: Middleware) -> Waiting:
-    """How the middleware waits for an executor; see ros2 micro-ROS/rmw_microxrcedds `rmw_wait.c`."""
-    return Waiting()
+    """How the middleware waits for an executor."""
+    return profile_of(middleware).waiting(middleware)
 
 
 def publications_of(callback: Callback, middleware: Middleware) -> tuple[Publication, ...]:
     """What a callback sends."""
-    return tuple(_publication(message, middleware) for message in callback.outgoing)
 
+    def transmission(message: Message) -> str | None:
+        return transmission_name_of(message, incoming=False) if describes_wire(middleware.transport) else None
 
-def _publication(message: Message, middleware: Middleware) -> Publication:
-    waits = message.reliable and middleware.reliable.waits
-    return Publication(
-        topic=message.topic,
-        transmission=transmission_name_of(message, incoming=False) if describes_wire(middleware.transport) else None,
-        reliable=message.reliable,
-        waits=waits,
-        timeout=(middleware.reliable.timeout or SECOND) if waits else None,
-    )
+    def acknowledgement(message: Message) -> str | None:
+        name = transmission(message)
+        return None if name is None else acknowledgement_name(name)
+
+    return publications(callback, middleware, profile_of(middleware), transmission, acknowledgement)
