@@ -11,6 +11,7 @@ from amalthea_uros.bridge.tables.constraints import CONSTRAINTS, DATA_AGES, ORDE
 from amalthea_uros.bridge.tables.events import CHAINS, EVENTS
 from amalthea_uros.bridge.tables.hardware import HardwareBuilder
 from amalthea_uros.bridge.tables.mapping import build_mapping
+from amalthea_uros.bridge.tables.middleware import build_middleware
 from amalthea_uros.bridge.tables.os import SEMAPHORES, build_overhead, build_system, fill_system
 from amalthea_uros.bridge.tables.parameters import Definitions
 from amalthea_uros.bridge.tables.software import CHANNELS, LABELS, MODE_LABELS, OS_EVENTS, PROCESSES, RUNNABLES, build_modes
@@ -70,6 +71,7 @@ class _Build:
             build_overhead(overhead, cost, self.context)
         for table, elements, items in self._waiting:
             table.fill(elements, items, self.context)
+        build_middleware(self.system, software, self.context)
         mapping = build_mapping(self.system, self.definitions)
         os_model.scheduler_definitions = list(self.definitions.schedulers.values())
         os_model.scheduling_parameter_definitions = list(self.definitions.parameters.values())

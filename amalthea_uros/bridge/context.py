@@ -98,6 +98,7 @@ class Extracting:
     dropped : named objects that have no counterpart in perf
     findings : what could not be extracted
     unresolved_stimuli : names of stimuli that are not part of the model, but activate processes
+    without_property : objects that mean more than is known, as a property of them cannot be read
     """
 
     def __init__(self, model: Model, dropped: frozenset[Element] = frozenset()) -> None:
@@ -106,6 +107,7 @@ class Extracting:
         self.dropped = set(dropped)
         self.findings: list[Finding] = []
         self.unresolved_stimuli: dict[str, None] = {}
+        self.without_property: set[Element] = set()
         self._left_out: dict[str, tuple[int, Element]] = {}
 
     def name(self) -> None:

@@ -6,7 +6,7 @@ becomes a finding, and the rest is extracted.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
 from amalthea_uros._internal.garbage import paused_garbage_collection
@@ -15,6 +15,7 @@ from amalthea_uros.bridge.tables.constraints import CONSTRAINTS, DATA_AGES, ORDE
 from amalthea_uros.bridge.tables.events import CHAINS, EVENTS
 from amalthea_uros.bridge.tables.hardware import HardwareExtractor
 from amalthea_uros.bridge.tables.mapping import extract_mapping
+from amalthea_uros.bridge.tables.middleware import extract_executors, extract_network, with_unknown_activation
 from amalthea_uros.bridge.tables.os import SEMAPHORES, Allocations, extract_overhead, extract_system
 from amalthea_uros.bridge.tables.software import CHANNELS, LABELS, MODE_LABELS, OS_EVENTS, PROCESSES, RUNNABLES, extract_modes
 from amalthea_uros.bridge.tables.stimuli import CLOCKS, STIMULI
@@ -79,7 +80,7 @@ class _Extract:
         """The whole."""
         context = self.context
         software = self.software()
-        return System(
+        system = System(
             hardware=self.hardware(),
             os=self.os(),
             stimuli=self.stimuli(),
@@ -91,6 +92,18 @@ class _Extract:
             ),
             constraints=self.constraints(),
         )
+        return self.with_middleware(system)
+
+    def with_middleware(self, system: System) -> System:
+        """The system with its executors and its network; what is said of them in vain makes the activation of its task unknown."""
+        context, tasks = self.context, self.parts(am.SWModel, "tasks")
+        system = replace(
+            system,
+            executors=extract_executors(tasks, system, context),
+            network=extract_network(self.sub_models(am.SWModel), tasks, system, context),
+        )
+        unknown = {context.names[task] for task in tasks if task in context.without_property}
+        return with_unknown_activation(system, unknown) if unknown else system
 
     def hardware(self) -> Hardware:
         """The hardware of all files."""

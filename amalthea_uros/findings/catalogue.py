@@ -14,6 +14,7 @@ FAMILIES = {
     "YML": "Reading app.yaml",
     "CFG": "Settings of a project",
     "APP": "Content of app.yaml",
+    "EXE": "Executors that spin in loops",
     "BLD": "Building a model",
     "EXT": "Extracting the performance model",
     "ANA": "Analysing response times",

@@ -137,9 +137,7 @@ def _executor_calls(
     ]
 
 
-def _add_executor(
-    context: AssemblyContext, executor: Executor, calls: Sequence[PlannedCall], period: Time, core: str
-) -> None:
+def _add_executor(context: AssemblyContext, executor: Executor, calls: Sequence[PlannedCall], period: Time, core: str) -> None:
     context.runnables |= {call.runnable.name: call.runnable for call in calls}
     context.tasks.append(
         PlannedTask(

@@ -34,8 +34,8 @@ from amalthea_uros.uros.hardware import controller_of
 from amalthea_uros.uros.initialisation import Initialisation, initialisation
 from amalthea_uros.uros.labels import check_misspelled_labels, labels_of, placements
 from amalthea_uros.uros.middleware.check import check_middleware
-from amalthea_uros.uros.names import check_unique_data, check_unique_names
 from amalthea_uros.uros.middleware.load import profile_of
+from amalthea_uros.uros.names import check_unique_data, check_unique_names
 from amalthea_uros.uros.notes import Notes
 from amalthea_uros.uros.os import isr_allocations, os_of, task_allocations
 from amalthea_uros.uros.overheads import add_overheads
@@ -119,9 +119,13 @@ def _assembly(context: AssemblyContext, database: Sequence[ForeignFrame]) -> Ass
     check_middleware(callbacks, middleware, context.notes)
     context.channels = internal_channels(callbacks)
     choices = add_callbacks(context, callbacks)
-    wakes = [round_trigger_name(each.name) for each in context.executors if is_triggered(each)]
     network = planned_network(
-        context, callbacks, profile_of(middleware), tick=context.description.os.tick, wakes=wakes, database=database
+        context,
+        callbacks,
+        profile_of(middleware),
+        tick=context.description.os.tick,
+        wakes=[round_trigger_name(each.name) for each in context.executors if is_triggered(each)],
+        database=database,
     )
     if network is None:
         check_bus_load(messages, middleware.transport, context.notes)
@@ -156,9 +160,8 @@ def _system(context: AssemblyContext, callbacks: Sequence[Callback], network: Pl
     labels = labels_of(description, callbacks, context.runnables)
     check_unique_data(labels, context.channels.values(), notes)
     elements = chain_elements(context, callbacks)
-    system = _without_demands(context, labels)
+    system = triggered_rounds(with_network(_without_demands(context, labels), network, context))
     check_shared_priorities(system, context.tasks, notes, context.priority_scale)
-    system = with_network(system, network, context)
     chains = Chains(elements, Topics.of(callbacks, system.network), Dataflow(system), notes)
     limits = chains.add_all(description.chains)
     demanded = (*requirements(description.requirements, elements, notes), *deadlines(context.executors, callbacks))
@@ -171,7 +174,7 @@ def _system(context: AssemblyContext, callbacks: Sequence[Callback], network: Pl
 
 def _without_demands(context: AssemblyContext, labels: Sequence[Label]) -> System:
     """The system without event chains and requirements."""
-    system = System(
+    return System(
         hardware=context.controller.hardware,
         os=os_of(context),
         stimuli=Stimuli(stimuli=context.stimuli.stimuli),
@@ -189,7 +192,6 @@ def _without_demands(context: AssemblyContext, labels: Sequence[Label]) -> Syste
         ),
         executors=tuple(context.executors),
     )
-    return triggered_rounds(system)
 
 
 def _task(planned: PlannedTask) -> Task:

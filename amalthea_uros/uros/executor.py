@@ -5,8 +5,8 @@ in a buffer. Callbacks inside the executor run as in rclc: one after the other i
 taken just before its callback, or (LET) all messages taken first. With a trigger condition nothing is taken or called until it holds.
 
 The cost of an activation is a base, a part for each handle and one for each timer that is checked, a part for each callback that is
-ready, and for each message that is taken a fixed part and a part per byte. What does not happen in every activation is a runnable that is called only
-every n-th time.
+ready, and for each message that is taken a fixed part and a part per byte. What does not happen in every activation is a runnable
+that is called only every n-th time.
 """
 
 from __future__ import annotations

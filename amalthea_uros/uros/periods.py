@@ -109,7 +109,9 @@ def _check_task_period(
     elif violation is not None:
         advice = "Set another period, or remove 'task_period' to have one chosen."
         notes.error("UR102", f"{subject} is {violation}", location, advice)
-    return PeriodChoice(task=callback.name, executor=callback.executor, period=period, reason=_SET_BY_USER + _when_it_runs(callback, period))
+    return PeriodChoice(
+        task=callback.name, executor=callback.executor, period=period, reason=_SET_BY_USER + _when_it_runs(callback, period)
+    )
 
 
 def _when_it_runs(callback: Callback, period: Time) -> str:

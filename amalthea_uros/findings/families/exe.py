@@ -17,7 +17,9 @@ application:
 {callbacks}
 """
 _TIMER = "      timers: [{name: Control, period: 10 ms, execution_time: 4 us}]"
-_SUBSCRIPTION = "      subscriptions: [{name: On_Command, topic: command, rate: 50 Hz, message_size: 4 B, execution_time: 4 us}]"
+_SUBSCRIPTION = (
+    "      subscriptions: [{name: On_Command, topic: command, rate: 50 Hz, message_size: 4 B, execution_time: 4 us}]"
+)
 _GUARD = "      guard_conditions: [{name: Stop, execution_time: 4 us}]"
 _ACTION = """      action_servers:
         - {name: Move, rate: 1 Hz, goal_size: 4 B, result_size: 4 B, feedback_size: 4 B, execution_time: 4 us}"""
@@ -40,8 +42,9 @@ KINDS = (
         id="EXE002",
         title="timeout longer than the period of the loop",
         severity=Severity.WARNING,
-        rationale="rclc_executor_spin_period waits for the timeout of the executor, not for the period. The timeout is 1 s by default, so "
-        "that each round takes 1 s if no message arrives and no timer expires; after that, rounds follow each other without a pause.",
+        rationale="rclc_executor_spin_period waits for the timeout of the executor, not for the period. The timeout is 1 s by "
+        "default, so that each round takes 1 s if no message arrives and no timer expires; after that, rounds follow "
+        "each other without a pause.",
         remedy="Call rclc_executor_set_timeout with less than the period, and set 'timeout'.",
         fails=_example("{loop: {spin_period: 10 ms}}", _SUBSCRIPTION),
     ),
@@ -49,8 +52,9 @@ KINDS = (
         id="EXE003",
         title="executor that does not wait",
         severity=Severity.WARNING,
-        rationale="The timeout of a wait is cut to whole milliseconds, so that a shorter one is 0. And a timer that is due, but kept back by "
-        "the trigger condition, ends each wait at once. Without a sleep, the loop then uses all the time that other tasks leave it.",
+        rationale="The timeout of a wait is cut to whole milliseconds, so that a shorter one is 0. And a timer that is due, but "
+        "kept back by the trigger condition, ends each wait at once. Without a sleep, the loop then uses all the time "
+        "that other tasks leave it.",
         remedy="Set a timeout of 1 ms or more, add a sleep, or use the trigger condition 'any'.",
         fails=_example("{loop: {spin_some: 100 ns}}", _SUBSCRIPTION),
     ),
@@ -58,7 +62,8 @@ KINDS = (
         id="EXE004",
         title="trigger condition 'one' with actions",
         severity=Severity.WARNING,
-        rationale="rclc_executor_trigger_one does not know actions: it answers 'false' when it comes to a ready one before its own handle.",
+        rationale="rclc_executor_trigger_one does not know actions: it answers 'false' when it comes to a ready one before its "
+        "own handle.",
         remedy="Add the handle to the executor before the actions, or use a trigger function of your own.",
         fails=_example("{loop: {spin: 1 s}, order: [Move], trigger: {one: On_Command}}", _SUBSCRIPTION, _ACTION),
     ),
@@ -66,8 +71,8 @@ KINDS = (
         id="EXE005",
         title="guard condition that can be lost",
         severity=Severity.WARNING,
-        rationale="The middleware clears a guard condition when it has seen it. If the trigger condition is false in that round, its callback "
-        "does not run, then or later.",
+        rationale="The middleware clears a guard condition when it has seen it. If the trigger condition is false in that round, "
+        "its callback does not run, then or later.",
         remedy="Use a trigger condition that the guard condition alone makes true.",
         fails=_example("{loop: {spin: 1 s}, trigger: all}", _SUBSCRIPTION, _GUARD),
     ),
@@ -75,8 +80,9 @@ KINDS = (
         id="EXE006",
         title="executor with timers only that does not wait",
         severity=Severity.WARNING,
-        rationale="Without a subscription, service or client, the wait of rmw_microxrcedds returns at once (rmw_microxrcedds#297), and the loop "
-        "uses all the time that other tasks leave it. With the change #305 it waits for the whole timeout, also if a guard condition is set.",
+        rationale="Without a subscription, service or client, the wait of rmw_microxrcedds returns at once "
+        "(rmw_microxrcedds#297), and the loop uses all the time that other tasks leave it. With the change #305 it "
+        "waits for the whole timeout, also if a guard condition is set.",
         remedy="Add a sleep to the loop, or a subscription, and check which version is built.",
         fails=_example("{loop: {spin: 1 s}}", _TIMER),
     ),
@@ -92,7 +98,8 @@ KINDS = (
         id="EXE008",
         title="several threads, but no locking in the middleware",
         severity=Severity.WARNING,
-        rationale="Without UCLIENT_PROFILE_MULTITHREAD, the session is not locked: messages of two threads can destroy each other.",
+        rationale="Without UCLIENT_PROFILE_MULTITHREAD, the session is not locked: messages of two threads can destroy each "
+        "other.",
         remedy="Build with UCLIENT_PROFILE_MULTITHREAD=ON and set 'multithread: true', or use one executor for all callbacks.",
         fails="""
 amuros: 1

@@ -52,4 +52,19 @@ KINDS = (
 <mappingModel><taskAllocation/></mappingModel>
 """,
     ),
+    FindingKind(
+        id="EXT005",
+        title="property of amuros that cannot be read",
+        severity=Severity.WARNING,
+        rationale="The property says what a task means: an executor, or a message on a wire. Without it, the activation of the task is "
+        "unknown.",
+        remedy="Build the model again, or remove the property if the task is an ordinary one.",
+        fails="""
+<swModel>
+  <tasks name="T">
+    <customProperties key="amuros.executor"><value xsi:type="am:StringObject" value="{}"/></customProperties>
+  </tasks>
+</swModel>
+""",
+    ),
 )

@@ -26,7 +26,7 @@ def round_trigger_name(executor: str) -> str:
 
 
 def message_stimulus_name(callback: str) -> str:
-    """The name of the stimulus that stands for the arrival of messages at an executor that blocks, if nothing described receives them."""
+    """The name of the stimulus that stands for the arrival of messages, if nothing that is described receives them."""
     return f"messages_for_{callback}"
 
 
@@ -35,9 +35,7 @@ def is_triggered(executor: Executor) -> bool:
     return not is_paced(executor.loop) and polls(executor) is None
 
 
-def activation(
-    executor: Executor, callbacks: Sequence[Callback], least_round: Time, offset: Time
-) -> Iterator[Stimulus]:
+def activation(executor: Executor, callbacks: Sequence[Callback], least_round: Time, offset: Time) -> Iterator[Stimulus]:
     """The stimuli of the task of an executor.
 
     Parameters

@@ -75,10 +75,12 @@ def _check_polling(executor: Executor, section: spec.Executor, notes: Notes) -> 
         notes.warning("EXE003", message, where, f"Set a timeout of {time_text(max(resolution, 1))} or more, or a 'sleep'.")
     elif reason is not None:
         message = (
-            f"{executor.name!r} has timers only: the wait of the middleware returns at once, and the loop uses all the time that others "
-            "leave it; with rmw_microxrcedds#305 it waits for the whole timeout instead, also if a guard condition is set"
+            f"{executor.name!r} has timers only: the wait of the middleware returns at once, and the loop uses all the time that "
+            "others leave it; with rmw_microxrcedds#305 it waits for the whole timeout instead, also if a guard condition is set"
         )
-        notes.warning("EXE006", message, where, "Add a 'sleep', or a subscription; check which version of the middleware is built.")
+        notes.warning(
+            "EXE006", message, where, "Add a 'sleep', or a subscription; check which version of the middleware is built."
+        )
     elif 0 < loop.timeout < resolution:
         message = f"the timeout of {time_text(loop.timeout)} of {executor.name!r} is cut to 0: the executor does not wait"
         notes.warning("EXE003", message, where, f"Set a timeout of {time_text(resolution)} or more; or 0, if that is meant.")
@@ -133,8 +135,8 @@ def _check_timers(executor: Executor, callbacks: Iterable[Callback], notes: Note
     for handle in executor.handles:
         if handle.kind is HandleKind.TIMER and handle.interval is not None and least and handle.interval < least:
             message = (
-                f"{handle.name!r} loses periods: its timer expires every {time_text(handle.interval)}, but {executor.name!r} spins only "
-                f"once in {time_text(least)} or more, and calls a timer once per round"
+                f"{handle.name!r} loses periods: its timer expires every {time_text(handle.interval)}, but {executor.name!r} spins "
+                f"only once in {time_text(least)} or more, and calls a timer once per round"
             )
             advice = "Shorten the sleep or the period of the loop to less than the period of the timer."
             notes.warning("EXE007", message, origins.get(handle.name), advice)

@@ -6,8 +6,8 @@ with the timeout of the executor, whatever the period, and then sleeps until the
 
 from __future__ import annotations
 
-from amalthea_uros.perf.executors import HandleKind, Loop, LoopKind, TriggerCondition, TriggerKind, Waiting
 from amalthea_uros.perf.executors import Executor as LoopingExecutor
+from amalthea_uros.perf.executors import HandleKind, Loop, LoopKind, TriggerCondition, TriggerKind, Waiting
 from amalthea_uros.spec import executors as spec
 
 

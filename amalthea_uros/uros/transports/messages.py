@@ -9,10 +9,9 @@ from typing import Protocol
 from amalthea_uros.perf.network import Direction
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.units import Time
-from amalthea_uros.uros.callbacks import Callback, CallbackKind, Message
+from amalthea_uros.uros.callbacks import Callback, Message, transmission_name_of
+from amalthea_uros.uros.middleware.kinds import content_bytes, message_kind
 from amalthea_uros.uros.middleware.profile import MessageKind, Part
-
-_BITS_PER_BYTE = 8
 
 
 class Messaging(Protocol):
@@ -59,11 +58,6 @@ def wire_messages(callbacks: Iterable[Callback], middleware: Middleware, profile
             yield _message(message, callback, Direction.TO_AGENT, middleware, profile)
 
 
-def transmission_name(message: Message, direction: Direction) -> str:
-    """The name of the task of a message, such as `factor_topic_to_Message_Factor`."""
-    return f"{message.channel}_{'to' if direction is Direction.TO_CONTROLLER else 'from'}_{message.callback}"
-
-
 def acknowledgement_name(transmission: str) -> str:
     """The name of the task of the acknowledgements of a message."""
     return f"{transmission}_acknowledgement"
@@ -72,12 +66,11 @@ def acknowledgement_name(transmission: str) -> str:
 def _message(
     message: Message, callback: Callback, direction: Direction, middleware: Middleware, profile: Messaging
 ) -> WireMessage:
-    content = -(-message.size // _BITS_PER_BYTE)
-    kind = _kind(message, callback, direction)
     is_incoming = direction is Direction.TO_CONTROLLER
+    kind, content = message_kind(message, incoming=is_incoming), content_bytes(message)
     jitter = callback.jitter if is_incoming else 0
     return WireMessage(
-        name=transmission_name(message, direction),
+        name=transmission_name_of(message, incoming=is_incoming),
         message=message,
         callback=callback,
         direction=direction,
@@ -85,12 +78,3 @@ def _message(
         interval=message.interval + jitter,
         jitter=jitter,
     )
-
-
-def _kind(message: Message, callback: Callback, direction: Direction) -> MessageKind:
-    if direction is Direction.TO_CONTROLLER:
-        incoming = {CallbackKind.SERVICE: MessageKind.REQUEST_IN, CallbackKind.CLIENT: MessageKind.RESPONSE_IN}
-        return incoming.get(callback.kind, MessageKind.DELIVERY)
-    if message.channel.endswith("_request"):
-        return MessageKind.REQUEST_OUT
-    return MessageKind.RESPONSE_OUT if message.channel.endswith("_response") else MessageKind.PUBLICATION

@@ -20,6 +20,7 @@ from amalthea_uros.spec.transports import Interrupt
 from amalthea_uros.uros.activities import activity_sequence, trigger_name
 from amalthea_uros.uros.context import AssemblyContext
 from amalthea_uros.uros.executor import message_cost
+from amalthea_uros.uros.executors.serving import stated_executors
 from amalthea_uros.uros.middleware.profile import MiddlewareThread
 from amalthea_uros.uros.tasks import PlannedIsr, PlannedTask
 from amalthea_uros.uros.transports.line import receive_interrupt
@@ -84,7 +85,7 @@ def add_receivers(
 
 def _add_isr(context: AssemblyContext, interrupt: Interrupt, name: str, triggers: Sequence[str]) -> str:
     """Add an interrupt service routine, and return its stimulus."""
-    section = interrupt if interrupt.core else context.description.middleware.executor
+    section = interrupt if interrupt.core else stated_executors(context.description.middleware)[0]
     core = context.core(section.core, section.location("core"))
     handler = Runnable(
         name=f"{interrupt.name}_Frame",
@@ -125,7 +126,7 @@ def _add_thread(
             stimuli=(context.stimuli.add(InterProcess(name=trigger_name(thread.name), origin=origin)),),
             activities=(Call(runnable=body.name), *_triggers(triggers)),
             period=min(message.interval - message.jitter for message in messages),
-            priority=middleware.executor.priority if priority is None else priority,
+            priority=stated_executors(middleware)[0].priority if priority is None else priority,
             activation_limit=_UNLIMITED,
             origin=origin,
         )

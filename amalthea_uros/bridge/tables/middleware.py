@@ -1,0 +1,132 @@
+"""Executors and the network, as custom properties: AMALTHEA has no classes for them.
+
+An executor is a property of the task that executes its rounds, a transmission of the task that stands for it, and the wires are a
+property of the software model. Other tools ignore them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterable, Iterator
+from dataclasses import replace
+from functools import partial
+from typing import Any, TypeVar
+
+from amalthea_uros.bridge.context import Building, Extracting
+from amalthea_uros.bridge.json_text import MalformedError, from_text, to_text
+from amalthea_uros.bridge.kinds import Kind
+from amalthea_uros.metamodel import classes as am
+from amalthea_uros.metamodel.element import Element
+from amalthea_uros.perf.executors import Executor
+from amalthea_uros.perf.network import Network, Transmission
+from amalthea_uros.perf.stimuli import Custom
+from amalthea_uros.perf.system import System
+
+T = TypeVar("T")
+
+_EXECUTOR, _TRANSMISSION, _NETWORK = "amuros.executor", "amuros.transmission", "amuros.network"
+
+
+def build_middleware(system: System, software: am.SWModel, context: Building) -> None:
+    """Set the properties of all executors and of the network."""
+    for executor in system.executors:
+        context.at(executor)
+        _attach(context.find(Kind.PROCESS, executor.task), _EXECUTOR, to_text(executor, without=("task",)))
+    for transmission in system.network.transmissions:
+        context.at(transmission)
+        _attach(context.find(Kind.PROCESS, transmission.name), _TRANSMISSION, to_text(transmission, without=("name",)))
+    network = replace(system.network, transmissions=())
+    if network != Network():
+        _attach(software, _NETWORK, to_text(network))
+
+
+def _attach(element: Any, key: str, text: str) -> None:
+    if element is not None:
+        element.custom_properties.append(am.CustomProperty(key=key, value=am.StringObject(value=text)))
+
+
+def extract_executors(tasks: Iterable[am.Task], system: System, context: Extracting) -> tuple[Executor, ...]:
+    """The executors of the tasks; those that refer to something that the system has not are left out, with a finding."""
+    return tuple(
+        _extracted(tasks, _EXECUTOR, partial(_executor, context), lambda found: _flaw_of_executor(found, system), context)
+    )
+
+
+def _executor(context: Extracting, task: Element, text: str) -> Executor:
+    return from_text(Executor, text, task=context.names[task])
+
+
+def extract_network(models: Iterable[am.SWModel], tasks: Iterable[am.Task], system: System, context: Extracting) -> Network:
+    """The network of all files; what refers to something that the system has not is left out, with a finding."""
+    found = list(
+        _extracted(
+            models, _NETWORK, lambda _, text: from_text(Network, text), lambda network: _flaw_of_wires(network, system), context
+        )
+    )
+    network = Network(wires=tuple(wire for each in found for wire in each.wires), agent=found[-1].agent) if found else Network()
+    transmissions = _extracted(
+        tasks,
+        _TRANSMISSION,
+        lambda task, text: from_text(Transmission, text, name=context.names[task]),
+        lambda each: _flaw_of_transmission(each, network, system),
+        context,
+    )
+    return replace(network, transmissions=tuple(transmissions))
+
+
+def _extracted(
+    elements: Iterable[Any],
+    key: str,
+    read: Callable[[Element, str], T],
+    flaw_of: Callable[[T], str | None],
+    context: Extracting,
+) -> Iterator[T]:
+    for element in elements:
+        for item in element.custom_properties:
+            if item.key == key:
+                try:
+                    found = read(element, _text(item))
+                    if (flaw := flaw_of(found)) is not None:
+                        raise MalformedError(flaw)
+                except MalformedError as error:
+                    context.note("EXT005", f"the property {key!r} cannot be read: {error}", element)
+                    context.without_property.add(element)
+                else:
+                    yield found
+
+
+def _text(item: am.CustomProperty) -> str:
+    if not isinstance(item.value, am.StringObject):
+        raise MalformedError("it is not a text")
+    return item.value.value or ""
+
+
+def _flaw_of_executor(executor: Executor, system: System) -> str | None:
+    called = (handle.runnable for handle in executor.handles)
+    takes = (handle.take for handle in executor.handles if handle.take is not None)
+    return _missing("runnable", (executor.spin, *called, *takes), system.runnables)
+
+
+def _flaw_of_wires(network: Network, system: System) -> str | None:
+    return _missing("core", (core for wire in network.wires for core in wire.cores), system.cores)
+
+
+def _flaw_of_transmission(transmission: Transmission, network: Network, system: System) -> str | None:
+    wires = {wire.name for wire in network.wires}
+    return _missing("wire", [transmission.wire], wires) or _missing("process", transmission.processes, system.processes)
+
+
+def _missing(kind: str, names: Iterable[str], known: Any) -> str | None:
+    return next((f"undefined {kind} {name!r}" for name in names if name not in known), None)
+
+
+def with_unknown_activation(system: System, names: Collection[str]) -> System:
+    """The system, in which it is not known what activates some tasks: what they mean was said in a property that cannot be read."""
+    unknown = Custom(name="unknown executor or transmission", description="a property of its task cannot be read")
+    tasks = [
+        replace(task, stimuli=(*task.stimuli, unknown.name)) if task.name in names else task for task in system.software.tasks
+    ]
+    return replace(
+        system,
+        stimuli=replace(system.stimuli, stimuli=(*system.stimuli.stimuli, unknown)),
+        software=replace(system.software, tasks=tuple(tasks)),
+    )
