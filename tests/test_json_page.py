@@ -76,6 +76,7 @@ RUNS = {
     "amuros build": (
         ("build", "bodas-test-hardware.yaml", "-o", "built.amxmi"),
         ("build", "drive-and-lift.yaml", "-o", "too.amxmi"),
+        ("build", "loops.yaml", "-o", "loops.amxmi"),
     ),
     "amuros calibrate": (
         ("calibrate", "bodas-test-measured.yaml", "bodas-test-measured.log", "--markers", "bodas-test-measured.markers.yml"),
@@ -138,6 +139,24 @@ def values(found: Any, path: Place = ()) -> Iterator[tuple[Place, Any]]:
         yield path, found
 
 
+LOOPS = """
+amuros: 1
+name: loops
+hardware: {platform: single-core, frequency: 100 MHz}
+middleware:
+  multithread: true
+  executors:
+    - {name: Fast, loop: {spin_some: 10 ms, sleep: 1 ms}}
+    - {name: Slow, loop: {spin_period: 20 ms, timeout: 5 ms}}
+application:
+  nodes:
+    - name: node
+      subscriptions: [{name: On_Command, topic: command, rate: 20 Hz, message_size: 8 B, execution_time: 4 us}]
+      timers: [{name: Control, period: 40 ms, execution_time: 4 us, runs_in: Slow}]
+      guard_conditions: [{name: Stop, execution_time: 4 us}]
+"""
+
+
 @pytest.fixture
 def folder(tmp_path):
     for path in (ROOT / "samples").iterdir():
@@ -157,6 +176,7 @@ def folder(tmp_path):
     process = model[am.Task, "Control_Function"]
     model.root.constraints_model.requirements.append(am.ProcessRequirement(name="preemptions", process=process, limit=count))
     save(model, tmp_path / "counted.amxmi")
+    (tmp_path / "loops.yaml").write_text(LOOPS)
     (tmp_path / "stopwatch.csv").write_text(
         "object,kind,quantity,value_us\nControl_Function,process,response_time,16\nControl_Function,process,response_time,1200\n"
     )

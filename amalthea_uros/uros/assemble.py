@@ -30,6 +30,7 @@ from amalthea_uros.uros.chains import Chains
 from amalthea_uros.uros.context import AssemblyContext
 from amalthea_uros.uros.executors.activation import is_triggered, round_trigger_name, triggered_rounds
 from amalthea_uros.uros.executors.deadlines import deadlines
+from amalthea_uros.uros.executors.serving import placement
 from amalthea_uros.uros.hardware import controller_of
 from amalthea_uros.uros.initialisation import Initialisation, initialisation
 from amalthea_uros.uros.labels import check_misspelled_labels, labels_of, placements
@@ -56,6 +57,7 @@ class Assembly(Brief):
     Attributes
     ----------
     choices : the periods of executors without a loop and of the callbacks' tasks, with reasons
+    placement : where callbacks run that do not say so, and who decided it; "" without callbacks
     bus, messages : the classic CAN bus, None if there is none, and what is sent on it
     pools : static pools of the middleware
     findings : of severity warning and info
@@ -65,6 +67,7 @@ class Assembly(Brief):
 
     system: System
     choices: tuple[PeriodChoice, ...]
+    placement: str
     messages: tuple[BusMessage, ...]
     bus: CanBus | None
     initialisation: Initialisation | None
@@ -143,6 +146,7 @@ def _assembly(context: AssemblyContext, database: Sequence[ForeignFrame]) -> Ass
     return Assembly(
         system=system,
         choices=choices,
+        placement=placement(context.description, context.controller.platform) if callbacks else "",
         messages=messages,
         bus=bus_of(middleware.transport.can) if middleware.transport.can is not None else None,
         initialisation=initialisation(application, first.period, response_time) if first else None,

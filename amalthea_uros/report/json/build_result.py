@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
+from amalthea_uros.perf.executors import Executor
 from amalthea_uros.report.findings import finding_json
 from amalthea_uros.services.build import BuildResult
 
 
 def content(result: BuildResult) -> dict[str, Any]:
-    """The model, the choices, the messages, and the start and the pools of the middleware."""
+    """The model, the choices, the executors with loops, the messages, and the start and the pools of the middleware."""
     assembly = result.assembly
     start = assembly.initialisation
     return {
@@ -17,6 +18,8 @@ def content(result: BuildResult) -> dict[str, Any]:
         "description": str(result.description),
         "amalthea": result.document.version,
         "choices": [{"task": c.task, "period_ps": c.period, "reason": c.reason} for c in assembly.choices],
+        "placement": assembly.placement,
+        "executors": [_executor(executor) for executor in assembly.system.executors],
         "messages": [
             {
                 "topic": item.message.topic,
@@ -40,4 +43,21 @@ def content(result: BuildResult) -> dict[str, Any]:
             {"option": p.option, "needed": p.needed, "available": p.available, "stated": p.configured} for p in assembly.pools
         ],
         "findings": [finding_json(finding) for finding in result.findings],
+    }
+
+
+def _executor(executor: Executor) -> dict[str, Any]:
+    loop = executor.loop
+    return {
+        "executor": executor.name,
+        "loop": loop.kind,
+        "timeout_ps": loop.timeout,
+        "sleep_ps": loop.sleep,
+        "period_ps": loop.period,
+        "trigger": executor.trigger.kind,
+        "takes_first": executor.takes_first,
+        "handles": [
+            {"handle": h.name, "kind": h.kind, "interval_ps": h.interval, "runnable": h.runnable, "depth": h.depth}
+            for h in executor.handles
+        ],
     }

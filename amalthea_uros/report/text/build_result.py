@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from amalthea_uros._internal.plural import counted
+from amalthea_uros.perf.executors import Executor
 from amalthea_uros.perf.system import System
 from amalthea_uros.report.activation_text import activation_text
 from amalthea_uros.report.terminal import Terminal
@@ -18,6 +19,7 @@ def write(result: BuildResult, terminal: Terminal) -> None:
     assembly = result.assembly
     _tasks(terminal, assembly)
     _isrs(terminal, assembly.system)
+    _executors(terminal, assembly)
     _traffic(terminal, assembly)
     if assembly.initialisation is not None:
         terminal.heading("Initialisation of the middleware")
@@ -57,6 +59,39 @@ def _isrs(terminal: Terminal, system: System) -> None:
     if rows:
         terminal.heading(f"Interrupt service routines ({len(rows)})")
         terminal.table(("ISR", "activated", "priority", "core"), rows, right=(2,))
+
+
+def _executors(terminal: Terminal, assembly: Assembly) -> None:
+    executors = assembly.system.executors
+    if not executors:
+        return
+    terminal.heading(f"Executors ({len(executors)})")
+    terminal.line(f"  {assembly.placement}")
+    for executor in executors:
+        terminal.line(f"  {executor.name}: {loop_text(executor)}")
+    rows = [
+        (
+            executor.name,
+            number,
+            handle.name,
+            handle.kind,
+            "-" if handle.interval is None else time_text(handle.interval),
+            handle.runnable,
+        )
+        for executor in executors
+        for number, handle in enumerate(executor.handles, start=1)
+    ]
+    terminal.table(("executor", "order", "handle", "kind", "interval", "calls"), rows, right=(1, 4))
+
+
+def loop_text(executor: Executor) -> str:
+    """How an executor spins, in words."""
+    loop = executor.loop
+    timeout = f"timeout {time_text(loop.timeout)}"
+    period = "" if loop.period is None else f", period {time_text(loop.period)}"
+    sleep = f", sleep {time_text(loop.sleep)}" if loop.sleep else ""
+    semantics = ", all messages are taken first (LET)" if executor.takes_first else ""
+    return f"{loop.kind}, {timeout}{period}{sleep}; trigger condition {executor.trigger.kind}{semantics}"
 
 
 def _traffic(terminal: Terminal, assembly: Assembly) -> None:

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from amalthea_uros.spec.application import Callback, Node
+from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.executors import Executor
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.uros.notes import Notes
@@ -25,20 +26,21 @@ def is_in_executor_by_default(executor: Executor) -> bool:
     return executor.callbacks == "in-executor"
 
 
-def why_by_default(executor: Executor, description: str | None, platform: str | None) -> str:
-    """Who decided where callbacks run that do not say so.
+def placement(description: Description, platform: str | None) -> str:
+    """Where callbacks run that do not say so, and who decided it.
 
     Parameters
     ----------
-    description : file of the description; other files are those of platforms
+    platform : whose file may state it, too
     """
+    executor = stated_executors(description.middleware)[0]
     inside = is_in_executor_by_default(executor)
     place = "in the executor" if inside else "in their own tasks"
     if not executor.states("callbacks"):
         return f"callbacks run {place}" + (", as rclc does" if inside else " by default")
-    location = executor.location("callbacks")
-    if platform is not None and location is not None and str(location.path) != description:
-        return f"the platform {platform} runs callbacks {place}"
+    location, own = executor.location("callbacks"), description.location()
+    if location is not None and own is not None and location.path != own.path:
+        return f"the platform {platform or ''} runs callbacks {place}"
     return f"callbacks run {place}: set in app.yaml"
 
 
