@@ -7,7 +7,7 @@ that reads at its own times, as data can come just after a read. Executors and w
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum
 
@@ -18,6 +18,7 @@ from amalthea_uros.analyze.results import Quantity, Value
 from amalthea_uros.analyze.ways.results import Hop, HopKind, Part
 from amalthea_uros.analyze.ways.stations import Passage
 from amalthea_uros.perf.events import Event, ProcessChange, ProcessEvent
+from amalthea_uros.perf.network import Transmission
 from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.links import UNTIMED
 from amalthea_uros.timing.dataflow.routes import routes
@@ -42,13 +43,22 @@ class PassageHops:
     def hop(self, passage: Passage, entry: Entry, is_last: bool) -> Hop:
         """From the entry of a passage to its last event; if another hop follows, to the end of the job."""
         name = " -> ".join(dict.fromkeys(passage.processes))
+        waiting = next((each for process in passage.processes for each in self._awaited(process)), None)
+        if waiting is not None:
+            return _unknown(
+                entry,
+                name,
+                f"the response time of {name!r} does not include that it waits for the acknowledgement of {waiting.topic!r}",
+                "Let an executor with a 'loop' run the callback, send with best effort, or set 'reliable: {waits: false}' if the port "
+                "does not wait.",
+            )
         try:
             times = self._bounds(_events(passage, entry, is_last), entry)
         except (UnboundedStageError, UnresolvedError) as error:
-            return _unknown(entry, name, str(error))
+            return _unknown(entry, name, str(error), f"See the results of {name!r}.")
         if times is None:
             reason = f"the maximum time between two activations of {passage.processes[0]!r} is unknown"
-            return _unknown(entry, name, reason)
+            return _unknown(entry, name, reason, f"See the results of {passage.processes[0]!r}.")
         value, wait = times
         is_whole = is_last and entry is Entry.FIRST
         parts = (
@@ -67,6 +77,14 @@ class PassageHops:
             source=f"{value.method} ({value.source})",
             parts=parts,
         )
+
+    def _awaited(self, process: str) -> Iterator[Transmission]:
+        """The messages whose acknowledgements the jobs of a process wait for."""
+        context = self.evaluator.context
+        fired = {firing.stimulus for firing in context.dataflow.firings(process)}
+        for each in context.system.network.transmissions:
+            if each.waits and not fired.isdisjoint(context.system.processes[each.name].stimuli):
+                yield each
 
     def _bounds(self, events: Sequence[Event], entry: Entry) -> tuple[Value, Time] | None:
         """The tightest bound of a latency, and how long a message waits until then; None if it has no maximum."""
@@ -122,7 +140,5 @@ def _kind(entry: Entry) -> HopKind:
     return {Entry.POLLING: HopKind.POLLING, Entry.DATA: HopKind.SAMPLING}.get(entry, HopKind.TASKS)
 
 
-def _unknown(entry: Entry, name: str, reason: str) -> Hop:
-    return Hop(
-        kind=_kind(entry), name=name, best=0, worst=None, source="", reason=reason, remedy=f"See the results of {name!r}."
-    )
+def _unknown(entry: Entry, name: str, reason: str, remedy: str) -> Hop:
+    return Hop(kind=_kind(entry), name=name, best=0, worst=None, source="", reason=reason, remedy=remedy)

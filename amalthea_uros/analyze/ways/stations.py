@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from amalthea_uros.perf.activities import Call
-from amalthea_uros.perf.events import Event, EventChain
+from amalthea_uros.perf.events import CustomEvent, Event, EventChain
 from amalthea_uros.perf.executors import Executor, Handle
 from amalthea_uros.perf.network import Transmission
 from amalthea_uros.timing.context import TimingContext
@@ -95,12 +95,18 @@ def _processes(event: Event, context: TimingContext) -> set[str]:
         return set()
 
 
+def _no_place(event: Event, error: UnresolvedError) -> str:
+    if isinstance(event, CustomEvent):
+        return f"{event.name!r} occurs outside the model: describe 'transport' and 'agent' of the middleware"
+    return str(error)
+
+
 def _station(event: Event, before: Station | None, context: TimingContext) -> Station:
     """Where an event occurs; if that can be in several places, the station before it if it is one of these."""
     try:
         occurrences = context.dataflow.events.of(event)
     except UnresolvedError as error:
-        raise UnknownWayError(str(error)) from None
+        raise UnknownWayError(_no_place(event, error)) from None
     found = {_station_at(event, occurrence, context) for occurrence in occurrences}
     if before in found:
         return before
