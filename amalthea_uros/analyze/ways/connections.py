@@ -27,7 +27,7 @@ class Connections:
         ------
         UnknownWayError : nothing connects them, or nobody knows how long it takes.
         """
-        if isinstance(then, Passage) and self._activates(first, then.processes[0]):
+        if isinstance(then, Passage) and self.activates(first, then.processes[0]):
             return Entry.TRIGGER
         found = {self._data(one, other, first, then) for one in self._ends(first, -1) for other in self._ends(then, 0)}
         if LinkKind.DATA in found:
@@ -43,7 +43,8 @@ class Connections:
         last = transmission.processes[-1:]
         return any(self.context.dataflow.trigger(each, process) is not None for each in last)
 
-    def _activates(self, first: Callback | Passage, process: str) -> bool:
+    def activates(self, first: Callback | Passage, process: str) -> bool:
+        """Whether a callback, or the last process of a passage, activates another process."""
         source = first.executor.task if isinstance(first, Callback) else first.processes[-1]
         link = self.context.dataflow.trigger(source, process)
         return link is not None and self._is_within(link.write, first)

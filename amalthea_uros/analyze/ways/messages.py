@@ -58,7 +58,9 @@ def wire_hop(transmission: Transmission, solution: Solution) -> Hop:
         why = response.reason if response is not None else solution.reasons.get(transmission.name, "it was not analysed")
         reason = f"the time of {transmission.name!r} on {transmission.wire!r} has no bound: {why}"
         best = response.best if response is not None else solution.bcet(transmission.name)
-        remedy = f"Reduce the load of {transmission.wire!r}: increase its rate, send less often, or without acknowledgements."
+        remedy = f"See the results of {transmission.name!r}."
+        if response is not None and response.is_overload:
+            remedy = f"Increase the rate of {transmission.wire!r}, send less often, or without acknowledgements."
         return Hop(kind=HopKind.WIRE, name=transmission.wire, best=best, worst=None, source="", reason=reason, remedy=remedy)
     return Hop(
         kind=HopKind.WIRE,

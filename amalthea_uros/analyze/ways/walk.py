@@ -124,6 +124,8 @@ class Walk:
             hops[-1] = _until_sent(hops[-1], self.sending[transmission.name])
         elif isinstance(before, Message):
             raise UnknownWayError(f"{name_of(before)!r} sends nothing")
+        elif isinstance(before, Passage) and not self.connections.activates(before, transmission.name):
+            raise UnknownWayError(f"{name_of(before, is_end=True)!r} does not publish {transmission.topic!r}")
         yield from sent(transmission, solution)
         yield agent
 
