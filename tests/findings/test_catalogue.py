@@ -7,7 +7,8 @@ from collections import defaultdict
 import pytest
 from support import MODEL, ROOT
 
-from amalthea_uros import build, load, measure
+from amalthea_uros import build, describe, load, measure
+from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.bridge.extract import extract
 from amalthea_uros.errors import ReadError
 from amalthea_uros.findings import catalogue
@@ -87,6 +88,11 @@ def reported(example, family, folder):
                 path = folder / "app.yaml"
                 path.write_text(example)
                 return build(path).assembly.findings
+            case "CHN":
+                path = folder / "app.yaml"
+                path.write_text(example)
+                described = describe(path)
+                return [*described.findings, *analyze_system(described.system).findings]
             case "CAN" | "MEA" | "TRC":
                 return found_in_trace(example, folder)
         path = folder / "model.amxmi"
