@@ -63,7 +63,11 @@ def test_a_chain_ends_when_the_message_of_its_topic_has_passed_the_wire(app):
     described = app("/cmd_vel, drive, /odom")
     *_, last = events_of(described)
     transmission = described.system.transmissions[last.process]
-    assert (last.change, transmission.callback, transmission.direction) == (ProcessChange.TERMINATE, "drive", Direction.TO_AGENT)
+    assert (last.change, transmission.callback, transmission.direction) == (
+        ProcessChange.TERMINATE,
+        "drive",
+        Direction.TO_AGENT,
+    )
 
 
 def test_a_topic_in_the_middle_is_sent_and_received(app):

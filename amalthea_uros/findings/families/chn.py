@@ -99,8 +99,8 @@ KINDS = (
         id="CHN011",
         title="topic in a chain that is not the one of its neighbours",
         severity=Severity.ERROR,
-        rationale="A topic in a path stands for a message: the one that the callback before it publishes, and that the callback after it "
-        "receives. There is none, or more than one.",
+        rationale="A topic in a path stands for a message: the one that the callback before it publishes, and that the callback "
+        "after it receives. There is none, or more than one.",
         remedy="Put the topic next to the callback that publishes or receives it.",
         fails=_APPLICATION.format(transport=_SERIAL, path="[drive, /cmd_vel]"),
     ),

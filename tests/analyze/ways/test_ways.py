@@ -41,9 +41,7 @@ def with_sender(found, task, transmission):
     changes = {task: {"activities": fired}, transmission: {"stimuli": ("sent",)}}
     tasks = tuple(replace(each, **changes.get(each.name, {})) for each in found.software.tasks)
     stimuli = (*found.stimuli.stimuli, InterProcess(name="sent"))
-    return replace(
-        found, software=replace(found.software, tasks=tasks), stimuli=replace(found.stimuli, stimuli=stimuli)
-    )
+    return replace(found, software=replace(found.software, tasks=tasks), stimuli=replace(found.stimuli, stimuli=stimuli))
 
 
 def response_of(found, name):
