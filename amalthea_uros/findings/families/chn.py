@@ -82,8 +82,8 @@ KINDS = (
         id="CHN009",
         title="latency of messages without an upper bound",
         severity=Severity.WARNING,
-        rationale="The latency is the sum of the bounds of its hops: the agent, wires, executors, tasks. The message names the hop that "
-        "has none, or how messages can be lost.",
+        rationale="The latency is the sum of the bounds of its hops: the agent, wires, executors, tasks. The message names the hop "
+        "that has none, or how messages can be lost.",
         remedy="State or change what the message names. `amuros analyze --explain` with the name of the chain shows all hops.",
         fails=_APPLICATION.format(transport=_SERIAL, path="[/cmd_vel, drive]"),
     ),
@@ -91,7 +91,8 @@ KINDS = (
         id="CHN010",
         title="topic in a chain without a transport",
         severity=Severity.WARNING,
-        rationale="A chain that begins or ends with a topic passes the wire and the agent. Unless they are described, it has no latency.",
+        rationale="A chain that begins or ends with a topic passes the wire and the agent. Unless they are described, "
+        "it has no latency.",
         remedy="Describe the transport and the agent of the middleware.",
         fails=_APPLICATION.format(transport="", path="[/cmd_vel, drive]"),
     ),
