@@ -25,6 +25,7 @@ RUNS = {
         ("analyze", ADVANCED, "--scale", "80", "--explain", "Control_Function"),
         ("analyze", "rclc-in-executor.yaml", "--explain", "On_Command_Callback"),
         ("analyze", "unknown.amxmi", "--explain", "Empty"),
+        ("analyze", "arduino.yaml", "--explain", "Control_Callback"),
         ("analyze", "rclc-in-executor.yaml", "--explain", "rclc_executor"),
         ("analyze", "drive-and-lift.yaml", "--explain", "valve-to-log"),
         ("analyze", "unknown.amxmi", "--set", "Control_Function.execution_time=500us"),
@@ -171,6 +172,20 @@ application:
       guard_conditions: [{name: Stop, execution_time: 4 us}]
 """
 
+#: A loop whose sleep is longer than the period of its timer.
+ARDUINO = """
+amuros: 1
+name: robot
+hardware: {platform: single-core, frequency: 100 MHz}
+middleware:
+  executor: {loop: {spin_some: 100 ms, sleep: 100 ms}, execution_time: {base: 12 us}}
+application:
+  nodes:
+    - name: node
+      subscriptions: [{name: On_Command, topic: command, rate: 5 Hz, message_size: 8 B, execution_time: 4 us}]
+      timers: [{name: Control, period: 10 ms, execution_time: 4 us}]
+"""
+
 
 @pytest.fixture
 def folder(tmp_path):
@@ -193,6 +208,7 @@ def folder(tmp_path):
     save(model, tmp_path / "counted.amxmi")
     (tmp_path / "way.yaml").write_text(WAY)
     (tmp_path / "loops.yaml").write_text(LOOPS)
+    (tmp_path / "arduino.yaml").write_text(ARDUINO)
     (tmp_path / "stopwatch.csv").write_text(
         "object,kind,quantity,value_us\nControl_Function,process,response_time,16\nControl_Function,process,response_time,1200\n"
     )

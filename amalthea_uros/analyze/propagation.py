@@ -15,11 +15,17 @@ from amalthea_uros.analyze.response_times.core import responses_on
 from amalthea_uros.analyze.response_times.known_offsets import tightened
 from amalthea_uros.analyze.results import Response
 from amalthea_uros.analyze.solution import Solution
+from amalthea_uros.perf.activities import Trigger
 from amalthea_uros.perf.software import Process
 from amalthea_uros.timing.activation import Output, UnknownActivationError
 from amalthea_uros.timing.context import TimingContext
+from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.event_models import Delayed, EventModel, OutputEventModel, Periodic
+from amalthea_uros.timing.executors.bursts import dense_rounds
+from amalthea_uros.timing.executors.loops import least_sleep
+from amalthea_uros.timing.executors.workload import workload
 from amalthea_uros.timing.limits import MAX_INPUT
+from amalthea_uros.timing.scheduling import ScheduledProcess
 from amalthea_uros.units import Time
 
 #: Maximum number of rounds, and of jobs of busy windows in all rounds; if jitter still increases then, it does not converge.
@@ -91,7 +97,8 @@ def _event_models(solution: Solution, diverging: set[str], responses: Mapping[st
         if name in diverging:
             continue
         try:
-            events = context.activations.of(scheduled.process, output)
+            _require_known_rounds(name, context)
+            events = _workload(scheduled, context.activations.of(scheduled.process, output), context)
             if isinstance(events, Periodic) and events.jitter * context.time_base(name) > MAX_INPUT:
                 raise UnknownActivationError("its jitter exceeds the supported range of times")
             found[name] = events
@@ -101,13 +108,51 @@ def _event_models(solution: Solution, diverging: set[str], responses: Mapping[st
     return found
 
 
+def _workload(item: ScheduledProcess, events: EventModel, context: TimingContext) -> EventModel:
+    """The activations of a process; of the rounds of an executor with a sleep, those of rounds that all are the longest."""
+    executor, demand = context.system.executor_of_task.get(item.name), context.demands.get(item.name)
+    if executor is None or demand is None:
+        return events
+    return workload(executor, events, -(-demand.worst // context.time_base(item.name)))
+
+
+def _require_known_rounds(name: str, context: TimingContext) -> None:
+    """Refuse rounds of an executor that can be closer together than their stimulus says, if that matters to any other process."""
+    executor, item = context.system.executor_of_task.get(name), context.scheduled[name]
+    demand = context.demands.get(name)
+    if executor is None or demand is None:
+        return
+    reason = dense_rounds(executor, context.system.executors, -(-demand.worst // context.time_base(name)))
+    if reason and (_is_above_others(item, context) or _triggers_others(item, context)):
+        raise UnknownActivationError(reason)
+
+
+def _is_above_others(item: ScheduledProcess, context: TimingContext) -> bool:
+    """Whether a process can delay others of its core."""
+    return any(other.rank <= item.rank and other.name != item.name for other in context.on_core(item.core))
+
+
+def _triggers_others(item: ScheduledProcess, context: TimingContext) -> bool:
+    """Whether a process activates others."""
+    try:
+        positions = context.dataflow.events.positions(item.name)
+    except UnresolvedError:
+        return True
+    return any(isinstance(position.activity, Trigger) for position in positions)
+
+
 def _output(solution: Solution, responses: Mapping[str, Response]) -> Output:
     """The events caused by the jobs of processes."""
+    context = solution.context
 
     def output(process: Process, activations: Callable[[], EventModel]) -> EventModel:
         if process.name in solution.reasons:
             raise UnknownActivationError(f"it is triggered by {process.name!r}, which could not be analysed")
         events = activations()
+        executor = context.system.executor_of_task.get(process.name)
+        if executor is not None and least_sleep(executor):
+            # Between two rounds are the sleep and at least a whole round, from any point of the one to that of the other.
+            return events
         response = responses.get(process.name)
         if response is None:
             return events

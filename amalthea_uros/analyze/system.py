@@ -11,7 +11,7 @@ from amalthea_uros.analyze.chains.constraints import ConstraintEvaluator
 from amalthea_uros.analyze.chains.core_schedule import CoreSchedules
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.chains.job_chains import JobBudget
-from amalthea_uros.analyze.executors.callbacks import METRICS_OF_ROUNDS, of_rounds
+from amalthea_uros.analyze.executors.callbacks import METRICS_OF_ROUNDS, of_rounds, without_doubtful_losses
 from amalthea_uros.analyze.executors.findings import note_executors
 from amalthea_uros.analyze.executors.results import ExecutorResult
 from amalthea_uros.analyze.metrics import MetricEvaluator
@@ -179,7 +179,9 @@ def _process(name: str, solution: Solution, limits: Mapping[str, Time], executor
     events = solution.event_models.get(name) or (context.stated_activations(name) if response is None else None)
     scheduled = context.scheduled.get(name)
     stated = scheduled.deadline if scheduled is not None and scheduled.deadline is not None else limits.get(name)
-    implicit = implicit_deadline(events) if stated is None and events is not None and executor is None else None
+    # The distance of activations that depend on rounds of executors is a bound, and no period.
+    has_period = events is not None and name not in context.following_rounds
+    implicit = implicit_deadline(events) if stated is None and events is not None and has_period else None
     if implicit is not None:
         context.notes.assume(ASSUMPTION)
     found = ProcessResult(
@@ -202,6 +204,8 @@ def _process(name: str, solution: Solution, limits: Mapping[str, Time], executor
     )
     if executor is not None:
         return of_rounds(found, executor, stated)
+    if name in context.following_rounds:
+        return without_doubtful_losses(judged(found, process, events, context.can_borrow(name)))
     if response is None or not solution.depends_on_losses(name):
         return judged(found, process, events, context.can_borrow(name))
     # Without the lost jobs, others can be earlier, but not later.
@@ -246,8 +250,15 @@ def _processors(solution: Solution) -> Iterator[ProcessorResult]:
             best=best,
             mean=mean,
             worst=worst,
-            at_least=_sum(shares.get(core, {}).values()) if worst is None else _certain_load(context.on_core(core), solution),
+            at_least=_sum(_certain(shares.get(core, {}), solution))
+            if worst is None
+            else _certain_load(context.on_core(core), solution),
         )
+
+
+def _certain(shares: Mapping[str, Fraction], solution: Solution) -> Iterator[Fraction]:
+    """The loads of processes that do not depend on rounds of executors."""
+    return (load for name, load in shares.items() if name not in solution.context.following_rounds)
 
 
 def _is_load_known(core: str, possible: Iterable[str], solution: Solution) -> bool:
@@ -273,15 +284,14 @@ def _loads(core: str, solution: Solution) -> tuple[Fraction, Fraction, Fraction]
 
 
 def _certain_load(items: Iterable[ScheduledProcess], solution: Solution) -> Fraction:
-    """The worst load of processes of a core, without what modes may exclude for ever, and without rounds that wait for something."""
+    """The worst load of processes of a core, without what modes may exclude for ever, and what rounds of executors need."""
     context = solution.context
-    executors = context.system.executor_of_task
     return _sum(
         context.demands[item.name].mean_occurring
         * solution.event_models[item.name].rate
         / context.demand_model.time_base(item.core)
         for item in items
-        if item.name not in executors
+        if item.name not in context.following_rounds
     )
 
 

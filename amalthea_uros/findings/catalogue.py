@@ -18,7 +18,6 @@ FAMILIES = {
     "BLD": "Building a model",
     "EXT": "Extracting the performance model",
     "ANA": "Analysing response times",
-    "EXE": "Executors of micro-ROS",
     "SIM": "Simulating systems",
     "CHN": "Analysing event chains",
     "CAN": "Reading logs of CAN buses",

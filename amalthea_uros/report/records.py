@@ -138,7 +138,8 @@ def _(callback: CallbackResult) -> list[Record]:
 @all_records.register
 def _(executor: ExecutorResult) -> list[Record]:
     """One row for each handle."""
-    return [{"executor": executor.name} | row for handle in executor.handles for row in all_records(handle)]
+    own: Record = {"executor": executor.name}
+    return [own | row for handle in executor.handles for row in all_records(handle)]
 
 
 @all_records.register

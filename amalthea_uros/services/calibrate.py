@@ -143,8 +143,8 @@ def calibrate_text(text: str, path: Path, measurements: Sequence[Measurement], o
     before = described(text.removeprefix(_BOM), path)
     places = Places(before.description, before.platform, before.core_types, before.assembly.priority_scale)
     measured = [Measured(series, measurement) for measurement in measurements for series in measurement.series]
-    choices = before.assembly.choices
-    period = choices[0].period if choices else None
+    executors = (choice.period for choice in before.assembly.choices if choice.task == choice.executor)
+    period = next(executors, None)
     found = [
         *calibrated_execution_times([*with_executor_parts(measured, places, period)], places, options),
         *calibrated_overheads(measured, before, options),

@@ -36,10 +36,15 @@ def _capacities(system: System) -> Iterator[Rule]:
 
 def _periods(assembly: Assembly, system: System) -> Iterator[Rule]:
     """The rules of the middleware for periods; see `uros.periods`."""
-    executor, *others = (choice.task for choice in assembly.choices)
-    callbacks = tuple(name for name in others if name in system.processes)
-    if executor in system.processes and callbacks:
-        yield PeriodRule(process=executor, others=callbacks, text=f"{executor} runs less often than the fastest callback")
+    served: dict[str, list[str]] = {}
+    for choice in assembly.choices:
+        if choice.task != choice.executor and choice.task in system.processes:
+            served.setdefault(choice.executor, []).append(choice.task)
+    for executor, names in served.items():
+        if any(choice.task == executor for choice in assembly.choices):
+            text = f"{executor} runs less often than the fastest callback"
+            yield PeriodRule(process=executor, others=tuple(names), text=text)
+    callbacks = [name for names in served.values() for name in names]
     intervals = _message_intervals(system)
     for name in callbacks:
         if (interval := intervals.get(name)) is not None:

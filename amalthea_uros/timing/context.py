@@ -17,6 +17,7 @@ from amalthea_uros.timing.critical_sections import Locks, Protection, protection
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.timing.demand import DemandModel
 from amalthea_uros.timing.event_models import EventModel
+from amalthea_uros.timing.executors.followers import with_followers
 from amalthea_uros.timing.executors.loops import never_rests
 from amalthea_uros.timing.limits import MAX_INPUT
 from amalthea_uros.timing.multiframe import MultiframeDemand
@@ -173,6 +174,11 @@ class TimingContext:
         for scheduled in self.scheduled.values():
             found.setdefault(scheduled.core, []).append(scheduled)
         return found
+
+    @cached_property
+    def following_rounds(self) -> frozenset[str]:
+        """The processes that execute rounds of executors, and those that they trigger: they may be activated less often."""
+        return with_followers(self.system, self.dataflow)
 
     def has_loops(self, core: str) -> bool:
         """Whether an executor that spins in a loop runs on a core: when its rounds begin depends on what they do."""

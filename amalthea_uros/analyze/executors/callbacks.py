@@ -53,6 +53,8 @@ def _worst_of(handles: Sequence[HandleResult]) -> Response:
 def of_rounds(process: ProcessResult, executor: ExecutorResult, deadline: Time | None) -> ProcessResult:
     """The result of the process that executes the rounds of an executor: its response time is that of a round, after its wait.
 
+    Without a deadline, it is met if all callbacks have a bound, and nothing is lost.
+
     Parameters
     ----------
     deadline : that is stated for it; it has no implicit one, because its rounds follow each other
@@ -82,7 +84,7 @@ def of_rounds(process: ProcessResult, executor: ExecutorResult, deadline: Time |
         verdict, failure, reason = failing
         return replace(found, verdict=verdict, failure=failure, reason=reason)
     if deadline is None:
-        return found
+        return replace(found, verdict=Verdict.MET)
     verdict = decide(worst_response(found), deadline, is_upper=True)
     failure = Failure.MISSED if verdict is Verdict.MISSED else None
     reason = executor.reason or (undecided(worst_response(found), is_upper=True) if verdict is Verdict.UNKNOWN else "")
@@ -101,3 +103,10 @@ def _failing(executor: ExecutorResult) -> tuple[Verdict, Failure | None, str] | 
         return (Verdict.MISSED, Failure.LOST, reason) if loss.is_certain else (Verdict.UNKNOWN, None, reason)
     unknown = next((handle for handle in executor.handles if handle.response.worst is None), None)
     return None if unknown is None else (Verdict.UNKNOWN, None, f"{unknown.name!r}: {unknown.response.reason}")
+
+
+def without_doubtful_losses(process: ProcessResult) -> ProcessResult:
+    """The result of a process that rounds of an executor activate: as it may be activated less often, losses are not certain."""
+    if process.failure not in (Failure.LOST, Failure.OVERLOAD):
+        return process
+    return replace(process, verdict=Verdict.UNKNOWN, failure=None)

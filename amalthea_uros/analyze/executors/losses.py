@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+from amalthea_uros._internal.plural import counted
 from amalthea_uros.analyze.executors.cycle import Cycle
 from amalthea_uros.analyze.executors.results import HandleResult, Loss
 from amalthea_uros.perf.executors import Handle
@@ -74,7 +75,7 @@ def with_lost_messages(
 ) -> list[HandleResult]:
     """The results with the messages that can be lost because there is no room for them."""
     executor = cycle.executor
-    if not cycle.stores and executor.waiting.messages_per_wait == 1:
+    if not cycle.stores and executor.waiting.messages_per_wait == 1 and executor.waiting.slots != 0:
         # Each round calls the message that its wait took.
         return list(results)
     stored = {
@@ -123,8 +124,9 @@ def _lost(handle: Handle, result: HandleResult, cycle: Cycle, stored: int | None
         return Loss(what="messages", is_certain=False, most=None, sequence=sequence)
     if is_pool_enough:
         return None
+    slots = counted(executor.waiting.slots or 0, "slot")
     sequence = (
-        f"{_while_nothing_is_taken(cycle)}messages for all handles of {executor.name} together use its {executor.waiting.slots} slots; "
+        f"{_while_nothing_is_taken(cycle)}messages for all handles of {executor.name} together use its {slots}; "
         f"a new one for {handle.name} is dropped then"
     )
     return Loss(what="messages", is_certain=False, most=None, sequence=sequence, is_of_pool=True)

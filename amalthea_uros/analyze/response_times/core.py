@@ -185,13 +185,10 @@ class _CoreAnalysis:
 
     def _without_rounds(self, item: ScheduledProcess | Server, response: Response) -> Response:
         """A response time; an overload is not certain if rounds of executors are counted that need not be as long and as dense."""
-        executors = self.context.system.executor_of_task
-        if response.is_overload and any(
-            each.name in executors and each.rank >= item.rank for each in self.context.on_core(item.core)
-        ):
-            return replace(
-                response, is_overload=False, reason=f"{response.reason}, if each round of an executor is the longest"
-            )
+        uncertain, here = self.context.following_rounds, self.context.on_core(item.core)
+        if response.is_overload and any(other.name in uncertain and other.rank >= item.rank for other in here):
+            reason = f"{response.reason}, if rounds of executors are as long and as frequent as they can be"
+            return replace(response, is_overload=False, reason=reason)
         return response
 
     def _task(self, item: ScheduledProcess | Server, ranks: Sequence[Rank]) -> Task:

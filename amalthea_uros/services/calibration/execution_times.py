@@ -23,6 +23,7 @@ from amalthea_uros.services.description_edits.yaml_values import Value
 from amalthea_uros.timing.job_metric import JobMetric
 from amalthea_uros.units import NANOSECOND, Time, time_text
 from amalthea_uros.uros.demand import times_of
+from amalthea_uros.uros.executors.serving import stated_executors
 
 if TYPE_CHECKING:
     import numpy as np
@@ -88,7 +89,7 @@ def calibrated_execution_times(
 
 def _overhead(measured: Measured, places: Places) -> Time | None:
     """The stated overhead that is part of measured times: of jobs as a whole, without a baseline; None if it varies."""
-    series, executor = measured.series, places.description.middleware.executor.name
+    series, executor = measured.series, stated_executors(places.description.middleware)[0].name
     if series.kind is Kind.RUNNABLE or series.baseline is not None:
         return 0
     process = executor if series.name == f"{executor}_Spin" else series.name

@@ -17,6 +17,7 @@ from amalthea_uros.services.calibration.samples import Measured
 from amalthea_uros.services.description_edits.places import Places
 from amalthea_uros.timing.job_metric import JobMetric
 from amalthea_uros.units import Time
+from amalthea_uros.uros.executors.serving import stated_executors
 
 #: By how much the number of long jobs may differ from the number of messages: the first and the last one, and clocks.
 _MOST_OTHERS = 2
@@ -29,10 +30,10 @@ def with_executor_parts(measured: Sequence[Measured], places: Places, period: Ti
     ----------
     period : of the executor
     """
-    executor = places.description.middleware.executor
+    executor = stated_executors(places.description.middleware)[0]
     cost = executor.execution_time
     incoming = [callback for callback in places.callbacks if callback.incoming is not None]
-    parts = {"per_timer", "per_ready_callback", "per_message"} & cost.model_fields_set
+    parts = {"per_timer", "per_handle", "per_ready_callback", "per_message"} & cost.model_fields_set
     has_two_parts = parts == {"per_message"} and not cost.per_message.per_byte and len(incoming) == 1
     is_alone = not any(callback.in_executor for callback in places.callbacks)
     for each in measured:

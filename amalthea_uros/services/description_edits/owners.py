@@ -9,8 +9,12 @@ from enum import StrEnum
 from amalthea_uros.services.description_edits.text_edits import Path
 from amalthea_uros.spec.application import Callback, MessageCallback, Timer
 from amalthea_uros.spec.description import Description
+from amalthea_uros.spec.executors import Executor
 from amalthea_uros.spec.section import Section
 from amalthea_uros.uros.application import body_name
+from amalthea_uros.uros.executor import spin_name
+
+_CALLBACKS = ("subscriptions", "timers", "services", "clients", "guard_conditions", "action_servers", "action_clients")
 
 
 class OwnerKind(StrEnum):
@@ -41,9 +45,9 @@ class Owner:
 
 def owners(description: Description) -> Iterator[Owner]:
     """All sections whose values can be changed; those of a runnable of several processes are several."""
-    executor = description.middleware.executor
-    yield Owner(executor.name, OwnerKind.EXECUTOR, ("middleware", "executor"), executor)
-    yield Owner(f"{executor.name}_Spin", OwnerKind.SPIN, ("middleware", "executor"), executor)
+    for place, executor in executors(description):
+        yield Owner(executor.name, OwnerKind.EXECUTOR, place, executor)
+        yield Owner(spin_name(executor.name), OwnerKind.SPIN, place, executor)
     for path, callback in callbacks(description):
         kind = OwnerKind.TIMER if isinstance(callback, Timer) else OwnerKind.MESSAGE_CALLBACK
         yield Owner(callback.name, kind, path, callback)
@@ -66,9 +70,17 @@ def owners(description: Description) -> Iterator[Owner]:
         yield Owner(f"{can.interrupt.name}_Frame", OwnerKind.INTERRUPT, path, can.interrupt)
 
 
+def executors(description: Description) -> Iterator[tuple[Path, Executor]]:
+    """All executors with their places."""
+    if not description.middleware.executors:
+        yield ("middleware", "executor"), description.middleware.executor
+    for index, executor in enumerate(description.middleware.executors):
+        yield ("middleware", "executors", index), executor
+
+
 def callbacks(description: Description) -> Iterator[tuple[Path, Callback]]:
     """All callbacks with their places."""
     for index, node in enumerate(description.application.nodes):
-        for kind in ("subscriptions", "timers", "services", "clients"):
+        for kind in _CALLBACKS:
             for number, callback in enumerate(getattr(node, kind)):
                 yield ("application", "nodes", index, kind, number), callback

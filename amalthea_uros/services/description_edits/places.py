@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from amalthea_uros.changes.change import Change
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.names import require
-from amalthea_uros.services.description_edits.owners import Owner, OwnerKind, owners
+from amalthea_uros.services.description_edits.owners import Owner, OwnerKind, executors, owners
 from amalthea_uros.services.description_edits.stated_times import StatedTime
 from amalthea_uros.services.description_edits.text_edits import Path
 from amalthea_uros.services.description_edits.yaml_values import Value
@@ -22,6 +22,7 @@ from amalthea_uros.spec.transports import Interrupt
 from amalthea_uros.units import SECOND, Time, data_size_text, parse_time, time_text
 from amalthea_uros.uros import callbacks as uros
 from amalthea_uros.uros.executor import message_cost, timer_count
+from amalthea_uros.uros.executors.counts import handle_count
 from amalthea_uros.uros.notes import Notes
 from amalthea_uros.uros.rtos import PriorityScale
 
@@ -129,8 +130,9 @@ class Places:
         elif owner.kind is OwnerKind.TAKE:
             path, time, elsewhere = self._take(owner)
         elif owner.kind is OwnerKind.NOTIFY:
-            path = ("middleware", "executor", "execution_time", "per_ready_callback")
-            time, elsewhere = self.description.middleware.executor.execution_time.per_ready_callback, 0
+            place, executor = self._serving(owner)
+            path, time = (*place, "execution_time", "per_ready_callback"), executor.execution_time.per_ready_callback
+            elsewhere = 0
         elif isinstance(section, Interrupt):
             is_mapping = section.location("execution_time") != section.location()
             path, time, elsewhere = path if is_mapping else owner.path, section.execution_time, 0
@@ -154,22 +156,31 @@ class Places:
     def _spin(self, owner: Owner, section: Executor) -> tuple[Path, ExecutionTime | None, Time]:
         """The base of the cost of the executor, and its other parts in every activation."""
         cost, path = section.execution_time, (*owner.path, "execution_time")
-        parts = [part for part in ("per_timer", "per_ready_callback", "per_message") if part in cost.model_fields_set]
+        parts = [
+            part for part in ("per_timer", "per_handle", "per_ready_callback", "per_message") if part in cost.model_fields_set
+        ]
         if owner.kind is OwnerKind.EXECUTOR and parts:
             raise InvalidArgumentError(
                 f"the execution time of {owner.name!r} has parts ({', '.join(['base', *parts])}), which are measured one by one"
             )
         is_mapping = "base" in cost.model_fields_set and cost.location("base") != cost.location()
-        timers = _constant([cost.per_timer] * timer_count(self.callbacks), owner.name)
-        return ((*path, "base") if is_mapping or parts else path), cost.base, timers
+        served = [each for each in self.callbacks if each.executor == section.name]
+        checked = [*[cost.per_timer] * timer_count(served), *[cost.per_handle] * sum(map(handle_count, served))]
+        return ((*path, "base") if is_mapping or parts else path), cost.base, _constant(checked, owner.name)
+
+    def _serving(self, owner: Owner) -> tuple[Path, Executor]:
+        """The executor that serves a callback, with its place."""
+        name = next(each.executor for each in self.callbacks if each.section is owner.section)
+        return next((place, executor) for place, executor in executors(self.description) if executor.name == name)
 
     def _take(self, owner: Owner) -> tuple[Path, ExecutionTime | None, Time]:
         """The fixed part of the cost of a message, and the other parts that a callback's message has."""
-        cost = self.description.middleware.executor.execution_time
+        place, executor = self._serving(owner)
+        cost = executor.execution_time
         incoming = next(each.incoming for each in self.callbacks if each.section is owner.section)
         assert incoming is not None
         others = _constant([cost.per_ready_callback, *message_cost(cost.per_message, incoming.size)[1:]], owner.name)
-        path = ("middleware", "executor", "execution_time", "per_message")
+        path = (*place, "execution_time", "per_message")
         is_mapping = (
             cost.per_message.location() is not None and cost.per_message.location("fixed") != cost.per_message.location()
         )

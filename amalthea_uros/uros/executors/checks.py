@@ -72,7 +72,12 @@ def _check_polling(executor: Executor, section: spec.Executor, notes: Notes) -> 
     where = section.loop.location() if section.loop is not None else section.location()
     if reason is not None and _has_messages(executor):
         message = f"{executor.name!r} uses all the time that others leave it: {reason}"
-        notes.warning("EXE003", message, where, f"Set a timeout of {time_text(max(resolution, 1))} or more, or a 'sleep'.")
+        timeout = (
+            "Use the trigger condition 'any'"
+            if loop.timeout >= resolution
+            else f"Set a timeout of {time_text(resolution)} or more"
+        )
+        notes.warning("EXE003", message, where, f"{timeout}, or add a 'sleep'.")
     elif reason is not None:
         message = (
             f"{executor.name!r} has timers only: the wait of the middleware returns at once, and the loop uses all the time that "

@@ -1,0 +1,37 @@
+"""The demand of rounds that follow each other with a sleep in between, against all rounds of some lengths."""
+
+from itertools import product
+
+import pytest
+
+from amalthea_uros.perf.executors import Executor, Loop, LoopKind
+from amalthea_uros.timing.event_models import Periodic
+from amalthea_uros.timing.executors.timers import lost_periods, next_expiration
+from amalthea_uros.timing.executors.workload import workload
+
+LONGEST = 3
+
+
+@pytest.mark.parametrize("sleep", [1, 2, 5])
+def test_no_rounds_demand_more_than_those_of_the_longest(sleep):
+    executor = Executor(name="e", task="t", spin="s", loop=Loop(kind=LoopKind.SPIN_SOME, timeout=0, sleep=sleep))
+    model = workload(executor, Periodic(1), LONGEST)
+    for lengths in product(range(LONGEST + 1), repeat=5):
+        begin, demand = 0, 0
+        for length in lengths:
+            demand += length
+            # The window is just longer than the time at which this round begins.
+            assert demand <= LONGEST * model.eta_plus(begin + 1)
+            begin += length + sleep
+
+
+def test_without_a_sleep_it_is_what_begins_rounds():
+    executor = Executor(name="e", task="t", spin="s", loop=Loop(kind=LoopKind.SPIN, timeout=5))
+    assert workload(executor, Periodic(7), LONGEST) == Periodic(7)
+
+
+@pytest.mark.parametrize(("called", "lost", "following"), [(30, 0, 40), (39, 0, 40), (40, 1, 50), (58, 2, 60)])
+def test_missed_periods_are_lost_and_the_grid_is_kept(called, lost, following):
+    # Due at 30, every 10.
+    assert lost_periods(called - 30, 10) == lost
+    assert next_expiration(30, called, 10) == following
