@@ -30,6 +30,7 @@ RUNS = {
         ("analyze", "drive-and-lift.yaml", "--explain", "valve-to-log"),
         ("analyze", "unknown.amxmi", "--set", "Control_Function.execution_time=500us"),
         ("analyze", "no-times.amxmi", "--set", "Control_Function.execution_time=500us"),
+        ("analyze", "way.yaml"),
     ),
     "amuros simulate": (
         ("simulate", ADVANCED, "--duration", "100ms", "--labels", "all"),
@@ -146,6 +147,20 @@ def values(found: Any, path: Place = ()) -> Iterator[tuple[Place, Any]]:
         yield path, found
 
 
+WAY = """
+amuros: 1
+name: way
+hardware: {platform: single-core, frequency: 100 MHz}
+middleware:
+  executor: {name: Executor, loop: {spin_some: 100 ms, sleep: 10 ms}, execution_time: 10 us}
+  transport: {serial: {baud_rate: 115200}}
+  agent: {to_controller: 1 ms}
+application:
+  nodes:
+    - name: node
+      subscriptions: [{name: drive, topic: cmd_vel, rate: 4 Hz, message_size: 48 B, execution_time: 100 us}]
+chains: [{name: cmd, path: [/cmd_vel, drive]}]
+"""
 LOOPS = """
 amuros: 1
 name: loops
@@ -197,6 +212,7 @@ def folder(tmp_path):
     process = model[am.Task, "Control_Function"]
     model.root.constraints_model.requirements.append(am.ProcessRequirement(name="preemptions", process=process, limit=count))
     save(model, tmp_path / "counted.amxmi")
+    (tmp_path / "way.yaml").write_text(WAY)
     (tmp_path / "loops.yaml").write_text(LOOPS)
     (tmp_path / "arduino.yaml").write_text(ARDUINO)
     rclc = (tmp_path / "rclc-in-executor.yaml").read_text()

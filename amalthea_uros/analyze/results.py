@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from amalthea_uros.analyze.executors.results import ExecutorResult
     from amalthea_uros.analyze.solution import Solution
     from amalthea_uros.analyze.summary import Summary
+    from amalthea_uros.analyze.ways.results import Way
 
 
 class Claim(StrEnum):
@@ -312,6 +313,7 @@ class Analysis(Shown):
     worst_solutions : for each process the solution of the phase in which its response time is the worst; empty if all are known
     summary : whether everything is met, and what is missed or unknown
     executors : those that spin in loops
+    ways : chains over wires, the agent or executors that loop; those with limits first
     assumptions : on which the numbers are based
     findings : what the analysis does not take into account
     """
@@ -328,6 +330,7 @@ class Analysis(Shown):
     findings: tuple[Finding, ...]
     worst_solutions: Mapping[str, Solution] = field(default_factory=dict, repr=False, compare=False)
     executors: Results[ExecutorResult] = field(default_factory=Results)
+    ways: Results[Way] = field(default_factory=Results)
 
     def __repr__(self) -> str:
         parts = [counted(len(self.processes), "process"), counted(len(self.chains), "chain")]

@@ -12,7 +12,6 @@ from amalthea_uros.analyze.chains.core_schedule import CoreSchedules
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.chains.job_chains import JobBudget
 from amalthea_uros.analyze.executors.callbacks import METRICS_OF_ROUNDS, of_rounds, without_doubtful_losses
-from amalthea_uros.analyze.executors.evaluate import evaluate_executors
 from amalthea_uros.analyze.executors.findings import note_executors
 from amalthea_uros.analyze.executors.results import ExecutorResult
 from amalthea_uros.analyze.metrics import MetricEvaluator
@@ -23,6 +22,9 @@ from amalthea_uros.analyze.requirements import evaluate_requirements
 from amalthea_uros.analyze.results import Analysis, ChainResult, Claim, ProcessorResult, ProcessResult, Response, Results
 from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.analyze.summary import summarize
+from amalthea_uros.analyze.ways.chain_results import chain_result
+from amalthea_uros.analyze.ways.evaluate import evaluate_ways
+from amalthea_uros.analyze.ways.results import Way
 from amalthea_uros.perf.events import EventChain
 from amalthea_uros.perf.software import Preemption, Task
 from amalthea_uros.perf.system import System
@@ -57,10 +59,10 @@ def analyze_system(system: System, settings: Settings | None = None) -> Analysis
     solution = solve(TimingContext.of(system, settings))
     system = solution.context.system
     unknown = unknown_phases(system)
-    executors = Results(evaluate_executors(solution, sending={}, extra_jitter={}))
+    executors, ways = evaluate_ways(solution)
     note_executors(executors, solution)
-    every = _of_all_phases(solution, unknown, executors)
-    found = every or _analysis(solution, JobBudget(), executors)
+    every = _of_all_phases(solution, unknown, executors, ways)
+    found = every or _analysis(solution, JobBudget(), executors, ways)
     phases, notes = phase_assumptions(system, are_all_evaluated=every is not None), solution.context.notes
     return replace(
         found,
@@ -69,25 +71,30 @@ def analyze_system(system: System, settings: Settings | None = None) -> Analysis
     )
 
 
-def _of_all_phases(solution: Solution, unknown: Sequence[Occurrence], executors: Results[ExecutorResult]) -> Analysis | None:
+def _of_all_phases(
+    solution: Solution, unknown: Sequence[Occurrence], executors: Results[ExecutorResult], ways: Results[Way]
+) -> Analysis | None:
     """The analysis over all combinations of unknown phases; None if there are too many."""
     phases = Phases.of(solution, unknown)
     if phases is None:
         return None
     cases, budget = phases.cases, JobBudget()
     return merged(
-        {number: _analysis(each, budget, executors) for number, each in phases.solutions(cases.of_everything())},
+        {number: _analysis(each, budget, executors, ways) for number, each in phases.solutions(cases.of_everything())},
         cases,
         solution,
     )
 
 
-def _analysis(solution: Solution, budget: JobBudget, executors: Results[ExecutorResult]) -> Analysis:
+def _analysis(
+    solution: Solution, budget: JobBudget, executors: Results[ExecutorResult], ways: Results[Way]
+) -> Analysis:
     """The analysis of a system; chains are evaluated for all phases of the jobs that they pass, other unknown phases are any job.
 
     Parameters
     ----------
     executors : those that spin in loops, for all phases
+    ways : of the chains that cross wires, the agent or executors that loop, for all phases
     """
     context = solution.context
     system = context.system
@@ -96,7 +103,8 @@ def _analysis(solution: Solution, budget: JobBudget, executors: Results[Executor
     schedules = evaluation.timing.schedules
     processes = Results(_processes(solution, schedules, executors))
     callbacks = Results(CallbackEvaluator(solution, schedules, executors).all())
-    chains = Results(_chain(chain, evaluation) for chain in system.events.chains)
+    of_ways = {way.name: chain_result(way) for way in ways}
+    chains = Results(of_ways.get(chain.name) or _chain(chain, evaluation) for chain in system.events.chains)
     verdicts = evaluate_requirements(system, processes, callbacks, context.notes)
     requirements = Results((*verdicts, *ConstraintEvaluator(evaluation, {chain.name: chain for chain in chains}).all()))
     processors = Results(_processors(solution))
@@ -111,6 +119,7 @@ def _analysis(solution: Solution, budget: JobBudget, executors: Results[Executor
         assumptions=tuple(context.notes.assumptions),
         findings=tuple(context.notes.found),
         executors=executors,
+        ways=ways,
     )
 
 

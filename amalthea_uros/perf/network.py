@@ -78,6 +78,7 @@ class Transmission(Named):
         sent, the driver keeps the wire busy, so that this time is part of that on the wire
     processes : that a message passes before the executor sees it: interrupt service routines, then tasks of the middleware
     agent : time in the agent: from the host to the wire, from the wire to the host, or from a message to its acknowledgement
+    waits : whether what sends it waits for its acknowledgement
     """
 
     wire: str
@@ -90,6 +91,7 @@ class Transmission(Named):
     driver: Span = field(default_factory=lambda: Span(most=0))
     processes: tuple[str, ...] = ()
     agent: Span = field(default_factory=Span)
+    waits: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

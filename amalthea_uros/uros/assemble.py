@@ -26,6 +26,7 @@ from amalthea_uros.uros.bus_traffic import with_traffic
 from amalthea_uros.uros.callbacks import Callback, callbacks_of, internal_channels
 from amalthea_uros.uros.can import CanBus
 from amalthea_uros.uros.chain_elements import chain_elements
+from amalthea_uros.uros.chain_topics import Topics
 from amalthea_uros.uros.chains import Chains
 from amalthea_uros.uros.context import AssemblyContext
 from amalthea_uros.uros.executors.activation import is_triggered, round_trigger_name, triggered_rounds
@@ -192,7 +193,7 @@ def _system(context: AssemblyContext, callbacks: Sequence[Callback], network: Pl
     elements = chain_elements(context, callbacks)
     system = triggered_rounds(with_network(_without_demands(context, labels), network, context))
     check_shared_priorities(system, context.tasks, notes, context.priority_scale)
-    chains = Chains(elements, Dataflow(system), notes)
+    chains = Chains(elements, Topics.of(callbacks, system.network), Dataflow(system), notes)
     limits = chains.add_all(description.chains)
     demanded = (*requirements(description.requirements, elements, notes), *deadlines(context.executors, callbacks))
     return replace(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise, product
 
@@ -15,6 +15,7 @@ from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.timing.dataflow.routes import is_linked
 from amalthea_uros.uros.chain_elements import ChainElement
+from amalthea_uros.uros.chain_topics import MessageOfTopic, TopicError, Topics
 from amalthea_uros.uros.notes import Notes
 
 _PROCESS_CHANGES: Mapping[Moment, perf.ProcessChange] = {
@@ -31,10 +32,12 @@ class Chains:
     Attributes
     ----------
     elements : by the name that a path uses
+    topics : which a path can contain, too
     dataflow : of the system, which has no events yet
     """
 
     elements: Mapping[str, ChainElement]
+    topics: Topics
     dataflow: Dataflow
     notes: Notes
     events: dict[str, perf.Event] = field(default_factory=dict)
@@ -98,26 +101,29 @@ class Chains:
                 message = f"{name!r} occurs twice in the path, but a chain cannot contain cycles"
                 self.notes.error("APP004", message, place(index), "Split it into two chains, and join them with 'sequence'.")
                 return None
-        unknown = [index for index, name in enumerate(path) if name not in self.elements and name not in self.labels]
+        unknown = [index for index in range(len(path)) if not self._is_known(path[index])]
         for index in unknown:
-            self.notes.undefined("process, runnable or label", path[index], {*self.elements, *self.labels}, place(index))
+            defined = {*self.elements, *self.labels, *self.topics.names}
+            kind = "topic" if path[index].startswith("/") else "process, runnable or label"
+            self.notes.undefined(kind, path[index], defined, place(index))
         if unknown:
             return None
+        if len(path) == 1 and self._is_topic(path[0]):
+            message = f"the path only has the topic {path[0]!r}"
+            self.notes.error("APP004", message, place(0), "Add the callback that receives or publishes it.")
+            return None
         for index in (0, len(path) - 1):
-            if path[index] not in self.elements:
+            if path[index] in self.labels and path[index] not in self.elements:
                 message = f"{path[index]!r} is a label, but a chain must start and end with a process or runnable"
                 advice = f"Add the process or runnable that accesses {path[index]!r}."
                 self.notes.error("APP004", message, place(index), advice)
                 return None
         self._check_labels(path, place)
-        found = [(0, self._event_at(path[0], section.start))]
-        for index, (before, name, after) in enumerate(zip(path, path[1:], path[2:], strict=False), start=1):
-            if name in self.labels and name not in self.elements:
-                found.append((index, self._write_event(before, name)))
-            elif after in self.elements:
-                # An element that writes the next label of the path is represented by that write.
-                found.append((index, self._event_at(name, "finish")))
-        found.append((len(path) - 1, self._event_at(path[-1], section.end)))
+        try:
+            found = [(index, event) for index in range(len(path)) for event in self._events_of(section, path, index, place)]
+        except TopicError as error:
+            self.notes.error("CHN011", str(error), section.location(), error.advice)
+            return None
         names = self._connected(found, path, place)
         if names[0] == names[-1]:
             message = f"chain {section.name!r} starts and ends with the same event {names[0]!r}"
@@ -125,11 +131,81 @@ class Chains:
             return None
         return names
 
+    def _is_known(self, name: str) -> bool:
+        return name in self.elements or name in self.labels or name in self.topics
+
+    def _is_topic(self, name: str) -> bool:
+        return name in self.topics and name not in self.elements and name not in self.labels
+
+    def _events_of(
+        self, section: Chain, path: Sequence[str], index: int, place: Callable[[int], Location | None]
+    ) -> Iterator[str]:
+        """The events of a member of a path."""
+        name = path[index]
+        if self._is_topic(name):
+            yield from self._topic_events(path, index, place)
+        elif index == 0:
+            yield self._event_at(name, section.start)
+        elif index == len(path) - 1:
+            yield self._event_at(name, section.end)
+        elif name not in self.elements:
+            yield self._write_event(path[index - 1], name)
+        elif path[index + 1] in self.elements or self._is_topic(path[index + 1]):
+            # An element that writes the next label of the path is represented by that write.
+            yield self._event_at(name, "finish")
+
+    def _topic_events(self, path: Sequence[str], index: int, place: Callable[[int], Location | None]) -> Iterator[str]:
+        """The events of the messages of a topic, and of the callbacks that send and receive them if the path does not name them.
+
+        Raises
+        ------
+        TopicError : it is not clear which message is meant.
+        """
+        topic, rest = path[index], path[index + 1 :]
+        if index > 0:
+            sent = self.topics.sent(topic, path[index - 1])
+            if sent.callback in path[: index - 1]:
+                raise TopicError(
+                    f"{path[index - 1]!r} does not publish {topic!r}", f"Add the topic to the path after {sent.callback!r}."
+                )
+            if sent.callback != path[index - 1]:
+                yield self._event_at(sent.callback, "finish")
+            yield self._message_event(sent, topic, place(index))
+        if not rest:
+            return
+        received = self.topics.received(topic, rest)
+        yield self._message_event(received, topic, place(index))
+        receiver, taken_by = self.elements[received.callback], self._taker(received.callback)
+        takers = {element.process for element in (receiver, taken_by) if element is not None}
+        if received.callback in rest[1:] and self._process(rest[0]) not in {*takers, *received.processes}:
+            raise TopicError(
+                f"{rest[0]!r} does not receive {topic!r}", f"Add the topic to the path before {received.callback!r}."
+            )
+        known = {receiver.process, *received.processes, self._process(rest[0])}
+        if taken_by is not None and taken_by.process not in known:
+            yield self._event_at(receiver.taken_by or "", "finish")
+        if received.callback not in rest:
+            yield self._event_at(received.callback, "finish")
+
+    def _message_event(self, message: MessageOfTopic, topic: str, location: Location | None) -> str:
+        if not message.is_on_wire:
+            text = f"the latency of messages of {topic!r} is unknown, because no transport is described"
+            self.notes.warning("CHN010", text, location, "Describe 'transport' and 'agent' of the middleware.")
+        self.events.setdefault(message.event.name, message.event)
+        return message.event.name
+
+    def _taker(self, callback: str) -> ChainElement | None:
+        """The element that takes the messages of a callback for its task; None if there is none."""
+        return self.elements.get(self.elements[callback].taken_by or "")
+
+    def _process(self, name: str) -> str | None:
+        return self.elements[name].process if name in self.elements else None
+
     def _check_labels(self, path: Sequence[str], place: Callable[[int], Location | None]) -> None:
         """Note labels of the path that the member before does not write, or the one after does not read."""
         members = [(index, name) for index, name in enumerate(path) if name in self.elements]
         for (start, first), (end, then) in pairwise(members):
-            for label in path[start + 1 : end]:
+            for label in filter(self.labels.__contains__, path[start + 1 : end]):
                 if label not in self.elements[first].writes:
                     self.notes.warning("UR130", f"{first!r} does not write {label!r}", place(start + 1))
                 if label not in self.elements[then].reads:
@@ -187,8 +263,12 @@ class Chains:
     def _write_event(self, writer: str, label: str) -> str:
         """The event of a write access to a label."""
         title = f"{label}_written_by_{writer}"
-        process = self.elements[writer].process if writer in self.elements else None
-        self.events.setdefault(title, perf.LabelEvent(name=title, label=label, change=perf.LabelChange.WRITE, process=process))
+        element = self.elements.get(writer)
+        process = element.process if element is not None else None
+        # Other callbacks of an executor that loops can write it, too, and run at other times.
+        runnable = element.runnable if element is not None and process in self.dataflow.system.executor_of_task else None
+        event = perf.LabelEvent(name=title, label=label, change=perf.LabelChange.WRITE, process=process, runnable=runnable)
+        self.events.setdefault(title, event)
         return title
 
     # Chains of chains

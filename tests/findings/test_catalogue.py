@@ -7,7 +7,8 @@ from collections import defaultdict
 import pytest
 from support import MODEL, ROOT
 
-from amalthea_uros import build, load, measure
+from amalthea_uros import build, describe, load, measure
+from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.bridge.extract import extract
 from amalthea_uros.errors import ReadError
 from amalthea_uros.findings import catalogue
@@ -92,6 +93,11 @@ def reported(example, family, folder):
             case "GEN":
                 (folder / "colcon.meta").write_text(example)
                 return check_colcon_meta(ROOT / "samples" / "rclc-in-executor.yaml", folder / "colcon.meta").findings
+            case "CHN":
+                path = folder / "app.yaml"
+                path.write_text(example)
+                described = describe(path)
+                return [*described.findings, *analyze_system(described.system).findings]
             case "CAN" | "MEA" | "TRC":
                 return found_in_trace(example, folder)
             case "IMP" if not example.startswith("\namuros:"):

@@ -22,6 +22,7 @@ from amalthea_uros.analyze.chains.stage_timing import StageTiming, UnboundedStag
 from amalthea_uros.analyze.chains.timed_stage import TimedStage
 from amalthea_uros.analyze.phases import Phases
 from amalthea_uros.analyze.results import Analysis, ChainResult, Quantity, RequirementResult, Value
+from amalthea_uros.analyze.ways.results import Way
 from amalthea_uros.perf.constraints import LatencyConstraint
 from amalthea_uros.perf.events import EventChain
 from amalthea_uros.timing.counters import ALWAYS
@@ -80,6 +81,7 @@ class ChainExplanation:
     hops : their waits and runs, with `overwritten`, add up to the value; empty for the `reason`
     overwritten : for data age, the time from the last output until the next one
     requirements : the verdicts on limits of the chain
+    way : its hops, if it crosses wires, the agent or executors that loop; None for other chains
     """
 
     chain: ChainResult
@@ -90,6 +92,7 @@ class ChainExplanation:
     overwritten: Time = 0
     reason: str = ""
     requirements: tuple[RequirementResult, ...] = ()
+    way: Way | None = None
 
     def share(self, time: Time) -> Fraction:
         """The part of the value that a time is."""
@@ -131,6 +134,10 @@ def explain_chain(analysis: Analysis, name: str, quantity: Quantity = Quantity.M
 def _explained(analysis: Analysis, name: str, quantity: Quantity) -> ChainExplanation:
     result = analysis.chains[name]
     value = result.value(quantity)
+    way = next((way for way in analysis.ways if way.name == name), None)
+    if way is not None:
+        reason = "" if value is not None else result.reason or f"the {quantity.replace('_', ' ')} of ways is not bounded"
+        return ChainExplanation(chain=result, quantity=quantity, value=value, route=result.routes[0], way=way, reason=reason)
     if value is None or value.value is None:
         reason = result.reason or "no method gives this value"
         return ChainExplanation(chain=result, quantity=quantity, reason=reason)

@@ -5,6 +5,21 @@ from __future__ import annotations
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.findings.kind import FindingKind
 
+_APPLICATION = """
+amuros: 1
+name: app
+hardware: {{platform: single-core, frequency: 100 MHz}}
+middleware:
+  executor: {{name: Executor, loop: {{spin_some: 100 ms, sleep: 10 ms}}, execution_time: 10 us}}
+{transport}
+application:
+  nodes:
+    - name: node
+      subscriptions: [{{name: drive, topic: cmd_vel, rate: 4 Hz, message_size: 48 B, execution_time: 100 us}}]
+chains: [{{name: way, path: {path}}}]
+"""
+_SERIAL = "  transport: {serial: {baud_rate: 115200}}"
+
 KINDS = (
     FindingKind(
         id="CHN001",
@@ -62,5 +77,32 @@ KINDS = (
         severity=Severity.WARNING,
         rationale="The chain is evaluated without this set, so it can start or end elsewhere.",
         remedy="Add events to the set, or use an event instead.",
+    ),
+    FindingKind(
+        id="CHN009",
+        title="latency of messages without an upper bound",
+        severity=Severity.WARNING,
+        rationale="The latency is the sum of the bounds of its hops: the agent, wires, executors, tasks. The message names the hop "
+        "that has none, or how messages can be lost.",
+        remedy="State or change what the message names. `amuros analyze --explain` with the name of the chain shows all hops.",
+        fails=_APPLICATION.format(transport=_SERIAL, path="[/cmd_vel, drive]"),
+    ),
+    FindingKind(
+        id="CHN010",
+        title="topic in a chain without a transport",
+        severity=Severity.WARNING,
+        rationale="A chain that begins or ends with a topic passes the wire and the agent. Unless they are described, "
+        "it has no latency.",
+        remedy="Describe the transport and the agent of the middleware.",
+        fails=_APPLICATION.format(transport="", path="[/cmd_vel, drive]"),
+    ),
+    FindingKind(
+        id="CHN011",
+        title="topic in a chain that is not the one of its neighbours",
+        severity=Severity.ERROR,
+        rationale="A topic in a path stands for a message: the one that the callback before it publishes, and that the callback "
+        "after it receives. There is none, or more than one.",
+        remedy="Put the topic next to the callback that publishes or receives it.",
+        fails=_APPLICATION.format(transport=_SERIAL, path="[drive, /cmd_vel]"),
     ),
 )

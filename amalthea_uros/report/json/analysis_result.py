@@ -21,6 +21,7 @@ from amalthea_uros.report.closing_line import closing_line
 from amalthea_uros.report.findings import finding_json, joined
 from amalthea_uros.report.json import changes, explanation, impact
 from amalthea_uros.report.json.executors import executor_json
+from amalthea_uros.report.json.ways import way_json
 from amalthea_uros.services.analyze import AnalysisResult
 
 
@@ -35,6 +36,7 @@ def content(result: AnalysisResult) -> dict[str, Any]:
         "processes": [process_json(process) for process in analysis.processes],
         "callbacks": [callback_json(callback) for callback in analysis.callbacks],
         "executors": [executor_json(executor) for executor in analysis.executors],
+        "ways": [way_json(way) for way in analysis.ways],
         "chains": [_chain_json(chain, result.all_methods) for chain in analysis.chains],
         "requirements": [requirement_json(requirement) for requirement in analysis.requirements],
         "summary": summary_json(analysis),

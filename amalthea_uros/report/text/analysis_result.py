@@ -15,6 +15,7 @@ from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.report.text import impact
 from amalthea_uros.report.text.executors import write_executors
 from amalthea_uros.report.text.metrics import write_callbacks, write_metrics
+from amalthea_uros.report.ways import write_ways
 from amalthea_uros.services.analyze import AnalysisResult
 from amalthea_uros.units import Rounding, Time, frequency_text, rounded_time_text, time_text
 
@@ -25,6 +26,7 @@ _BADNESS = (Verdict.UNBOUNDED, Verdict.MISSED, Verdict.UNKNOWN, Verdict.MET, Non
 def write(result: AnalysisResult, terminal: Terminal) -> None:
     """Write tables of loads, response times, chains and requirements, with methods, assumptions and the verdict."""
     analysis = result.analysis
+    write_ways(analysis.ways, terminal)
     _processors(terminal, analysis)
     _processes(terminal, analysis)
     write_callbacks(terminal, analysis.of_periodic_executors)

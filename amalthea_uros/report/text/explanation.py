@@ -22,6 +22,7 @@ from amalthea_uros.report.hops import write_hops
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.report.text import improvements
 from amalthea_uros.report.text.executors import write_terms
+from amalthea_uros.report.ways import write_hops_of_way
 from amalthea_uros.services.analyze import Explanation
 from amalthea_uros.services.improvements import Improvements
 from amalthea_uros.units import Time, time_text
@@ -247,7 +248,9 @@ def _chain(explanation: ChainExplanation, found: Improvements | None, terminal: 
         _largest_cause(explanation, terminal)
     if found is not None:
         improvements.write_best(found, terminal)
-    if value is not None and value.value is not None:
+    if explanation.way is not None:
+        write_hops_of_way(explanation.way, terminal)
+    elif value is not None and value.value is not None:
         _worst_case(explanation, value, value.value, terminal)
     if found is not None:
         improvements.write(found, terminal)

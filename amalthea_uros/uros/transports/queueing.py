@@ -227,6 +227,7 @@ class Queueing:
         message: WireMessage | None = None,
     ) -> Transmission:
         is_received = direction is Direction.TO_CONTROLLER
+        is_answered = message is not None and purpose is Purpose.DATA and _is_acknowledged(message)
         return Transmission(
             name=name,
             wire=self.line.name,
@@ -239,6 +240,7 @@ class Queueing:
             driver=_sum(self.line.reading(part) for part in parts) if is_received else _AT_ONCE,
             processes=self.receivers if is_received else (),
             agent=agent,
+            waits=is_answered and not is_received and self.middleware.reliable.waits,
         )
 
     @cached_property

@@ -1,0 +1,39 @@
+"""The ways of messages for programs."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from amalthea_uros.analyze.ways.results import Hop, Way
+
+
+def way_json(way: Way) -> dict[str, Any]:
+    """A way with its hops; times in picoseconds."""
+    return {
+        "name": way.name,
+        "start": way.start,
+        "end": way.end,
+        "best_ps": way.best,
+        "worst_ps": way.worst,
+        "worst_if_not_lost_ps": way.delivered,
+        "reason": way.reason,
+        "remedy": way.remedy,
+        "loss": way.loss,
+        "assumptions": list(way.assumptions),
+        "hops": [_hop_json(hop, way) for hop in way.hops],
+    }
+
+
+def _hop_json(hop: Hop, way: Way) -> dict[str, Any]:
+    share = way.share(hop)
+    return {
+        "kind": hop.kind,
+        "name": hop.name,
+        "best_ps": hop.best,
+        "worst_ps": hop.worst,
+        "share": None if share is None else float(share),
+        "source": hop.source,
+        "reason": hop.reason,
+        "remedy": hop.remedy,
+        "parts": [{"name": part.name, "least_ps": part.least, "most_ps": part.most, "reason": part.why} for part in hop.parts],
+    }

@@ -1,0 +1,130 @@
+"""Topics in the paths of chains: the messages that they mean, and the events on the wire that stand for them.
+
+A chain that begins with a topic begins when the message is queued for the wire, as its transmission is activated; one that ends with a
+topic ends when its transmission has ended. What the agent adds at both ends is no event of the model: the analysis adds it. A topic in
+the middle is sent by a callback before it, and received by one after it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from amalthea_uros.perf.events import CustomEvent, Event, ProcessChange, ProcessEvent
+from amalthea_uros.perf.network import Direction, Network, Purpose
+from amalthea_uros.uros.callbacks import Callback
+
+
+class TopicError(Exception):
+    """It is not clear which message of a topic is meant.
+
+    Attributes
+    ----------
+    advice : what to do
+    """
+
+    def __init__(self, message: str, advice: str) -> None:
+        super().__init__(message)
+        self.advice = advice
+
+
+class MessageOfTopic(NamedTuple):
+    """A message on the wire.
+
+    Attributes
+    ----------
+    event : nothing of the model raises it if no wire is described
+    callback : that receives or sends it
+    processes : that it passes before the executor sees it
+    """
+
+    event: Event
+    callback: str
+    processes: tuple[str, ...] = ()
+
+    @property
+    def is_on_wire(self) -> bool:
+        """Whether a wire is described."""
+        return isinstance(self.event, ProcessEvent)
+
+
+@dataclass(frozen=True, slots=True)
+class Topics:
+    """The topics and services of an application.
+
+    Attributes
+    ----------
+    receivers, senders : the callbacks by topic, without a slash before it
+    network : with the transmissions of their messages
+    """
+
+    receivers: Mapping[str, Sequence[str]]
+    senders: Mapping[str, Sequence[str]]
+    network: Network
+
+    @classmethod
+    def of(cls, callbacks: Iterable[Callback], network: Network) -> Topics:
+        """The topics that callbacks receive and send."""
+        receivers: dict[str, list[str]] = {}
+        senders: dict[str, list[str]] = {}
+        for callback in callbacks:
+            if callback.incoming is not None:
+                receivers.setdefault(_plain(callback.incoming.topic), []).append(callback.name)
+            for message in callback.outgoing:
+                senders.setdefault(_plain(message.topic), []).append(callback.name)
+        return cls(receivers, senders, network)
+
+    @property
+    def names(self) -> set[str]:
+        """All topics."""
+        return {*self.receivers, *self.senders}
+
+    def __contains__(self, name: object) -> bool:
+        return isinstance(name, str) and _plain(name) in self.names
+
+    def sent(self, topic: str, before: str) -> MessageOfTopic:
+        """The message of a topic that a path goes along after a member.
+
+        Raises
+        ------
+        TopicError : no callback sends it, or several, and the member is none of them.
+        """
+        return self._message(topic, self._one(topic, self.senders, before), Direction.TO_AGENT)
+
+    def received(self, topic: str, after: Sequence[str]) -> MessageOfTopic:
+        """The message of a topic that a path goes along before the rest of its members.
+
+        Raises
+        ------
+        TopicError : no callback receives it, or several, and the path does not go on with one of them.
+        """
+        named = next((name for name in after if name in self.receivers.get(_plain(topic), ())), "")
+        return self._message(topic, self._one(topic, self.receivers, named), Direction.TO_CONTROLLER)
+
+    def _one(self, topic: str, callbacks: Mapping[str, Sequence[str]], named: str) -> str:
+        """The callback that is meant: the one of a name, or the only one."""
+        candidates = callbacks.get(_plain(topic), ())
+        verb, end = ("publishes", "begin") if callbacks is self.senders else ("receives", "end")
+        if not candidates:
+            raise TopicError(f"no callback {verb} {topic!r}", f"Let the path {end} with {topic!r}, or remove it.")
+        if named not in candidates and len(candidates) > 1:
+            names = ", ".join(map(repr, candidates))
+            raise TopicError(
+                f"more than one callback {verb} {topic!r}: {names}", "Add the one that is meant next to the topic."
+            )
+        return named if named in candidates else candidates[0]
+
+    def _message(self, topic: str, callback: str, direction: Direction) -> MessageOfTopic:
+        is_received = direction is Direction.TO_CONTROLLER
+        name = f"{_plain(topic)}_{'received' if is_received else 'sent'}_by_{callback}"
+        for each in self.network.transmissions:
+            is_same = (each.direction, each.callback, _plain(each.topic or "")) == (direction, callback, _plain(topic))
+            if is_same and each.purpose is Purpose.DATA:
+                change = ProcessChange.ACTIVATE if is_received else ProcessChange.TERMINATE
+                return MessageOfTopic(ProcessEvent(name=name, process=each.name, change=change), callback, each.processes)
+        return MessageOfTopic(CustomEvent(name=name), callback)
+
+
+def _plain(topic: str) -> str:
+    return topic.removeprefix("/")

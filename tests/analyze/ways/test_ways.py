@@ -1,0 +1,209 @@
+"""Ways over wires and executors, hop by hop, on a board that is described in `ways_by_hand`.
+
+On the wire to the board, /cmd can be blocked by one acknowledgement that is being sent (non-preemptive, Davis and others 2007), and
+the other way round: CMD + ACK. On the other wire /odom is alone: ODOM.
+"""
+
+from dataclasses import replace
+
+import pytest
+from ways_by_hand import ACK, CMD, MS, ODOM, US, Publication, Span, Wire, WireKind, board, tick, ways_of
+
+from amalthea_uros.analyze.propagation import solve
+from amalthea_uros.analyze.results import Quantity
+from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.analyze.verdicts import Verdict
+from amalthea_uros.analyze.ways.arrivals import arrival_jitter
+from amalthea_uros.analyze.ways.publications import sending_times
+from amalthea_uros.analyze.ways.results import HopKind
+from amalthea_uros.perf.activities import Trigger
+from amalthea_uros.perf.constraints import Constraints, LatencyConstraint, LatencyKind
+from amalthea_uros.perf.executors import HandleKind
+from amalthea_uros.perf.stimuli import InterProcess
+from amalthea_uros.timing.context import TimingContext
+
+TO_PWM = ("to pwm", "cmd_published", "on_cmd_end", "speed_written", "pwm_end")
+TO_HOST = ("to host", "cmd_published", "on_cmd_end", "odom_at_host")
+BY_TIMER = ("by timer", "sensor_start", "on_tick_end", "pwm_end")
+#: Reliable: the callback waits for the acknowledgement.
+RELIABLE = Publication(
+    topic="odom", transmission="odom_out", acknowledgement="odom_ack", reliable=True, waits=True, timeout=1000 * MS
+)
+
+
+def solution(found):
+    return solve(TimingContext.of(found))
+
+
+def with_sender(found, task, transmission):
+    """The system, in which a task queues a transmission."""
+    fired = (*found.processes[task].activities, Trigger(stimulus="sent"))
+    changes = {task: {"activities": fired}, transmission: {"stimuli": ("sent",)}}
+    tasks = tuple(replace(each, **changes.get(each.name, {})) for each in found.software.tasks)
+    stimuli = (*found.stimuli.stimuli, InterProcess(name="sent"))
+    return replace(found, software=replace(found.software, tasks=tasks), stimuli=replace(found.stimuli, stimuli=stimuli))
+
+
+def response_of(found, name):
+    """The worst response time of a handle."""
+    return analyze_system(found).executors["Executor"].handles[name].response.worst
+
+
+def test_the_hops_of_a_message_to_an_output_add_up():
+    found = board(TO_PWM)
+    way = ways_of(found)["to pwm"]
+    assert (way.start, way.end, way.reason, way.loss) == ("/cmd", "pwm", "", "")
+    assert [hop.kind for hop in way.hops] == [HopKind.AGENT, HopKind.WIRE, HopKind.EXECUTOR, HopKind.SAMPLING]
+    agent, wire, executor, pwm = way.hops
+    assert (agent.best, agent.worst) == (MS, 2 * MS)
+    assert (wire.best, wire.worst) == (CMD * US, (CMD + ACK) * US)
+    assert executor.worst == response_of(found, "cmd")
+    # Written just after pwm has read: a period, and its response time; nothing is above it.
+    assert pwm.worst == 5 * MS + 50 * US
+    assert way.worst == sum(hop.worst for hop in way.hops)
+    assert way.best == sum(hop.best for hop in way.hops)
+    assert sum(way.share(hop) for hop in way.hops) == 1
+
+
+def test_the_parts_of_each_hop_add_up_to_it():
+    for publication in (None, RELIABLE):
+        for way in ways_of(board(TO_PWM, TO_HOST, BY_TIMER, handles=[tick()], publication=publication)).values():
+            for hop in filter(lambda hop: hop.parts, way.hops):
+                assert sum(part.most for part in hop.parts) == hop.worst
+
+
+def test_a_message_to_the_host_does_not_wait_for_its_own_acknowledgement():
+    found = board(TO_HOST, publication=RELIABLE)
+    *_, executor, wire, agent = ways_of(found)["to host"].hops
+    # To the agent, there, and back, where one /cmd can be on the wire.
+    wait = sending_times(solution(found))["odom_out"]
+    assert wait == Span(least=ODOM * US + MS + ACK * US, most=ODOM * US + 2 * MS + (ACK + CMD) * US)
+    assert executor.worst == response_of(found, "cmd") - wait.most
+    assert (wire.worst, agent.worst) == (ODOM * US, 2 * MS)
+
+
+def test_a_write_that_can_block_holds_up_its_callback_until_the_message_is_on_the_wire():
+    assert sending_times(solution(board()))["odom_out"] == Span(most=ODOM * US)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"agent": Span(least=MS)},
+        {"wire": Wire(name="UART", kind=WireKind.SERIAL, cores=("c1", "c2"), loses_messages=True)},
+    ],
+    ids=["unknown agent", "lost frames"],
+)
+def test_a_callback_waits_up_to_the_timeout_if_its_round_trip_has_no_bound(changes):
+    assert sending_times(solution(board(publication=RELIABLE, **changes)))["odom_out"].most == RELIABLE.timeout
+
+
+def test_an_unknown_latency_of_the_agent_leaves_the_way_unknown_and_names_the_key():
+    way = ways_of(board(TO_PWM, agent=Span(least=MS)))["to pwm"]
+    assert (way.worst, way.delivered) == (None, None)
+    assert "to_controller" in way.reason
+    assert "middleware.agent.to_controller" in way.remedy
+    assert way.best == sum(hop.best for hop in way.hops) > CMD * US
+
+
+def test_messages_that_a_wire_can_lose_have_no_bound_but_one_for_those_that_arrive():
+    lossy = Wire(name="UART", kind=WireKind.SERIAL, cores=("c1", "c2"), loses_messages=True)
+    safe, way = (ways_of(board(TO_PWM, **changes))["to pwm"] for changes in ({}, {"wire": lossy}))
+    assert way.worst is None
+    assert way.delivered == safe.worst
+    assert "UART" in way.loss
+
+
+def test_data_that_a_timer_reads_wait_for_its_period_and_its_response_time():
+    found = board(BY_TIMER, handles=[tick(interval=50_000)])
+    sensor, timer, pwm = ways_of(found)["by timer"].hops
+    # The sensor executes for 20 us, and pwm preempts it once.
+    assert sensor.worst == 70 * US
+    assert timer.worst == 50 * MS + response_of(found, "tick")
+    assert pwm.worst == 5 * MS + 50 * US
+
+
+def test_data_that_a_callback_for_messages_reads_have_no_bound_if_these_are_irregular():
+    handle, cost = tick()
+    handle = replace(handle, kind=HandleKind.SUBSCRIPTION, is_periodic=False, depth=10)
+    way = ways_of(board(BY_TIMER, handles=[(handle, cost)]))["by timer"]
+    assert way.worst is None
+    assert "tick" in way.reason
+
+
+def test_arrivals_vary_by_what_varies_before_them():
+    # The agent by 1 ms, the wire by one acknowledgement.
+    found = board()
+    assert arrival_jitter(solution(found)) == {"cmd": MS + ACK * US}
+    unknown, *others = found.network.transmissions
+    network = replace(found.network, transmissions=(replace(unknown, agent=Span(least=MS)), *others))
+    assert arrival_jitter(solution(replace(found, network=network))) == {"cmd": ACK * US}
+
+
+def test_arrivals_are_unknown_if_the_wire_is():
+    # Nobody knows when acknowledgements come, which /cmd waits for on the wire.
+    assert arrival_jitter(solution(board(agent=Span(least=MS)))) == {"cmd": None}
+
+
+def test_a_callback_that_does_not_publish_the_topic_is_not_on_the_way():
+    other = Publication(topic="other", transmission="odom_ack")
+    way = ways_of(board(TO_HOST, publication=other))["to host"]
+    assert way.worst is None
+    assert way.reason == "'cmd' does not publish '/odom'"
+
+
+def test_what_nothing_connects_is_no_way():
+    way = ways_of(board(("unconnected", "on_cmd_end", "on_tick_end"), handles=[tick()]))["unconnected"]
+    assert way.worst is None
+    assert way.reason == "no data flow or trigger connects 'cmd' to 'tick'"
+
+
+def test_a_round_as_a_whole_is_no_member_of_a_way():
+    found = board()
+    events = found.events.events
+    whole = replace(events[0], name="round_start", process="Executor")
+    chain = board(("round", "round_start", "on_cmd_end")).events.chains
+    found = replace(found, events=replace(found.events, events=(*events, whole), chains=chain))
+    assert "whole round" in ways_of(found)["round"].reason
+
+
+@pytest.mark.parametrize("waits", [False, True])
+def test_a_task_that_publishes_is_bounded_if_it_does_not_wait_for_the_acknowledgement(waits):
+    found = board(("by task", "sensor_start", "odom_at_host"))
+    waiting = [replace(each, waits=waits and each.name == "odom_out") for each in found.network.transmissions]
+    found = replace(found, network=replace(found.network, transmissions=tuple(waiting)))
+    assert "does not publish" in ways_of(found)["by task"].reason
+    way = ways_of(with_sender(found, "sensor", "odom_out"))["by task"]
+    # To the end of the job, which pwm preempts once.
+    assert way.worst == (None if waits else (70 + ODOM) * US + 2 * MS)
+    assert ("acknowledgement of '/odom'" in way.reason) is waits
+
+
+def test_limits_are_judged_by_the_ways():
+    limits = [(LatencyKind.REACTION, 200, Verdict.MET), (LatencyKind.REACTION, 3, Verdict.MISSED)]
+    limits += [(LatencyKind.REACTION, 20, Verdict.UNKNOWN), (LatencyKind.AGE, 200, Verdict.UNKNOWN)]
+    found = board(TO_PWM)
+    way = ways_of(found)["to pwm"]
+    assert 3 * MS < way.best < 20 * MS < way.worst < 200 * MS
+    constraints = tuple(
+        LatencyConstraint(name=f"limit {index}", chain="to pwm", kind=kind, maximum=limit * MS)
+        for index, (kind, limit, _) in enumerate(limits)
+    )
+    analysis = analyze_system(replace(found, constraints=Constraints(constraints=constraints)))
+    assert [analysis.requirements[each.name].verdict for each in constraints] == [verdict for *_, verdict in limits]
+    assert analysis.chains["to pwm"].value(Quantity.MAX_REDUCED_REACTION_TIME).value == way.worst
+    assert list(analysis.ways) == [way]
+
+
+def test_an_unknown_way_is_never_met():
+    limit = LatencyConstraint(name="limit", chain="to pwm", kind=LatencyKind.REACTION, maximum=10**15)
+    found = replace(board(TO_PWM, agent=Span(least=MS)), constraints=Constraints(constraints=(limit,)))
+    analysis = analyze_system(found)
+    assert analysis.requirements["limit"].verdict is Verdict.UNKNOWN
+    assert [finding.rule for finding in analysis.findings if finding.rule.startswith("CHN")] == ["CHN009"]
+
+
+def test_ways_with_limits_come_first():
+    limit = LatencyConstraint(name="limit", chain="to pwm", kind=LatencyKind.REACTION, maximum=200 * MS)
+    found = replace(board(TO_HOST, TO_PWM), constraints=Constraints(constraints=(limit,)))
+    assert [way.name for way in analyze_system(found).ways] == ["to pwm", "to host"]
