@@ -138,7 +138,7 @@ def _profile(middleware: Middleware, notes: Notes) -> Profile | None:
 def _assembly(context: AssemblyContext, hardware: Hardware, database: Sequence[ForeignFrame]) -> Assembly:
     application, middleware = context.description.application, context.description.middleware
     callbacks = callbacks_of(application, middleware, context.notes)
-    messages = bus_messages(callbacks, middleware.transport)
+    messages = bus_messages(callbacks, middleware, context.profile)
     check_identifiers(messages, middleware.transport, context.notes)
     options = options_of(application, middleware)
     check_options(options, middleware, context.notes)

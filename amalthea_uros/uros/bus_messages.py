@@ -1,4 +1,4 @@
-"""XRCE-DDS messages between the controller and the agent: their length, and the load that they put on the CAN bus."""
+"""Messages of the middleware between the controller and the agent: their frames, and the load that they put on the CAN bus."""
 
 from __future__ import annotations
 
@@ -6,12 +6,15 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 
+from amalthea_uros.perf.network import Direction
 from amalthea_uros.perf.stimuli import Burst, Periodic, Stimulus
+from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.spec.transports import Can, Transport
-from amalthea_uros.units import SECOND, DataSize, Time
+from amalthea_uros.units import SECOND, Time
 from amalthea_uros.uros.callbacks import Callback, Message
-from amalthea_uros.uros.can import FRAME_BYTES, CanBus, Identifier, frames, max_message_bits, transmission_time
+from amalthea_uros.uros.can import FRAME_BYTES, CanBus, Identifier, frames, max_message_bits
 from amalthea_uros.uros.notes import Notes
+from amalthea_uros.uros.transports.messages import Messaging, WireMessage, wire_messages
 
 #: The greatest identifier of 11 bits.
 _GREATEST_STANDARD = 0x7FF
@@ -23,19 +26,30 @@ class BusMessage:
 
     Attributes
     ----------
-    length : of the XRCE-DDS message in bytes, with headers
+    name : of its task
+    parts : lengths in bytes, with headers, of the messages of the middleware that it is sent in
     identifier : None: it has the common one of the client
     transmission_time : maximum, of all its frames
     bus_load : maximum share of the bus, 1 for all of it
     """
 
+    name: str
     message: Message
     incoming: bool
-    length: int
-    frames: int
+    parts: tuple[int, ...]
     transmission_time: Time
     bus_load: Fraction
     identifier: int | None = None
+
+    @property
+    def length(self) -> int:
+        """In bytes, with headers."""
+        return sum(self.parts)
+
+    @property
+    def frames(self) -> int:
+        """The number of its frames."""
+        return sum(map(frames, self.parts))
 
 
 def bus_of(can: Can) -> CanBus:
@@ -43,34 +57,25 @@ def bus_of(can: Can) -> CanBus:
     return CanBus(bit_rate=can.bitrate, identifier=Identifier[can.identifier.upper()])
 
 
-def message_bytes(size: DataSize, transport: Transport) -> int:
-    """The length in bytes of the XRCE-DDS message with a payload of a size."""
-    return -(-(size + transport.overhead) // 8)
-
-
-def bus_messages(callbacks: Iterable[Callback], transport: Transport) -> tuple[BusMessage, ...]:
+def bus_messages(callbacks: Iterable[Callback], middleware: Middleware, profile: Messaging) -> tuple[BusMessage, ...]:
     """All messages that the callbacks receive and send; none without a CAN bus."""
-    if transport.can is None:
+    can = middleware.transport.can
+    if can is None:
         return ()
-    bus = bus_of(transport.can)
-    found = []
-    for callback in callbacks:
-        if callback.incoming is not None:
-            found.append(_bus_message(callback.incoming, True, bus, transport))
-        found.extend(_bus_message(message, False, bus, transport) for message in callback.outgoing)
-    return tuple(found)
+    return tuple(_bus_message(message, can) for message in wire_messages(callbacks, middleware, profile))
 
 
-def _bus_message(message: Message, incoming: bool, bus: CanBus, transport: Transport) -> BusMessage:
-    length = message_bytes(message.size, transport)
+def _bus_message(sent: WireMessage, can: Can) -> BusMessage:
+    bus, parts = bus_of(can), tuple(part.length for part in sent.parts)
+    bits = sum(max_message_bits(bus, part) for part in parts)
     return BusMessage(
-        message=message,
-        incoming=incoming,
-        length=length,
-        frames=frames(length),
-        transmission_time=transmission_time(bus, length),
-        bus_load=Fraction(max_message_bits(bus, length) * SECOND, bus.bit_rate * message.interval),
-        identifier=transport.can.identifiers.get(message.channel) if transport.can is not None else None,
+        name=sent.name,
+        message=sent.message,
+        incoming=sent.direction is Direction.TO_CONTROLLER,
+        parts=parts,
+        transmission_time=bus.duration(bits),
+        bus_load=Fraction(bits * SECOND, bus.bit_rate * sent.message.interval),
+        identifier=can.identifiers.get(sent.message.channel),
     )
 
 

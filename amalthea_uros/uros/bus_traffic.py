@@ -31,24 +31,19 @@ def with_traffic(system: System, bus: CanBus, messages: Iterable[BusMessage]) ->
     """
     transmissions, events = [], []
     for message in messages:
-        name = transmission_name(message)
+        name = message.name
         if not message.incoming:
             events.append(_end_of_callback(message, name))
         transmissions.append(
             Transmission(
                 name=name,
-                frames=block_bytes(message.length),
+                frames=[frame for part in message.parts for frame in block_bytes(part)],
                 identifier=_OF_CLIENT if message.identifier is None else message.identifier,
                 stimulus=_stimulus(message, name, system),
                 origin=message.message.origin,
             )
         )
     return with_bus(system, bus, transmissions, events)
-
-
-def transmission_name(message: BusMessage) -> str:
-    """The name of the task of a message, such as `factor_topic_to_Message_Factor`."""
-    return f"{message.message.channel}_{'to' if message.incoming else 'from'}_{message.message.callback}"
 
 
 def _end_of_callback(message: BusMessage, name: str) -> RunnableEvent:

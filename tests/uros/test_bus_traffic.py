@@ -191,3 +191,17 @@ def test_identifiers_of_messages_decide_who_is_sent_first(identifiers, order, au
 )
 def test_wrong_identifiers(identifiers, finding, author):
     assert author.findings(BOTH_WAYS.format(identifiers=identifiers)) == [(4, *finding)]
+
+
+def test_services_have_the_identity_of_the_sample_before_their_content():
+    """12 B of headers and 24 B of identity before a request that arrives and before its response (src/c/core/session/write_access.c of
+    eProsima/Micro-XRCE-DDS-Client); the client of another service sends 12 B and receives 16 B."""
+    messages = {message.name: message for message in describe(SAMPLES / "drive-and-lift.yaml").messages}
+    before = {
+        "Move_Lift_request_to_Move_Lift": 36,
+        "Move_Lift_response_from_Move_Lift": 36,
+        "load_request_from_Watch_Load": 12,
+        "load_response_to_Ask_Load": 16,
+    }
+    lengths = {name: messages[name].length - -(-messages[name].message.size // 8) for name in before}
+    assert lengths == before
