@@ -9,7 +9,6 @@ from amalthea_uros.perf.network import Direction
 from amalthea_uros.perf.software import Runnable
 from amalthea_uros.perf.stimuli import InterProcess
 from amalthea_uros.spec.executors import Executor
-from amalthea_uros.spec.transports import Interrupt
 from amalthea_uros.units import Time
 from amalthea_uros.uros.activities import activity_sequence, trigger_name
 from amalthea_uros.uros.bus_messages import BusMessage, bus_of, receive_stimulus
@@ -22,10 +21,10 @@ from amalthea_uros.uros.executor import (
     message_cost,
     own_task_calls,
 )
-from amalthea_uros.uros.executors.activation import is_triggered
 from amalthea_uros.uros.executors.add import add_looping_executor
 from amalthea_uros.uros.executors.checks import check_order, check_threads
 from amalthea_uros.uros.executors.serving import stated_executors
+from amalthea_uros.uros.interrupts import add_isr
 from amalthea_uros.uros.periods import (
     PeriodChoice,
     check_callbacks_in_executor,
@@ -34,7 +33,7 @@ from amalthea_uros.uros.periods import (
     period_candidates,
 )
 from amalthea_uros.uros.phases import ExecutorPhases, own_task_counter
-from amalthea_uros.uros.tasks import PlannedIsr, PlannedTask
+from amalthea_uros.uros.tasks import PlannedTask
 from amalthea_uros.uros.transports.costs import driver_costs
 
 
@@ -131,9 +130,7 @@ def _executor_calls(
     phases: ExecutorPhases,
     core: str,
 ) -> list[PlannedCall]:
-    runnables = ExecutorRunnables(
-        executor=executor, description=context.description, converter=context.converter, core=core, channels=context.channels
-    )
+    runnables = ExecutorRunnables(executor=executor, context=context, core=core)
     return [
         PlannedCall(runnable=runnables.spin((*outside, *inside))),
         *own_task_calls(outside, runnables, phases),
@@ -180,7 +177,7 @@ def _body(context: AssemblyContext, callback: Callback, executor_core: str) -> R
     """The runnable of a callback: it reads, computes and publishes, and writes."""
     section, publish = callback.section, context.description.middleware.publish
     sending = [cost for message in callback.outgoing for cost in message_cost(publish, message.size)]
-    sending += driver_costs(context.description, callback, Direction.TO_AGENT)
+    sending += driver_costs(context.description, callback, Direction.TO_AGENT, context.profile)
     core = _core(context, callback, executor_core)
     activities = activity_sequence(
         context.converter.execute([section.execution_time, *sending], core, section.location("execution_time")),
@@ -247,24 +244,4 @@ def add_interrupt(context: AssemblyContext, messages: Sequence[BusMessage]) -> N
         return
     bus = bus_of(can)
     stimuli = [context.stimuli.add(receive_stimulus(message, bus)) for message in incoming]
-    _add_isr(context, can.interrupt, tuple(stimuli))
-
-
-def _add_isr(context: AssemblyContext, interrupt: Interrupt, stimuli: tuple[str, ...]) -> None:
-    section = interrupt if interrupt.core else stated_executors(context.description.middleware)[0]
-    core = context.core(section.core, section.location("core"))
-    demand = context.converter.execute([interrupt.execution_time], core, interrupt.location())
-    activities = activity_sequence(demand, triggers=[each.task for each in context.executors if is_triggered(each)])
-    handler = Runnable(name=f"{interrupt.name}_Frame", activities=activities, origin=interrupt.location())
-    context.runnables[handler.name] = handler
-    context.isrs.append(
-        PlannedIsr(
-            name=interrupt.name,
-            core=core,
-            stimuli=stimuli,
-            activities=(Call(runnable=handler.name),),
-            priority=interrupt.priority,
-            overhead=interrupt.overhead,
-            origin=interrupt.location(),
-        )
-    )
+    add_isr(context, can.interrupt, can.interrupt.name, stimuli)

@@ -44,7 +44,7 @@ from amalthea_uros.uros.notes import Notes
 from amalthea_uros.uros.os import isr_allocations, os_of, task_allocations
 from amalthea_uros.uros.overheads import add_overheads
 from amalthea_uros.uros.periods import PeriodChoice
-from amalthea_uros.uros.pools import check_options, options_of, pools_of
+from amalthea_uros.uros.pools import check_options, pools_of
 from amalthea_uros.uros.priorities import check_shared_priorities
 from amalthea_uros.uros.requirements import requirements
 from amalthea_uros.uros.rtos import PriorityScale, check_sleeps
@@ -60,6 +60,7 @@ class Assembly(Brief):
     Attributes
     ----------
     description : what was assembled
+    profile : of its middleware
     choices : the periods of executors without a loop and of the callbacks' tasks, with reasons
     placement : where callbacks run that do not say so, and who decided it; "" without callbacks
     bus, messages : the classic CAN bus, None if there is none, and what is sent on it
@@ -71,6 +72,7 @@ class Assembly(Brief):
     """
 
     description: Description
+    profile: Profile
     system: System
     choices: tuple[PeriodChoice, ...]
     placement: str
@@ -140,7 +142,7 @@ def _assembly(context: AssemblyContext, hardware: Hardware, database: Sequence[F
     callbacks = callbacks_of(application, middleware, context.notes)
     messages = bus_messages(callbacks, middleware, context.profile)
     check_identifiers(messages, middleware.transport, context.notes)
-    options = options_of(application, middleware)
+    options = context.profile.options(application, middleware)
     check_options(options, middleware, context.notes)
     check_middleware(callbacks, middleware, context.profile, context.notes)
     context.channels = internal_channels(callbacks)
@@ -170,6 +172,7 @@ def _assembly(context: AssemblyContext, hardware: Hardware, database: Sequence[F
     first = next((choice for choice in choices if choice.task == choice.executor), None)
     return Assembly(
         description=context.description,
+        profile=context.profile,
         system=system,
         choices=choices,
         placement=placement(context.description, context.controller.platform) if callbacks else "",

@@ -18,13 +18,12 @@ from amalthea_uros.perf.activities import AccessKind, Activity, Call, LabelAcces
 from amalthea_uros.perf.network import Direction
 from amalthea_uros.perf.software import Runnable
 from amalthea_uros.perf.stimuli import Counter
-from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.execution_time import ExecutionTime
 from amalthea_uros.spec.executors import Executor, MessageCost
 from amalthea_uros.units import DataSize, Time
 from amalthea_uros.uros.activities import trigger_name
 from amalthea_uros.uros.callbacks import Callback, CallbackKind
-from amalthea_uros.uros.demand import DemandConverter
+from amalthea_uros.uros.context import AssemblyContext
 from amalthea_uros.uros.executors.counts import handle_count
 from amalthea_uros.uros.phases import ExecutorPhases
 from amalthea_uros.uros.transports.costs import driver_costs
@@ -47,25 +46,18 @@ class PlannedCall:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExecutorRunnables:
-    """Creates the runnables of the executor, with their cost on its core.
-
-    Attributes
-    ----------
-    channels : names of the channels of messages that the application sends itself
-    """
+    """Creates the runnables of the executor, with their cost on its core."""
 
     executor: Executor
-    description: Description
-    converter: DemandConverter
+    context: AssemblyContext
     core: str
-    channels: Collection[str]
 
     def spin(self, callbacks: Collection[Callback]) -> Runnable:
         """What every activation does for the callbacks that the executor has handles of."""
         executor, cost = self.executor, self.executor.execution_time
         handles = sum(map(handle_count, callbacks))
         parts = (cost.base, *([cost.per_timer] * timer_count(callbacks)), *([cost.per_handle] * handles))
-        activities = self.converter.execute(parts, self.core, executor.location("execution_time"))
+        activities = self.context.converter.execute(parts, self.core, executor.location("execution_time"))
         return Runnable(name=spin_name(executor.name), activities=activities, origin=executor.location())
 
     def take_or_notify(self, callback: Callback, triggers: Iterable[str] = ()) -> Runnable:
@@ -78,11 +70,11 @@ class ExecutorRunnables:
         cost = self.executor.execution_time
         message = callback.incoming
         parts = [cost.per_ready_callback, *message_cost(cost.per_message, message.size if message else None)]
-        parts += driver_costs(self.description, callback, Direction.TO_CONTROLLER)
+        parts += driver_costs(self.context.description, callback, Direction.TO_CONTROLLER, self.context.profile)
         activities: list[Activity] = []
-        if message is not None and message.channel in self.channels:
+        if message is not None and message.channel in self.context.channels:
             activities.append(Receive(channel=message.channel, operation=ReceiveOperation.FIFO_TAKE))
-        activities += self.converter.execute(parts, self.core, callback.origin)
+        activities += self.context.converter.execute(parts, self.core, callback.origin)
         if callback.buffer is not None:
             activities.append(LabelAccess(label=callback.buffer, kind=AccessKind.WRITE))
         activities += [Trigger(stimulus=trigger_name(task)) for task in triggers]

@@ -13,8 +13,7 @@ from amalthea_uros.spec.application import Application
 from amalthea_uros.spec.middleware import Middleware, PoolSizes
 from amalthea_uros.uros.colcon_meta import ColconMeta, Definition
 from amalthea_uros.uros.middleware.options import OptionRow
-from amalthea_uros.uros.middleware.profile import Option, OptionRole
-from amalthea_uros.uros.pools import option_table, options_of, static_memory_of
+from amalthea_uros.uros.middleware.profile import Option, OptionRole, Profile
 
 #: So many are reported of a file; more of them say nothing new.
 MAX_FINDINGS = 100
@@ -45,9 +44,9 @@ def values_of(options: Sequence[Option]) -> list[tuple[Option, int]]:
     return [(option, value) for option in options if (value := value_of(option)) is not None]
 
 
-def with_generated_options(middleware: Middleware, options: Sequence[Option]) -> Middleware:
+def with_generated_options(middleware: Middleware, options: Sequence[Option], profile: Profile) -> Middleware:
     """The middleware that is built with the options to generate."""
-    table = option_table(middleware)
+    table = profile.option_table()
     values = {option.name: table[option.name].described(value) for option, value in values_of(options)}
     limits = middleware.limits.model_copy(
         update={name: value for name, value in values.items() if name in PoolSizes.model_fields}
@@ -55,9 +54,9 @@ def with_generated_options(middleware: Middleware, options: Sequence[Option]) ->
     return middleware.model_copy(update={"limits": limits})
 
 
-def check_meta(application: Application, middleware: Middleware, meta: ColconMeta) -> tuple[Finding, ...]:
+def check_meta(application: Application, middleware: Middleware, profile: Profile, meta: ColconMeta) -> tuple[Finding, ...]:
     """What is wrong with a file of build options for an application."""
-    comparison = _Comparison(application, middleware, option_table(middleware))
+    comparison = _Comparison(application, middleware, profile, profile.option_table())
     return tuple(islice(comparison.findings_of(meta), MAX_FINDINGS))
 
 
@@ -73,6 +72,7 @@ class _Comparison(Brief):
 
     application: Application
     middleware: Middleware
+    profile: Profile
     table: Mapping[str, OptionRow]
     values: dict[str, int] = field(default_factory=dict)
     places: dict[str, Location] = field(default_factory=dict)
@@ -85,9 +85,9 @@ class _Comparison(Brief):
             yield Finding("GEN007", Severity.WARNING, message, place, "Start comments with '#', or remove them.")
         for definition in meta.definitions:
             yield from self._accept(definition)
-        described = {option.name: option for option in options_of(self.application, self.middleware)}
+        described = {option.name: option for option in self.profile.options(self.application, self.middleware)}
         middleware = self._built()
-        for option in options_of(self.application, middleware):
+        for option in self.profile.options(self.application, middleware):
             yield from self._judge(option, described.get(option.name), middleware, Location(meta.path))
 
     def _accept(self, definition: Definition) -> Iterator[Finding]:
@@ -182,7 +182,7 @@ class _Comparison(Brief):
         return middleware.model_copy(update={"limits": limits})
 
     def _size(self, middleware: Middleware) -> int:
-        return sum(use.size for use in static_memory_of(self.application, middleware))
+        return sum(use.size for use in self.profile.memory(self.application, middleware))
 
 
 def _problem(row: OptionRow, value: int | None, text: str) -> str | None:

@@ -2,33 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable
 
 from amalthea_uros.diagnostics import Location
-from amalthea_uros.spec.application import Application
 from amalthea_uros.spec.middleware import Middleware
-from amalthea_uros.uros.middleware.load import profile_of
-from amalthea_uros.uros.middleware.options import OptionRow
-from amalthea_uros.uros.middleware.profile import MemoryUse, Option, OptionRole
-from amalthea_uros.uros.middleware.xrce_dds import pools as xrce_pools
-from amalthea_uros.uros.middleware.zenoh_pico import pools as zenoh_pools
-from amalthea_uros.uros.middleware.zenoh_pico.profile import ZenohPico
+from amalthea_uros.uros.middleware.profile import Option, OptionRole
 from amalthea_uros.uros.notes import Notes
-
-
-def options_of(application: Application, middleware: Middleware) -> Sequence[Option]:
-    """The build options of the middleware."""
-    return profile_of(middleware).options(application, middleware)
-
-
-def static_memory_of(application: Application, middleware: Middleware) -> Sequence[MemoryUse]:
-    """The static memory of the middleware."""
-    return profile_of(middleware).memory(application, middleware)
-
-
-def option_table(middleware: Middleware) -> Mapping[str, OptionRow]:
-    """What is known of the build options of the middleware, by name."""
-    return zenoh_pools.rows() if isinstance(profile_of(middleware), ZenohPico) else xrce_pools.rows()
 
 
 def pools_of(options: Iterable[Option]) -> tuple[Option, ...]:

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from amalthea_uros.perf.executors import Publication
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.uros.callbacks import Callback, CallbackKind, Message, transmission_name_of
-from amalthea_uros.uros.executors.wires import describes_wire
 from amalthea_uros.uros.middleware.kinds import content_bytes, message_kind
 from amalthea_uros.uros.middleware.profile import MessageKind, Profile
+from amalthea_uros.uros.transports.line import describes_wire
 from amalthea_uros.uros.transports.messages import acknowledgement_name
 
 

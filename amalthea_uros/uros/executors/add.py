@@ -77,9 +77,7 @@ def _executor(
 ) -> Executor:
     assert section.loop is not None
     middleware = context.description.middleware
-    runnables = ExecutorRunnables(
-        executor=section, description=context.description, converter=context.converter, core=core, channels=context.channels
-    )
+    runnables = ExecutorRunnables(executor=section, context=context, core=core)
     spin = runnables.spin(callbacks)
     context.runnables[spin.name] = spin
     handles: list[Handle] = []

@@ -11,10 +11,10 @@ from amalthea_uros.spec.application import MessageCallback, Subscription
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.uros.callbacks import Callback, CallbackKind, transmission_name_of
 from amalthea_uros.uros.executors.counts import handle_count, source_count
-from amalthea_uros.uros.executors.wires import describes_wire
 from amalthea_uros.uros.middleware.histories import depth_of
 from amalthea_uros.uros.middleware.profile import Profile
 from amalthea_uros.uros.publications import publications
+from amalthea_uros.uros.transports.line import describes_wire
 
 _KINDS = {
     CallbackKind.SUBSCRIPTION: HandleKind.SUBSCRIPTION,

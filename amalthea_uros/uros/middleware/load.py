@@ -14,15 +14,12 @@ from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.spec.profiles import ProfileData
 from amalthea_uros.spec.read import read_section
 from amalthea_uros.uros.middleware.profile import Profile
-from amalthea_uros.uros.middleware.xrce_dds.pools import rows as xrce_rows
 from amalthea_uros.uros.middleware.xrce_dds.profile import XrceDds
-from amalthea_uros.uros.middleware.zenoh_pico.pools import rows as zenoh_rows
 from amalthea_uros.uros.middleware.zenoh_pico.profile import ZenohPico
 
 _SUFFIXES = (".yaml", ".yml")
 #: Keys with figures by name, and what these are; a file can change single ones.
 _TABLES = {"sizes": "size", "options": "build option"}
-_OPTIONS = {"xrce-dds": xrce_rows, "zenoh-pico": zenoh_rows}
 #: The middlewares whose rules are known, by the names of their profiles.
 KNOWN: Mapping[str, Callable[[ProfileData], Profile]] = {"xrce-dds": XrceDds, "zenoh-pico": ZenohPico}
 
@@ -46,7 +43,7 @@ def profile_of(middleware: Middleware, folder: Path | None = None) -> Profile:
         message = f"the profile {own.profile!r} does not name the one that it changes"
         raise _mistake("APP003", message, own.location(), f"Set 'base' to one of: {', '.join(KNOWN)}.")
     base = known_data(_known(own.base, own.location("base")))
-    _check_names(own, {"sizes": base.sizes, "options": ["MTU", *_OPTIONS[own.base]()]})
+    _check_names(own, {"sizes": base.sizes, "options": ["MTU", *KNOWN[own.base](base).option_table()]})
     tables = {key: getattr(base, key) | getattr(own, key) for key in _TABLES}
     return KNOWN[own.base](merged(own, base).model_copy(update=tables))
 

@@ -6,16 +6,19 @@ code beside it. A user's profile is a file that names the profile that it change
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from amalthea_uros.perf.executors import Waiting
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.spec.application import Application
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.units import Time
+
+if TYPE_CHECKING:
+    from amalthea_uros.uros.middleware.options import OptionRow
 
 
 class MessageKind(StrEnum):
@@ -213,6 +216,10 @@ class Profile(Protocol):
 
     def buffers(self, middleware: Middleware) -> int | None:
         """The number of buffers in which reliable messages wait for their acknowledgement, a part in each; None for no limit."""
+        ...
+
+    def option_table(self) -> Mapping[str, OptionRow]:
+        """What is known of its build options, by name."""
         ...
 
     def options(self, application: Application, middleware: Middleware) -> Sequence[Option]:

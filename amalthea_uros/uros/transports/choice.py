@@ -12,7 +12,7 @@ from amalthea_uros.units import Time
 from amalthea_uros.uros.transports.can_fd import CanFdLine
 from amalthea_uros.uros.transports.classic_can import CanLine
 from amalthea_uros.uros.transports.custom import CustomLine
-from amalthea_uros.uros.transports.line import Line, wire_sections
+from amalthea_uros.uros.transports.line import Line, describes_wire, wire_sections
 from amalthea_uros.uros.transports.serial import SerialLine
 from amalthea_uros.uros.transports.tcp import TcpLine
 from amalthea_uros.uros.transports.udp import UdpLine
@@ -73,7 +73,7 @@ def is_in_system(description: Description) -> bool:
     middleware = description.middleware
     can = middleware.transport.can
     if can is None:
-        return any(True for _ in wire_sections(middleware.transport))
+        return describes_wire(middleware.transport)
     executors = (middleware.executor, *middleware.executors)
     agent = middleware.agent
     return (

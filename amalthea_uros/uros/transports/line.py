@@ -99,6 +99,11 @@ def wire_sections(transport: Transport) -> Iterator[tuple[str, WireSection]]:
     yield from ((key, section) for key, section in sections.items() if section is not None)
 
 
+def describes_wire(transport: Transport) -> bool:
+    """Whether a description says what the messages are sent on."""
+    return any(True for _ in wire_sections(transport))
+
+
 def receive_interrupt(transport: Transport) -> Interrupt | None:
     """The interrupt that receives messages; None if none is described."""
     return next((section.interrupt for _, section in wire_sections(transport) if section.interrupt is not None), None)

@@ -21,8 +21,9 @@ from amalthea_uros.uros.activities import activity_sequence, trigger_name
 from amalthea_uros.uros.context import AssemblyContext
 from amalthea_uros.uros.executor import message_cost
 from amalthea_uros.uros.executors.serving import stated_executors
+from amalthea_uros.uros.interrupts import add_isr
 from amalthea_uros.uros.middleware.profile import MiddlewareThread
-from amalthea_uros.uros.tasks import PlannedIsr, PlannedTask
+from amalthea_uros.uros.tasks import PlannedTask
 from amalthea_uros.uros.transports.line import receive_interrupt
 from amalthea_uros.uros.transports.messages import WireMessage
 
@@ -82,26 +83,9 @@ def add_receivers(
 
 def _add_isr(context: AssemblyContext, interrupt: Interrupt, name: str, triggers: Sequence[str]) -> str:
     """Add an interrupt service routine, and return its stimulus."""
-    section = interrupt if interrupt.core else stated_executors(context.description.middleware)[0]
-    core = context.core(section.core, section.location("core"))
-    handler = Runnable(
-        name=f"{interrupt.name}_Frame",
-        activities=activity_sequence(context.converter.execute([interrupt.execution_time], core, interrupt.location())),
-        origin=interrupt.location(),
-    )
-    context.runnables[handler.name] = handler
-    context.isrs.append(
-        PlannedIsr(
-            name=name,
-            core=core,
-            stimuli=(context.stimuli.add(InterProcess(name=trigger_name(name), origin=interrupt.location())),),
-            activities=(Call(runnable=handler.name), *_triggers(triggers)),
-            priority=interrupt.priority,
-            overhead=interrupt.overhead,
-            origin=interrupt.location(),
-        )
-    )
-    return trigger_name(name)
+    stimulus = context.stimuli.add(InterProcess(name=trigger_name(name), origin=interrupt.location()))
+    add_isr(context, interrupt, name, [stimulus], triggers)
+    return stimulus
 
 
 def _add_thread(

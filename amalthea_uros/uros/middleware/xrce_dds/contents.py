@@ -2,27 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.spec.application import Application, Node
+from amalthea_uros.spec.middleware import Middleware
+from amalthea_uros.spec.profiles import ProfileData
 from amalthea_uros.units import DataSize
-
-#: Headers of a message and a submessage, without the four bytes that precede the content (eProsima/Micro-XRCE-DDS-Client
-#: src/c/core/session/write_access.c).
-_HEADERS = 8
-#: Of a request that arrives and of the response to it: the identity of the sample; of a response that arrives.
-_SAMPLE_IDENTITY, _REPLY = 24, 4
+from amalthea_uros.uros.middleware.figures import size
+from amalthea_uros.uros.middleware.profile import MessageKind
+from amalthea_uros.uros.middleware.xrce_dds.headers import SENT, capacity, headers, payload, piece
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Content(Brief):
-    """A message, with the bytes of its content and what precedes it in a service."""
+    """A message, with the bytes of its content."""
 
+    kind: MessageKind
     length: int
-    reliable: bool
-    incoming: bool
+    reliable: bool = True
+
+    @property
+    def incoming(self) -> bool:
+        """Whether it arrives."""
+        return self.kind not in SENT
 
 
 def contents_of(application: Application) -> list[Content]:
@@ -32,36 +36,43 @@ def contents_of(application: Application) -> list[Content]:
 
 def _contents(node: Node) -> Iterator[Content]:
     for each in node.subscriptions:
-        yield _content(each.message_size, reliable=each.reliability == "reliable", incoming=True)
+        yield _content(MessageKind.DELIVERY, each.message_size, each.reliability)
     for publisher in node.publishers:
-        yield _content(publisher.message_size, reliable=publisher.reliability == "reliable", incoming=False)
+        yield _content(MessageKind.PUBLICATION, publisher.message_size, publisher.reliability)
     for service in node.services:
-        yield _content(service.request_size, _SAMPLE_IDENTITY, incoming=True)
-        yield _content(service.response_size, _SAMPLE_IDENTITY, incoming=False)
+        yield _content(MessageKind.REQUEST_IN, service.request_size)
+        yield _content(MessageKind.RESPONSE_OUT, service.response_size)
     for client in node.clients:
-        yield _content(client.request_size, incoming=False)
-        yield _content(client.response_size, _REPLY, incoming=True)
+        yield _content(MessageKind.REQUEST_OUT, client.request_size)
+        yield _content(MessageKind.RESPONSE_IN, client.response_size)
     for server in node.action_servers:
-        yield _content(server.goal_size, _SAMPLE_IDENTITY, incoming=True)
-        yield _content(server.result_size, _SAMPLE_IDENTITY, incoming=False)
-        yield _content(server.feedback_size, incoming=False)
+        yield _content(MessageKind.REQUEST_IN, server.goal_size)
+        yield _content(MessageKind.RESPONSE_OUT, server.result_size)
+        yield _content(MessageKind.PUBLICATION, server.feedback_size)
     for action in node.action_clients:
-        yield _content(action.goal_size, incoming=False)
-        yield _content(action.result_size, _REPLY, incoming=True)
-        yield _content(action.feedback_size, incoming=True)
+        yield _content(MessageKind.REQUEST_OUT, action.goal_size)
+        yield _content(MessageKind.RESPONSE_IN, action.result_size)
+        yield _content(MessageKind.DELIVERY, action.feedback_size)
 
 
-def _content(size: DataSize, more: int = 0, *, incoming: bool, reliable: bool = True) -> Content:
-    return Content(length=-(-size // 8) + more, reliable=reliable, incoming=incoming)
+def _content(kind: MessageKind, length: DataSize, reliability: str = "reliable") -> Content:
+    return Content(kind=kind, length=-(-length // 8), reliable=reliability == "reliable")
 
 
-def least_mtu(contents: list[Content]) -> int:
-    """The smallest MTU for all best-effort messages, which are never divided: with headers, padded to four bytes."""
-    return max((_HEADERS + -(-(4 + each.length) // 4) * 4 for each in contents if not each.reliable), default=0)
+def least_mtu(contents: Iterable[Content], middleware: Middleware, data: ProfileData) -> int:
+    """The smallest MTU for all messages: whole ones if they are best effort; a fragment needs room for more than its headers."""
+    smallest = size(data, "buffer_header") + headers(data) + 1
+    return max((smallest if each.reliable else _whole(each, middleware, data) for each in contents), default=0)
 
 
-def fragments(content: Content, mtu: int) -> int | None:
+def fragments(content: Content, mtu: int, middleware: Middleware, data: ProfileData) -> int | None:
     """The buffers that a reliable message needs; None if no number of them is enough."""
-    if content.length <= mtu - 16:
+    whole = _whole(content, middleware, data)
+    if whole <= capacity(True, mtu, data):
         return 1
-    return -(-(content.length + 8) // (mtu - 12)) if mtu > 12 else None
+    most = piece(mtu, data)
+    return -(-(whole - size(data, "message_header")) // most) if most > 0 else None
+
+
+def _whole(content: Content, middleware: Middleware, data: ProfileData) -> int:
+    return headers(data) + payload(content.kind, content.length, middleware, data)

@@ -43,4 +43,4 @@ def heartbeat_interval(middleware: Middleware, data: ProfileData) -> Time:
 
 
 def _option(name: str, middleware: Middleware, data: ProfileData) -> int:
-    return figures.option(options(Application(), middleware, data.options), name)
+    return figures.option(options(Application(), middleware, data), name)

@@ -7,10 +7,9 @@ strings and sequences of messages are allocated by the application.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 from amalthea_uros.spec.application import Application
 from amalthea_uros.spec.middleware import Middleware
+from amalthea_uros.spec.profiles import ProfileData
 from amalthea_uros.uros.middleware.profile import MemoryUse
 from amalthea_uros.uros.middleware.xrce_dds.pools import histories_of, mtu_of, options
 
@@ -29,11 +28,11 @@ _ENTITIES = {
 }
 
 
-def memory(application: Application, middleware: Middleware, defaults: Mapping[str, int]) -> tuple[MemoryUse, ...]:
-    """The static memory with the options of a description; `defaults` as for the options."""
-    values = {option.name: option.available for option in options(application, middleware, defaults)}
+def memory(application: Application, middleware: Middleware, data: ProfileData) -> tuple[MemoryUse, ...]:
+    """The static memory with the options of a description."""
+    values = {option.name: option.available for option in options(application, middleware, data)}
     sessions, slots = values["RMW_UXRCE_MAX_SESSIONS"], values["RMW_UXRCE_MAX_HISTORY"]
-    mtu, (inputs, outputs) = mtu_of(middleware, defaults), histories_of(middleware, defaults)
+    mtu, (inputs, outputs) = mtu_of(middleware, data.options), histories_of(middleware, data.options)
     found = [
         MemoryUse(
             name="streams and receive buffer of the session",

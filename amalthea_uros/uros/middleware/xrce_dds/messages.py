@@ -13,83 +13,37 @@ from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.spec.profiles import ProfileData
 from amalthea_uros.uros.middleware.figures import size
 from amalthea_uros.uros.middleware.profile import MessageKind, Part
+from amalthea_uros.uros.middleware.xrce_dds.headers import SENT, capacity, content_of, headers, payload, piece
 from amalthea_uros.uros.middleware.xrce_dds.limits import input_history, mtu, output_history
-
-#: What some messages have before their content, beside the identifier of the entity.
-_EXTRA = {
-    MessageKind.REQUEST_IN: "sample_identity",
-    MessageKind.RESPONSE_OUT: "sample_identity",
-    MessageKind.RESPONSE_IN: "reply_header",
-}
-_SENT = (MessageKind.PUBLICATION, MessageKind.REQUEST_OUT, MessageKind.RESPONSE_OUT)
 
 
 def parts(kind: MessageKind, content: int, *, reliable: bool, middleware: Middleware, data: ProfileData) -> Sequence[Part]:
     """What is sent for a message; one that cannot be sent is a single part, which is longer than the MTU allows."""
     acknowledgement = size(data, "acknowledgement") if reliable else None
-    headers, body = _headers(data), _body(kind, content, middleware, data)
-    is_whole = headers + body <= _capacity(True, middleware, data)
+    before, body, limit = headers(data), payload(kind, content, middleware, data), mtu(middleware, data)
+    is_whole = before + body <= capacity(True, limit, data)
     if not reliable or is_whole or body > size(data, "longest_payload"):
-        return (Part(length=headers + body, acknowledgement=acknowledgement),)
-    piece = _piece(middleware, data)
-    full, rest = divmod(size(data, "submessage_header") + body, piece)
-    lengths = [*repeat(piece, full), *([rest] if rest else [])]
-    return tuple(Part(length=headers + length, acknowledgement=acknowledgement) for length in lengths)
+        return (Part(length=before + body, acknowledgement=acknowledgement),)
+    most = max(1, piece(limit, data))
+    full, rest = divmod(size(data, "submessage_header") + body, most)
+    lengths = [*repeat(most, full), *([rest] if rest else [])]
+    return tuple(Part(length=before + length, acknowledgement=acknowledgement) for length in lengths)
 
 
 def largest_content(kind: MessageKind, *, reliable: bool, waits: bool, middleware: Middleware, data: ProfileData) -> int:
     """The longest content of a message; 0 if not even an empty one can be sent."""
-    whole = _capacity(reliable, middleware, data) - _headers(data)
+    whole = capacity(reliable, mtu(middleware, data), data) - headers(data)
     if not reliable:
-        return _content(kind, whole, middleware, data)
-    return _content(kind, max(whole, _longest_fragmented(kind, waits, middleware, data)), middleware, data)
+        return content_of(kind, whole, middleware, data)
+    return content_of(kind, max(whole, _longest_fragmented(kind, waits, middleware, data)), middleware, data)
 
 
 def _longest_fragmented(kind: MessageKind, waits: bool, middleware: Middleware, data: ProfileData) -> int:
-    """The longest body in fragments: as many as there are buffers, or any number if full buffers can be emptied in between.
+    """The longest payload in fragments: as many as there are buffers, or any number if full buffers can be emptied in between.
 
     That is not possible in builds for several threads: see `uxr_prepare_output_stream_fragmented`.
     """
-    if kind in _SENT and waits and not middleware.multithread:
+    if kind in SENT and waits and not middleware.multithread:
         return size(data, "longest_payload")
-    history = output_history if kind in _SENT else input_history
-    return _piece(middleware, data) * history(middleware, data) - size(data, "submessage_header")
-
-
-def _headers(data: ProfileData) -> int:
-    return size(data, "message_header") + size(data, "submessage_header")
-
-
-def _capacity(reliable: bool, middleware: Middleware, data: ProfileData) -> int:
-    """The longest message that is not cut into fragments."""
-    return mtu(middleware, data) - (size(data, "buffer_header") if reliable else 0)
-
-
-def _piece(middleware: Middleware, data: ProfileData) -> int:
-    """What a fragment carries, at least one byte."""
-    return max(1, _capacity(True, middleware, data) - _headers(data))
-
-
-def _body(kind: MessageKind, content: int, middleware: Middleware, data: ProfileData) -> int:
-    """The payload of the submessage, aligned."""
-    alignment = _alignment(kind, middleware, data)
-    return -(-(_fixed(kind, middleware, data) + content) // alignment) * alignment
-
-
-def _content(kind: MessageKind, body: int, middleware: Middleware, data: ProfileData) -> int:
-    """The longest content in a payload."""
-    alignment = _alignment(kind, middleware, data)
-    return max(0, body // alignment * alignment - _fixed(kind, middleware, data))
-
-
-def _fixed(kind: MessageKind, middleware: Middleware, data: ProfileData) -> int:
-    """The part of the payload that is not content; all headers together are what the description states as `overhead`."""
-    transport = middleware.transport
-    if transport.states("overhead"):
-        return -(-transport.overhead // 8) - _headers(data)
-    return size(data, "object") + (size(data, _EXTRA[kind]) if kind in _EXTRA else 0)
-
-
-def _alignment(kind: MessageKind, middleware: Middleware, data: ProfileData) -> int:
-    aligned = kind in _SENT and not middleware.transport.states("overhead")
-    return max(1, size(data, "alignment")) if aligned else 1
+    history = output_history if kind in SENT else input_history
+    return max(1, piece(mtu(middleware, data), data)) * history(middleware, data) - size(data, "submessage_header")

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 from amalthea_uros.spec.application import Application, Node
 from amalthea_uros.spec.middleware import Middleware
+from amalthea_uros.spec.profiles import ProfileData
 from amalthea_uros.uros.memory.entities import Entities, entities_of, executors_of
 from amalthea_uros.uros.middleware.options import OptionRow, option_rows
 from amalthea_uros.uros.middleware.profile import Option
@@ -56,14 +57,9 @@ def histories_of(middleware: Middleware, defaults: Mapping[str, int]) -> tuple[i
     return both, both
 
 
-def options(application: Application, middleware: Middleware, defaults: Mapping[str, int]) -> tuple[Option, ...]:
-    """The build options; those that count only where they are given are left out where they are not.
-
-    Parameters
-    ----------
-    defaults : values that a profile states instead of those of the packages; `MTU` for that of the transport
-    """
-    needed = _needs(application, middleware, defaults)
+def options(application: Application, middleware: Middleware, data: ProfileData) -> tuple[Option, ...]:
+    """The build options; those that count only where they are given are left out where they are not."""
+    needed, defaults = _needs(application, middleware, data), data.options
     found = []
     for name, row in rows().items():
         stated = _stated(row, middleware)
@@ -105,7 +101,7 @@ def _value(name: str, middleware: Middleware, defaults: Mapping[str, int]) -> in
     return other if other is not None else row.default or 0
 
 
-def _needs(application: Application, middleware: Middleware, defaults: Mapping[str, int]) -> dict[str, int]:
+def _needs(application: Application, middleware: Middleware, data: ProfileData) -> dict[str, int]:
     """What the application needs of each option that depends on it."""
     entities, contents = entities_of(application, middleware), contents_of(application)
     needed = {
@@ -123,13 +119,13 @@ def _needs(application: Application, middleware: Middleware, defaults: Mapping[s
         "RMW_UXRCE_TOPIC_NAME_MAX_LENGTH": max(map(_name_length, _names(application)), default=0),
     }
     if (option := mtu_option(middleware)) is not None:
-        # A fragment needs room for more than its headers.
-        needed[option] = max(least_mtu(contents), 17 if any(each.reliable for each in contents) else 0)
-    mtu = mtu_of(middleware, defaults)
-    incoming = max((fragments(each, mtu) or 0 for each in contents if each.reliable and each.incoming), default=0)
-    outgoing = max((fragments(each, mtu) or 0 for each in contents if each.reliable and not each.incoming), default=0)
-    if middleware.reliable.waits:
-        # Longer ones are sent buffer by buffer, with a wait after each (eProsima/Micro-XRCE-DDS-Client src/c/core/session/session.c).
+        needed[option] = least_mtu(contents, middleware, data)
+    buffers = [(each, fragments(each, mtu_of(middleware, data.options), middleware, data) or 0) for each in contents]
+    incoming = max((count for each, count in buffers if each.reliable and each.incoming), default=0)
+    outgoing = max((count for each, count in buffers if each.reliable and not each.incoming), default=0)
+    if middleware.reliable.waits and not middleware.multithread:
+        # Longer ones are sent buffer by buffer, with a wait after each (eProsima/Micro-XRCE-DDS-Client src/c/core/session/session.c),
+        # in builds for one thread.
         outgoing = min(outgoing, 1)
     both = middleware.limits.RMW_UXRCE_STREAM_HISTORY_INPUT is not None and _is_given(_OUTPUT, middleware)
     return needed | ({_INPUT: incoming, _OUTPUT: outgoing} if both else {"RMW_UXRCE_STREAM_HISTORY": max(incoming, outgoing)})

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from amalthea_uros.perf.executors import Waiting
@@ -11,6 +11,7 @@ from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.spec.profiles import ProfileData
 from amalthea_uros.units import Time
 from amalthea_uros.uros.middleware import figures
+from amalthea_uros.uros.middleware.options import OptionRow
 from amalthea_uros.uros.middleware.profile import MemoryUse, MessageKind, MiddlewareThread, Option, Part, Sending
 from amalthea_uros.uros.middleware.xrce_dds import limits, memory, messages, pools, sending
 
@@ -76,10 +77,14 @@ class XrceDds:
         """The number of buffers of the reliable stream to the agent."""
         return limits.output_history(middleware, self.data)
 
+    def option_table(self) -> Mapping[str, OptionRow]:
+        """What is known of its build options."""
+        return pools.rows()
+
     def options(self, application: Application, middleware: Middleware) -> Sequence[Option]:
         """Its build options."""
-        return pools.options(application, middleware, self.data.options)
+        return pools.options(application, middleware, self.data)
 
     def memory(self, application: Application, middleware: Middleware) -> Sequence[MemoryUse]:
         """What it occupies."""
-        return memory.memory(application, middleware, self.data.options)
+        return memory.memory(application, middleware, self.data)

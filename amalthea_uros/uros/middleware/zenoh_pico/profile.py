@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from amalthea_uros.perf.executors import Waiting
@@ -11,6 +11,7 @@ from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.spec.profiles import ProfileData
 from amalthea_uros.units import MILLISECOND, Time
 from amalthea_uros.uros.middleware import figures
+from amalthea_uros.uros.middleware.options import OptionRow
 from amalthea_uros.uros.middleware.profile import MemoryUse, MessageKind, MiddlewareThread, Option, Part, Sending
 from amalthea_uros.uros.middleware.zenoh_pico import memory, messages, pools
 
@@ -83,6 +84,10 @@ class ZenohPico:
     def buffers(self, middleware: Middleware) -> int | None:
         """There are none: nobody keeps messages until they are acknowledged."""
         return None
+
+    def option_table(self) -> Mapping[str, OptionRow]:
+        """What is known of its build options."""
+        return pools.rows()
 
     def options(self, application: Application, middleware: Middleware) -> Sequence[Option]:
         """Its build options."""
