@@ -14,6 +14,8 @@ This module is the public interface:
 - synthetic tasks and chains without any file: `taskset`, `task`
 - files: `load`, `save`, `check_files`, `analyze_files`, `simulate_files`, `simulate_campaign`, `build`, `describe`, `diff`, `migrate`,
   with their results
+- the files for the build of the firmware, and a description of code that exists: `generate`, `check_colcon_meta`, `import_code`, with
+  their results
 - from measurements to better designs: `measure`, `compare`, `calibrate`, `optimize`, `sweep`, with their results
 - reports of all of these as one HTML page: `report`
 - events of simulations: `EventTable`; changes of values: `parse_change`, `parse_sweep`
@@ -40,6 +42,9 @@ if TYPE_CHECKING:
     from amalthea_uros import units as units
     from amalthea_uros.analyze.assignment import Proposal as Proposal
     from amalthea_uros.analyze.assignment import propose_priorities as propose_priorities
+    from amalthea_uros.analyze.executors.results import ExecutorResult as ExecutorResult
+    from amalthea_uros.analyze.executors.results import HandleResult as HandleResult
+    from amalthea_uros.analyze.executors.results import Loss as Loss
     from amalthea_uros.analyze.impact import Effect as Effect
     from amalthea_uros.analyze.impact import Impact as Impact
     from amalthea_uros.analyze.impact import ImpactRow as ImpactRow
@@ -61,6 +66,9 @@ if TYPE_CHECKING:
     from amalthea_uros.analyze.summary import Summary as Summary
     from amalthea_uros.analyze.system import analyze_system as analyze_system
     from amalthea_uros.analyze.verdicts import Verdict as Verdict
+    from amalthea_uros.analyze.ways.results import Hop as Hop
+    from amalthea_uros.analyze.ways.results import HopKind as HopKind
+    from amalthea_uros.analyze.ways.results import Way as Way
     from amalthea_uros.bridge.build import build_model as build_model
     from amalthea_uros.bridge.extract import Extraction as Extraction
     from amalthea_uros.bridge.extract import extract as extract
@@ -114,6 +122,12 @@ if TYPE_CHECKING:
     from amalthea_uros.services.diff import DiffResult as DiffResult
     from amalthea_uros.services.diff import diff as diff
     from amalthea_uros.services.explain import explain as explain
+    from amalthea_uros.services.generate import GenerateResult as GenerateResult
+    from amalthea_uros.services.generate import MetaCheck as MetaCheck
+    from amalthea_uros.services.generate import check_colcon_meta as check_colcon_meta
+    from amalthea_uros.services.generate import generate as generate
+    from amalthea_uros.services.import_code import ImportResult as ImportResult
+    from amalthea_uros.services.import_code import import_code as import_code
     from amalthea_uros.services.improvements import Improvement as Improvement
     from amalthea_uros.services.improvements import Improvements as Improvements
     from amalthea_uros.services.improvements import improvements as improvements
@@ -148,11 +162,13 @@ if TYPE_CHECKING:
     from amalthea_uros.trace.table import EventTable as EventTable
     from amalthea_uros.units import parse_time as parse_time
     from amalthea_uros.uros.assemble import Assembly as Assembly
+    from amalthea_uros.uros.middleware.profile import Profile as Profile
     from amalthea_uros.xmi.load import load as load
     from amalthea_uros.xmi.save import save as save
 
 _NAMES = {
     "analyze.assignment": ("Proposal", "propose_priorities"),
+    "analyze.executors.results": ("ExecutorResult", "HandleResult", "Loss"),
     "analyze.impact": ("Effect", "Impact", "ImpactRow"),
     "analyze.results": (
         "Analysis",
@@ -172,6 +188,7 @@ _NAMES = {
     "analyze.summary": ("Schedulable", "Summary"),
     "analyze.system": ("analyze_system",),
     "analyze.verdicts": ("Verdict",),
+    "analyze.ways.results": ("Hop", "HopKind", "Way"),
     "bridge.build": ("build_model",),
     "bridge.extract": ("Extraction", "extract"),
     "diagnostics": ("Finding", "Location", "Severity"),
@@ -198,6 +215,8 @@ _NAMES = {
     "services.comparison.results": ("Comparison", "ComparisonRow", "MeasuredLimit"),
     "services.diff": ("DiffResult", "diff"),
     "services.explain": ("explain",),
+    "services.generate": ("GenerateResult", "MetaCheck", "check_colcon_meta", "generate"),
+    "services.import_code": ("ImportResult", "import_code"),
     "services.improvements": ("Improvement", "Improvements", "improvements"),
     "services.measure": ("measure",),
     "services.migrate": ("MigrationResult", "migrate"),
@@ -215,6 +234,7 @@ _NAMES = {
     "trace.table": ("Entity", "EntityKind", "EventKind", "EventTable"),
     "units": ("parse_time",),
     "uros.assemble": ("Assembly",),
+    "uros.middleware.profile": ("Profile",),
     "xmi.load": ("load",),
     "xmi.save": ("save",),
 }

@@ -1,5 +1,7 @@
 """What users may rely on, checked by mypy alone (see test_typing.py)."""
 
+from collections.abc import Mapping
+
 import amalthea_uros as amuros
 from amalthea_uros.am import Preemption, Runnable, Task, Time
 
@@ -24,6 +26,14 @@ small: list[dict[str, str | int | float | bool | None]] = amuros.explain(system,
 best: amuros.Improvements = amuros.improvements(analysis, "chain")
 listed: amuros.System = amuros.taskset([{"period": 5, "wcet": 1}, (10, 2, 8)], unit="ms")
 new: Task = amuros.Model.new().add_task("T", period="5 ms", wcet="1 ms", priority=1)
+
+way: amuros.Way = analysis.ways["command"]
+hops: tuple[amuros.Hop, ...] = way.hops
+handle: amuros.HandleResult = analysis.executors["Executor"].handles["drive"]
+texts: Mapping[str, str] = amuros.generate("app.yaml").texts
+fine: bool = amuros.check_colcon_meta("app.yaml", "colcon.meta").is_fine
+description: str = amuros.import_code("src/main.c").text
+profile: amuros.Profile = amuros.describe("app.yaml").profile
 
 Task(name=3)  # type: ignore[arg-type]
 Task(nme="t")  # type: ignore[call-arg]

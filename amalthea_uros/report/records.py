@@ -21,6 +21,7 @@ from amalthea_uros.analyze.results import (
     RequirementResult,
 )
 from amalthea_uros.analyze.sensitivity import Sensitivity
+from amalthea_uros.analyze.ways.results import Way
 from amalthea_uros.measure.series import Measurement
 from amalthea_uros.report.json import (
     analysis_result,
@@ -38,6 +39,7 @@ from amalthea_uros.report.json import (
     simulation_result,
 )
 from amalthea_uros.report.json.executors import handle_json
+from amalthea_uros.report.json.ways import hop_json
 from amalthea_uros.services.analyze import AnalysisResult, Explanation
 from amalthea_uros.services.build import BuildResult
 from amalthea_uros.services.calibrate import Calibration
@@ -147,7 +149,16 @@ def _(executor: ExecutorResult) -> list[Record]:
 
 @all_records.register
 def _(handle: HandleResult) -> list[Record]:
-    return [flat(handle_json(handle))]
+    return [flat({name: value for name, value in handle_json(handle).items() if name != "terms"})]
+
+
+@all_records.register
+def _(way: Way) -> list[Record]:
+    """One row for each hop; a way without any has a row with the reason."""
+    own: Record = {"way": way.name, "start": way.start, "end": way.end}
+    rows = [own | flat({name: value for name, value in hop_json(hop, way).items() if name != "parts"}) for hop in way.hops]
+    nothing: Record = dict.fromkeys(("kind", "name", "best_ps", "worst_ps", "share", "source"))
+    return rows or [own | nothing | {"reason": way.reason, "remedy": way.remedy}]
 
 
 @all_records.register

@@ -8,6 +8,9 @@ from amalthea_uros.analyze.ways.results import Hop, Part, Way
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.units import Rounding, Time, rounded_time_text, time_text
 
+#: Of a table with a row for each way; the last column has none.
+HEADINGS = ("chain", "from", "to", "best", "worst")
+RIGHT = (3, 4)
 #: Parts of a latency that its line names.
 _LARGEST = 2
 
@@ -19,12 +22,13 @@ def write_ways(ways: Sequence[Way], terminal: Terminal) -> None:
         terminal.line()
     elif ways:
         terminal.line(terminal.style("Latency of messages, end to end", "1"))
-        rows = [
-            (way.name, way.start, way.end, _time(way.best, Rounding.DOWN), _time(way.worst, Rounding.UP), remark(way))
-            for way in ways
-        ]
-        terminal.table(("chain", "from", "to", "best", "worst", ""), rows, right=(3, 4))
+        terminal.table((*HEADINGS, ""), map(latency_row, ways), right=RIGHT)
         terminal.line()
+
+
+def latency_row(way: Way) -> tuple[str, ...]:
+    """The latency of a way with a remark, in a row of a table."""
+    return (way.name, way.start, way.end, _time(way.best, Rounding.DOWN), _time(way.worst, Rounding.UP), remark(way))
 
 
 def headline(way: Way) -> str:

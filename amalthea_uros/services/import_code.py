@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from os import PathLike
 from pathlib import Path
 
 from amalthea_uros._internal.files import is_stream
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import WriteError
+from amalthea_uros.services.paths import StrPath
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -30,13 +32,13 @@ class ImportResult:
 
 
 def import_code(
-    paths: Iterable[Path], target: Path | None = None, *, board: str | None = None, force: bool = False
+    paths: StrPath | Iterable[StrPath], target: StrPath | None = None, *, board: str | None = None, force: bool = False
 ) -> ImportResult:
     """Read the sources of an application that uses rclc, and describe it.
 
     Parameters
     ----------
-    paths : C and C++ files, or folders with them; files `*.meta` for colcon in folders are read, too
+    paths : C and C++ files, or folders with them, or one of these; files `*.meta` for colcon in folders are read, too
     target : the file to write; None: nothing is written
     board : the name of a platform; None: its clock is a gap
     force : replace a file that exists
@@ -52,14 +54,15 @@ def import_code(
     from amalthea_uros.spec.middleware import PoolSizes
     from amalthea_uros.xmi.files import FileText, write_texts
 
-    given = list(paths)
+    given = [Path(paths)] if isinstance(paths, str | PathLike) else [Path(path) for path in paths]
+    file = None if target is None else Path(target)
     facts = read_facts(read_sources(given))
     name = given[0].resolve().stem if given else "app"
     text = description_text(facts, name.strip() or "app", board, PoolSizes.model_fields)
-    if target is not None:
-        if not force and not is_stream(target) and target.exists():
+    if file is not None:
+        if not force and not is_stream(file) and file.exists():
             advice = "Use --force to replace it, or name another file."
-            raise WriteError([Finding("XMI101", Severity.ERROR, "the file exists already", Location(target), advice)])
-        write_texts({target: FileText(text)})
+            raise WriteError([Finding("XMI101", Severity.ERROR, "the file exists already", Location(file), advice)])
+        write_texts({file: FileText(text)})
     gaps = sum(line.partition(" #")[0].count(f": {GAP}") for line in text.splitlines())
-    return ImportResult(path=target, text=text, gaps=gaps, findings=tuple(dict.fromkeys(facts.findings)))
+    return ImportResult(path=file, text=text, gaps=gaps, findings=tuple(dict.fromkeys(facts.findings)))

@@ -31,6 +31,7 @@ from amalthea_uros.report.html.sections import (
     response_times,
     system,
     tightest,
+    ways,
     worst_window,
 )
 from amalthea_uros.report.judged import judged_rows, why
@@ -41,6 +42,7 @@ from amalthea_uros.services.report import ReportContent
 _SECTIONS: Sequence[Callable[[ReportContent], Section | None]] = (
     changes.section,
     tightest.section,
+    ways.section,
     system.section,
     load.section,
     response_times.section,

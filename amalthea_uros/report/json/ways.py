@@ -20,11 +20,12 @@ def way_json(way: Way) -> dict[str, Any]:
         "remedy": way.remedy,
         "loss": way.loss,
         "assumptions": list(way.assumptions),
-        "hops": [_hop_json(hop, way) for hop in way.hops],
+        "hops": [hop_json(hop, way) for hop in way.hops],
     }
 
 
-def _hop_json(hop: Hop, way: Way) -> dict[str, Any]:
+def hop_json(hop: Hop, way: Way) -> dict[str, Any]:
+    """A hop, with its part of the latency."""
     share = way.share(hop)
     return {
         "kind": hop.kind,
@@ -35,5 +36,5 @@ def _hop_json(hop: Hop, way: Way) -> dict[str, Any]:
         "source": hop.source,
         "reason": hop.reason,
         "remedy": hop.remedy,
-        "parts": [{"name": part.name, "least_ps": part.least, "most_ps": part.most, "reason": part.why} for part in hop.parts],
+        "parts": [{"name": part.name, "min_ps": part.least, "max_ps": part.most, "why": part.why} for part in hop.parts],
     }

@@ -15,6 +15,9 @@ from amalthea_uros.report.latencies import value_text
 from amalthea_uros.report.markdown_text import escaped, table
 from amalthea_uros.report.simulated import REMINDER
 from amalthea_uros.report.simulated import closing_line as observed_line
+from amalthea_uros.report.ways import HEADINGS as HEADINGS_OF_WAYS
+from amalthea_uros.report.ways import RIGHT as RIGHT_OF_WAYS
+from amalthea_uros.report.ways import latency_row
 from amalthea_uros.services.impact_text import HEADINGS, RIGHT, cells, unchanged_text
 from amalthea_uros.services.report import ReportContent
 
@@ -49,6 +52,7 @@ def _all_lines(content: ReportContent) -> Iterator[str]:
     yield from _warnings(content)
     yield from _changes(content)
     yield from _requirements(content)
+    yield from _ways(content)
     yield from _chains(content)
     if content.simulation is not None:
         line = observed_line(content.simulation.simulation).removesuffix(REMINDER).rstrip()
@@ -93,6 +97,16 @@ def _requirements(content: ReportContent) -> Iterator[str]:
     ]
     yield from ("", f"### {counted(len(found), 'requirement')}, what is closest to its limit first", "")
     yield from _table(("requirement", "what", "value", "limit", "margin", "claim", "verdict", "why"), rows, right=(2, 3, 4))
+
+
+def _ways(content: ReportContent) -> Iterator[str]:
+    ways = content.analysis.ways
+    if not ways:
+        return
+    yield from ("", "### Latency of messages, end to end", "")
+    yield from _table((*HEADINGS_OF_WAYS, "why"), list(map(latency_row, ways[:_MOST_ROWS])), right=RIGHT_OF_WAYS)
+    if len(ways) > _MOST_ROWS:
+        yield from ("", f"{counted(len(ways) - _MOST_ROWS, 'more chain')} not shown.")
 
 
 def _chains(content: ReportContent) -> Iterator[str]:
