@@ -5,9 +5,12 @@ from support import ROOT
 
 from amalthea_uros.errors import ReadError
 from amalthea_uros.services.import_code import import_code
+from amalthea_uros.source.flaws import _POOLS
 from amalthea_uros.source.messages import MessageType, length_of
 from amalthea_uros.source.scope import literal
+from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.spec.read import read_description
+from amalthea_uros.uros.middleware.load import profile_of
 
 SAMPLES = ROOT / "samples" / "sources"
 SOURCES = sorted(path for path in SAMPLES.iterdir() if path.suffix != ".yaml")
@@ -200,3 +203,9 @@ def test_what_is_not_source_code_is_refused(content, reason, tmp_path):
     (tmp_path / "main.c").write_bytes(content)
     with pytest.raises(ReadError, match=reason):
         import_code([tmp_path])
+
+
+def test_the_pools_of_the_import_are_those_of_the_middleware():
+    """The room of source code knows no middleware, so it has the defaults once more."""
+    table = profile_of(Middleware()).option_table()
+    assert {name: table[name].default for name in _POOLS} == {name: default for name, (default, _) in _POOLS.items()}

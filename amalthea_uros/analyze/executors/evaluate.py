@@ -32,17 +32,6 @@ def evaluate_executors(
     return tuple(_evaluated(each, solution, sending, extra_jitter) for each in solution.context.system.executors)
 
 
-def cycles_of(solution: Solution, sending: Mapping[str, Span]) -> dict[str, Cycle]:
-    """The rounds of the executors of which they are known."""
-    found = {}
-    for executor in solution.context.system.executors:
-        try:
-            found[executor.name] = Cycle.of(executor, solution, sending)
-        except UnknownCycleError:
-            continue
-    return found
-
-
 def _evaluated(
     executor: Executor, solution: Solution, sending: Mapping[str, Span], extra_jitter: Mapping[str, Time | None]
 ) -> ExecutorResult:

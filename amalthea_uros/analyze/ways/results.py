@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
 from fractions import Fraction
@@ -111,8 +110,3 @@ class Way(Shown):
         """The part of the upper bound that a hop is; None if one of both is unknown."""
         whole = self.delivered
         return Fraction(hop.worst, whole) if whole and hop.worst is not None else None
-
-
-def unknown_hops(hops: Iterable[Hop]) -> list[Hop]:
-    """The hops without an upper bound."""
-    return [hop for hop in hops if hop.worst is None]
