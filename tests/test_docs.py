@@ -1,6 +1,5 @@
 """Every example of the pages is executed, and every output compared; a block with a title is a file of the examples after it."""
 
-import os
 import re
 import shutil
 import subprocess
@@ -8,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from forked_commands import printed
 from support import ROOT
 
 from amalthea_uros._internal.addresses import DOCUMENTATION, REPOSITORY
@@ -25,14 +25,6 @@ def samples(tmp_path, monkeypatch):
             shutil.copy(path, tmp_path)
     monkeypatch.chdir(tmp_path)
     return tmp_path
-
-
-def printed(command: str) -> str:
-    scripts = str(Path(sys.executable).parent)
-    environment = os.environ | {"PATH": f"{scripts}{os.pathsep}{os.environ['PATH']}", "NO_COLOR": "1"}
-    return subprocess.run(
-        command, shell=True, env=environment, text=True, check=False, stdout=subprocess.PIPE, stderr=subprocess.STDOUT
-    ).stdout
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
