@@ -64,10 +64,12 @@ def analyze_system(system: System, settings: Settings | None = None) -> Analysis
     every = _of_all_phases(solution, unknown, executors, ways)
     found = every or _analysis(solution, JobBudget(), executors, ways)
     phases, notes = phase_assumptions(system, are_all_evaluated=every is not None), solution.context.notes
+    # Executors and ways are evaluated once, for all phases; nothing else is based on the solution for all phases if there are cases.
+    is_used = every is None or bool(executors or ways)
     return replace(
         found,
-        assumptions=tuple(dict.fromkeys((*found.assumptions, *notes.assumptions, *phases))),
-        findings=tuple(dict.fromkeys((*found.findings, *notes.found))),
+        assumptions=tuple(dict.fromkeys((*found.assumptions, *(notes.assumptions if is_used else ()), *phases))),
+        findings=tuple(dict.fromkeys((*found.findings, *(notes.found if is_used else ())))),
     )
 
 
