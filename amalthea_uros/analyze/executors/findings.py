@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from fractions import Fraction
 
 from amalthea_uros.analyze.executors.results import ExecutorResult, HandleResult
@@ -27,7 +27,7 @@ def note_executors(results: Iterable[ExecutorResult], solution: Solution) -> Non
     notes, executors = solution.context.notes, solution.context.system.executors
     for executor, result in zip(executors, results, strict=True):
         _assume(executor, executors, notes)
-        _note_loop(executor, result, notes)
+        _note_loop(executor, executors, result, notes)
         _note_waiting(executor, executors, notes)
         for handle in result.handles:
             _note_handle(handle, executor, notes)
@@ -47,13 +47,11 @@ def _assume(executor: Executor, others: Iterable[Executor], notes: Notes) -> Non
         notes.assume(f"executors: {SESSION_ASSUMPTION}")
 
 
-def _note_loop(executor: Executor, result: ExecutorResult, notes: Notes) -> None:
+def _note_loop(executor: Executor, executors: Sequence[Executor], result: ExecutorResult, notes: Notes) -> None:
     growing = next((handle for handle in result.handles if handle.response.is_overload), None)
     if growing is not None:
-        age = _age_after(60 * SECOND, executor, result)
-        message = (
-            f"messages wait longer and longer in {executor.name!r}: {growing.response.reason.removeprefix('overload: ')}{age}"
-        )
+        age = "" if stores(executor, executors) else _age_after(60 * SECOND, executor, result)
+        message = f"{executor.name!r} is overloaded: {growing.response.reason.removeprefix('overload: ')}{age}"
         notes.error("EXE012", message, executor)
     elif executor.waiting.messages_per_wait == 1 and messages(executor) and least_pace(executor):
         most, arriving = Fraction(1, least_pace(executor)), certain_rate(executor)
@@ -103,11 +101,11 @@ def _note_waiting(executor: Executor, others: Iterable[Executor], notes: Notes) 
     if shares_session(executor, others):
         sharing = [each.name for each in others if each.session == executor.session and each.name != executor.name]
         longest = max(greatest_wait(each) for each in others if each.name in sharing)
-        publishers = [handle.runnable for handle in executor.handles if handle.publications]
+        publishers = [handle.name for handle in executor.handles if handle.publications]
         if publishers and longest:
             message = (
-                f"publications of {', '.join(publishers)} in {executor.name!r} wait for the session up to {time_text(longest)}, "
-                f"while {', '.join(sharing)} waits for input"
+                f"publications of {', '.join(map(repr, publishers))} in {executor.name!r} wait for the session "
+                f"up to {time_text(longest)}, while {' or '.join(map(repr, sharing))} waits for input"
             )
             notes.warning("EXE022", message, executor)
 
