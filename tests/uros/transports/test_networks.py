@@ -262,3 +262,34 @@ def test_a_classic_bus_stays_outside_where_nothing_asks_for_it(author):
         whole = author.describe(asked)
         assert [wire.kind for wire in whole.system.network.wires] == [WireKind.CAN]
         assert whole.system_with_bus() == whole.system
+
+
+@pytest.mark.parametrize(
+    ("baud_rate", "sleep", "size", "message"),
+    [
+        # 11520 bytes per second at 115200 baud, less than two messages in 10 ms.
+        (115200, 10, 115, "116"),
+        (115200, 10, 116, None),
+        # Not more than what is sent: 100 ms are 5 periods of 20 ms, and 2 messages more; each is a frame of 1 + 2 * (60 + 6) bytes.
+        (921600, 100, 7 * 133 - 1, "931"),
+        (921600, 100, 7 * 133, None),
+    ],
+)
+def test_bytes_that_arrive_while_the_loop_sleeps(author, baud_rate, sleep, size, message):
+    found = author.describe(f"""
+        amuros: 1
+        name: ring
+        hardware: {{frequency: 100 MHz}}
+        middleware:
+          executor: {{name: Exec, loop: {{spin_some: 100 ms, sleep: {sleep} ms}}}}
+          transport: {{serial: {{baud_rate: {baud_rate}, driver: {{read: dma, tick: 1 ms, buffer: {size} B}}}}}}
+        application:
+          nodes:
+            - name: node
+              subscriptions:
+                - {{name: Drive, topic: cmd, rate: 50 Hz, message_size: 48 B, execution_time: 2 us, reliability: best-effort}}
+        """).findings
+    expected = f"up to {message} bytes can arrive while the loop of 'Exec' sleeps for {sleep} ms and nothing is read, "
+    assert [each.message for each in found if each.rule == "UR139"] == (
+        [f"{expected}more than the receive buffer of {size}"] if message else []
+    )
