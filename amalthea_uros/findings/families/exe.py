@@ -82,7 +82,8 @@ KINDS = (
         severity=Severity.WARNING,
         rationale="Without a subscription, service or client, the wait of rmw_microxrcedds returns at once "
         "(rmw_microxrcedds#297), and the loop uses all the time that other tasks leave it. With the change #305 it "
-        "waits for the whole timeout, also if a guard condition is set.",
+        "waits for the whole timeout, also if a guard condition is set. Nothing reads the transport, except publications that wait "
+        "for their acknowledgement: what the agent sends fills the buffers (micro_ros_arduino#183).",
         remedy="Add a sleep to the loop, or a subscription, and check which version is built.",
         fails=_example("{loop: {spin: 1 s}}", _TIMER),
     ),
