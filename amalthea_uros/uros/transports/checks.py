@@ -14,7 +14,7 @@ from amalthea_uros.units import SECOND, Time, data_size_text, time_text
 from amalthea_uros.uros.notes import Notes
 from amalthea_uros.uros.transports.can_fd import SIZES
 from amalthea_uros.uros.transports.choice import driver_of, is_bus
-from amalthea_uros.uros.transports.driver import WAITING, bytes_between_reads
+from amalthea_uros.uros.transports.driver import WAITING, bytes_between_reads, steady_time
 from amalthea_uros.uros.transports.foreign import ForeignFrame
 from amalthea_uros.uros.transports.framing import CHUNK, longest_frame
 from amalthea_uros.uros.transports.line import Line, WireSection, wire_sections
@@ -146,12 +146,15 @@ def _check_chunks(messages: Iterable[WireMessage], line: Line, notes: Notes) -> 
         return
     tick: Time | None = getattr(line, "tick", None)
     on_line = CHUNK * section.bits_per_byte * SECOND // section.baud_rate
-    sends = any(message.direction is Direction.TO_AGENT for message in messages)
-    if tick is not None and sends and tick > on_line:
-        rate = CHUNK * SECOND // tick
+    sent = [message for message in messages if message.direction is Direction.TO_AGENT]
+    if tick is not None and sent and tick > on_line:
+        longest = max(sent, key=lambda message: message.length)
+        chunks = [frame for part in longest.parts for frame in line.frames(part.length, Direction.TO_AGENT) if frame.least]
+        time = steady_time(chunks, tick, section.baud_rate)
         text = (
             f"each chunk of {CHUNK} bytes takes a tick of {time_text(tick)}, although it is on the line for less: "
-            f"{rate:,} bytes per second at most, whatever the baud rate"
+            f"{CHUNK * SECOND // tick:,} bytes per second at most, whatever the baud rate; a message of {longest.message.topic!r} takes "
+            f"{time_text(time)} or more, so that {float(Fraction(SECOND, time)):.4g} are sent per second at most"
         )
         notes.info("UR135", text, section.driver.location("write"), "Use 'write: blocking', or a shorter tick.")
 

@@ -293,3 +293,23 @@ def test_bytes_that_arrive_while_the_loop_sleeps(author, baud_rate, sleep, size,
     assert [each.message for each in found if each.rule == "UR139"] == (
         [f"{expected}more than the receive buffer of {size}"] if message else []
     )
+
+
+def test_an_imu_through_a_driver_that_waits_in_ticks(author):
+    """8 chunks are 8 ms: the 125 Hz that users measured at 921600 baud (micro-ROS/micro_ros_stm32cubemx_utils#72)."""
+    found = author.describe("""
+        amuros: 1
+        name: stm32
+        hardware: {frequency: 100 MHz}
+        middleware:
+          executor: {loop: {spin_some: 100 ms, sleep: 1 ms}}
+          transport: {serial: {baud_rate: 921600, driver: {write: dma, tick: 1 ms}}}
+        application:
+          nodes:
+            - name: node
+              publishers: [{topic: imu, message_size: 312 B, reliability: best-effort}]
+              timers: [{name: Report, period: 1 s, execution_time: 2 us, publishes: [imu]}]
+        """).findings
+    (message,) = (each.message for each in found if each.rule == "UR135")
+    assert "42,000 bytes per second at most" in message
+    assert "a message of 'imu' takes 8 ms or more, so that 125 are sent per second at most" in message
