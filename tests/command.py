@@ -5,6 +5,7 @@ import runpy
 import subprocess
 import sys
 import traceback
+from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 from tempfile import TemporaryFile
@@ -28,7 +29,7 @@ def amuros(*arguments: object, given: str = "", cwd: Path | None = None) -> subp
         child = os.fork()
         if child == 0:
             os.close(writer)
-            _become(words, cwd, (reader, out.fileno(), err.fileno()))
+            become(words, cwd, (reader, out.fileno(), err.fileno()))
         os.close(reader)
         with suppress(BrokenPipeError), os.fdopen(writer, "wb") as stream:
             stream.write(given.encode())
@@ -36,7 +37,7 @@ def amuros(*arguments: object, given: str = "", cwd: Path | None = None) -> subp
         return subprocess.CompletedProcess(words, os.waitstatus_to_exitcode(status), _text(out), _text(err))
 
 
-def _become(words: list[str], cwd: Path | None, streams: tuple[int, int, int]) -> NoReturn:
+def become(words: list[str], cwd: Path | None, streams: Sequence[int]) -> NoReturn:
     """What `python -m amalthea_uros` does in this process, with these standard streams."""
     try:
         if cwd is not None:
