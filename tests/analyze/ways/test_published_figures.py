@@ -12,7 +12,7 @@ each direction is software. With this pair,
   not computed, as nothing published says which part of the driver or the agent takes it;
 - USB and the TCP module are not: the time that the host polls, and that of the module, are published nowhere.
 
-For every row, no published time is shorter than the computed wire, and the throughput of best-effort messages over UART is that of the
+In these three rows, no published time is shorter than the computed wire, and the throughput of best-effort messages over UART is that of the
 computed frames within 3 % to what can be read off the published plots.
 """
 
