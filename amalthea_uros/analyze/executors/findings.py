@@ -118,9 +118,7 @@ def _note_handle(handle: HandleResult, executor: Executor, notes: Notes) -> None
         if handle.lateness is not None and handle.interval and sleep > handle.interval * LATE:
             most = handle.lateness.most
             late = "an unknown time" if most is None else rounded_time_text(most, Rounding.UP)
-            message = (
-                f"{handle.name!r} can be called {late} after it is due, mainly because the loop sleeps for {time_text(sleep)}"
-            )
+            message = f"{handle.name!r} can be called {late} after it is due, {time_text(sleep)} of which the loop sleeps"
             notes.warning("EXE011", message, model)
         return
     certainly = "loses" if lost.is_certain else "can lose"

@@ -154,7 +154,8 @@ def _check_chunks(messages: Iterable[WireMessage], line: Line, notes: Notes) -> 
         text = (
             f"each chunk of {CHUNK} bytes takes a tick of {time_text(tick)}, although it is on the line for less: "
             f"{CHUNK * SECOND // tick:,} bytes per second at most, whatever the baud rate; "
-            f"a message of {longest.message.topic!r} takes {time_text(time)} or more, so that {float(Fraction(SECOND, time)):.4g} are sent per second at most"
+            f"a message of {longest.message.topic!r} takes {time_text(time)} or more, "
+            f"so that {float(Fraction(SECOND, time)):.4g} are sent per second at most"
         )
         notes.info("UR135", text, section.driver.location("write"), "Use 'write: blocking', or a shorter tick.")
 

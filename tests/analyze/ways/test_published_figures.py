@@ -12,8 +12,8 @@ each direction is software. With this pair,
   not computed, as nothing published says which part of the driver or the agent takes it;
 - USB and the TCP module are not: the time that the host polls, and that of the module, are published nowhere.
 
-In these three rows, no published time is shorter than the computed wire, and the throughput of best-effort messages over UART is that of the
-computed frames within 3 % to what can be read off the published plots.
+In these three rows, no published time is shorter than the computed wire. The throughput of best-effort messages over UART, as it can be
+read off the published plots, is that of the computed frames within 3 %.
 """
 
 from dataclasses import dataclass
