@@ -84,7 +84,7 @@ def _note_waiting(executor: Executor, others: Iterable[Executor], notes: Notes) 
     guards = [handle.name for handle in executor.handles if handle.kind is HandleKind.GUARD_CONDITION]
     if guards and not waiting.guard_conditions_end_wait and greatest_wait(executor):
         names = ", ".join(map(repr, guards))
-        message = f"{names} of {executor.name!r} wakes nobody: it is seen after the wait, which lasts up to {wait}"
+        message = f"{names} does not wake {executor.name!r}: a trigger is seen after the wait, which lasts up to {wait}"
         notes.warning("EXE018", message, executor)
     if stores(executor, others) and messages(executor) and not waiting.stored_data_ends_wait and greatest_wait(executor):
         message = f"a message for {executor.name!r} that is stored already does not end its wait, which lasts up to {wait}"

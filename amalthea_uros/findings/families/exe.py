@@ -223,7 +223,7 @@ application:
     ),
     FindingKind(
         id="EXE018",
-        title="guard condition that wakes nobody",
+        title="guard condition that does not wake the executor",
         severity=Severity.WARNING,
         rationale=(
             "The middleware looks at guard conditions only after the wait, so that a trigger is seen when a message, a "
