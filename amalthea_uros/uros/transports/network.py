@@ -14,7 +14,7 @@ from amalthea_uros.units import Time
 from amalthea_uros.uros.callbacks import Callback
 from amalthea_uros.uros.context import AssemblyContext
 from amalthea_uros.uros.transports.can_fd import CanFdLine
-from amalthea_uros.uros.transports.checks import check_foreign, check_lengths, check_load, check_transport
+from amalthea_uros.uros.transports.checks import check_foreign, check_lengths, check_load, check_reading, check_transport
 from amalthea_uros.uros.transports.choice import is_bus, is_in_system, line_of
 from amalthea_uros.uros.transports.classic_can import CanLine
 from amalthea_uros.uros.transports.foreign import ForeignFrame, arbitration_rank, described_frames, without_own
@@ -112,6 +112,7 @@ def with_network(system: System, planned: PlannedNetwork | None, context: Assemb
         receivers=planned.receivers,
     )
     check_load(plan, middleware.transport, context.notes)
+    check_reading(plan, system.executors, context.notes)
     return with_wire(system, plan, middleware.agent.name, middleware.transport.loses_messages)
 
 

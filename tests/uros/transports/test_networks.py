@@ -262,3 +262,54 @@ def test_a_classic_bus_stays_outside_where_nothing_asks_for_it(author):
         whole = author.describe(asked)
         assert [wire.kind for wire in whole.system.network.wires] == [WireKind.CAN]
         assert whole.system_with_bus() == whole.system
+
+
+@pytest.mark.parametrize(
+    ("baud_rate", "sleep", "size", "message"),
+    [
+        # 11520 bytes per second at 115200 baud, less than two messages in 10 ms.
+        (115200, 10, 115, "116"),
+        (115200, 10, 116, None),
+        # Not more than what is sent: 100 ms are 5 periods of 20 ms, and 2 messages more; each is a frame of 1 + 2 * (60 + 6) bytes.
+        (921600, 100, 7 * 133 - 1, "931"),
+        (921600, 100, 7 * 133, None),
+    ],
+)
+def test_bytes_that_arrive_while_the_loop_sleeps(author, baud_rate, sleep, size, message):
+    found = author.describe(f"""
+        amuros: 1
+        name: ring
+        hardware: {{frequency: 100 MHz}}
+        middleware:
+          executor: {{name: Exec, loop: {{spin_some: 100 ms, sleep: {sleep} ms}}}}
+          transport: {{serial: {{baud_rate: {baud_rate}, driver: {{read: dma, tick: 1 ms, buffer: {size} B}}}}}}
+        application:
+          nodes:
+            - name: node
+              subscriptions:
+                - {{name: Drive, topic: cmd, rate: 50 Hz, message_size: 48 B, execution_time: 2 us, reliability: best-effort}}
+        """).findings
+    expected = f"up to {message} bytes can arrive while the loop of 'Exec' sleeps for {sleep} ms and nothing is read, "
+    assert [each.message for each in found if each.rule == "UR139"] == (
+        [f"{expected}more than the receive buffer of {size}"] if message else []
+    )
+
+
+def test_an_imu_through_a_driver_that_waits_in_ticks(author):
+    """8 chunks are 8 ms: the 125 Hz that users measured at 921600 baud (micro-ROS/micro_ros_stm32cubemx_utils#72)."""
+    found = author.describe("""
+        amuros: 1
+        name: stm32
+        hardware: {frequency: 100 MHz}
+        middleware:
+          executor: {loop: {spin_some: 100 ms, sleep: 1 ms}}
+          transport: {serial: {baud_rate: 921600, driver: {write: dma, tick: 1 ms}}}
+        application:
+          nodes:
+            - name: node
+              publishers: [{topic: imu, message_size: 312 B, reliability: best-effort}]
+              timers: [{name: Report, period: 1 s, execution_time: 2 us, publishes: [imu]}]
+        """).findings
+    (message,) = (each.message for each in found if each.rule == "UR135")
+    assert "42,000 bytes per second at most" in message
+    assert "a message of 'imu' takes 8 ms or more, so that 125 are sent per second at most" in message
