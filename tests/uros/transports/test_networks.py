@@ -1,8 +1,11 @@
 """Wires in systems: what is queued on them, what receives, and that no simulated message takes longer than its bound."""
 
+from textwrap import dedent
+
 import pytest
 from effort import every
 
+from amalthea_uros import check_files
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.network import Direction, Purpose, WireKind
 from amalthea_uros.simulate.options import Mode, Options
@@ -262,3 +265,23 @@ def test_a_classic_bus_stays_outside_where_nothing_asks_for_it(author):
         whole = author.describe(asked)
         assert [wire.kind for wire in whole.system.network.wires] == [WireKind.CAN]
         assert whole.system_with_bus() == whole.system
+
+
+UNACKNOWLEDGED = app(TRANSPORTS[WireKind.UDP]).replace("size: 48 B", "size: 48 B, reliability: best-effort")
+
+
+def test_an_interrupt_for_frames_that_do_not_exist_is_left_out(author):
+    # Datagrams of 60 bytes are one frame each; nothing is acknowledged, so that there are no heartbeats either.
+    system = author.describe(UNACKNOWLEDGED).system
+    assert [isr.name for isr in system.software.isrs] == ["Receive"]
+    bounds = analyze_system(system).processes
+    assert all(bounds[name].response is not None for name in ("Receive", "Drive", "Sample"))
+    # Without messages to the controller there is no interrupt at all.
+    silent = UNACKNOWLEDGED.replace("subscriptions:", "x-subscriptions:")
+    assert not author.describe(silent).system.software.isrs
+
+
+def test_messages_carry_the_effect_of_chains(author):
+    chains = "chains: [{name: there, path: [/cmd_vel, Drive, /odom]}]"
+    author.path.write_text(f"{dedent(app(TRANSPORTS[WireKind.UDP]))}\n{chains}\n")
+    assert [found for found in check_files(author.path).findings if found.rule == "TIM-CHAIN-CARRIED"] == []
