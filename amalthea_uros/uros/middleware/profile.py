@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 from amalthea_uros.perf.executors import Waiting
 from amalthea_uros.perf.named import Brief
@@ -161,6 +161,21 @@ class Sending(Brief):
     is_protected: bool
 
 
+class Heartbeat(NamedTuple):
+    """A message that the middleware sends by itself.
+
+    Attributes
+    ----------
+    length : in bytes, without the framing of the transport
+    interval : the least one
+    is_answered : whether it asks for acknowledgements, while something is not acknowledged; else it keeps the connection alive
+    """
+
+    length: int
+    interval: Time
+    is_answered: bool
+
+
 class Profile(Protocol):
     """A middleware; sizes are in bytes, and `content` is the serialised message without headers."""
 
@@ -195,8 +210,8 @@ class Profile(Protocol):
         """What is sent for a message: one part, or fragments."""
         ...
 
-    def heartbeat(self, middleware: Middleware) -> tuple[int, Time] | None:
-        """Length and least interval of messages that are sent while something is not acknowledged, or to keep alive; None for none."""
+    def heartbeat(self, middleware: Middleware) -> Heartbeat | None:
+        """What it sends by itself, in both directions; None for nothing."""
         ...
 
     def gives_up_after(self, kind: MessageKind, content: int, *, reliable: bool, middleware: Middleware) -> Time | None:

@@ -285,3 +285,29 @@ def test_messages_carry_the_effect_of_chains(author):
     chains = "chains: [{name: there, path: [/cmd_vel, Drive, /odom]}]"
     author.path.write_text(f"{dedent(app(TRANSPORTS[WireKind.UDP]))}\n{chains}\n")
     assert [found for found in check_files(author.path).findings if found.rule == "TIM-CHAIN-CARRIED"] == []
+
+
+QUICK = UNACKNOWLEDGED.replace(
+    "middleware:",
+    "middleware:\n      profile: zenoh-pico\n      tasks: [{name: zenoh_read, priority: 9, execution_time: 30 us}]",
+    1,
+)
+
+
+def test_messages_that_keep_a_connection_alive_are_on_the_wire(author):
+    # A third of the lease of 10 s; they are not answered.
+    system = author.describe(QUICK).system
+    found = {each.name: each.length for each in system.network.transmissions if each.purpose is not Purpose.DATA}
+    assert found == {"heartbeat_of_agent": 1, "heartbeat_of_client": 1}
+    bounds = analyze_system(system).processes
+    # The longest of 84 bytes for less than the least frame, 0.8 us each, can be before a message.
+    (message,) = (bounds[each.name] for each in system.network.transmissions if each.topic == "cmd_vel")
+    assert message.response.worst - message.response.best == 84 * 800_000
+
+
+def test_a_message_that_can_be_dropped_has_no_bound(author):
+    chains = "chains: [{name: there, path: [/cmd_vel, Drive, /odom]}, {name: drive, path: [/cmd_vel, Drive]}]"
+    analysis = analyze_system(author.describe(f"{dedent(QUICK)}\n{chains}\n").system)
+    assert analysis.ways["there"].worst is None
+    assert analysis.ways["there"].loss == "a message of 'odom' is dropped if another thread of the middleware is sending"
+    assert analysis.ways["drive"].worst is not None
