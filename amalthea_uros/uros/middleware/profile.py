@@ -111,12 +111,14 @@ class MemoryUse(Brief):
 
     Attributes
     ----------
-    formula : how it is computed, with the values
+    size : the least, if it is not bounded
+    formula : how it is computed, with the values; why it is not bounded
     """
 
     name: str
     size: int
     formula: str
+    is_bounded: bool = True
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
