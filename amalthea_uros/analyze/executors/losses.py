@@ -86,9 +86,7 @@ def with_lost_messages(
     known = {name: count for name, count in stored.items() if count is not None}
     needed = slots_needed(executor, known) if len(known) == len(stored) else None
     return [
-        replace(result, lost=_lost(handle, result, cycle, stored[handle.name], needed))
-        if handle.name in stored
-        else result
+        replace(result, lost=_lost(handle, result, cycle, stored[handle.name], needed)) if handle.name in stored else result
         for handle, result in zip(executor.handles, results, strict=True)
     ]
 

@@ -16,7 +16,8 @@ def write(result: GenerateResult, terminal: Terminal) -> None:
         for option, value in values_of(result.assembly.options)
     ]
     terminal.heading("Build options" if rows else "Build options: the defaults of the middleware hold")
-    terminal.table(("option", "generated", "", "described", "what it counts"), rows, right=(1, 3))
+    if rows:
+        terminal.table(("option", "generated", "", "described", "what it counts"), rows, right=(1, 3))
     saved = result.assembly.memory.total - result.memory.total
     compared = f" ({saved} B less than described)" if saved > 0 else ""
     terminal.heading(f"Memory with these options{compared}")
