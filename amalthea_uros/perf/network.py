@@ -79,6 +79,7 @@ class Transmission(Named):
     processes : that a message passes before the executor sees it: interrupt service routines, then tasks of the middleware
     agent : time in the agent: from the host to the wire, from the wire to the host, or from a message to its acknowledgement
     waits : whether what sends it waits for its acknowledgement
+    is_dropped_when_busy : whether the middleware drops it, instead of waiting, while another thread is sending
     """
 
     wire: str
@@ -92,6 +93,7 @@ class Transmission(Named):
     processes: tuple[str, ...] = ()
     agent: Span = field(default_factory=Span)
     waits: bool = False
+    is_dropped_when_busy: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -21,7 +21,7 @@ from amalthea_uros.uros.transports.foreign import ForeignFrame, arbitration_rank
 from amalthea_uros.uros.transports.line import Frame, Line
 from amalthea_uros.uros.transports.messages import Messaging, WireMessage, wire_messages
 from amalthea_uros.uros.transports.queueing import Queued, Queueing
-from amalthea_uros.uros.transports.receiving import Receivers, Threading, add_receivers
+from amalthea_uros.uros.transports.receiving import Receivers, Threading, add_receivers, without_idle
 from amalthea_uros.uros.transports.wires import WirePlan, with_wire
 
 #: Loses the arbitration against all identifiers.
@@ -113,7 +113,8 @@ def with_network(system: System, planned: PlannedNetwork | None, context: Assemb
     )
     check_load(plan, middleware.transport, context.notes)
     check_reading(plan, system.executors, context.notes)
-    return with_wire(system, plan, middleware.agent.name, middleware.transport.loses_messages)
+    found = with_wire(system, plan, middleware.agent.name, middleware.transport.loses_messages)
+    return without_idle(found, planned.receivers.other_triggers)
 
 
 def _frames(queued: Queued, line: Line) -> list[Sequence[Frame]]:
