@@ -6,7 +6,9 @@ from collections.abc import Iterator
 from itertools import product
 from typing import NamedTuple
 
+from amalthea_uros.perf.events import Event, LabelEvent, ProcessEvent, RunnableEvent
 from amalthea_uros.perf.named import Located
+from amalthea_uros.perf.system import System
 from amalthea_uros.timing.dataflow.chains import steps
 from amalthea_uros.timing.dataflow.routes import is_linked
 from amalthea_uros.validate.system_context import SystemContext
@@ -34,5 +36,23 @@ def unlinked_steps(context: SystemContext) -> Iterator[UnlinkedStep]:
         for item, starts, ends in steps(chain, system):
             for first, then in product(starts, ends):
                 is_known = first != then and first in events and then in events
-                if is_known and not is_linked(events[first], events[then], context.dataflow):
+                if not is_known or _is_message(events[first], events[then], system):
+                    continue
+                if not is_linked(events[first], events[then], context.dataflow):
                     yield UnlinkedStep(chain.name, item, first, then)
+
+
+def _is_message(first: Event, then: Event, system: System) -> bool:
+    """Whether an executor takes a message after its receipt, or sends it: it passes the middleware, not labels or triggers."""
+    for executor in system.executors:
+        for handle in executor.handles:
+            sent = {publication.transmission for publication in handle.publications}
+            if _process_of(first) == handle.transmission is not None and _process_of(then) == executor.task:
+                return True
+            if _process_of(then) in sent and _process_of(first) == executor.task:
+                return True
+    return False
+
+
+def _process_of(event: Event) -> str | None:
+    return event.process if isinstance(event, ProcessEvent | RunnableEvent | LabelEvent) else None
