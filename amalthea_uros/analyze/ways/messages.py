@@ -93,7 +93,9 @@ def _only_sender(transmission: Transmission, solution: Solution) -> str | None:
         for each in system.network.transmissions
         if (each.wire, each.direction) == (transmission.wire, transmission.direction)
     }
-    has_threads = any(isinstance(system.processes.get(name), Task) for each in system.network.transmissions for name in each.processes)
+    has_threads = any(
+        isinstance(system.processes.get(name), Task) for each in system.network.transmissions for name in each.processes
+    )
     for executor in system.executors:
         own = {each.transmission for handle in executor.handles for each in handle.publications}
         if len(system.executors) == 1 and not has_threads:

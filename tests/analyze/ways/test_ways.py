@@ -229,5 +229,8 @@ def test_another_sender_on_the_wire_is_waited_for():
     found = board(TO_HOST, wire=wire)
     other = replace(found.transmissions["odom_out"], name="odom_ack", topic="other")
     network = replace(found.network, transmissions=(*found.network.transmissions[:2], other))
-    tasks = replace(found.mapping, tasks=tuple(replace(each, scheduler="tx") if each.task == "odom_ack" else each for each in found.mapping.tasks))
+    tasks = replace(
+        found.mapping,
+        tasks=tuple(replace(each, scheduler="tx") if each.task == "odom_ack" else each for each in found.mapping.tasks),
+    )
     assert sending_times(solution(replace(found, network=network, mapping=tasks)))["odom_out"].most == (ODOM + ACK) * US
