@@ -63,6 +63,7 @@ def wire_hop(transmission: Transmission, solution: Solution) -> Hop:
             remedy = f"Increase the rate of {transmission.wire!r}, send less often, or without acknowledgements."
         return Hop(kind=HopKind.WIRE, name=transmission.wire, best=best, worst=None, source="", reason=reason, remedy=remedy)
     if (sender := _only_sender(transmission, solution)) is not None:
+        solution.context.notes.assume(f"a write to {transmission.wire} returns when the message is on the wire, not before")
         return Hop(
             kind=HopKind.WIRE,
             name=transmission.wire,

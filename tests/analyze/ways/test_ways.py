@@ -18,8 +18,8 @@ from amalthea_uros.analyze.ways.publications import sending_times
 from amalthea_uros.analyze.ways.results import HopKind
 from amalthea_uros.perf.activities import Trigger
 from amalthea_uros.perf.constraints import Constraints, LatencyConstraint, LatencyKind
-from amalthea_uros.perf.executors import HandleKind
 from amalthea_uros.perf.distributions import Uniform
+from amalthea_uros.perf.executors import HandleKind
 from amalthea_uros.perf.stimuli import InterProcess, Periodic
 from amalthea_uros.timing.context import TimingContext
 
