@@ -41,11 +41,13 @@ class Wire(Named):
     ----------
     cores : that stand for it: one per direction if both can send at the same time, else one
     loses_messages : whether frames can be lost on it
+    keeps_sender : whether a thread of the controller that sends waits until its message is on the wire
     """
 
     kind: WireKind
     cores: tuple[str, ...]
     loses_messages: bool = False
+    keeps_sender: bool = False
 
 
 class Direction(StrEnum):

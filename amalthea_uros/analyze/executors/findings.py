@@ -51,7 +51,8 @@ def _note_loop(executor: Executor, executors: Sequence[Executor], result: Execut
     growing = next((handle for handle in result.handles if handle.response.is_overload), None)
     if growing is not None:
         age = "" if stores(executor, executors) else _age_after(60 * SECOND, executor, result)
-        message = f"{executor.name!r} is overloaded: {growing.response.reason.removeprefix('overload: ')}{age}"
+        why = growing.response.reason.removeprefix("overload: ").removesuffix(", so that messages wait longer and longer")
+        message = f"messages wait longer and longer in {executor.name!r}: {why}{age}"
         notes.error("EXE012", message, executor)
     elif executor.waiting.messages_per_wait == 1 and messages(executor) and least_pace(executor):
         most, arriving = Fraction(1, least_pace(executor)), certain_rate(executor)
