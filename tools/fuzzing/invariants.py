@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import json
-import re
 import shutil
-from collections.abc import Callable, Iterator
-from dataclasses import asdict
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import fields, is_dataclass
 from pathlib import Path
 from random import Random
 from typing import NoReturn
@@ -16,7 +15,7 @@ from templating import ROOT
 
 from amalthea_uros.analyze.results import Analysis
 from amalthea_uros.analyze.verdicts import Verdict
-from amalthea_uros.diagnostics import Severity
+from amalthea_uros.diagnostics import Location, Severity
 from amalthea_uros.difference.comparison import ChangeKind
 from amalthea_uros.errors import AmurosError, WriteError
 from amalthea_uros.metamodel.model import Model
@@ -202,13 +201,22 @@ def same_model(path: Path, folder: Path) -> None:
         require(of_description == of_model, f"{kind} differ between description and model: {_first_difference(of_description, of_model)}")
 
 
-def _figures(result: object) -> str:
+def _figures(value: object) -> object:
     """A result without places in files."""
-    return re.sub(r"Location\([^()]*\)|Path\([^()]*\)", "", repr(asdict(result)))  # type: ignore[call-overload]
+    if is_dataclass(value):
+        return [(part.name, _figures(getattr(value, part.name))) for part in fields(value) if part.name not in ("origin", "finding")]
+    if isinstance(value, Mapping):
+        return {str(key): _figures(item) for key, item in value.items()}
+    if isinstance(value, Iterable) and not isinstance(value, str):
+        return [*map(_figures, value)]
+    return None if isinstance(value, Location | Path) else str(value)
 
 
-def _first_difference(one: list[str], other: list[str]) -> str:
-    return next((f"{left[:200]} and {right[:200]}" for left, right in zip(one, other, strict=False) if left != right), "their number")
+def _first_difference(one: object, other: object) -> str:
+    """The first values that differ, which are as deep as possible."""
+    if isinstance(one, list | tuple) and isinstance(other, list | tuple) and len(one) == len(other):
+        return next((_first_difference(*pair) for pair in zip(one, other, strict=True) if pair[0] != pair[1]), "")
+    return f"{one!s:.200} and {other!s:.200}"
 
 
 def generate(path: Path, folder: Path) -> None:
@@ -242,11 +250,6 @@ def ways(path: Path, folder: Path) -> None:
         require(way.worst is not None or bool(way.reason), f"{way.name} is unknown without a reason")
         run("analyze", path, "--chain", way.name)
         run("analyze", path, "--explain", way.name)
-
-
-def report(path: Path, folder: Path) -> None:
-    """A page parses."""
-    run("report", path, "-o", folder / "page.html")
 
 
 def import_code(path: Path, folder: Path) -> None:
@@ -389,7 +392,7 @@ def _require_equal(old: Path, new: Path) -> None:
 
 
 _OF_BOTH: tuple[Invariant, ...] = (check, analyze, simulate, campaign, agreement, comparison)
-_OF_DESCRIPTIONS: tuple[Invariant, ...] = (build, same_model, generate, ways, report, *_OF_BOTH)
+_OF_DESCRIPTIONS: tuple[Invariant, ...] = (build, same_model, generate, ways, *_OF_BOTH)
 _OF_MODELS: tuple[Invariant, ...] = (
     info,
     load_and_save,
