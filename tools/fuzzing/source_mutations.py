@@ -10,7 +10,7 @@ from fuzzing.hostile_values import VALUES
 
 _WORD = re.compile(r"[A-Za-z_]\w*|\d+(?:\.\d+)?|\"[^\"\n]*\"")
 _MARK = re.compile(r"[][(){};,:#&*/\"=|@]")
-_NESTED = ("((((", "{{{{", "[[[[", "/*", "*/", "//", "#define X X\n", "#if 1\n", "#endif\n", '"', "'", "\\\n", "R\"x(")
+_NESTED = ("((((", "{{{{", "[[[[", "/*", "*/", "//", "#define X X\n", "#if 1\n", "#endif\n", '"', "'", "\\\n", 'R"x(')
 
 
 def _replaced(rng: Random, text: str, pattern: re.Pattern[str], new: str) -> str:
