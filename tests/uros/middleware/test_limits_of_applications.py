@@ -68,6 +68,17 @@ def test_messages_that_are_too_long(author, keys, message):
         assert [(rule, found) for _, rule, found in author.findings(app(**keys))] == [("UR121", message)]
 
 
+def test_no_message_takes_all_memory(author):
+    # Each of its bytes would be a frame on the line, and each 500 of them a part.
+    keys = {
+        "middleware": "executor: {loop: {spin_some: 80 ms}}\n  limits: {UCLIENT_CUSTOM_TRANSPORT_MTU: 1 GB}",
+        "size": "100 MB",
+    }
+    found = author.findings(app(transport="serial: {driver: {write: polling}}", **keys))
+    message = "a message of 'state' has 100000000 B, but at most 1048576 B can be sent best effort"
+    assert ("UR121", message) in [(rule, text) for _, rule, text in found]
+
+
 def test_histories_are_shared(author):
     # Reliable messages have a depth of 10 by default; the pool has 8 slots.
     ((severity, message),) = reported(author, "UR125")
