@@ -42,9 +42,12 @@ def starts_alone(handle: Handle, executor: Executor) -> bool:
 
 def shares_session(executor: Executor, others: Iterable[Executor]) -> bool:
     """Whether another executor uses the same session."""
-    return executor.session is not None and any(
-        other.session == executor.session for other in others if other.name != executor.name
-    )
+    return executor.session is not None and len(sharing(executor, others)) > 1
+
+
+def sharing(executor: Executor, executors: Iterable[Executor]) -> list[Executor]:
+    """The executors that use the same buffers and slots for messages, itself included."""
+    return [each for each in executors if each.session == executor.session]
 
 
 def at_once(executor: Executor) -> tuple[Handle, ...]:
