@@ -1,7 +1,6 @@
 """A core with fixed priorities on which threads run step by step: generators that ask for what they need next."""
 
 import heapq
-from collections import deque
 from dataclasses import dataclass, field
 
 
@@ -140,6 +139,3 @@ class Kernel:
     @staticmethod
     def _wake(thread):
         thread.is_ready = True
-
-
-__all__ = ["Kernel", "Listen", "Lock", "Mutex", "Run", "Signal", "Until", "deque"]

@@ -312,7 +312,7 @@ class Played:
             self.kernel.unlock(self.session.mutex)
 
 
-def play(executors, spans, horizon, *, random=None, preempting=(), priorities=None, delays=None):
+def play(executors, spans, horizon, *, random=None, preempting=(), priorities=None, delays=None, start=None):
     """The executors after some time.
 
     Parameters
@@ -321,14 +321,14 @@ def play(executors, spans, horizon, *, random=None, preempting=(), priorities=No
     preempting : (priority, period, offset, least and greatest execution time) of other tasks on the core
     priorities : of executors; the first one has the highest unless told
     delays : greatest further delay of messages on their way, by handle
+    start : of the first spin; somewhere in a sleep unless told
     """
     random, kernel, sessions = random or Random(0), Kernel(), {}
     played = []
     for number, executor in enumerate(executors):
-        key = executor.session or executor.name
-        session = sessions.setdefault(key, Session(executor.waiting.slots))
-        start = _start(executor.loop, random)
-        one = Played(executor, kernel, session, spans, random, start)
+        session = sessions.setdefault(executor.session, Session(executor.waiting.slots))
+        first = _start(executor.loop, random) if start is None else start
+        one = Played(executor, kernel, session, spans, random, first)
         one.is_shared = sum(each.session == executor.session for each in executors) > 1 and executor.session is not None
         played.append(one)
         kernel.start(one.steps(), (priorities or {}).get(executor.name, 5 - number))
@@ -340,7 +340,9 @@ def play(executors, spans, horizon, *, random=None, preempting=(), priorities=No
     for one in played:
         for entity in one.entities:
             entity.seen.waiting += [kernel.now - each for each in entity.stored]
-            entity.seen.waiting += [kernel.now - each for each in (entity.flag, entity.due) if each is not None and each < kernel.now]
+            entity.seen.waiting += [
+                kernel.now - each for each in (entity.flag, entity.due) if each is not None and each < kernel.now
+            ]
     for session in sessions.values():
         for entity, release in session.unread:
             entity.seen.waiting.append(kernel.now - release)
@@ -368,7 +370,11 @@ def _release(entity, played, session, kernel, horizon, random, delay):
     nominal, number, arrived, arrivals = phase, 0, 0, []
     rest = 0 if handle.is_periodic else random.choice((0, interval))
     while nominal < horizon:
-        late = {"none": 0, "alternating": jitter * (number % 2), "burst": max(0, jitter - number * interval) if nominal < jitter else 0}
+        late = {
+            "none": 0,
+            "alternating": jitter * (number % 2),
+            "burst": max(0, jitter - number * interval) if nominal < jitter else 0,
+        }
         arrived = max(arrived, nominal + late.get(shape, random.randint(0, jitter // 10**6) * 10**6))
         arrivals.append(arrived)
         nominal += interval + (random.randint(0, rest // 10**6) * 10**6 if rest else 0)

@@ -5,7 +5,6 @@ from random import Random
 from types import SimpleNamespace
 
 from hand_made_systems import Proc, system
-from looping_executors import MS as COUNTED_MS
 from looping_executors import combined, guard, message, timer
 from played_executors import Spans, play
 
@@ -13,7 +12,16 @@ from amalthea_uros.analyze.executors.evaluate import evaluate_executors
 from amalthea_uros.analyze.propagation import solve
 from amalthea_uros.perf.activities import Call, Chance, Demand, Execute, ProbabilitySwitch
 from amalthea_uros.perf.distributions import Boundaries, Constant
-from amalthea_uros.perf.executors import Executor, HandleKind, Loop, LoopKind, Publication, TriggerCondition, TriggerKind, Waiting
+from amalthea_uros.perf.executors import (
+    Executor,
+    HandleKind,
+    Loop,
+    LoopKind,
+    Publication,
+    TriggerCondition,
+    TriggerKind,
+    Waiting,
+)
 from amalthea_uros.perf.network import Span
 from amalthea_uros.perf.software import Runnable
 from amalthea_uros.perf.stimuli import Periodic, RelativePeriodic, Stimuli
@@ -21,7 +29,8 @@ from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
 
-
+SHAPES = ("message",), ("timer",), ("message", "message", "timer"), ("message", "timer", "guard"), ("timer", "guard")
+RECEIVING = HandleKind.SUBSCRIPTION, HandleKind.SUBSCRIPTION, HandleKind.SERVICE, HandleKind.CLIENT
 #: Of messages and timers, in milliseconds: fast, usual and slow.
 RATES = (3, 7, 20), (20, 40, 90, 250), (90, 250, 400)
 
@@ -110,7 +119,9 @@ def _handles(random, prefix, varying, sending, delays, shape):
             sending[transmission] = (random.randint(0, upper // US) * US, upper) if varying else (upper, upper)
             waits = random.random() < 0.8
             publications.append(
-                Publication(topic="t", transmission=transmission, reliable=waits, waits=waits, timeout=timeout if waits else None)
+                Publication(
+                    topic="t", transmission=transmission, reliable=waits, waits=waits, timeout=timeout if waits else None
+                )
             )
         parts = {"phase": phase, "publications": tuple(publications)}
         if kind == "timer":
@@ -129,7 +140,10 @@ def _handles(random, prefix, varying, sending, delays, shape):
                 take=f"Take_{name}" if random.random() < 0.3 else None,
                 **parts,
             )
-            handle = replace(handle, kind=random.choice((HandleKind.SUBSCRIPTION, HandleKind.SUBSCRIPTION, HandleKind.SERVICE, HandleKind.CLIENT)))
+            handle = replace(
+                handle,
+                kind=random.choice((HandleKind.SUBSCRIPTION, HandleKind.SUBSCRIPTION, HandleKind.SERVICE, HandleKind.CLIENT)),
+            )
             delays[name] = random.choice((0, 0, 0, 3 * MS))
         found.append((handle, (low, most)))
     return found
@@ -156,7 +170,9 @@ def application(random: Random, executors=None) -> Application:
     """Anything; all times but those of handles are drawn for this application, and are constant in half of them."""
     varying = random.random() < 0.6
     count = executors or (2 if random.random() < 0.15 else 1)
-    shape = random.choice((("message",), ("timer",), ("message", "message", "timer"), ("message", "timer", "guard"), ("timer", "guard")))
+    shape = random.choice(
+        (("message",), ("timer",), ("message", "message", "timer"), ("message", "timer", "guard"), ("timer", "guard"))
+    )
     waiting = Waiting(slots=random.choice((1, 2, 4, None)))
     if random.random() < 0.2:
         waiting = replace(
@@ -260,7 +276,9 @@ def _of_handle(seen, handle):
             found.append(f"{name}: lateness {max(seen.lateness)} > {handle.lateness.most}")
         if min(seen.lateness, default=handle.lateness.least) < handle.lateness.least:
             found.append(f"{name}: lateness {min(seen.lateness)} < {handle.lateness.least}")
-    if handle.terms and (sum(term.most for term in handle.terms) != response.worst or min(term.most for term in handle.terms) <= 0):
+    if handle.terms and (
+        sum(term.most for term in handle.terms) != response.worst or min(term.most for term in handle.terms) <= 0
+    ):
         found.append(f"{name}: terms are not positive, or do not add up to {response.worst}")
     if response.is_overload and max(seen.responses, default=0) < 10 * MS and max(seen.waiting, default=0) < 10 * MS:
         found.append(f"{name}: no overload")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from fractions import Fraction
 
 from amalthea_uros.analyze.executors.results import ExecutorResult, HandleResult
@@ -33,7 +33,7 @@ def note_executors(results: Iterable[ExecutorResult], solution: Solution) -> Non
             _note_handle(handle, executor, notes)
 
 
-def _assume(executor: Executor, others: Iterable[Executor], notes: Notes) -> None:
+def _assume(executor: Executor, others: Sequence[Executor], notes: Notes) -> None:
     notes.assume("executors: the wait set is prepared before the first spin, which allocates memory and takes longer otherwise")
     notes.assume(
         "executors: the buffers of the driver and of the agent have room for all messages that wait; no call returns an error"
@@ -80,8 +80,7 @@ def _age_after(time: Time, executor: Executor, result: ExecutorResult) -> str:
     return f"; after {time_text(time)} they are at least {rounded_time_text(age, Rounding.DOWN)} old" if age > 0 else ""
 
 
-def _note_waiting(executor: Executor, others: Iterable[Executor], notes: Notes) -> None:
-    others = tuple(others)
+def _note_waiting(executor: Executor, others: Sequence[Executor], notes: Notes) -> None:
     waiting, wait = executor.waiting, time_text(greatest_wait(executor))
     guards = [handle.name for handle in executor.handles if handle.kind is HandleKind.GUARD_CONDITION]
     if guards and not waiting.guard_conditions_end_wait and greatest_wait(executor):

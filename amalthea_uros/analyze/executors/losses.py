@@ -58,7 +58,9 @@ def loss_of_triggers(
         )
         return Loss(what="triggers", is_certain=False, most=None, sequence=sequence)
     if seen_after is None:
-        return _lost_triggers(None, f"{handle.name} is triggered twice before the executor sees it, which has no bound; it calls it once")
+        return _lost_triggers(
+            None, f"{handle.name} is triggered twice before the executor sees it, which has no bound; it calls it once"
+        )
     try:
         # The first one sets the flag; the others come until it is seen, at the last moment, too.
         lost = arrivals(handle, extra_jitter).eta_plus(seen_after + 1) - 1
@@ -102,7 +104,9 @@ def with_lost_messages(
     stored = {handle.name: _stored(handle, found[handle.name], extra_jitter) for handle in handles}
     is_pool_enough = not can_exceed_slots(executor.waiting.slots, handles, stored)
     return [
-        replace(result, lost=_lost(handle, result, cycle, stored[handle.name], is_pool_enough)) if is_message(handle) else result
+        replace(result, lost=_lost(handle, result, cycle, stored[handle.name], is_pool_enough))
+        if is_message(handle)
+        else result
         for handle, result in zip(executor.handles, results, strict=True)
     ]
 

@@ -1,8 +1,8 @@
 """Messages that are stored, and those that are lost because there is no room.
 
-All subscriptions, services and clients of a process share one pool of slots, whatever their executor. A message for a handle that has `depth` messages overwrites the
-oldest of them, or is dropped itself if all are to be kept. Below that depth, a message for which the pool has no slot is dropped
-(micro-ROS/rmw_microxrcedds, src/callbacks.c, src/types.c).
+All subscriptions, services and clients of a process share one pool of slots, whatever their executor. A message for a handle that has
+`depth` messages overwrites the oldest of them, or is dropped itself if all are to be kept. Below that depth, a message for which the
+pool has no slot is dropped (micro-ROS/rmw_microxrcedds, src/callbacks.c, src/types.c).
 """
 
 from __future__ import annotations
