@@ -23,7 +23,7 @@ from amalthea_uros.analyze.executors.window import NoWindowError, Window
 from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.perf.executors import Executor, Handle, LoopKind
 from amalthea_uros.perf.network import Span
-from amalthea_uros.timing.executors.loops import SLEEP_RESOLUTION, least_sleep, longest_sleep
+from amalthea_uros.timing.executors.loops import SLEEP_RESOLUTION, least_pace, least_sleep, longest_sleep
 from amalthea_uros.timing.executors.readiness import at_once, is_exclusive, stores
 from amalthea_uros.timing.executors.rounds import RoundCosts, round_costs
 from amalthea_uros.timing.executors.sending import Suspension, suspension_of, together
@@ -214,6 +214,11 @@ class Cycle:
     def shortest(self) -> Time:
         """The shortest cycle: nothing is called."""
         return least_sleep(self.executor) + self.costs.spin.best // self.time_base
+
+    @property
+    def least_average(self) -> Time:
+        """The time per cycle that a loop takes at least in the long run: one that catches up keeps its period on average."""
+        return max(self.shortest, least_pace(self.executor), self.executor.loop.period or 0)
 
     @cached_property
     def shortest_with_message(self) -> Time:

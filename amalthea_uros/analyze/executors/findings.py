@@ -38,7 +38,9 @@ def _assume(executor: Executor, others: Sequence[Executor], notes: Notes) -> Non
     notes.assume(
         "executors: the buffers of the driver and of the agent have room for all messages that wait; no call returns an error"
     )
-    notes.assume("executors: waits and sleeps end on time, whatever the ticks of the operating system are")
+    # The sleeps of `spin_some` are counted in ticks where the operating system states how; nothing else is.
+    on_time = "waits" if executor.loop.sleep_early else "waits and sleeps"
+    notes.assume(f"executors: {on_time} end on time, whatever the ticks of the operating system are")
     if executor.loop.kind is LoopKind.SPIN_PERIOD:
         notes.assume("executors: the real-time clock, by which spin_period sleeps, is not set while it spins")
     if stores(executor, others):

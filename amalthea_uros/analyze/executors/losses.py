@@ -40,7 +40,7 @@ def loss_of_timer(handle: Handle, cycle: Cycle, lateness: Span) -> Loss | None:
         f"{_text(lateness.most)}; what was due until then at {_multiples(count, period)} is lost, "
         f"the next call is due at {time_text(following)}"
     )
-    return Loss(what="periods", is_certain=cycle.shortest > period, most=count, sequence=sequence)
+    return Loss(what="periods", is_certain=cycle.least_average > period, most=count, sequence=sequence)
 
 
 def _multiples(count: int, period: Time) -> str:

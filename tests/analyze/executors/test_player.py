@@ -99,3 +99,18 @@ def test_executors_share_the_slots_of_their_process():
     assert lost is not None
     assert lost.is_of_pool
     assert not lost.is_replaced
+
+
+@pytest.mark.parametrize(
+    ("loop", "is_certain"),
+    [
+        (Loop(kind=LoopKind.SPIN_SOME, timeout=0, sleep=51 * MS), True),
+        (Loop(kind=LoopKind.SPIN_SOME, timeout=0, sleep=60 * MS, sleep_early=10 * MS), False),
+        (Loop(kind=LoopKind.SPIN_SOME, timeout=0, sleep=60 * MS, sleep_early=10 * MS, pace=60 * MS), True),
+        (Loop(kind=LoopKind.SPIN_PERIOD, timeout=0, period=51 * MS), True),
+        (Loop(kind=LoopKind.SPIN_PERIOD, timeout=0, period=49 * MS), False),
+    ],
+)
+def test_a_timer_that_expires_more_often_than_rounds_begin_loses_periods_for_certain(loop, is_certain):
+    lost = evaluate(looping(timer("t", 50_000), loop=loop)).handles["t"].lost
+    assert (lost is not None and lost.is_certain) is is_certain
