@@ -13,6 +13,7 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.timing.activation import Activations, UnknownActivationError
 from amalthea_uros.timing.allocation import allocated_cores, effective_priority
 from amalthea_uros.timing.arrivals import arrival_assumptions, with_bounded_arrivals
+from amalthea_uros.timing.awaited import why_suspended
 from amalthea_uros.timing.critical_sections import Locks, Protection, protection_of
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.timing.demand import DemandModel
@@ -247,6 +248,8 @@ class TimingContext:
             try:
                 executor = self.system.executor_of_task.get(name)
                 if executor is not None and (reason := never_rests(executor)):
+                    raise UnknownDemandError(reason)
+                if reason := why_suspended(name, self.system, self.dataflow):
                     raise UnknownDemandError(reason)
                 demand = model.of_process(scheduled.process, scheduled.core)
                 if not states_execution_time(scheduled.process, self.system):

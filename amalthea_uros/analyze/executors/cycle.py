@@ -23,7 +23,7 @@ from amalthea_uros.analyze.executors.window import NoWindowError, Window
 from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.perf.executors import Executor, Handle, LoopKind
 from amalthea_uros.perf.network import Span
-from amalthea_uros.timing.executors.loops import SLEEP_RESOLUTION, least_sleep, longest_sleep
+from amalthea_uros.timing.executors.loops import SLEEP_RESOLUTION, least_pace, least_sleep, longest_sleep
 from amalthea_uros.timing.executors.readiness import at_once, is_exclusive, keeps_back, stores
 from amalthea_uros.timing.executors.rounds import RoundCosts, round_costs
 from amalthea_uros.timing.executors.sending import Suspension, suspension_of, together
@@ -182,28 +182,43 @@ class Cycle:
     @cached_property
     def longest(self) -> Time | None:
         """The longest cycle without a wait; None if it is not bounded."""
+        return self.longest_with(0)
+
+    @cached_property
+    def longest_with_wait(self) -> Time | None:
+        """The longest cycle with a wait that nothing ends before its timeout; None if it is not bounded."""
+        return self.longest_with(self.wait)
+
+    def longest_with(self, wait: Time) -> Time | None:
+        """The longest cycle with some wait, after which the thread has to get its core again; None if it is not bounded."""
         part, held = self.whole, self.held
         if held is None or part.suspension.most is None or self.busy is None:
             return None
-        contending = 1 if held else 0
-        beginning = self.window.time(self.costs.spin.worst, held, 1 + contending)
+        suspended, resumed = held + wait, (1 if held else 0) + (1 if wait else 0)
+        beginning = self.window.time(self.costs.spin.worst, suspended, 1 + resumed)
         if beginning is None:
             return None
+        together = part.suspension.most + suspended
         match self.executor.loop.kind:
             case LoopKind.SPIN_PERIOD:
-                unslept = self.window.time(part.demand, part.suspension.most + held, part.resumed + contending)
+                unslept = self.window.time(part.demand, together, part.resumed + resumed)
                 slept = (self.executor.loop.period or 0) + SLEEP_RESOLUTION + beginning
                 return None if unslept is None else max(unslept, slept)
             case LoopKind.SPIN_SOME if self.sleep:
                 found = [self.sleep + self.busy + beginning]
-                joint = self.window.time(part.demand, part.suspension.most + held + self.sleep, part.resumed + 1 + contending)
+                joint = self.window.time(part.demand, together + self.sleep, part.resumed + 1 + resumed)
                 return min([*found, *([] if joint is None else [joint])])
-        return self.window.time(part.demand, part.suspension.most + held, part.resumed + contending)
+        return self.window.time(part.demand, together, part.resumed + resumed)
 
     @cached_property
     def shortest(self) -> Time:
         """The shortest cycle: nothing is called."""
         return least_sleep(self.executor) + self.costs.spin.best // self.time_base
+
+    @property
+    def least_average(self) -> Time:
+        """The time per cycle that a loop takes at least in the long run: one that catches up keeps its period on average."""
+        return max(self.shortest, least_pace(self.executor), self.executor.loop.period or 0)
 
     @cached_property
     def shortest_with_message(self) -> Time:

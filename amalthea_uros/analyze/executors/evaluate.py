@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros.analyze.executors.cycle import Cycle, UnknownCycleError
@@ -14,6 +15,7 @@ from amalthea_uros.analyze.results import Claim, Response
 from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.perf.executors import Executor
 from amalthea_uros.perf.network import Span
+from amalthea_uros.timing.executors.readiness import sharing
 from amalthea_uros.units import Time
 
 
@@ -29,7 +31,25 @@ def evaluate_executors(
     extra_jitter : by which messages are late on their way, besides what is stated for them, by the names of handles; None if unknown.
         A message that a wire brings and that is absent has an unknown jitter
     """
-    return tuple(_evaluated(each, solution, sending, extra_jitter) for each in solution.context.system.executors)
+    executors = solution.context.system.executors
+    results = {each: _evaluated(each, solution, sending, extra_jitter) for each in executors}
+    cycles = cycles_of(solution, sending)
+    for executor, cycle in cycles.items():
+        together = {each: results[each].handles for each in sharing(executor, executors)}
+        handles = Results(with_lost_messages(results[executor].handles, cycle, together, extra_jitter))
+        results[executor] = replace(results[executor], handles=handles)
+    return tuple(results.values())
+
+
+def cycles_of(solution: Solution, sending: Mapping[str, Span]) -> dict[Executor, Cycle]:
+    """The rounds of the executors of which they are known."""
+    found = {}
+    for executor in solution.context.system.executors:
+        try:
+            found[executor] = Cycle.of(executor, solution, sending)
+        except UnknownCycleError:
+            continue
+    return found
 
 
 def _evaluated(
@@ -44,8 +64,8 @@ def _evaluated(
         name=executor.name,
         task=executor.task,
         round=Span(least=cycle.costs.spin.best // cycle.time_base, most=cycle.busy),
-        loop=Span(least=cycle.shortest, most=None if cycle.longest is None else cycle.longest + cycle.wait),
-        handles=Results(with_lost_messages(handles, cycle, extra_jitter)),
+        loop=Span(least=cycle.shortest, most=cycle.longest_with_wait),
+        handles=Results(handles),
         reason="" if cycle.longest is not None else cycle.unbounded,
     )
 

@@ -33,12 +33,14 @@ def note_executors(results: Iterable[ExecutorResult], solution: Solution) -> Non
             _note_handle(handle, executor, notes)
 
 
-def _assume(executor: Executor, others: Iterable[Executor], notes: Notes) -> None:
+def _assume(executor: Executor, others: Sequence[Executor], notes: Notes) -> None:
     notes.assume("executors: the wait set is prepared before the first spin, which allocates memory and takes longer otherwise")
     notes.assume(
         "executors: the buffers of the driver and of the agent have room for all messages that wait; no call returns an error"
     )
-    notes.assume("executors: waits and sleeps end on time, whatever the ticks of the operating system are")
+    # The sleeps of `spin_some` are counted in ticks where the operating system states how; nothing else is.
+    on_time = "waits" if executor.loop.sleep_early else "waits and sleeps"
+    notes.assume(f"executors: {on_time} end on time, whatever the ticks of the operating system are")
     if executor.loop.kind is LoopKind.SPIN_PERIOD:
         notes.assume("executors: the real-time clock, by which spin_period sleeps, is not set while it spins")
     if stores(executor, others):
@@ -79,8 +81,7 @@ def _age_after(time: Time, executor: Executor, result: ExecutorResult) -> str:
     return f"; after {time_text(time)} they are at least {rounded_time_text(age, Rounding.DOWN)} old" if age > 0 else ""
 
 
-def _note_waiting(executor: Executor, others: Iterable[Executor], notes: Notes) -> None:
-    others = tuple(others)
+def _note_waiting(executor: Executor, others: Sequence[Executor], notes: Notes) -> None:
     waiting, wait = executor.waiting, time_text(greatest_wait(executor))
     guards = [handle.name for handle in executor.handles if handle.kind is HandleKind.GUARD_CONDITION]
     if guards and not waiting.guard_conditions_end_wait and greatest_wait(executor):

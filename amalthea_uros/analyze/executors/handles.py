@@ -34,11 +34,12 @@ NOT_WOKEN = "a guard condition does not end the wait"
 def handle_result(handle: Handle, cycle: Cycle, extra_jitter: Mapping[str, Time | None]) -> HandleResult:
     """The response time of a handle, and the lateness of a timer; losses of messages are found for all handles together."""
     wait, waited_for = _wait(handle, cycle)
-    delay = _delay(handle, cycle, wait, extra_jitter)
+    length = cycle.longest_with(wait)
+    delay = _delay(handle, cycle, length, extra_jitter)
     start, end = cycle.until_start(handle), cycle.until_end(handle)
     worst = None
-    if delay.cycles is not None and cycle.longest is not None and end is not None:
-        worst = delay.cycles * (cycle.longest + wait) - delay.earlier + end
+    if delay.cycles is not None and length is not None and end is not None:
+        worst = delay.cycles * length - delay.earlier + end
     lateness = None
     if handle.kind is HandleKind.TIMER:
         is_bounded = delay.cycles is not None and cycle.longest is not None and start is not None
@@ -47,7 +48,7 @@ def handle_result(handle: Handle, cycle: Cycle, extra_jitter: Mapping[str, Time 
     if lateness is not None:
         lost = loss_of_timer(handle, cycle, lateness)
     elif handle.kind is HandleKind.GUARD_CONDITION:
-        lost = loss_of_triggers(handle, cycle, None if cycle.longest is None else cycle.longest + wait)
+        lost = loss_of_triggers(handle, cycle, length, extra_jitter)
     return HandleResult(
         name=handle.name,
         kind=handle.kind,
@@ -94,12 +95,12 @@ def _wait(handle: Handle, cycle: Cycle) -> tuple[Time, str]:
     return 0, ""
 
 
-def _delay(handle: Handle, cycle: Cycle, wait: Time, extra_jitter: Mapping[str, Time | None]) -> Delay:
+def _delay(handle: Handle, cycle: Cycle, length: Time | None, extra_jitter: Mapping[str, Time | None]) -> Delay:
     if not starts_alone(handle, cycle.executor):
         kind = cycle.executor.trigger.kind
         return Delay(cycles=None, reason=f"the trigger condition {kind.value!r} keeps it back until others are ready, too")
     if not is_message(handle):
         return Delay(cycles=1)
-    if cycle.longest is None:
+    if length is None:
         return certain_overload(cycle) or Delay(cycles=None, reason=_unbounded(handle, cycle))
-    return delay_of(handle, cycle, cycle.longest + wait, extra_jitter)
+    return delay_of(handle, cycle, length, extra_jitter)

@@ -13,13 +13,13 @@ from dataclasses import replace
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.analyze.executors.cycle import Cycle
 from amalthea_uros.analyze.executors.results import HandleResult, Loss
-from amalthea_uros.perf.executors import Handle
+from amalthea_uros.perf.executors import Executor, Handle
 from amalthea_uros.perf.network import Span
 from amalthea_uros.timing.executors.arrivals import UnknownArrivalsError, arrivals
-from amalthea_uros.timing.executors.readiness import keeps_back
+from amalthea_uros.timing.executors.readiness import keeps_back, stores
 from amalthea_uros.timing.executors.slots import LIFESPAN, can_exceed_depth, slots_needed
 from amalthea_uros.timing.executors.timers import lost_periods, next_expiration
-from amalthea_uros.timing.executors.wait import is_message
+from amalthea_uros.timing.executors.wait import is_message, messages
 from amalthea_uros.units import Rounding, Time, rounded_time_text, time_text
 
 
@@ -40,7 +40,7 @@ def loss_of_timer(handle: Handle, cycle: Cycle, lateness: Span) -> Loss | None:
         f"{_text(lateness.most)}; what was due until then at {_multiples(count, period)} is lost, "
         f"the next call is due at {time_text(following)}"
     )
-    return Loss(what="periods", is_certain=cycle.shortest > period, most=count, sequence=sequence)
+    return Loss(what="periods", is_certain=cycle.least_average > period, most=count, sequence=sequence)
 
 
 def _multiples(count: int, period: Time) -> str:
@@ -48,47 +48,70 @@ def _multiples(count: int, period: Time) -> str:
     return ", ".join([*shown, *(["..."] if count > 3 else [])])
 
 
-def loss_of_triggers(handle: Handle, cycle: Cycle, seen_after: Time | None) -> Loss | None:
+def loss_of_triggers(
+    handle: Handle, cycle: Cycle, seen_after: Time | None, extra_jitter: Mapping[str, Time | None]
+) -> Loss | None:
     """The triggers of a guard condition that can be lost: it is a flag that is cleared when it is seen."""
     if keeps_back(cycle.executor):
         sequence = (
             f"{handle.name} is triggered; the next round sees and clears it, but the trigger condition of the executor is false"
         )
         return Loss(what="triggers", is_certain=False, most=None, sequence=sequence)
-    if handle.interval is None or seen_after is None or handle.interval > seen_after:
+    if seen_after is None:
+        return _lost_triggers(
+            None, f"{handle.name} is triggered twice before the executor sees it, which has no bound; it calls it once"
+        )
+    try:
+        # The first one sets the flag; the others come until it is seen, at the last moment, too.
+        lost = arrivals(handle, extra_jitter).eta_plus(seen_after + 1) - 1
+    except UnknownArrivalsError:
+        sequence = (
+            f"{handle.name} is triggered twice within {_text(seen_after)}, until the executor sees it, and it calls it once; "
+            "nobody states how often it is triggered"
+        )
+        return _lost_triggers(None, sequence)
+    if not lost:
         return None
+    then = arrivals(handle, extra_jitter).delta_min(2)
     sequence = (
-        f"{handle.name} is triggered at 0 s and {time_text(handle.interval)}; "
-        f"the executor sees it only after {_text(seen_after)}, and calls it once"
+        f"{handle.name} is triggered at 0 s and {time_text(then)}; the executor sees it only after {_text(seen_after)}, "
+        "and calls it once"
     )
-    return Loss(
-        what="triggers",
-        is_certain=False,
-        most=seen_after // handle.interval if handle.interval else None,
-        is_replaced=True,
-        sequence=sequence,
-    )
+    return _lost_triggers(lost, sequence)
+
+
+def _lost_triggers(most: int | None, sequence: str) -> Loss:
+    return Loss(what="triggers", is_certain=False, most=most, is_replaced=True, sequence=sequence)
 
 
 def with_lost_messages(
-    results: Sequence[HandleResult], cycle: Cycle, extra_jitter: Mapping[str, Time | None]
+    results: Sequence[HandleResult],
+    cycle: Cycle,
+    sharing: Mapping[Executor, Sequence[HandleResult]],
+    extra_jitter: Mapping[str, Time | None],
 ) -> list[HandleResult]:
-    """The results with the messages that can be lost because there is no room for them."""
-    executor = cycle.executor
-    if not cycle.stores and executor.waiting.messages_per_wait == 1 and executor.waiting.slots != 0:
-        # Each round calls the message that its wait took.
+    """The results with the messages that can be lost because there is no room for them.
+
+    Parameters
+    ----------
+    sharing : the results of all executors that use its slots, its own included
+    """
+    executor, everyone = cycle.executor, cycle.solution.context.system.executors
+    if executor.waiting.slots != 0 and all(_is_taken_at_once(each, everyone) for each in sharing):
         return list(results)
-    stored = {
-        handle.name: _stored(handle, result, extra_jitter)
-        for handle, result in zip(executor.handles, results, strict=True)
-        if is_message(handle)
-    }
-    known = {name: count for name, count in stored.items() if count is not None}
-    needed = slots_needed(executor, known) if len(known) == len(stored) else None
+    handles = [handle for each in sharing for handle in messages(each)]
+    found = {result.name: result for each in sharing.values() for result in each}
+    stored = {handle.name: _stored(handle, found[handle.name], extra_jitter) for handle in handles}
+    needed = slots_needed(handles, stored)
     return [
-        replace(result, lost=_lost(handle, result, cycle, stored[handle.name], needed)) if handle.name in stored else result
+        replace(result, lost=_lost(handle, result, cycle, stored[handle.name], needed)) if is_message(handle) else result
         for handle, result in zip(executor.handles, results, strict=True)
     ]
+
+
+def _is_taken_at_once(executor: Executor, others: Sequence[Executor]) -> bool:
+    """Whether each round calls the message that its wait took."""
+    return executor.waiting.messages_per_wait == 1 and not stores(executor, others)
 
 
 def _stored(handle: Handle, result: HandleResult, extra_jitter: Mapping[str, Time | None]) -> int | None:
@@ -103,8 +126,9 @@ def _stored(handle: Handle, result: HandleResult, extra_jitter: Mapping[str, Tim
 
 def _lost(handle: Handle, result: HandleResult, cycle: Cycle, stored: int | None, needed: int | None) -> Loss | None:
     """How messages of a handle can be lost, of which and for all of which so many wait at the same time."""
-    executor = cycle.executor
-    if handle.depth is not None and (stored is None or can_exceed_depth(handle, stored)):
+    executor, slots = cycle.executor, cycle.executor.waiting.slots
+    is_pool_enough = slots is None or (needed is not None and needed <= slots)
+    if is_pool_enough and handle.depth is not None and (stored is None or can_exceed_depth(handle, stored)):
         count = f"{stored} messages" if stored is not None else "an unknown number of messages"
         what = "overwrites the oldest one" if handle.overwrites else "is dropped"
         limit = f"it keeps {handle.depth}, and a further one {what}"
@@ -120,8 +144,7 @@ def _lost(handle: Handle, result: HandleResult, cycle: Cycle, stored: int | None
         wait = _text(result.response.worst)
         sequence = f"a message for {handle.name} can wait for {wait}; stored for {time_text(LIFESPAN)}, it is removed"
         return Loss(what="messages", is_certain=False, most=None, sequence=sequence)
-    slots = executor.waiting.slots
-    if slots is None or (needed is not None and needed <= slots):
+    if slots is None or is_pool_enough:
         return None
     waiting = "messages" if needed is None else f"up to {counted(needed, 'message')}"
     sequence = (

@@ -9,6 +9,9 @@ If messages can be stored before the round that takes them, they do not end the 
 them. The count remains the same, because each cycle serves one message that came before, or the one in question: one of the handle of
 the message that the wait took, or, if it took none, the oldest of its handle. If a wait takes all messages that are there, only those
 of the same handle delay each other.
+
+Executors of one session read from the same buffer: the messages of the others are also before it, and what the others read only makes
+it earlier.
 """
 
 from __future__ import annotations
@@ -21,6 +24,7 @@ from amalthea_uros.analyze.executors.cycle import Cycle
 from amalthea_uros.perf.executors import Handle
 from amalthea_uros.timing.event_models import EventModel, aggregated
 from amalthea_uros.timing.executors.arrivals import UnknownArrivalsError, arrivals, certain_rate
+from amalthea_uros.timing.executors.readiness import sharing
 from amalthea_uros.timing.executors.wait import messages
 from amalthea_uros.units import SECOND, Time
 
@@ -52,8 +56,14 @@ def competing(handle: Handle, cycle: Cycle, extra_jitter: Mapping[str, Time | No
     ------
     UnknownArrivalsError : it is unknown how many there are.
     """
-    everyone = [handle] if cycle.executor.waiting.messages_per_wait is None else messages(cycle.executor)
+    everyone = [handle] if cycle.executor.waiting.messages_per_wait is None else _before_pool(cycle)
     return aggregated(tuple(arrivals(each, extra_jitter) for each in everyone))
+
+
+def _before_pool(cycle: Cycle) -> list[Handle]:
+    """The handles whose messages wait in the same buffer: those of all executors of its session."""
+    executors = cycle.solution.context.system.executors
+    return [handle for each in sharing(cycle.executor, executors) for handle in messages(each)]
 
 
 def delay_of(handle: Handle, cycle: Cycle, length: Time, extra_jitter: Mapping[str, Time | None]) -> Delay:

@@ -53,7 +53,7 @@ def _of_cycle(cycle: Cycle) -> list[Term]:
 
 def _before(cycle: Cycle, delay: Delay, wait: Time) -> Term:
     """The further cycles, one for each message before it."""
-    count, length = (delay.cycles or 1) - 1, (cycle.longest or 0) + wait
+    count, length = (delay.cycles or 1) - 1, cycle.longest_with(wait) or 0
     why = f"{counted(count, 'message')}, each of which takes a round of at most {time_text(length)}"
     if delay.earlier:
         why += f", less {time_text(delay.earlier)} by which it arrives later"

@@ -7,7 +7,7 @@ that reads at its own times, as data can come just after a read. Executors and w
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 
@@ -18,7 +18,7 @@ from amalthea_uros.analyze.results import Quantity, Value
 from amalthea_uros.analyze.ways.results import Hop, HopKind, Part
 from amalthea_uros.analyze.ways.stations import Passage
 from amalthea_uros.perf.events import Event, ProcessChange, ProcessEvent
-from amalthea_uros.perf.network import Transmission
+from amalthea_uros.timing.awaited import awaited
 from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.links import UNTIMED
 from amalthea_uros.timing.dataflow.routes import routes
@@ -43,7 +43,10 @@ class PassageHops:
     def hop(self, passage: Passage, entry: Entry, is_last: bool) -> Hop:
         """From the entry of a passage to its last event; if another hop follows, to the end of the job."""
         name = " -> ".join(dict.fromkeys(passage.processes))
-        waiting = next((each for process in passage.processes for each in self._awaited(process)), None)
+        context = self.evaluator.context
+        waiting = next(
+            (each for process in passage.processes for each in awaited(process, context.system, context.dataflow)), None
+        )
         if waiting is not None:
             return _unknown(
                 entry,
@@ -77,14 +80,6 @@ class PassageHops:
             source=f"{value.method} ({value.source})",
             parts=parts,
         )
-
-    def _awaited(self, process: str) -> Iterator[Transmission]:
-        """The messages whose acknowledgements the jobs of a process wait for."""
-        context = self.evaluator.context
-        fired = {firing.stimulus for firing in context.dataflow.firings(process)}
-        for each in context.system.network.transmissions:
-            if each.waits and not fired.isdisjoint(context.system.processes[each.name].stimuli):
-                yield each
 
     def _bounds(self, events: Sequence[Event], entry: Entry) -> tuple[Value, Time] | None:
         """The tightest bound of a latency, and how long a message waits until then; None if it has no maximum."""

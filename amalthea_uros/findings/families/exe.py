@@ -94,14 +94,6 @@ KINDS = (
         fails=_example("{loop: {spin: 1 s}}", _TIMER),
     ),
     FindingKind(
-        id="EXE007",
-        title="timer that expires more often than the loop spins",
-        severity=Severity.WARNING,
-        rationale="A timer is called at most once per round, and the periods that it missed are skipped.",
-        remedy="Shorten the sleep or the period of the loop to less than the period of the timer.",
-        fails=_example("{loop: {spin_some: 100 ms, sleep: 100 ms}}", _TIMER, _SUBSCRIPTION),
-    ),
-    FindingKind(
         id="EXE008",
         title="several threads, but no locking in the middleware",
         severity=Severity.WARNING,

@@ -6,26 +6,26 @@ A handle takes one message in a round, whatever is stored for it.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from amalthea_uros.perf.executors import Executor, Handle, HandleKind, TriggerKind
 from amalthea_uros.timing.executors.wait import is_message
 
 
-def is_exclusive(executor: Executor, others: Iterable[Executor]) -> bool:
+def is_exclusive(executor: Executor, others: Sequence[Executor]) -> bool:
     """Whether at most one of the handles that receive messages is ready in a round.
 
     A wait takes one message, and it is called in the same round. Nothing is stored for later if no publication waits for an
-    acknowledgement, the trigger keeps nothing back, and no other executor receives in the same session.
+    acknowledgement, the trigger keeps nothing back, and no other executor receives from the same buffer.
     """
     return executor.waiting.messages_per_wait == 1 and not stores(executor, others)
 
 
-def stores(executor: Executor, others: Iterable[Executor]) -> bool:
+def stores(executor: Executor, others: Sequence[Executor]) -> bool:
     """Whether messages can be stored before a round that takes them: see `is_exclusive`."""
     return (
         keeps_back(executor)
-        or shares_session(executor, others)
+        or len(sharing(executor, others)) > 1
         or any(publication.waits for handle in executor.handles for publication in handle.publications)
     )
 
@@ -41,10 +41,13 @@ def starts_alone(handle: Handle, executor: Executor) -> bool:
 
 
 def shares_session(executor: Executor, others: Iterable[Executor]) -> bool:
-    """Whether another executor uses the same session."""
-    return executor.session is not None and any(
-        other.session == executor.session for other in others if other.name != executor.name
-    )
+    """Whether another executor uses the same session, so that they exclude each other."""
+    return executor.session is not None and len(sharing(executor, others)) > 1
+
+
+def sharing(executor: Executor, executors: Iterable[Executor]) -> list[Executor]:
+    """The executors that use the same buffers and slots for messages, itself included; without a session, all that have none."""
+    return [each for each in executors if each.session == executor.session]
 
 
 def at_once(executor: Executor) -> tuple[Handle, ...]:

@@ -47,7 +47,7 @@ def add_looping_executor(
     poll = _poll(context, executor, core) if polls_before_timers(executor) else None
     least = _least_time(context.runnables[executor.spin], core, context)
     exclusive = has_one_message_per_round(executor, is_alone)
-    check_executor(executor, section, callbacks, context.notes)
+    check_executor(executor, section, context.notes)
     context.executors.append(executor)
     context.tasks.append(
         PlannedTask(

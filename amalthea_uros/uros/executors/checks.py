@@ -20,7 +20,7 @@ from amalthea_uros.uros.notes import Notes
 _ACTIONS = (HandleKind.ACTION_SERVER, HandleKind.ACTION_CLIENT)
 
 
-def check_executor(executor: Executor, section: spec.Executor, callbacks: Sequence[Callback], notes: Notes) -> None:
+def check_executor(executor: Executor, section: spec.Executor, notes: Notes) -> None:
     """Report what is wrong with an executor with a loop, or will surprise."""
     _check_keys(executor, section, notes)
     _check_handle_limit(executor, section, notes)
@@ -28,7 +28,6 @@ def check_executor(executor: Executor, section: spec.Executor, callbacks: Sequen
     _check_polling(executor, section, notes)
     _check_one(executor, section, notes)
     _check_guard_conditions(executor, section, notes)
-    _check_timers(executor, callbacks, notes)
 
 
 def _check_keys(executor: Executor, section: spec.Executor, notes: Notes) -> None:
@@ -130,21 +129,6 @@ def _can_be_lost(guard: Handle, executor: Executor) -> bool:
         case TriggerKind.ONE | TriggerKind.CUSTOM:
             return frozenset([guard.name]) not in executor.trigger.sets
     return False
-
-
-def _check_timers(executor: Executor, callbacks: Iterable[Callback], notes: Notes) -> None:
-    """A timer is called once per round, and periods that it missed are skipped (ros2/rcl `rcl/src/rcl/timer.c`)."""
-    loop = executor.loop
-    least = max(loop.pace, loop.sleep - loop.sleep_early) or (loop.period if is_paced(loop) else None)
-    origins = {callback.name: callback.origin for callback in callbacks}
-    for handle in executor.handles:
-        if handle.kind is HandleKind.TIMER and handle.interval is not None and least and handle.interval < least:
-            message = (
-                f"{handle.name!r} loses periods: its timer expires every {time_text(handle.interval)}, but {executor.name!r} spins "
-                f"only once in {time_text(least)} or more, and calls a timer once per round"
-            )
-            advice = "Shorten the sleep or the period of the loop to less than the period of the timer."
-            notes.warning("EXE007", message, origins.get(handle.name), advice)
 
 
 def check_threads(executors: Iterable[str], sending_tasks: Sequence[Callback], middleware: Middleware, notes: Notes) -> None:

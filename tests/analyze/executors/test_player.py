@@ -1,99 +1,116 @@
-"""No call of a played executor is later than its bound, and nothing is lost of which the analysis does not say so."""
+"""Nothing that a player of the rules of rclc and of its middleware sees contradicts the analysis of executors."""
 
-import random
+from dataclasses import replace
+from random import Random
 
-from effort import examples
-from executor_player import MS, play
-from hypothesis import given
-from hypothesis import strategies as st
-from looping_executors import evaluate, guard, looping, message, timer, waiting_publication
+import pytest
+from effort import IS_THOROUGH
+from looping_executors import MS, US, evaluate, guard, looping, message, timer
+from played_executors import Spans, play
+from random_executors import application, violations
 
-from amalthea_uros.perf.executors import HandleKind, Loop, LoopKind, Waiting
-from amalthea_uros.units import MICROSECOND as US
-from amalthea_uros.units import MILLISECOND
+from amalthea_uros.perf.executors import Loop, LoopKind
 
-LOOPS = st.one_of(
-    st.builds(
-        lambda sleep, timeout: Loop(kind=LoopKind.SPIN_SOME, sleep=sleep * MILLISECOND, timeout=timeout * MILLISECOND),
-        st.sampled_from((0, 1, 10, 100)),
-        st.sampled_from((0, 1, 10, 100)),
-    ),
-    st.builds(lambda timeout: Loop(kind=LoopKind.SPIN, timeout=timeout * MILLISECOND), st.sampled_from((1, 20, 1000))),
-    st.builds(
-        lambda period, timeout: Loop(kind=LoopKind.SPIN_PERIOD, period=period * MILLISECOND, timeout=timeout * MILLISECOND),
-        st.sampled_from((5, 20)),
-        st.sampled_from((1, 10, 1000)),
-    ),
-)
-COSTS = st.sampled_from((0, 1, 130, 999, 2500))
+#: Applications, each of which is played with several draws of execution times, phases and arrivals.
+APPLICATIONS, PLAYS = (6000, 3) if IS_THOROUGH else (150, 2)
+PARTS = 10
+HORIZON = 300 * MS
 
 
-@st.composite
-def applications(draw):
-    """Handles in any order, with their costs, and whether they publish and wait."""
-    handles = []
-    for number in range(draw(st.integers(1, 4))):
-        interval, cost = draw(st.sampled_from((7, 40, 90, 250))) * MS, draw(COSTS)
-        publications = (
-            (waiting_publication(timeout=draw(st.sampled_from((5, 60))) * MILLISECOND),) if draw(st.integers(0, 3)) == 0 else ()
-        )
-        phase = draw(st.integers(0, interval)) * US
-        parts = {"phase": phase, "publications": publications}
-        match draw(st.sampled_from(("message", "message", "timer", "guard"))):
-            case "message":
-                jitter = draw(st.sampled_from((0, 0, 30))) * MILLISECOND
-                depth, always = draw(st.sampled_from((1, 2, 10))), draw(st.integers(0, 5)) == 0
-                overwrites = draw(st.booleans())
-                handles.append(
-                    message(
-                        f"h{number}", interval, cost, jitter=jitter, depth=depth, overwrites=overwrites, always=always, **parts
-                    )
-                )
-            case "timer":
-                handles.append(timer(f"h{number}", interval, cost, **parts))
-            case _:
-                handles.append(guard(f"h{number}", interval, cost, **parts))
-    waiting = Waiting(slots=draw(st.sampled_from((1, 4))))
-    return looping(
-        *handles, loop=draw(LOOPS), spin=draw(st.sampled_from((1, 50))), waiting=waiting, takes_first=draw(st.booleans())
-    ), {handle.name: cost for handle, cost in handles}
+@pytest.mark.parametrize("part", range(PARTS))
+def test_no_bound_is_exceeded_and_no_loss_is_untold(part):
+    for seed in range(part, APPLICATIONS, PARTS):
+        played = application(Random(seed))
+        results = played.results()
+        for number in range(PLAYS):
+            assert not violations(played.play(Random(1000 * seed + number), HORIZON), results), seed
 
 
-def releases(handles, kinds, chance, until):
-    """The times of messages or triggers, late by any part of their jitter, in the order of their arrival."""
-    found = []
-    for handle in handles:
-        if handle.kind in kinds:
-            period, jitter = handle.interval // US, handle.jitter // US
-            for nominal in range(handle.phase // US, until, period):
-                found.append((nominal + chance.choice((0, jitter, chance.randint(0, jitter))), handle.name))
-    return sorted(found, key=lambda each: each[0])
+def seen(system, costs):
+    """What is seen of the handles of the first executor, which the player executes with constant times in microseconds."""
+    executor = system.executors[0]
+    times = {handle.runnable: (cost * US, cost * US) for handle, cost in zip(executor.handles, costs, strict=True)}
+    spans = Spans(costs=times, spins={executor.name: (0, 0)}, sending={}, draw=lambda least, most: most)
+    (played,) = play((executor,), spans, 1000 * MS, start=0)
+    return [entity.seen for entity in played.entities]
 
 
-@examples(24)
-@given(applications(), st.integers(0, 2**32))
-def test_no_call_is_later_and_no_loss_is_untold(application, seed):
-    model, costs = application
-    result, executor, chance = evaluate(model), model.executors[0], random.Random(seed)
-    spin = model.runnables[executor.spin].activities[0].demand.ticks.value
-    until = 300 * MS
-    run = play(
-        executor,
-        costs,
-        spin,
-        releases(executor.handles, (HandleKind.SUBSCRIPTION,), chance, until),
-        releases(executor.handles, (HandleKind.GUARD_CONDITION,), chance, until),
-        chance,
-        until,
+def test_the_player_keeps_the_grid_of_a_timer_and_loses_the_periods_that_passed():
+    # Rounds begin every 25 ms. The timer is due at 0, 10, 20 ...; calls at 0, 25 (for 10), 50 (for 30), 75 (for 60): nobody is called
+    # for 20; 40 and 50; 70.
+    system = looping(timer("t", 10_000, phase=0), loop=Loop(kind=LoopKind.SPIN_SOME, timeout=0, sleep=25 * MS))
+    (found,) = seen(system, [0])
+    assert found.lateness[:4] == [0, 15 * MS, 20 * MS, 15 * MS]
+    assert found.lost[:3] == [1, 2, 1]
+
+
+def test_the_player_takes_one_message_per_round():
+    # Two messages at 0: the second one waits for the sleep of 10 ms, and for the callback of the first one.
+    system = looping(
+        message("a", 100_000, phase=0),
+        message("b", 100_000, phase=0),
+        loop=Loop(kind=LoopKind.SPIN_SOME, timeout=MS, sleep=10 * MS),
     )
-    for name, release, start, end in run.calls:
-        found = result.handles[name]
-        assert found.response.worst is None or (end - release) * US <= found.response.worst
-        assert (end - release) * US >= found.response.best
-        if found.lateness is not None and found.lateness.most is not None:
-            assert (start - release) * US <= found.lateness.most
-    assert run.lost <= {handle.name for handle in result.handles if handle.lost is not None}
-    for handle in result.handles:
-        if handle.terms:
-            assert sum(term.most for term in handle.terms) == handle.response.worst
-            assert all(term.most > 0 for term in handle.terms)
+    first, second = seen(system, [1000, 500])
+    assert (first.responses[0], second.responses[0]) == (1 * MS, 11 * MS + 500 * US)
+
+
+def test_the_player_wakes_a_millisecond_early_for_a_timer():
+    # The wait of 2.5 ms lasts 2 ms; the timer is seen after the sleep of 10 ms, 9.5 ms late.
+    system = looping(
+        timer("t", 100_000, phase=2500 * US),
+        message("a", 10_000_000, phase=9000 * MS),
+        loop=Loop(kind=LoopKind.SPIN_SOME, timeout=100 * MS, sleep=10 * MS),
+    )
+    assert seen(system, [0, 0])[0].lateness[0] == 9500 * US
+
+
+def test_a_wait_can_be_followed_by_preemption_in_each_cycle():
+    """The wait for stored messages is a part of the window: what preempts the thread when it ends is not that of before it."""
+    played = application(Random(1840))
+    assert not violations(played.play(Random(184_000), 400 * MS), played.results())
+
+
+def test_triggers_of_a_guard_condition_come_closer_by_their_jitter():
+    # Every 50 ms, up to 30 ms late: 20 ms apart. Rounds begin every 25 ms.
+    loop = Loop(kind=LoopKind.SPIN_SOME, timeout=0, sleep=25 * MS)
+    lost = evaluate(looping(guard("g", 50_000, jitter=30 * MS), loop=loop)).handles["g"].lost
+    assert lost is not None
+    assert lost.most == 1
+    assert evaluate(looping(guard("g", 50_000, jitter=20 * MS), loop=loop)).handles["g"].lost is None
+
+
+def test_triggers_that_come_at_an_unknown_rate_can_be_lost():
+    lost = evaluate(looping(guard("g"))).handles["g"].lost
+    assert lost is not None
+    assert lost.most is None
+    assert "nobody states how often" in lost.sequence
+
+
+def test_executors_share_the_slots_of_their_process():
+    """The other executor keeps its message for the whole round, in which no slot is left for one of the first."""
+    system = looping(message("a", 100_000, depth=10))
+    (executor,) = system.executors
+    assert evaluate(system).handles["a"].lost is None
+    handles = tuple(replace(executor.handles[0], name=name) for name in ("b", "c"))
+    slots = replace(executor.waiting, slots=2)
+    executors = (replace(executor, waiting=slots), replace(executor, name="Other", handles=handles, waiting=slots))
+    lost = evaluate(replace(system, executors=executors)).handles["a"].lost
+    assert lost is not None
+    assert lost.is_of_pool
+    assert not lost.is_replaced
+
+
+@pytest.mark.parametrize(
+    ("loop", "is_certain"),
+    [
+        (Loop(kind=LoopKind.SPIN_SOME, timeout=0, sleep=51 * MS), True),
+        (Loop(kind=LoopKind.SPIN_SOME, timeout=0, sleep=60 * MS, sleep_early=10 * MS), False),
+        (Loop(kind=LoopKind.SPIN_SOME, timeout=0, sleep=60 * MS, sleep_early=10 * MS, pace=60 * MS), True),
+        (Loop(kind=LoopKind.SPIN_PERIOD, timeout=0, period=51 * MS), True),
+        (Loop(kind=LoopKind.SPIN_PERIOD, timeout=0, period=49 * MS), False),
+    ],
+)
+def test_a_timer_that_expires_more_often_than_rounds_begin_loses_periods_for_certain(loop, is_certain):
+    lost = evaluate(looping(timer("t", 50_000), loop=loop)).handles["t"].lost
+    assert (lost is not None and lost.is_certain) is is_certain

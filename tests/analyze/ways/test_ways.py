@@ -180,6 +180,20 @@ def test_a_task_that_publishes_is_bounded_if_it_does_not_wait_for_the_acknowledg
     assert ("acknowledgement of '/odom'" in way.reason) is waits
 
 
+@pytest.mark.parametrize("waits", [False, True])
+def test_a_task_of_its_own_that_waits_has_no_known_response_time(waits):
+    """Its job is suspended until the acknowledgement comes, which its execution time does not contain."""
+    found = with_sender(board(), "sensor", "odom_out")
+    sent = tuple(replace(each, waits=waits and each.name == "odom_out") for each in found.network.transmissions)
+    analysis = analyze_system(replace(found, network=replace(found.network, transmissions=sent)))
+    response, reason = analysis.processes["sensor"].response, analysis.processes["sensor"].reason
+    # 20 us of its own, and pwm once.
+    assert (response and response.worst) == (None if waits else 70 * US)
+    assert ("acknowledgement of '/odom'" in reason) is waits
+    # The executor below it may be delayed by it later than its activation.
+    assert (analysis.executors["Executor"].handles["cmd"].response.worst is None) is waits
+
+
 def test_limits_are_judged_by_the_ways():
     limits = [(LatencyKind.REACTION, 200, Verdict.MET), (LatencyKind.REACTION, 3, Verdict.MISSED)]
     limits += [(LatencyKind.REACTION, 20, Verdict.UNKNOWN), (LatencyKind.AGE, 200, Verdict.UNKNOWN)]

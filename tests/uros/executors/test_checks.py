@@ -19,8 +19,6 @@ TIMER = "\n      timers: [{name: Control, period: 50 ms, execution_time: 300 us}
         ("{loop: {spin_some: 999 us, sleep: 1 ms}}", "EXE003"),
         ("{loop: {spin: 1 s}, trigger: all}", "EXE003"),
         ("{loop: {spin: 1 s}, trigger: {one: On_Map}}", "EXE003"),
-        ("{loop: {spin_some: 1 ms, sleep: 51 ms}}", "EXE007"),
-        ("{loop: {spin_period: 51 ms, timeout: 50 ms}}", "EXE007"),
         (f"{{{LOOP}, order: [On_Map, On_Map]}}", "EXE009"),
         (f"{{{LOOP}, period: 5 ms}}", "APP003"),
         (f"{{{LOOP}, offset: 5 ms}}", "APP003"),
