@@ -22,7 +22,8 @@ application:
   nodes:
     - name: node
       publishers: [{{topic: out, message_size: {size} B, reliability: {reliability}}}]
-      subscriptions: [{{name: On_In, topic: in, interval: {interval}, message_size: 4 B, reliability: best-effort, execution_time: 1 us}}]
+      subscriptions:
+        - {{name: On_In, topic: in, interval: {interval}, message_size: 4 B, reliability: best-effort, execution_time: 1 us}}
       timers: [{{name: Report, period: {period}, execution_time: 1 us, publishes: [out]}}]
 """
 
