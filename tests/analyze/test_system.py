@@ -54,7 +54,11 @@ class TestTheThesis:
 
     def test_the_built_model_gives_the_same_as_its_description(self):
         for sample in SAMPLES.glob("*.yaml"):
-            assert analysis_of(sample.with_suffix(".amxmi")) == analysis_of(sample)
+            built, described = analysis_of(sample.with_suffix(".amxmi")), analysis_of(sample)
+            # Findings lie in different files.
+            texts = ([(each.rule, each.message) for each in analysis.findings] for analysis in (built, described))
+            assert next(texts) == next(texts)
+            assert replace(built, findings=()) == replace(described, findings=())
 
 
 def waters():
