@@ -26,7 +26,9 @@ from amalthea_uros.analyze.ways.chain_results import chain_result
 from amalthea_uros.analyze.ways.evaluate import evaluate_ways
 from amalthea_uros.analyze.ways.results import Way
 from amalthea_uros.perf.events import EventChain
+from amalthea_uros.perf.network import Purpose
 from amalthea_uros.perf.software import Preemption, Task
+from amalthea_uros.perf.stimuli import RelativePeriodic
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.allocation import allocated_cores
 from amalthea_uros.timing.context import TimingContext
@@ -99,6 +101,7 @@ def _analysis(solution: Solution, budget: JobBudget, executors: Results[Executor
     context = solution.context
     system = context.system
     _note_ignored(solution)
+    _note_regular_frames(solution)
     evaluation = ChainEvaluator(solution, budget)
     schedules = evaluation.timing.schedules
     processes = Results(_processes(solution, schedules, executors))
@@ -134,6 +137,21 @@ def _chain(chain: EventChain, evaluation: ChainEvaluator) -> ChainResult:
         results.append(ChainEvaluator(solution, evaluation.budget).chain(chain))
         evaluation.context.notes.include(solution.context.notes)
     return merged_chain(results, list(cases.values()))
+
+
+def _note_regular_frames(solution: Solution) -> None:
+    """Tell which frames of others are taken to be on time; a DBC file states no jitter."""
+    system = solution.context.system
+    stimuli = {stimulus.name: stimulus for stimulus in system.stimuli.stimuli}
+    regular = [
+        each.name
+        for each in system.network.transmissions
+        if each.purpose is Purpose.FOREIGN
+        and any(isinstance(stimuli.get(name), RelativePeriodic) for name in system.processes[each.name].stimuli)
+    ]
+    if regular:
+        names = ", ".join(regular)
+        solution.context.notes.assume(f"frames of others without a stated jitter never come earlier than their period: {names}")
 
 
 def _note_ignored(solution: Solution) -> None:

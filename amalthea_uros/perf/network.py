@@ -41,11 +41,13 @@ class Wire(Named):
     ----------
     cores : that stand for it: one per direction if both can send at the same time, else one
     loses_messages : whether frames can be lost on it
+    keeps_sender : whether a thread of the controller that sends waits until its message is on the wire
     """
 
     kind: WireKind
     cores: tuple[str, ...]
     loses_messages: bool = False
+    keeps_sender: bool = False
 
 
 class Direction(StrEnum):
@@ -79,6 +81,7 @@ class Transmission(Named):
     processes : that a message passes before the executor sees it: interrupt service routines, then tasks of the middleware
     agent : time in the agent: from the host to the wire, from the wire to the host, or from a message to its acknowledgement
     waits : whether what sends it waits for its acknowledgement
+    is_dropped_when_busy : whether the middleware drops it, instead of waiting, while another thread is sending
     """
 
     wire: str
@@ -92,6 +95,7 @@ class Transmission(Named):
     processes: tuple[str, ...] = ()
     agent: Span = field(default_factory=Span)
     waits: bool = False
+    is_dropped_when_busy: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

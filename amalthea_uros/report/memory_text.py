@@ -8,12 +8,13 @@ from amalthea_uros.uros.memory.stack import StackUse
 
 def memory_rows(memory: Memory) -> list[tuple[str, str, str]]:
     """The parts with sizes and remarks, then the sum and what there is; nothing without micro-ROS and without a stated stack."""
-    rows = [(use.name, f"{use.size} B", use.formula) for use in memory.uses]
+    rows = [(use.name, f"{use.size} B" if use.is_bounded else "?", use.formula) for use in memory.uses]
     if memory.stacks.users:
         rows.append(("stack, shared" if memory.stacks.shared else "stacks", f"{memory.stacks.size} B", _stacks(memory.stacks)))
     if not rows:
         return []
-    unknown = "" if memory.is_complete else f"without the stacks of {', '.join(memory.stacks.unknown)}, which are not stated"
+    missing = memory.stacks.unknown
+    unknown = f"without the stacks of {', '.join(missing)}, which are not stated" if missing else ""
     rows.append(("total" if memory.is_complete else "total, at least", f"{memory.total} B", unknown))
     for name, size in (("budget", memory.budget), ("memory of the board", memory.ram)):
         if size is not None:

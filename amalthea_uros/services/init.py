@@ -44,11 +44,13 @@ class InitResult:
     path : the file
     origin : the board or the example that it is for, as people say it
     measurement : what was measured of the example: a log of a CAN bus and its markers, in the same folder
+    database : the DBC file that the example names, in the same folder
     """
 
     path: Path
     origin: str
     measurement: tuple[Path, ...] = ()
+    database: Path | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -101,7 +103,9 @@ def init_from_board(target: Path, board: str = DEFAULT_BOARD, *, force: bool = F
 
 
 def init_from_example(target: Path, example: str, *, force: bool = False) -> InitResult:
-    """Write a copy of an example, and of its measurement if it has one.
+    """Write a copy of an example, and of its measurement and its DBC file if it has one.
+
+    A DBC file that is there already with the same text remains: several examples share it.
 
     Parameters
     ----------
@@ -114,10 +118,27 @@ def init_from_example(target: Path, example: str, *, force: bool = False) -> Ini
     """
     path = _place(target)
     origins = {path: _samples() / f"{example}.yaml"}
+    measurement, database = {}, {}
     if not is_stream(path):
-        origins |= {path.parent / origin.name: origin for origin in _measurement(example)}
-    _write({place: origin.read_text(encoding="utf-8") for place, origin in origins.items()}, force)
-    return InitResult(path=path, origin=f"example {example}", measurement=tuple(origins)[1:])
+        measurement = {path.parent / origin.name: origin for origin in _measurement(example)}
+        database = {path.parent / origin.name: origin for origin in _databases(example)}
+    texts = {place: origin.read_text(encoding="utf-8") for place, origin in (origins | measurement | database).items()}
+    _write({place: text for place, text in texts.items() if not (place in database and _has(place, text))}, force)
+    return InitResult(
+        path=path, origin=f"example {example}", measurement=tuple(measurement), database=next(iter(database), None)
+    )
+
+
+def _has(path: Path, text: str) -> bool:
+    try:
+        return path.read_text(encoding="utf-8") == text
+    except (OSError, ValueError):
+        return False
+
+
+def _databases(example: str) -> list[Path]:
+    """Named like the example, or like the first part of the names of several."""
+    return [path for path in _samples().glob("*.dbc") if example == path.stem or example.startswith(f"{path.stem}-")]
 
 
 def _measurement(example: str) -> list[Path]:

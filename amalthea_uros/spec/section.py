@@ -72,6 +72,10 @@ class Section(BaseModel):
         """Whether the author wrote the key, or that of the platform."""
         return key in self.model_fields_set
 
+    def inherits(self, key: str) -> bool:
+        """Whether the key is stated, but not in the text of the section: a known platform states it."""
+        return self.states(key) and self._where is not None and key not in self._where[0].items
+
 
 class Shorthand(Section):
     """A section that may be written as a plain value.

@@ -13,14 +13,21 @@ SAMPLES = sorted((ROOT / "samples").glob("*.yaml"))
 
 
 #: What the importer does not take over of what the descriptions ask for: requirements, costs of accesses, a policy, statistics of
-#: execution times, a semaphore with a ceiling.
+#: execution times, a semaphore with a ceiling; least distances of messages, points at which frames of others are sent, curves of
+#: arrivals, and where a label is written.
 WISHES = {
     "bodas-test-advanced": {"INC-CO-KIND"},
     "bodas-test-hardware": {"INC-CO-KIND", "INC-HW-ACCESS", "INC-OS-ALGORITHM", "INC-SW-TICKS-STAT"},
     "bodas-test-measured": {"INC-CO-KIND"},
     "bodas-test-simple": {"INC-CO-KIND"},
     "drive-and-lift": {"INC-CO-KIND", "INC-OS-SEMA-TYPE"},
+    "esp32-serial": {"INC-EV-LABEL-RUN", "INC-ST-TYPE"},
     "rclc-in-executor": {"INC-CO-KIND"},
+    "robot-xrce": {"INC-ST-TYPE"},
+    "robot-zenoh": {"INC-ST-TYPE"},
+    "two-controllers-drive": {"INC-CO-KIND", "INC-ST-TYPE", "INC-SW-PREEMPTION"},
+    "two-controllers-lift": {"INC-CO-KIND", "INC-ST-TYPE", "INC-SW-PREEMPTION"},
+    "stm32-usb-cdc": {"INC-EV-LABEL-RUN", "INC-ST-TYPE"},
 }
 
 

@@ -89,6 +89,16 @@ def test_standard_output_has_no_measurement(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
+def test_examples_share_the_database_of_their_bus(tmp_path):
+    for name in ("drive", "lift"):
+        run = amuros("init", f"{name}.yaml", "--example", f"two-controllers-{name}", cwd=tmp_path)
+        assert (run.returncode, "two-controllers.dbc: the frames of others on its bus\n" in run.stdout) == (0, True)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["drive.yaml", "lift.yaml", "two-controllers.dbc"]
+    (tmp_path / "two-controllers.dbc").write_text("mine")
+    run = amuros("init", "again.yaml", "--example", "two-controllers-lift", cwd=tmp_path)
+    assert (run.returncode, run.stderr.partition("\n")[0]) == (2, "two-controllers.dbc: XMI101 error: the file exists already")
+
+
 def test_every_example_is_in_the_wheel():
     import tomllib
 
@@ -96,6 +106,7 @@ def test_every_example_is_in_the_wheel():
     included = project["tool"]["hatch"]["build"]["targets"]["wheel"]["force-include"]
     samples = {source: target for source, target in included.items() if source.startswith("samples/")}
     examples = [f"{name}{suffix}" for name in example_names() for suffix in (".yaml", ".log", ".markers.yml")]
+    examples += [path.name for path in (ROOT / "samples").glob("*.dbc")]
     assert samples == {
         f"samples/{name}": f"amalthea_uros/samples/{name}" for name in examples if (ROOT / "samples" / name).exists()
     }

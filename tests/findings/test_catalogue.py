@@ -86,14 +86,14 @@ def reported(example, family, folder):
                 (folder / "amuros.toml").write_text(example)
                 project_settings(folder / "model.amxmi")
                 return []
-            case "YML" | "APP" | "EXE":
+            case "YML" | "APP":
                 path = folder / "app.yaml"
                 path.write_text(example)
                 return build(path).assembly.findings
             case "GEN":
                 (folder / "colcon.meta").write_text(example)
                 return check_colcon_meta(ROOT / "samples" / "rclc-in-executor.yaml", folder / "colcon.meta").findings
-            case "CHN":
+            case "CHN" | "EXE":
                 path = folder / "app.yaml"
                 path.write_text(example)
                 described = describe(path)

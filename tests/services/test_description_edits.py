@@ -116,7 +116,8 @@ def test_messages_come_as_before_if_the_change_says_so():
 @pytest.mark.parametrize("newline", ["\n", "\r\n"], ids=["LF", "CRLF"])
 def test_a_change_touches_one_line_of_each_sample(path, newline):
     text = path.read_text().replace("\n", newline).removesuffix(newline)
-    process = describe_text(text).system.software.tasks[-1].name
+    system = describe_text(text).system
+    process = [task.name for task in system.software.tasks if task.name not in system.transmissions][-1]
     result = edited(text, f"{process}.deadline=900us")
     assert len(changed_lines(text, result.text)) == 1
     assert result.text.count("\r") == result.text.count("\n") * (newline == "\r\n")

@@ -14,7 +14,8 @@ from amalthea_uros.errors import ReadError, WriteError
 from amalthea_uros.services.generate import check_colcon_meta, generate
 from amalthea_uros.services.init import example_names
 
-SAMPLES = [ROOT / "samples" / f"{name}.yaml" for name in example_names()]
+#: zenoh-pico has no pools.
+SAMPLES = [ROOT / "samples" / f"{name}.yaml" for name in example_names() if name != "robot-zenoh"]
 RCLC = ROOT / "samples" / "rclc-in-executor.yaml"
 #: Everything that an application can have, with settings that the figures depend on.
 FULL = """

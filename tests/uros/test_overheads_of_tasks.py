@@ -184,3 +184,21 @@ tasks:
 """
     )
     assert found[1:] == ("APP002", "'A_Activation' is the interrupt that activates 'A'")
+
+
+def test_rounds_of_executors_have_overhead(author):
+    text = """
+        amuros: 1
+        name: app
+        hardware: {frequency: 100 MHz, cores: 1}
+        os: {overhead: {activation: 2 us, termination: 1 us}}
+        middleware:
+          executor: {name: Spinner, loop: {spin_some: 100 ms, sleep: 10 ms}, execution_time: 5 us}
+        application:
+          nodes:
+            - name: node
+              timers: [{name: Blink, period: 100 ms, execution_time: 300 us}]
+    """
+    author.describe(text)
+    # The executor takes 5 us, its callback 300 us; the operating system takes 2 us before and 1 us after them.
+    assert amuros.analyze_files(author.path).analysis.processes["Spinner"].response.worst == 308 * 10**6

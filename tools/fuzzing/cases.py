@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
@@ -10,12 +11,18 @@ from zipfile import ZIP_DEFLATED, ZipFile
 
 from templating import ROOT
 
-from fuzzing import description_mutations, model_mutations
+from fuzzing import description_mutations, model_mutations, source_mutations
+from fuzzing.descriptions import make_description
 
 _DESCRIPTIONS = (".yaml", ".yml")
 _MODELS = (".amxmi",)
-#: Of cases; there are many more models to start from.
-_DESCRIPTIONS_SHARE = 0.4
+#: What else commands read: sources to import, build options to check, databases of CAN frames.
+_SOURCES = (".c", ".cpp", ".ino")
+_OTHERS = (*_SOURCES, ".meta", ".dbc")
+#: Kinds of files, and how often each is taken; there are many more models to start from than others.
+_KINDS = ((_DESCRIPTIONS, 0.35), (_MODELS, 0.25), (_OTHERS, 0.15))
+#: Of the rest of the cases, which are made by chance, that of those that are not mutated.
+_UNCHANGED = 0.6
 #: In bytes; larger files take too long to tell anything more.
 _MAX_SIZE = 60_000
 _ENCODINGS = ("utf-16", "utf-8-sig", "latin-1", "cp1252", "utf-32")
@@ -36,18 +43,23 @@ class Case:
 
 def starting_points(folders: list[Path]) -> list[Path]:
     """The files that cases are made from: samples, hostile files, and those in further folders."""
-    own = [path for name in ("samples", "tests/hostile") for path in sorted((ROOT / name).iterdir())]
+    own = [path for name in ("samples", "samples/sources", "tests/hostile") for path in sorted((ROOT / name).iterdir())]
     files = [*own, *(path for folder in folders for path in sorted(folder.rglob("*")))]
-    known = (*_DESCRIPTIONS, *_MODELS)
+    known = (*_DESCRIPTIONS, *_MODELS, *_OTHERS)
     return [path for path in files if path.suffix in known and path.is_file() and path.stat().st_size <= _MAX_SIZE]
 
 
 def make_case(number: int, seed: int, files: list[Path]) -> Case:
     """The case of a number; the same for the same seed and files."""
     rng = Random(f"{seed}:{number}")
-    is_description = rng.random() < _DESCRIPTIONS_SHARE
-    path = rng.choice([path for path in files if (path.suffix in _DESCRIPTIONS) == is_description])
-    return Case(f"case{path.suffix}", _mutated(rng, path, path.read_bytes()))
+    share = rng.random()
+    for suffixes, part in _KINDS:
+        if share < part:
+            path = rng.choice([path for path in files if path.suffix in suffixes])
+            return Case(f"case{path.suffix}", _mutated(rng, path, path.read_bytes()))
+        share -= part
+    path, content = Path("case.yaml"), make_description(rng).encode()
+    return Case(path.name, content if rng.random() < _UNCHANGED else _mutated(rng, path, content))
 
 
 def _mutated(rng: Random, path: Path, content: bytes) -> bytes:
@@ -55,11 +67,19 @@ def _mutated(rng: Random, path: Path, content: bytes) -> bytes:
         text = content.decode()
     except UnicodeDecodeError:
         return _flipped(rng, content)
-    mutations = (description_mutations if path.suffix in _DESCRIPTIONS else model_mutations).MUTATIONS
+    mutations = _mutations(path.suffix)
     for _ in range(rng.choice((1, 1, 1, 2, 3, 8))):
         if text:
             text = rng.choice(mutations)(rng, text)
     return _encoded(rng, path, text)
+
+
+def _mutations(suffix: str) -> Sequence[Callable[[Random, str], str]]:
+    if suffix in _DESCRIPTIONS:
+        return description_mutations.MUTATIONS
+    if suffix in _MODELS:
+        return model_mutations.MUTATIONS
+    return source_mutations.MUTATIONS
 
 
 def _encoded(rng: Random, path: Path, text: str) -> bytes:

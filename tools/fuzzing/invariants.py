@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import json
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import fields, is_dataclass
 from pathlib import Path
 from random import Random
 from typing import NoReturn
@@ -14,7 +15,7 @@ from templating import ROOT
 
 from amalthea_uros.analyze.results import Analysis
 from amalthea_uros.analyze.verdicts import Verdict
-from amalthea_uros.diagnostics import Severity
+from amalthea_uros.diagnostics import Location, Severity
 from amalthea_uros.difference.comparison import ChangeKind
 from amalthea_uros.errors import AmurosError, WriteError
 from amalthea_uros.metamodel.model import Model
@@ -37,6 +38,21 @@ Invariant = Callable[[Path, Path], None]
 
 #: Of simulations that are compared with an analysis, in picoseconds.
 _SHORT = 20 * 10**9
+#: What build options are checked with.
+_WITH_POOLS = ROOT / "samples" / "drive-and-lift.yaml"
+#: An application on a bus of which others' frames are in a database.
+_ON_BUS = """
+amuros: 1
+name: on-bus
+hardware: {frequency: 100 MHz, cores: 1}
+middleware:
+  executor: {loop: {spin_some: 100 ms, sleep: 10 ms}}
+  transport: {can_fd: {bitrate: 500 kbit/s, data_bitrate: 2 Mbit/s, dbc: bus.dbc}}
+application:
+  nodes:
+    - name: n
+      subscriptions: [{name: On_A, topic: a, message_size: 8 B, rate: 1 Hz, execution_time: 10 us, reliability: best-effort}]
+"""
 #: What files are compared and combined with.
 _OTHER = ROOT / "samples" / "pump-1.2.0.amxmi"
 
@@ -169,6 +185,113 @@ def build(path: Path, folder: Path) -> None:
         require(not load(target).findings, "the model that was built has findings")
 
 
+def same_model(path: Path, folder: Path) -> None:
+    """Building twice gives the same bytes, and the model that was built means what the description means."""
+    first, again = folder / "first.amxmi", folder / "again.amxmi"
+    if run("build", path, "-o", first).code != 0:
+        return
+    run("build", path, "-o", again)
+    require(first.read_bytes() == again.read_bytes(), "two builds differ")
+    described, built = open_system([path]).system, open_system([first]).system
+    for part in ("executors", "network", "chains", "stimuli"):
+        require(
+            getattr(described, part) == getattr(built, part), f"{part} of the model that was built differ from those described"
+        )
+    results = [analyze_files(file).analysis for file in (path, first)]
+    for kind in ("processes", "executors", "ways", "chains", "requirements"):
+        of_description, of_model = ([*map(_figures, getattr(result, kind))] for result in results)
+        require(
+            of_description == of_model,
+            f"{kind} differ between description and model: {_first_difference(of_description, of_model)}",
+        )
+
+
+def _figures(value: object) -> object:
+    """A result without places in files."""
+    if is_dataclass(value):
+        return [
+            (part.name, _figures(getattr(value, part.name))) for part in fields(value) if part.name not in ("origin", "finding")
+        ]
+    if isinstance(value, Mapping):
+        return {str(key): _figures(item) for key, item in value.items()}
+    if isinstance(value, Iterable) and not isinstance(value, str):
+        return [*map(_figures, value)]
+    return None if isinstance(value, Location | Path) else str(value)
+
+
+def _first_difference(one: object, other: object) -> str:
+    """The first values that differ, which are as deep as possible."""
+    if isinstance(one, list | tuple) and isinstance(other, list | tuple) and len(one) == len(other):
+        return next((_first_difference(*pair) for pair in zip(one, other, strict=True) if pair[0] != pair[1]), "")
+    return f"{one!s:.200} and {other!s:.200}"
+
+
+def generate(path: Path, folder: Path) -> None:
+    """Options that were generated are sufficient, and are not generated differently again."""
+    texts = []
+    for target in (folder / "first", folder / "again"):
+        ended = run("generate", path, "-o", target)
+        require(target.exists() == (ended.code == 0), f"exit code {ended.code} with or without files")
+        texts.append({file.name: file.read_bytes() for file in sorted(target.iterdir())} if target.exists() else {})
+    require(texts[0] == texts[1], "two runs differ")
+    if "colcon.meta" in texts[0]:
+        report = folder / "check.json"
+        ended = run(
+            "generate", path, "--check", folder / "first" / "colcon.meta", "--output", "text", "--output", f"json={report}"
+        )
+        require(ended.code == 0, f"what was generated is not accepted: {ended.out[:300]}{ended.err[:300]}")
+        _check_json(report)
+
+
+def ways(path: Path, folder: Path) -> None:
+    """Times on the way of a message add up, in each format."""
+    report = folder / "analysis.json"
+    run("analyze", path, "--output", f"json={report}")
+    try:
+        found = analyze_files(path).analysis.ways
+    except AmurosError:
+        return
+    for way in found:
+        known = [hop.worst for hop in way.hops if hop.worst is not None]
+        require(
+            all(hop.best <= hop.worst for hop in way.hops if hop.worst is not None), f"a hop of {way.name} has crossed bounds"
+        )
+        require(way.worst is None or (bool(way.hops) and way.worst == sum(known)), f"hops of {way.name} do not add up")
+        require(way.worst is None or len(known) == len(way.hops), f"{way.name} is bounded, but a hop is not")
+        require(way.worst is not None or bool(way.reason), f"{way.name} is unknown without a reason")
+        run("analyze", path, "--chain", way.name)
+        run("analyze", path, "--explain", way.name)
+
+
+def import_code(path: Path, folder: Path) -> None:
+    """What is imported is a description with gaps, and is written again in the same way."""
+    first, again = folder / "first.yaml", folder / "again.yaml"
+    for target in (first, again):
+        ended = run("import", path, "-o", target)
+        require(target.exists() == (ended.code != 2), f"exit code {ended.code} with or without a file")
+    if first.exists():
+        require(first.read_bytes() == again.read_bytes(), "two runs differ")
+        for command in ("check", "analyze"):
+            require("TODO" not in first.read_text(encoding="utf-8") or run(command, first).code != 0, "a gap is accepted")
+
+
+def meta(path: Path, folder: Path) -> None:
+    """Whatever build options are, there is a sentence about them."""
+    report = folder / "check.json"
+    ended = run("generate", _WITH_POOLS, "--check", path, "--output", "text", "--output", f"json={report}")
+    if ended.code != 2:
+        _check_json(report)
+
+
+def database(path: Path, folder: Path) -> None:
+    """Whatever a database of frames is, it is used, or there is a sentence about it."""
+    shutil.copyfile(path, folder / "bus.dbc")
+    description = folder / "app.yaml"
+    description.write_text(_ON_BUS, encoding="utf-8")
+    for command in ("check", "analyze"):
+        run(command, description)
+
+
 def info(path: Path, folder: Path) -> None:
     """A summary parses."""
     report = folder / "info.json"
@@ -280,7 +403,7 @@ def _require_equal(old: Path, new: Path) -> None:
 
 
 _OF_BOTH: tuple[Invariant, ...] = (check, analyze, simulate, campaign, agreement, comparison)
-_OF_DESCRIPTIONS: tuple[Invariant, ...] = (build, *_OF_BOTH)
+_OF_DESCRIPTIONS: tuple[Invariant, ...] = (build, same_model, generate, ways, *_OF_BOTH)
 _OF_MODELS: tuple[Invariant, ...] = (
     info,
     load_and_save,
@@ -294,6 +417,13 @@ _OF_MODELS: tuple[Invariant, ...] = (
 )
 
 
+_OF_OTHERS: dict[str, tuple[Invariant, ...]] = {
+    ".meta": (meta,),
+    ".dbc": (database,),
+    **dict.fromkeys((".c", ".cpp", ".ino"), (import_code,)),
+}
+
+
 def invariants_of(path: Path) -> Iterator[Invariant]:
     """What must hold for a file."""
-    yield from _OF_DESCRIPTIONS if is_description(path) else _OF_MODELS
+    yield from _OF_OTHERS.get(path.suffix) or (_OF_DESCRIPTIONS if is_description(path) else _OF_MODELS)

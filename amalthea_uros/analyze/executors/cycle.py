@@ -24,11 +24,11 @@ from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.perf.executors import Executor, Handle, LoopKind
 from amalthea_uros.perf.network import Span
 from amalthea_uros.timing.executors.loops import SLEEP_RESOLUTION, least_sleep, longest_sleep
-from amalthea_uros.timing.executors.readiness import at_once, is_exclusive, stores
+from amalthea_uros.timing.executors.readiness import at_once, is_exclusive, keeps_back, stores
 from amalthea_uros.timing.executors.rounds import RoundCosts, round_costs
 from amalthea_uros.timing.executors.sending import Suspension, suspension_of, together
 from amalthea_uros.timing.executors.sessions import held_by_others
-from amalthea_uros.timing.executors.wait import greatest_wait, is_message
+from amalthea_uros.timing.executors.wait import greatest_wait, is_message, messages
 from amalthea_uros.timing.notes import UnknownDemandError
 from amalthea_uros.units import Time
 
@@ -210,6 +210,16 @@ class Cycle:
         """The shortest cycle of a round that calls a callback for a message."""
         costs = [self.costs.of(handle).best for handle in self.executor.handles if is_message(handle)]
         return least_sleep(self.executor) + (self.costs.spin.best + min(costs, default=0)) // self.time_base
+
+    @property
+    def most_served(self) -> int | None:
+        """The most messages that a round calls callbacks for; None if a wait takes all that are there, or the trigger keeps them.
+
+        A publication that waits reads all messages before its acknowledgement, and stores them: then each handle can have one.
+        """
+        if self.executor.waiting.messages_per_wait != 1 or keeps_back(self.executor):
+            return None
+        return len(messages(self.executor)) if self.stores else 1
 
     @property
     def unbounded(self) -> str:

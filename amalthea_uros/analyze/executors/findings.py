@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from fractions import Fraction
 
 from amalthea_uros.analyze.executors.results import ExecutorResult, HandleResult
@@ -27,7 +27,7 @@ def note_executors(results: Iterable[ExecutorResult], solution: Solution) -> Non
     notes, executors = solution.context.notes, solution.context.system.executors
     for executor, result in zip(executors, results, strict=True):
         _assume(executor, executors, notes)
-        _note_loop(executor, result, notes)
+        _note_loop(executor, executors, result, notes)
         _note_waiting(executor, executors, notes)
         for handle in result.handles:
             _note_handle(handle, executor, notes)
@@ -47,13 +47,12 @@ def _assume(executor: Executor, others: Iterable[Executor], notes: Notes) -> Non
         notes.assume(f"executors: {SESSION_ASSUMPTION}")
 
 
-def _note_loop(executor: Executor, result: ExecutorResult, notes: Notes) -> None:
+def _note_loop(executor: Executor, executors: Sequence[Executor], result: ExecutorResult, notes: Notes) -> None:
     growing = next((handle for handle in result.handles if handle.response.is_overload), None)
     if growing is not None:
-        age = _age_after(60 * SECOND, executor, result)
-        message = (
-            f"messages wait longer and longer in {executor.name!r}: {growing.response.reason.removeprefix('overload: ')}{age}"
-        )
+        age = "" if stores(executor, executors) else _age_after(60 * SECOND, executor, result)
+        why = growing.response.reason.removeprefix("overload: ").removesuffix(", so that messages wait longer and longer")
+        message = f"messages wait longer and longer in {executor.name!r}: {why}{age}"
         notes.error("EXE012", message, executor)
     elif executor.waiting.messages_per_wait == 1 and messages(executor) and least_pace(executor):
         most, arriving = Fraction(1, least_pace(executor)), certain_rate(executor)
@@ -86,7 +85,7 @@ def _note_waiting(executor: Executor, others: Iterable[Executor], notes: Notes) 
     guards = [handle.name for handle in executor.handles if handle.kind is HandleKind.GUARD_CONDITION]
     if guards and not waiting.guard_conditions_end_wait and greatest_wait(executor):
         names = ", ".join(map(repr, guards))
-        message = f"{names} of {executor.name!r} wakes nobody: it is seen after the wait, which lasts up to {wait}"
+        message = f"{names} does not wake {executor.name!r}: a trigger is seen after the wait, which lasts up to {wait}"
         notes.warning("EXE018", message, executor)
     if stores(executor, others) and messages(executor) and not waiting.stored_data_ends_wait and greatest_wait(executor):
         message = f"a message for {executor.name!r} that is stored already does not end its wait, which lasts up to {wait}"
@@ -103,11 +102,11 @@ def _note_waiting(executor: Executor, others: Iterable[Executor], notes: Notes) 
     if shares_session(executor, others):
         sharing = [each.name for each in others if each.session == executor.session and each.name != executor.name]
         longest = max(greatest_wait(each) for each in others if each.name in sharing)
-        publishers = [handle.runnable for handle in executor.handles if handle.publications]
+        publishers = [handle.name for handle in executor.handles if handle.publications]
         if publishers and longest:
             message = (
-                f"publications of {', '.join(publishers)} in {executor.name!r} wait for the session up to {time_text(longest)}, "
-                f"while {', '.join(sharing)} waits for input"
+                f"publications of {', '.join(map(repr, publishers))} in {executor.name!r} wait for the session "
+                f"up to {time_text(longest)}, while {' or '.join(map(repr, sharing))} waits for input"
             )
             notes.warning("EXE022", message, executor)
 
@@ -120,9 +119,7 @@ def _note_handle(handle: HandleResult, executor: Executor, notes: Notes) -> None
         if handle.lateness is not None and handle.interval and sleep > handle.interval * LATE:
             most = handle.lateness.most
             late = "an unknown time" if most is None else rounded_time_text(most, Rounding.UP)
-            message = (
-                f"{handle.name!r} can be called {late} after it is due, mainly because the loop sleeps for {time_text(sleep)}"
-            )
+            message = f"{handle.name!r} can be called {late} after it is due, {time_text(sleep)} of which the loop sleeps"
             notes.warning("EXE011", message, model)
         return
     certainly = "loses" if lost.is_certain else "can lose"

@@ -15,7 +15,7 @@ from collections.abc import Mapping
 
 from amalthea_uros.analyze.executors.cycle import Cycle
 from amalthea_uros.analyze.executors.losses import loss_of_timer, loss_of_triggers
-from amalthea_uros.analyze.executors.queue import Delay, delay_of
+from amalthea_uros.analyze.executors.queue import Delay, certain_overload, delay_of
 from amalthea_uros.analyze.executors.results import HandleResult
 from amalthea_uros.analyze.executors.terms import terms_of
 from amalthea_uros.analyze.executors.window import METHOD
@@ -101,5 +101,5 @@ def _delay(handle: Handle, cycle: Cycle, wait: Time, extra_jitter: Mapping[str, 
     if not is_message(handle):
         return Delay(cycles=1)
     if cycle.longest is None:
-        return Delay(cycles=None, reason=_unbounded(handle, cycle))
+        return certain_overload(cycle) or Delay(cycles=None, reason=_unbounded(handle, cycle))
     return delay_of(handle, cycle, cycle.longest + wait, extra_jitter)

@@ -17,7 +17,7 @@ from amalthea_uros.perf.executors import Handle
 from amalthea_uros.perf.network import Span
 from amalthea_uros.timing.executors.arrivals import UnknownArrivalsError, arrivals
 from amalthea_uros.timing.executors.readiness import keeps_back
-from amalthea_uros.timing.executors.slots import LIFESPAN, can_exceed_depth, can_exceed_slots
+from amalthea_uros.timing.executors.slots import LIFESPAN, can_exceed_depth, slots_needed
 from amalthea_uros.timing.executors.timers import lost_periods, next_expiration
 from amalthea_uros.timing.executors.wait import is_message
 from amalthea_uros.units import Rounding, Time, rounded_time_text, time_text
@@ -84,12 +84,9 @@ def with_lost_messages(
         if is_message(handle)
     }
     known = {name: count for name, count in stored.items() if count is not None}
-    is_pool_enough = len(known) == len(stored) and not can_exceed_slots(executor, known)
-    is_pool_enough = is_pool_enough or executor.waiting.slots is None
+    needed = slots_needed(executor, known) if len(known) == len(stored) else None
     return [
-        replace(result, lost=_lost(handle, result, cycle, stored[handle.name], is_pool_enough))
-        if handle.name in stored
-        else result
+        replace(result, lost=_lost(handle, result, cycle, stored[handle.name], needed)) if handle.name in stored else result
         for handle, result in zip(executor.handles, results, strict=True)
     ]
 
@@ -104,7 +101,8 @@ def _stored(handle: Handle, result: HandleResult, extra_jitter: Mapping[str, Tim
         return None
 
 
-def _lost(handle: Handle, result: HandleResult, cycle: Cycle, stored: int | None, is_pool_enough: bool) -> Loss | None:
+def _lost(handle: Handle, result: HandleResult, cycle: Cycle, stored: int | None, needed: int | None) -> Loss | None:
+    """How messages of a handle can be lost, of which and for all of which so many wait at the same time."""
     executor = cycle.executor
     if handle.depth is not None and (stored is None or can_exceed_depth(handle, stored)):
         count = f"{stored} messages" if stored is not None else "an unknown number of messages"
@@ -122,11 +120,12 @@ def _lost(handle: Handle, result: HandleResult, cycle: Cycle, stored: int | None
         wait = _text(result.response.worst)
         sequence = f"a message for {handle.name} can wait for {wait}; stored for {time_text(LIFESPAN)}, it is removed"
         return Loss(what="messages", is_certain=False, most=None, sequence=sequence)
-    if is_pool_enough:
+    slots = executor.waiting.slots
+    if slots is None or (needed is not None and needed <= slots):
         return None
-    slots = counted(executor.waiting.slots or 0, "slot")
+    waiting = "messages" if needed is None else f"up to {counted(needed, 'message')}"
     sequence = (
-        f"{_while_nothing_is_taken(cycle)}messages for all handles of {executor.name} together use its {slots}; "
+        f"{_while_nothing_is_taken(cycle)}{waiting} for all handles of {executor.name} together use its {counted(slots, 'slot')}; "
         f"a new one for {handle.name} is dropped then"
     )
     return Loss(what="messages", is_certain=False, most=None, sequence=sequence, is_of_pool=True)

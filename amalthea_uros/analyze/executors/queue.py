@@ -63,12 +63,16 @@ def delay_of(handle: Handle, cycle: Cycle, length: Time, extra_jitter: Mapping[s
     ----------
     length : of a cycle, with the wait if it does not end for messages that are stored
     """
+    overload = certain_overload(cycle)
+    if overload is not None:
+        return overload
     try:
         events = competing(handle, cycle, extra_jitter)
     except UnknownArrivalsError as error:
         return Delay(cycles=None, reason=str(error))
     if events.rate * length >= 1:
-        return _growing(cycle, events, length)
+        rate, served = _per_second(events.rate), _per_second(Fraction(1, length))
+        return Delay(cycles=None, reason=f"{rate} messages/s arrive, and rounds may serve only {served} per second")
     worst, found, count = Time(-1), Delay(cycles=1), 0
     while count < MAX_MESSAGES:
         count += 1
@@ -80,12 +84,21 @@ def delay_of(handle: Handle, cycle: Cycle, length: Time, extra_jitter: Mapping[s
     return Delay(cycles=None, reason=f"more than {MAX_MESSAGES:,} messages can wait: rounds are hardly faster than messages")
 
 
-def _growing(cycle: Cycle, events: EventModel, length: Time) -> Delay:
-    rate = f"{float(events.rate * SECOND):.4g} messages/s arrive"
-    certain = certain_rate(cycle.executor)
-    if cycle.executor.waiting.messages_per_wait == 1 and certain * cycle.shortest_with_message > 1:
-        served = float(Fraction(SECOND, cycle.shortest_with_message))
-        reason = f"overload: {rate}, and rounds serve at most {served:.4g} per second, so that messages wait longer and longer"
-        return Delay(cycles=None, reason=reason, is_overload=True)
-    served = float(Fraction(SECOND, length))
-    return Delay(cycles=None, reason=f"{rate}, and rounds may serve only {served:.4g} per second")
+def certain_overload(cycle: Cycle) -> Delay | None:
+    """The overload by messages of which it is certain that they arrive faster than rounds serve them; None if there is none.
+
+    It depends on no jitter: that of periodic messages does not change their rate.
+    """
+    rate, most = certain_rate(cycle.executor), cycle.most_served
+    if most is None or rate * cycle.shortest_with_message <= most:
+        return None
+    served = _per_second(Fraction(most, cycle.shortest_with_message))
+    reason = (
+        f"overload: {_per_second(rate)} messages/s arrive, and rounds serve at most {served} per second, "
+        "so that messages wait longer and longer"
+    )
+    return Delay(cycles=None, reason=reason, is_overload=True)
+
+
+def _per_second(rate: Fraction) -> str:
+    return f"{float(rate * SECOND):.4g}"

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.analyze.ways.results import Hop, HopKind
 from amalthea_uros.perf.network import Direction, Purpose, Span, Transmission
-from amalthea_uros.perf.software import Isr
+from amalthea_uros.perf.software import Isr, Task
 from amalthea_uros.units import Time
 
 _STATED = "stated"
@@ -62,6 +62,15 @@ def wire_hop(transmission: Transmission, solution: Solution) -> Hop:
         if response is not None and response.is_overload:
             remedy = f"Increase the rate of {transmission.wire!r}, send less often, or without acknowledgements."
         return Hop(kind=HopKind.WIRE, name=transmission.wire, best=best, worst=None, source="", reason=reason, remedy=remedy)
+    if (sender := _only_sender(transmission, solution)) is not None:
+        solution.context.notes.assume(f"a write to {transmission.wire} returns when the message is on the wire, not before")
+        return Hop(
+            kind=HopKind.WIRE,
+            name=transmission.wire,
+            best=response.best,
+            worst=min(response.worst, _longest(transmission, solution)),
+            source=f"only {sender} sends there, and a write returns when the message is on the wire, so that no message waits",
+        )
     return Hop(
         kind=HopKind.WIRE,
         name=transmission.wire,
@@ -69,6 +78,39 @@ def wire_hop(transmission: Transmission, solution: Solution) -> Hop:
         worst=response.worst,
         source=f"response time of {transmission.name} by {response.method}",
     )
+
+
+def _only_sender(transmission: Transmission, solution: Solution) -> str | None:
+    """The executor that alone sends in the direction of a message, where the driver keeps it until each message is on the wire.
+
+    One of its messages never waits for another one, however close to each other the task model has to assume them.
+    """
+    system = solution.context.system
+    wire = next((each for each in system.network.wires if each.name == transmission.wire), None)
+    if wire is None or not wire.keeps_sender or wire.loses_messages or len(wire.cores) < len(Direction):
+        return None
+    sent = {
+        each.name: each.purpose
+        for each in system.network.transmissions
+        if (each.wire, each.direction) == (transmission.wire, transmission.direction)
+    }
+    has_threads = any(
+        isinstance(system.processes.get(name), Task) for each in system.network.transmissions for name in each.processes
+    )
+    for executor in system.executors:
+        own = {each.transmission for handle in executor.handles for each in handle.publications}
+        if len(system.executors) == 1 and not has_threads:
+            # Without other threads, acknowledgements and heartbeats are sent by the executor while it waits.
+            own |= {name for name, purpose in sent.items() if purpose in (Purpose.ACKNOWLEDGEMENT, Purpose.HEARTBEAT)}
+        if sent.keys() <= own:
+            return executor.name
+    return None
+
+
+def _longest(transmission: Transmission, solution: Solution) -> Time:
+    """The longest time of a message on its wire, without waiting for it; its response time is known, so its demand is, too."""
+    name = transmission.name
+    return -(-solution.context.demands[name].worst // solution.context.time_base(name))
 
 
 def process_hop(name: str, solution: Solution) -> Hop:

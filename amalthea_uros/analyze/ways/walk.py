@@ -159,6 +159,8 @@ class Walk:
         for station in stations:
             if isinstance(station, Message) and station.transmission.wire in lossy:
                 yield f"messages can be lost on {station.transmission.wire!r}"
+            if isinstance(station, Message) and station.transmission.is_dropped_when_busy:
+                yield f"a message of {station.transmission.topic!r} is dropped if another thread of the middleware is sending"
             if (
                 isinstance(station, Callback)
                 and isinstance(before, Message | Passage)

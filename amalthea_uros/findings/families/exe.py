@@ -24,6 +24,12 @@ _GUARD = "      guard_conditions: [{name: Stop, execution_time: 4 us}]"
 _ACTION = """      action_servers:
         - {name: Move, rate: 1 Hz, goal_size: 4 B, result_size: 4 B, feedback_size: 4 B, execution_time: 4 us}"""
 
+_PUBLISHING = """      publishers: [{{topic: odom, message_size: 48 B}}]
+      timers: [{{name: Report, period: 10 s, execution_time: 1 ms, publishes: [odom]}}]
+      subscriptions:
+        - {{name: On_Command, topic: command, interval: 4 s, message_size: 4 B, execution_time: 4 us{more}}}
+        - {{name: On_Map, topic: map, interval: 4 s, message_size: 4 B, execution_time: 4 us}}"""
+
 
 def _example(executor: str, *callbacks: str) -> str:
     return _APPLICATION.format(executor=executor, callbacks="\n".join(callbacks))
@@ -82,7 +88,8 @@ KINDS = (
         severity=Severity.WARNING,
         rationale="Without a subscription, service or client, the wait of rmw_microxrcedds returns at once "
         "(rmw_microxrcedds#297), and the loop uses all the time that other tasks leave it. With the change #305 it "
-        "waits for the whole timeout, also if a guard condition is set.",
+        "waits for the whole timeout, also if a guard condition is set. Nothing reads the transport, except publications that wait "
+        "for their acknowledgement: what the agent sends fills the buffers (micro_ros_arduino#183).",
         remedy="Add a sleep to the loop, or a subscription, and check which version is built.",
         fails=_example("{loop: {spin: 1 s}}", _TIMER),
     ),
@@ -134,6 +141,7 @@ application:
             "follows. Rounds, and the sleep of the loop, are longer than its period."
         ),
         remedy="Shorten the sleep of the loop and the callbacks, lengthen the period, or move the timer to an executor of its own.",
+        fails=_example("{loop: {spin_some: 100 ms, sleep: 100 ms}}", _TIMER, _SUBSCRIPTION),
     ),
     FindingKind(
         id="EXE011",
@@ -145,6 +153,7 @@ application:
             "timer."
         ),
         remedy="Shorten the sleep of the loop, or use `spin` without a sleep and a timeout.",
+        fails=_example("{loop: {spin_some: 100 ms, sleep: 5 ms}}", _TIMER),
     ),
     FindingKind(
         id="EXE012",
@@ -155,6 +164,7 @@ application:
             "the order of their arrival: the overload is seen as growing age of the data, not as lost messages."
         ),
         remedy="Shorten the sleep of the loop, reduce the rate of messages, or use several executors.",
+        fails=_example("{loop: {spin_some: 100 ms, sleep: 100 ms}}", _SUBSCRIPTION),
     ),
     FindingKind(
         id="EXE013",
@@ -165,6 +175,7 @@ application:
             "together. The rest of this capacity is small, and bursts take long to be served."
         ),
         remedy="Shorten the sleep of the loop, or reduce the rate of messages.",
+        fails=_example("{loop: {spin_some: 100 ms, sleep: 15 ms}}", _SUBSCRIPTION),
     ),
     FindingKind(
         id="EXE014",
@@ -175,6 +186,7 @@ application:
             "is dropped when none is free, also with reliable QoS."
         ),
         remedy="Increase RMW_UXRCE_MAX_HISTORY, shorten the timeout of publications, or let messages be taken earlier.",
+        fails=_example("{loop: {spin_some: 100 ms}}\n  limits: {RMW_UXRCE_MAX_HISTORY: 1}", _PUBLISHING.format(more="")),
     ),
     FindingKind(
         id="EXE015",
@@ -185,6 +197,7 @@ application:
             "dropped. A stored message is also removed when it gets older than the lifespan."
         ),
         remedy="Increase the depth, reduce the rate of messages, or let them be taken earlier.",
+        fails=_example("{loop: {spin_some: 100 ms}}", _PUBLISHING.format(more=", jitter: 3.5 s, depth: 1")),
     ),
     FindingKind(
         id="EXE016",
@@ -195,6 +208,7 @@ application:
             "without a pause until it is true."
         ),
         remedy="Put timers into an executor whose trigger condition is `any`.",
+        fails=_example("{loop: {spin: 1 s}, trigger: all}", _TIMER, _SUBSCRIPTION),
     ),
     FindingKind(
         id="EXE017",
@@ -205,16 +219,18 @@ application:
             "does not look at them, and lasts until the next message, timer or timeout."
         ),
         remedy="Shorten the timeout of the executor, or publish with best-effort QoS.",
+        fails=_example("{loop: {spin_some: 100 ms}}", _PUBLISHING.format(more="")),
     ),
     FindingKind(
         id="EXE018",
-        title="guard condition that wakes nobody",
+        title="guard condition that does not wake the executor",
         severity=Severity.WARNING,
         rationale=(
             "The middleware looks at guard conditions only after the wait, so that a trigger is seen when a message, a "
             "timer or the timeout ends it."
         ),
         remedy="Shorten the timeout of the executor, or add a timer with the period at which triggers must be seen.",
+        fails=_example("{loop: {spin: 1 s}}", _SUBSCRIPTION, _GUARD),
     ),
     FindingKind(
         id="EXE020",
@@ -225,6 +241,7 @@ application:
             "not sleep until it has caught up, so that a burst of rounds follows."
         ),
         remedy="Set a timeout that is shorter than the period less the execution time of a round (rclc_executor_set_timeout).",
+        fails=_example("{loop: {spin_period: 10 ms}}", _SUBSCRIPTION),
     ),
     FindingKind(
         id="EXE022",
@@ -235,6 +252,24 @@ application:
             "its timeout; others cannot publish meanwhile."
         ),
         remedy="Use a short timeout in all executors of the session, or one executor only.",
+        fails="""
+amuros: 1
+name: app
+hardware: {platform: single-core, frequency: 100 MHz}
+middleware:
+  multithread: true
+  executors:
+    - {name: Fast, loop: {spin: 1 s}}
+    - {name: Slow, loop: {spin_some: 10 ms, sleep: 10 ms}}
+application:
+  nodes:
+    - name: node
+      publishers: [{topic: state, message_size: 8 B, reliability: best-effort}]
+      subscriptions:
+        - {name: On_Command, topic: command, rate: 2 Hz, message_size: 4 B, execution_time: 4 us}
+      timers:
+        - {name: Report, period: 500 ms, execution_time: 1 ms, publishes: [state], runs_in: Slow}
+""",
     ),
     FindingKind(
         id="EXE023",
@@ -245,5 +280,6 @@ application:
             "is seen while the trigger condition of the executor is false is lost."
         ),
         remedy="Trigger it less often, or see it earlier with a shorter timeout.",
+        fails=_example("{loop: {spin: 1 s}, trigger: all}", _SUBSCRIPTION, _GUARD),
     ),
 )

@@ -35,7 +35,7 @@ KINDS = (
         id="GEN004",
         title="build option with an invalid value",
         severity=Severity.ERROR,
-        rationale="The build stops with an error, or makes something else than was meant.",
+        rationale="The build stops with an error, or uses another value than the one that was meant.",
         remedy="Correct the value; the histories of streams are powers of two.",
         fails='{"names": {"rmw_microxrcedds": {"cmake-args": ["-DRMW_UXRCE_STREAM_HISTORY=3"]}}}',
     ),

@@ -28,7 +28,7 @@ KINDS = (
         1,
         "value that is not filled in yet",
         _ERROR,
-        "TODO stands for a value that the source code does not tell. Whatever was assumed instead could make a result too good.",
+        "The value cannot be read from the source code, and an assumption instead of TODO could make a result too good.",
         "Replace TODO by a value.",
         """
 amuros: 1

@@ -50,6 +50,8 @@ def _tasks(terminal: Terminal, assembly: Assembly) -> None:
     if rows:
         terminal.heading(f"Tasks ({len(rows)})")
         terminal.table(("task", "activated", "priority", "core", "reason"), rows, right=(2,))
+    if assembly.placement:
+        terminal.line(f"  {assembly.placement}")
 
 
 def _isrs(terminal: Terminal, system: System) -> None:
@@ -69,7 +71,6 @@ def _executors(terminal: Terminal, assembly: Assembly) -> None:
     if not executors:
         return
     terminal.heading(f"Executors ({len(executors)})")
-    terminal.line(f"  {assembly.placement}")
     for executor in executors:
         terminal.line(f"  {executor.name}: {loop_text(executor)}")
     rows = [

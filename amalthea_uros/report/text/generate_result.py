@@ -11,12 +11,13 @@ from amalthea_uros.uros.generated_options import values_of
 def write(result: GenerateResult, terminal: Terminal) -> None:
     """Write the names of the files, the options in them, the memory of the description, and what to do next."""
     write_closing(result, terminal)
-    terminal.heading("Build options")
     rows = [
         (option.name, option.text(value), option.unit, option.text(option.available), option.counts)
         for option, value in values_of(result.assembly.options)
     ]
-    terminal.table(("option", "generated", "", "described", "what it counts"), rows, right=(1, 3))
+    terminal.heading("Build options" if rows else "Build options: the defaults of the middleware hold")
+    if rows:
+        terminal.table(("option", "generated", "", "described", "what it counts"), rows, right=(1, 3))
     saved = result.assembly.memory.total - result.memory.total
     compared = f" ({saved} B less than described)" if saved > 0 else ""
     terminal.heading(f"Memory with these options{compared}")

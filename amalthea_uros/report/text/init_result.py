@@ -36,5 +36,7 @@ def write(result: InitResult, terminal: Terminal) -> None:
 def write_closing(result: InitResult, terminal: Terminal) -> None:
     """Write the names of the files."""
     terminal.line(f"{terminal.style(str(result.path), '1')}: written from {result.origin}")
+    if result.database is not None:
+        terminal.line(f"{terminal.style(str(result.database), '1')}: the frames of others on its bus")
     if result.measurement:
         terminal.line(f"{', '.join(terminal.style(str(path), '1') for path in result.measurement)}: its measurement")

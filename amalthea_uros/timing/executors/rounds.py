@@ -61,8 +61,8 @@ def round_costs(executor: Executor, context: TimingContext) -> RoundCosts:
     spin = _cost(executor.spin, process, core, context)
     beside = context.demand_model.of_process(process, core).worst - _of_activities(process, core, context)
     return RoundCosts(
-        # What a job executes besides its activities, such as copies of labels, can be anywhere in it.
-        spin=Cost(spin.best, spin.worst + max(0, beside)),
+        # What a job executes besides its activities, such as copies of labels, can be anywhere in it; that of others is overhead.
+        spin=Cost(spin.best, spin.worst + max(0, beside) + _of_others(executor, process, core, context)),
         takes={
             handle.name: Cost(0, 0) if handle.take is None else _cost(handle.take, process, core, context)
             for handle in executor.handles
@@ -73,6 +73,13 @@ def round_costs(executor: Executor, context: TimingContext) -> RoundCosts:
 
 def _of_activities(process: Process, core: str, context: TimingContext) -> Time:
     return context.demand_model.of_activities(process, process.activities, core).worst
+
+
+def _of_others(executor: Executor, process: Process, core: str, context: TimingContext) -> Time:
+    """What the task calls around the round: overhead of the operating system, which no handle has."""
+    own = {executor.spin, *(name for handle in executor.handles for name in (handle.take, handle.runnable))}
+    others = [activity for activity in process.activities if isinstance(activity, Call) and activity.runnable not in own]
+    return context.demand_model.of_activities(process, others, core).worst
 
 
 def _cost(runnable: str, process: Process, core: str, context: TimingContext) -> Cost:

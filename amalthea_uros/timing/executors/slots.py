@@ -21,12 +21,10 @@ def can_exceed_depth(handle: Handle, stored: int) -> bool:
     return handle.depth is not None and stored > handle.depth
 
 
-def can_exceed_slots(executor: Executor, stored: Mapping[str, int]) -> bool:
-    """Whether the messages of all handles are more than there are slots; by the names of handles."""
-    slots = executor.waiting.slots
-    kept = sum(
+def slots_needed(executor: Executor, stored: Mapping[str, int]) -> int:
+    """The slots for the messages of all handles, with those by the names of handles."""
+    return sum(
         stored[handle.name] if handle.depth is None else min(stored[handle.name], handle.depth)
         for handle in executor.handles
         if handle.name in stored
     )
-    return slots is not None and kept > slots

@@ -148,7 +148,7 @@ def _check_timers(executor: Executor, callbacks: Iterable[Callback], notes: Note
 
 
 def check_threads(executors: Iterable[str], sending_tasks: Sequence[Callback], middleware: Middleware, notes: Notes) -> None:
-    """Report threads that use the middleware at the same time although it is not built for that.
+    """Report threads that use a middleware at the same time that does not protect its session.
 
     Nothing is locked without `UCLIENT_PROFILE_MULTITHREAD` (eProsima/Micro-XRCE-DDS-Client `CMakeLists.txt`).
 
@@ -158,7 +158,7 @@ def check_threads(executors: Iterable[str], sending_tasks: Sequence[Callback], m
     sending_tasks : callbacks with tasks of their own that send messages
     """
     threads = [*executors, *(callback.name for callback in sending_tasks)]
-    if middleware.multithread or len(threads) < 2:
+    if len(threads) < 2:
         return
     message = f"{_listed(threads)} use the session of the middleware from several threads, but nothing locks it"
     advice = "Build with UCLIENT_PROFILE_MULTITHREAD=ON and set 'multithread: true', or let one executor run all callbacks."

@@ -39,7 +39,8 @@ def placement(description: Description, platform: str | None) -> str:
     if not executor.states("callbacks"):
         return f"callbacks run {place}" + (", as rclc does" if inside else " by default")
     location, own = executor.location("callbacks"), description.location()
-    if location is not None and own is not None and location.path != own.path:
+    is_of_file = location is not None and own is not None and location.path != own.path
+    if is_of_file or executor.inherits("callbacks"):
         return f"the platform {platform or ''} runs callbacks {place}"
     return f"callbacks run {place}: set in app.yaml"
 

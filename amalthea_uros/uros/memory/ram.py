@@ -43,13 +43,13 @@ class Memory(Brief):
 
     @property
     def total(self) -> int:
-        """In bytes; a lower bound if the size of a stack is unknown."""
+        """In bytes; a lower bound if a size is unknown."""
         return sum(use.size for use in self.uses) + self.stacks.size
 
     @property
     def is_complete(self) -> bool:
-        """Whether the sizes of all stacks are stated."""
-        return not self.stacks.unknown
+        """Whether all sizes are known."""
+        return not self.stacks.unknown and all(use.is_bounded for use in self.uses)
 
 
 def memory_of(description: Description, hardware: Hardware, system: System, profile: Profile) -> Memory:

@@ -1,4 +1,4 @@
-"""Senders that wait, and threads that disturb each other when they send."""
+"""Senders that wait, for acknowledgements or for threads that keep the session."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from amalthea_uros.uros.notes import Notes
 
 
 def check_blocking(callbacks: Sequence[Callback], middleware: Middleware, profile: Profile, notes: Notes) -> None:
-    """Report waiting that execution times and response times do not contain, and threads that are not kept apart."""
+    """Report waiting that execution times and response times do not contain."""
     senders = [callback for callback in callbacks if callback.outgoing]
     loops = {executor.name: executor for executor in stated_executors(middleware) if executor.loop is not None}
     outside = [callback for callback in senders if not (callback.in_executor and callback.executor in loops)]
@@ -69,13 +69,9 @@ def _check_recovery(callbacks: Sequence[Callback], middleware: Middleware, profi
 def _check_threads(
     senders: Iterable[Callback], loops: Sequence[Executor], middleware: Middleware, profile: Profile, notes: Notes
 ) -> None:
-    """Report threads that use the middleware at the same time."""
+    """Report threads that keep others from sending; that nothing protects the session is reported with the executors."""
     how = profile.sending(middleware)
-    if not how.is_protected:
-        text = "several threads use the middleware, but it is built for one: nothing protects its session"
-        advice = "Set 'multithread: true' and build with UCLIENT_PROFILE_MULTITHREAD=ON, or use one thread."
-        notes.warning("UR124", text, middleware.location("multithread"), advice)
-    elif how.holds_session_while_waiting:
+    if how.holds_session_while_waiting:
         default = profile.waiting(middleware).default_timeout
         timeout = time_text(max(_timeout(executor, default) for executor in loops))
         text = f"a thread that waits for messages keeps the session for up to {timeout}; others that send wait for it:"

@@ -5,6 +5,8 @@ from __future__ import annotations
 from amalthea_uros.uros.callbacks import Message
 from amalthea_uros.uros.middleware.profile import MessageKind
 
+#: Bytes of a message, above which it is refused whatever the middleware: its parts and frames could take all memory.
+LONGEST = 2**20
 #: By the ends of the names of their channels; for messages that arrive and for those that leave.
 _KINDS = {
     "_topic": (MessageKind.DELIVERY, MessageKind.PUBLICATION),
@@ -20,5 +22,10 @@ def message_kind(message: Message, *, incoming: bool) -> MessageKind:
 
 
 def content_bytes(message: Message) -> int:
-    """The length of a message in bytes, without headers."""
+    """The length of a message in bytes, without headers; of one that is too long for everything, the longest that is not."""
+    return min(stated_bytes(message), LONGEST)
+
+
+def stated_bytes(message: Message) -> int:
+    """The length of a message in bytes, without headers, however long it is."""
     return -(-message.size // 8)

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.uros.callbacks import Callback, Message
-from amalthea_uros.uros.middleware.kinds import content_bytes, message_kind
+from amalthea_uros.uros.middleware.kinds import LONGEST, message_kind, stated_bytes
 from amalthea_uros.uros.middleware.profile import Profile
 from amalthea_uros.uros.notes import Notes
 
@@ -14,9 +14,10 @@ from amalthea_uros.uros.notes import Notes
 def check_message_sizes(callbacks: Iterable[Callback], middleware: Middleware, profile: Profile, notes: Notes) -> None:
     """Report messages that cannot be sent or received."""
     for message, incoming in _messages(callbacks):
-        kind, content = message_kind(message, incoming=incoming), content_bytes(message)
-        limit = profile.largest_content(kind, reliable=message.reliable, middleware=middleware)
-        if limit is None or content <= limit:
+        kind, content = message_kind(message, incoming=incoming), stated_bytes(message)
+        largest = profile.largest_content(kind, reliable=message.reliable, middleware=middleware)
+        limit = LONGEST if largest is None else min(LONGEST, largest)
+        if content <= limit:
             continue
         verb = "received" if incoming else "sent"
         how = "reliably" if message.reliable else "best effort"

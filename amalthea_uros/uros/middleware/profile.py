@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from amalthea_uros.perf.executors import Waiting
 from amalthea_uros.perf.named import Brief
@@ -114,12 +114,14 @@ class MemoryUse(Brief):
 
     Attributes
     ----------
-    formula : how it is computed, with the values
+    size : the least, if it is not bounded
+    formula : how it is computed, with the values; why it is not bounded
     """
 
     name: str
     size: int
     formula: str
+    is_bounded: bool = True
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -164,6 +166,21 @@ class Sending(Brief):
     is_protected: bool
 
 
+class Heartbeat(NamedTuple):
+    """A message that the middleware sends by itself.
+
+    Attributes
+    ----------
+    length : in bytes, without the framing of the transport
+    interval : the least one
+    is_answered : whether it asks for acknowledgements, while something is not acknowledged; else it keeps the connection alive
+    """
+
+    length: int
+    interval: Time
+    is_answered: bool
+
+
 class Profile(Protocol):
     """A middleware; sizes are in bytes, and `content` is the serialised message without headers."""
 
@@ -198,8 +215,8 @@ class Profile(Protocol):
         """What is sent for a message: one part, or fragments."""
         ...
 
-    def heartbeat(self, middleware: Middleware) -> tuple[int, Time] | None:
-        """Length and least interval of messages that are sent while something is not acknowledged, or to keep alive; None for none."""
+    def heartbeat(self, middleware: Middleware) -> Heartbeat | None:
+        """What it sends by itself, in both directions; None for nothing."""
         ...
 
     def gives_up_after(self, kind: MessageKind, content: int, *, reliable: bool, middleware: Middleware) -> Time | None:

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 from fractions import Fraction
 from itertools import pairwise
 
+from amalthea_uros.perf.executors import Executor
 from amalthea_uros.perf.network import Direction, Purpose
 from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.transports import Can, CanFd, CustomTransport, Driver, Serial, Transport, UsbCdc
@@ -13,11 +14,12 @@ from amalthea_uros.units import SECOND, Time, data_size_text, time_text
 from amalthea_uros.uros.notes import Notes
 from amalthea_uros.uros.transports.can_fd import SIZES
 from amalthea_uros.uros.transports.choice import driver_of, is_bus
-from amalthea_uros.uros.transports.driver import WAITING
+from amalthea_uros.uros.transports.driver import WAITING, bytes_between_reads, steady_time
 from amalthea_uros.uros.transports.foreign import ForeignFrame
 from amalthea_uros.uros.transports.framing import CHUNK, longest_frame
 from amalthea_uros.uros.transports.line import Line, WireSection, wire_sections
 from amalthea_uros.uros.transports.messages import WireMessage
+from amalthea_uros.uros.transports.queueing import Queued
 from amalthea_uros.uros.transports.wires import WirePlan
 
 #: Baud rates that users advise, from the default on.
@@ -144,14 +146,55 @@ def _check_chunks(messages: Iterable[WireMessage], line: Line, notes: Notes) -> 
         return
     tick: Time | None = getattr(line, "tick", None)
     on_line = CHUNK * section.bits_per_byte * SECOND // section.baud_rate
-    sends = any(message.direction is Direction.TO_AGENT for message in messages)
-    if tick is not None and sends and tick > on_line:
-        rate = CHUNK * SECOND // tick
+    sent = [message for message in messages if message.direction is Direction.TO_AGENT]
+    if tick is not None and sent and tick > on_line:
+        longest = max(sent, key=lambda message: message.length)
+        chunks = [frame for part in longest.parts for frame in line.frames(part.length, Direction.TO_AGENT) if frame.least]
+        time = steady_time(chunks, tick, section.baud_rate)
         text = (
             f"each chunk of {CHUNK} bytes takes a tick of {time_text(tick)}, although it is on the line for less: "
-            f"{rate:,} bytes per second at most, whatever the baud rate"
+            f"{CHUNK * SECOND // tick:,} bytes per second at most, whatever the baud rate; "
+            f"a message of {longest.message.topic!r} takes {time_text(time)} or more, "
+            f"so that {float(Fraction(SECOND, time)):.4g} are sent per second at most"
         )
         notes.info("UR135", text, section.driver.location("write"), "Use 'write: blocking', or a shorter tick.")
+
+
+def check_reading(plan: WirePlan, executors: Iterable[Executor], notes: Notes) -> None:
+    """Report a receive buffer that can overflow while the loop of an executor sleeps: nothing reads the line meanwhile.
+
+    The driver writes round the end of its buffer (micro-ROS/micro_ros_stm32cubemx_utils
+    `extra_sources/microros_transports/dma_transport.c`), so that the frames in it are destroyed.
+    """
+    section = plan.line.section
+    sleeps = {executor.name: _pause(executor) for executor in executors}
+    if not isinstance(section, Serial) or section.driver.buffer is None or not sleeps:
+        return
+    # Whichever executor waits reads for all of them.
+    name = min(sleeps, key=lambda each: sleeps[each])
+    size, pause = section.driver.buffer // _BITS_PER_BYTE, sleeps[name]
+    on_line = bytes_between_reads(section.baud_rate, section.bits_per_byte, pause)
+    count = min(on_line, sum(_bytes_in(pause, each) for each in plan.queued))
+    if count > size:
+        text = (
+            f"up to {count} bytes can arrive while the loop of {name!r} sleeps for {time_text(pause)} and nothing is read, "
+            f"more than the receive buffer of {size}"
+        )
+        advice = f"Sleep for less, or set a buffer of {count} B or more; what is overwritten in it is lost."
+        notes.warning("UR139", text, section.driver.location("buffer"), advice)
+
+
+def _pause(executor: Executor) -> Time:
+    """The longest time between two waits in which the thread sleeps."""
+    loop = executor.loop
+    return loop.sleep or max(0, (loop.period or 0) - loop.timeout)
+
+
+def _bytes_in(time: Time, queued: Queued) -> int:
+    """The most bytes of frames of one kind that arrive in a time, if they are late by up to an interval."""
+    if queued.transmission.direction is not Direction.TO_CONTROLLER or not queued.interval:
+        return 0
+    return max(1, queued.times) * (time // queued.interval + 2) * sum(map(longest_frame, queued.parts))
 
 
 def check_foreign(frames: Iterable[ForeignFrame], notes: Notes) -> None:

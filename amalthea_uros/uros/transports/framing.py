@@ -8,6 +8,7 @@ the flag or the escape byte is sent as two. Client and agent fill a buffer of 42
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cache
 from itertools import zip_longest
 
 from amalthea_uros.uros.transports.line import Frame
@@ -50,9 +51,8 @@ def reads(frame: int) -> tuple[int, int]:
 
 def spread(least: Sequence[int], most: Sequence[int], bits_per_byte: int) -> tuple[Frame, ...]:
     """Frames of so many bytes each, in bits; the last ones are only there if bytes are escaped."""
-    return tuple(
-        Frame(least=low * bits_per_byte, most=high * bits_per_byte) for low, high in zip_longest(least, most, fillvalue=0)
-    )
+    frame = cache(lambda low, high: Frame(least=low * bits_per_byte, most=high * bits_per_byte))  # most are equal
+    return tuple(frame(low, high) for low, high in zip_longest(least, most, fillvalue=0))
 
 
 def in_chunks(length: int, bits_per_byte: int) -> tuple[Frame, ...]:

@@ -11,7 +11,7 @@ from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.units import Time
 from amalthea_uros.uros.callbacks import Callback, Message, transmission_name_of
 from amalthea_uros.uros.middleware.kinds import content_bytes, message_kind
-from amalthea_uros.uros.middleware.profile import MessageKind, Part
+from amalthea_uros.uros.middleware.profile import Heartbeat, MessageKind, Part, Sending
 
 
 class Messaging(Protocol):
@@ -21,8 +21,12 @@ class Messaging(Protocol):
         """What is sent for a message."""
         ...
 
-    def heartbeat(self, middleware: Middleware) -> tuple[int, Time] | None:
-        """Length and least interval of messages that ask for acknowledgements."""
+    def heartbeat(self, middleware: Middleware) -> Heartbeat | None:
+        """What the middleware sends by itself, in both directions; None for nothing."""
+        ...
+
+    def sending(self, middleware: Middleware) -> Sending:
+        """How messages are sent."""
         ...
 
 

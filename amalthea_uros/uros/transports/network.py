@@ -14,14 +14,14 @@ from amalthea_uros.units import Time
 from amalthea_uros.uros.callbacks import Callback
 from amalthea_uros.uros.context import AssemblyContext
 from amalthea_uros.uros.transports.can_fd import CanFdLine
-from amalthea_uros.uros.transports.checks import check_foreign, check_lengths, check_load, check_transport
+from amalthea_uros.uros.transports.checks import check_foreign, check_lengths, check_load, check_reading, check_transport
 from amalthea_uros.uros.transports.choice import is_bus, is_in_system, line_of
 from amalthea_uros.uros.transports.classic_can import CanLine
 from amalthea_uros.uros.transports.foreign import ForeignFrame, arbitration_rank, described_frames, without_own
 from amalthea_uros.uros.transports.line import Frame, Line
 from amalthea_uros.uros.transports.messages import Messaging, WireMessage, wire_messages
 from amalthea_uros.uros.transports.queueing import Queued, Queueing
-from amalthea_uros.uros.transports.receiving import Receivers, Threading, add_receivers
+from amalthea_uros.uros.transports.receiving import Receivers, Threading, add_receivers, without_idle
 from amalthea_uros.uros.transports.wires import WirePlan, with_wire
 
 #: Loses the arbitration against all identifiers.
@@ -112,7 +112,9 @@ def with_network(system: System, planned: PlannedNetwork | None, context: Assemb
         receivers=planned.receivers,
     )
     check_load(plan, middleware.transport, context.notes)
-    return with_wire(system, plan, middleware.agent.name, middleware.transport.loses_messages)
+    check_reading(plan, system.executors, context.notes)
+    found = with_wire(system, plan, middleware.agent.name, middleware.transport.loses_messages)
+    return without_idle(found, planned.receivers.other_triggers)
 
 
 def _frames(queued: Queued, line: Line) -> list[Sequence[Frame]]:

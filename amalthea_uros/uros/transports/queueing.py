@@ -22,6 +22,7 @@ from amalthea_uros.units import Time
 from amalthea_uros.uros.application import body_name
 from amalthea_uros.uros.bus_traffic import runs_per_message
 from amalthea_uros.uros.executor import notification_name
+from amalthea_uros.uros.middleware.profile import Heartbeat
 from amalthea_uros.uros.transports.arrivals import arrivals
 from amalthea_uros.uros.transports.choice import keeps_sender
 from amalthea_uros.uros.transports.foreign import ForeignFrame
@@ -94,9 +95,15 @@ class Queueing:
         messages = tuple(messages)
         for message in messages:
             yield from self._received(message) if message.direction is Direction.TO_CONTROLLER else self._sent(message)
+        heartbeat = self.profile.heartbeat(self.middleware)
         for direction in Direction:
-            if any(each.direction is direction and _is_acknowledged(each) for each in messages):
-                yield from self._heartbeats(direction)
+            if heartbeat is None:
+                continue
+            if not heartbeat.is_answered:
+                yield self._heartbeat(heartbeat, direction)
+            elif any(each.direction is direction and _is_acknowledged(each) for each in messages):
+                yield self._heartbeat(heartbeat, direction)
+                yield self._answer(heartbeat, direction)
 
     def foreign(self, frame: ForeignFrame) -> Queued:
         """A frame of others."""
@@ -185,35 +192,29 @@ class Queueing:
             origin=message.message.origin,
         )
 
-    def _heartbeats(self, direction: Direction) -> Iterator[Queued]:
-        """Heartbeats while something is not acknowledged, and what answers them."""
-        heartbeat = self.profile.heartbeat(self.middleware)
-        if heartbeat is None:
-            return
-        length, interval = heartbeat
-        name = f"heartbeat_of_{'agent' if direction is Direction.TO_CONTROLLER else 'client'}"
-        answer = acknowledgement_name(name)
-        from_client = direction is Direction.TO_AGENT
-        yield Queued(
-            transmission=self._transmission(name, direction, Purpose.HEARTBEAT, (length,), _AT_ONCE),
-            parts=(length,),
-            stimulus=arrivals(name, interval),
-            interval=interval,
+    def _heartbeat(self, heartbeat: Heartbeat, direction: Direction) -> Queued:
+        name = heartbeat_name(direction)
+        is_asked = heartbeat.is_answered and direction is Direction.TO_AGENT
+        return Queued(
+            transmission=self._transmission(name, direction, Purpose.HEARTBEAT, (heartbeat.length,), _AT_ONCE),
+            parts=(heartbeat.length,),
+            stimulus=arrivals(name, heartbeat.interval),
+            interval=heartbeat.interval,
             times=0,
-            answer=answer if from_client else None,
+            answer=acknowledgement_name(name) if is_asked else None,
         )
-        yield Queued(
-            transmission=self._transmission(
-                answer,
-                opposite(direction),
-                Purpose.ACKNOWLEDGEMENT,
-                (length,),
-                self._answer_time if from_client else _AT_ONCE,
-            ),
-            parts=(length,),
+
+    def _answer(self, heartbeat: Heartbeat, direction: Direction) -> Queued:
+        """What answers a heartbeat in a direction."""
+        name = acknowledgement_name(heartbeat_name(direction))
+        by_agent = direction is Direction.TO_AGENT
+        agent = self._answer_time if by_agent else _AT_ONCE
+        return Queued(
+            transmission=self._transmission(name, opposite(direction), Purpose.ACKNOWLEDGEMENT, (heartbeat.length,), agent),
+            parts=(heartbeat.length,),
             # The client answers when it reads: before it has to read the next one.
-            stimulus=InterProcess(name=answer) if from_client else arrivals(answer, interval, interval),
-            interval=interval,
+            stimulus=InterProcess(name=name) if by_agent else arrivals(name, heartbeat.interval, heartbeat.interval),
+            interval=heartbeat.interval,
             times=0,
         )
 
@@ -241,6 +242,9 @@ class Queueing:
             processes=self.receivers if is_received else (),
             agent=agent,
             waits=is_answered and not is_received and self.middleware.reliable.waits,
+            is_dropped_when_busy=purpose is Purpose.DATA
+            and not is_received
+            and self.profile.sending(self.middleware).drops_when_busy,
         )
 
     @cached_property
@@ -254,6 +258,11 @@ class Queueing:
         """The runnables of timers that executors call that loop."""
         handles = (handle for executor in self.system.executors for handle in executor.handles)
         return frozenset(handle.runnable for handle in handles if handle.kind is HandleKind.TIMER)
+
+
+def heartbeat_name(direction: Direction) -> str:
+    """The name of what the middleware sends by itself in a direction."""
+    return f"heartbeat_of_{'agent' if direction is Direction.TO_CONTROLLER else 'client'}"
 
 
 def _is_acknowledged(message: WireMessage) -> bool:

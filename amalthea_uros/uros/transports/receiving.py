@@ -8,13 +8,14 @@ and heartbeats is a process of its own in the model, as it triggers nothing. If 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 from amalthea_uros.perf.activities import Activity, Call, Demand, Execute, Trigger
 from amalthea_uros.perf.network import Direction
 from amalthea_uros.perf.software import Runnable
 from amalthea_uros.perf.stimuli import InterProcess
+from amalthea_uros.perf.system import System
 from amalthea_uros.spec.middleware import Middleware, MiddlewareTask
 from amalthea_uros.spec.transports import Interrupt
 from amalthea_uros.uros.activities import activity_sequence, trigger_name
@@ -79,6 +80,27 @@ def add_receivers(
         return Receivers(other_triggers=others)
     last = (_add_isr(context, interrupt, interrupt.name, triggers),)
     return Receivers(processes=(interrupt.name, *names), message_triggers=last, other_triggers=others)
+
+
+def without_idle(system: System, stimuli: Sequence[str]) -> System:
+    """A system without the interrupt service routines of stimuli that nothing triggers.
+
+    Messages of one frame that are not acknowledged leave the interrupt for other frames without any.
+    """
+    triggered = {
+        activity.stimulus for task in system.software.tasks for activity in task.activities if isinstance(activity, Trigger)
+    }
+    idle = {stimulus for stimulus in stimuli if stimulus not in triggered}
+    isrs = tuple(isr for isr in system.software.isrs if not idle.intersection(isr.stimuli))
+    if len(isrs) == len(system.software.isrs):
+        return system
+    removed = {isr.name for isr in system.software.isrs} - {isr.name for isr in isrs}
+    return replace(
+        system,
+        stimuli=replace(system.stimuli, stimuli=tuple(each for each in system.stimuli.stimuli if each.name not in idle)),
+        software=replace(system.software, isrs=isrs),
+        mapping=replace(system.mapping, isrs=tuple(each for each in system.mapping.isrs if each.isr not in removed)),
+    )
 
 
 def _add_isr(context: AssemblyContext, interrupt: Interrupt, name: str, triggers: Sequence[str]) -> str:

@@ -9,13 +9,17 @@ from amalthea_uros.perf.network import Direction, Span, WireKind
 from amalthea_uros.spec.transports import UsbCdc
 from amalthea_uros.units import Time
 from amalthea_uros.uros.transports.driver import read_wait, written
-from amalthea_uros.uros.transports.framing import in_chunks, longest_frame, reads
+from amalthea_uros.uros.transports.framing import CHUNK, in_chunks, longest_frame, reads
 from amalthea_uros.uros.transports.line import Frame, span_of
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class UsbCdcLine:
-    """A virtual serial port; both directions share the bus. Its clock ticks once per bit."""
+    """A virtual serial port. Its clock ticks once per bit.
+
+    Each direction has an endpoint of its own. They share the bus, but not the waiting of the driver: a packet of the other direction
+    can be before each one (Universal Serial Bus Specification 2.0, section 5.8: bulk transfers of endpoints take turns).
+    """
 
     section: UsbCdc
     tick: Time | None
@@ -23,7 +27,7 @@ class UsbCdcLine:
     kind = WireKind.USB_CDC
     name = "USB"
     key = "usb_cdc"
-    is_duplex = False
+    is_duplex = True
     largest = None
 
     @property
@@ -59,5 +63,10 @@ _ONES = 6
 
 
 def _packet(chunk: Frame) -> Frame:
-    content = chunk.most + _PACKET
-    return Frame(least=chunk.least + _PACKET if chunk.least else 0, most=content + content // _ONES)
+    return Frame(least=chunk.least + _PACKET if chunk.least else 0, most=_longest(chunk.most) + _longest(CHUNK * _BITS))
+
+
+def _longest(content: int) -> int:
+    """The bits of a packet with stuff bits."""
+    bits = content + _PACKET
+    return bits + bits // _ONES

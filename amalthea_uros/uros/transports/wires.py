@@ -19,6 +19,7 @@ from amalthea_uros.perf.network import Direction, Network, Purpose, Wire
 from amalthea_uros.perf.os import OperatingSystem, Policy, Scheduler
 from amalthea_uros.perf.software import Preemption, Runnable, Task
 from amalthea_uros.perf.system import System
+from amalthea_uros.uros.transports.choice import keeps_sender
 from amalthea_uros.uros.transports.line import Frame, Line
 from amalthea_uros.uros.transports.queueing import Queued
 from amalthea_uros.uros.transports.receiving import Receivers
@@ -84,7 +85,15 @@ def with_wire(system: System, plan: WirePlan, agent: str, loses_messages: bool) 
         ),
         mapping=replace(system.mapping, tasks=(*system.mapping.tasks, *_allocations(plan))),
         network=Network(
-            wires=(Wire(name=plan.name, kind=plan.line.kind, cores=cores, loses_messages=loses_messages),),
+            wires=(
+                Wire(
+                    name=plan.name,
+                    kind=plan.line.kind,
+                    cores=cores,
+                    loses_messages=loses_messages,
+                    keeps_sender=keeps_sender(plan.line),
+                ),
+            ),
             transmissions=tuple(replace(each.transmission, wire=plan.name) for each in plan.queued),
             agent=agent,
         ),

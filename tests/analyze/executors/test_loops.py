@@ -57,6 +57,26 @@ def test_one_message_per_round_limits_the_loop_of_the_arduino_examples_to_ten_me
     assert "after 60 s they are at least 5.4 s old" in overload.message
 
 
+def test_an_overload_is_certain_whatever_happens_on_the_way():
+    # The jitter of the wire is unknown, but 11 messages/s are more than 10 rounds/s.
+    model = looping(message("a", 91_000, transmission="in"))
+    assert evaluate(model).handles["a"].response.is_overload
+    # An unknown jitter alone is none: 9 messages/s.
+    assert not evaluate(looping(message("a", 111_000, transmission="in"))).handles["a"].response.is_overload
+
+
+def test_a_publication_that_waits_lets_a_round_serve_a_message_of_each_handle():
+    # 2 times 6 messages/s against 10 rounds/s: while it waits, it reads all messages before its acknowledgement, and stores them.
+    publishing = timer("t", 5_000_000, publications=(waiting_publication(timeout=MS),))
+    inputs = message("a", 166_000), message("b", 166_000)
+    assert all(handle.response.is_overload for handle in evaluate(looping(*inputs)).handles)
+    found = analyze_system(looping(*inputs, publishing))
+    assert not any(handle.response.is_overload for handle in found.executors[0].handles)
+    assert found.processes["Executor"].failure is not Failure.OVERLOAD
+    # 22 messages/s are more than a message of each in 10 rounds/s.
+    assert evaluate(looping(message("a", 90_000), message("b", 90_000), publishing)).handles["a"].response.is_overload
+
+
 def test_an_executor_that_serves_everything_is_met():
     found = analyze_system(looping(message("a", 500_000, 1000), timer("t", 500_000, 1000)))
     assert found.processes["Executor"].verdict is Verdict.MET

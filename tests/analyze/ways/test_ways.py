@@ -18,8 +18,9 @@ from amalthea_uros.analyze.ways.publications import sending_times
 from amalthea_uros.analyze.ways.results import HopKind
 from amalthea_uros.perf.activities import Trigger
 from amalthea_uros.perf.constraints import Constraints, LatencyConstraint, LatencyKind
+from amalthea_uros.perf.distributions import Uniform
 from amalthea_uros.perf.executors import HandleKind
-from amalthea_uros.perf.stimuli import InterProcess
+from amalthea_uros.perf.stimuli import InterProcess, Periodic
 from amalthea_uros.timing.context import TimingContext
 
 TO_PWM = ("to pwm", "cmd_published", "on_cmd_end", "speed_written", "pwm_end")
@@ -207,3 +208,29 @@ def test_ways_with_limits_come_first():
     limit = LatencyConstraint(name="limit", chain="to pwm", kind=LatencyKind.REACTION, maximum=200 * MS)
     found = replace(board(TO_HOST, TO_PWM), constraints=Constraints(constraints=(limit,)))
     assert [way.name for way in analyze_system(found).ways] == ["to pwm", "to host"]
+
+
+def test_a_message_never_waits_for_one_of_the_thread_that_its_driver_keeps():
+    wire = Wire(name="UART", kind=WireKind.SERIAL, cores=("c1", "c2"), keeps_sender=True)
+    # Three at once as far as its stimulus says: calls of a timer can be late.
+    sent = Periodic(name="late", period=200 * MS, jitter=Uniform(lower=0, upper=400 * MS))
+    times = {}
+    for keeps in (False, True):
+        found = board(TO_HOST, wire=replace(wire, keeps_sender=keeps))
+        tasks = tuple(replace(task, stimuli=("late",)) if task.name == "odom_out" else task for task in found.software.tasks)
+        stimuli = replace(found.stimuli, stimuli=(*found.stimuli.stimuli, sent))
+        found = replace(found, software=replace(found.software, tasks=tasks), stimuli=stimuli)
+        times[keeps] = sending_times(solution(found))["odom_out"].most
+    assert times == {False: 3 * ODOM * US, True: ODOM * US}
+
+
+def test_another_sender_on_the_wire_is_waited_for():
+    wire = Wire(name="UART", kind=WireKind.SERIAL, cores=("c1", "c2"), keeps_sender=True)
+    found = board(TO_HOST, wire=wire)
+    other = replace(found.transmissions["odom_out"], name="odom_ack", topic="other")
+    network = replace(found.network, transmissions=(*found.network.transmissions[:2], other))
+    tasks = replace(
+        found.mapping,
+        tasks=tuple(replace(each, scheduler="tx") if each.task == "odom_ack" else each for each in found.mapping.tasks),
+    )
+    assert sending_times(solution(replace(found, network=network, mapping=tasks)))["odom_out"].most == (ODOM + ACK) * US

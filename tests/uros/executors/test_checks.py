@@ -3,6 +3,8 @@
 import pytest
 from looping import CALLBACKS, described, findings_of
 
+from amalthea_uros.services.build import describe_text
+
 LOOP = "loop: {spin_some: 100 ms, sleep: 10 ms}"
 TIMER = "\n      timers: [{name: Control, period: 50 ms, execution_time: 300 us}]"
 
@@ -89,6 +91,20 @@ def test_only_what_nothing_depends_on_can_do_without_a_rate():
 )
 def test_it_is_said_who_decided_where_callbacks_run(executor, text):
     assert described(executor).placement == text
+
+
+def test_a_platform_decides_where_callbacks_run():
+    text = """
+amuros: 1
+name: app
+hardware: {platform: bodas-rc18-12-40}
+middleware: {executor: {period: 1 ms%s}}
+application:
+  nodes: [{name: node, timers: [{name: Control, period: 10 ms, execution_time: 1 ms}]}]
+"""
+    assert describe_text(text % "").placement == "the platform bodas-rc18-12-40 runs callbacks in their own tasks"
+    stated = describe_text(text % ", callbacks: in-executor")
+    assert stated.placement == "callbacks run in the executor: set in app.yaml"
 
 
 def test_several_executors_without_loops_have_a_period_each():

@@ -68,6 +68,17 @@ def test_messages_that_are_too_long(author, keys, message):
         assert [(rule, found) for _, rule, found in author.findings(app(**keys))] == [("UR121", message)]
 
 
+def test_no_message_takes_all_memory(author):
+    # Each of its bytes would be a frame on the line, and each 500 of them a part.
+    keys = {
+        "middleware": "executor: {loop: {spin_some: 80 ms}}\n  limits: {UCLIENT_CUSTOM_TRANSPORT_MTU: 1 GB}",
+        "size": "100 MB",
+    }
+    found = author.findings(app(transport="serial: {driver: {write: polling}}", **keys))
+    message = "a message of 'state' has 100000000 B, but at most 1048576 B can be sent best effort"
+    assert ("UR121", message) in [(rule, text) for _, rule, text in found]
+
+
 def test_histories_are_shared(author):
     # Reliable messages have a depth of 10 by default; the pool has 8 slots.
     ((severity, message),) = reported(author, "UR125")
@@ -97,16 +108,25 @@ def test_a_lost_message_is_sent_again_only_without_input(author):
 
 
 def test_threads_of_one_session(author):
-    unprotected = "several threads use the middleware, but it is built for one: nothing protects its session"
-    assert reported(author, "UR124") == []
-    assert reported(author, "UR124", timer=", runs_in: own-task") == [("warning", unprotected)]
+    def unprotected(*threads):
+        return [
+            (
+                "warning",
+                f"{' and '.join(map(repr, threads))} use the session of the middleware from several threads, but nothing locks it",
+            )
+        ]
+
+    assert reported(author, "EXE008") == []
+    assert reported(author, "EXE008", timer=", runs_in: own-task") == unprotected("Executor_Task", "Report")
     two = "executors: [{name: A, loop: {spin_some: 80 ms}}, {name: B, loop: {spin: 1 s}}]"
-    assert reported(author, "UR124", middleware=two, timer=", runs_in: B") == [("warning", unprotected)]
+    assert reported(author, "EXE008", middleware=two, timer=", runs_in: B") == unprotected("A", "B")
     held = "a thread that waits for messages keeps the session for up to 1 s; others that send wait for it: 'Report', 'Ask'"
     several = two + "\n  multithread: true"
     assert reported(author, "UR124", middleware=several, timer=", runs_in: B") == [("warning", held)]
+    assert reported(author, "EXE008", middleware=several, timer=", runs_in: B") == []
     zenoh = two + "\n  profile: zenoh-pico\n  tasks: [{name: zenoh_read, priority: 3}]"
-    assert reported(author, "UR124", middleware=zenoh, timer=", runs_in: B") == []
+    # It has locks of its own.
+    assert [rule for rule in ("UR124", "EXE008") if reported(author, rule, middleware=zenoh, timer=", runs_in: B")] == []
 
 
 def publications(author, **keys):

@@ -27,7 +27,7 @@ def test_there_are_no_pools():
     ],
 )
 def test_a_buffer_for_each_direction(ware, sizes):
-    assert [use.size for use in memory(APPLICATION, middleware(**ware), {})] == sizes
+    assert [use.size for use in memory(APPLICATION, middleware(**ware), {}) if use.is_bounded] == sizes
 
 
 def test_a_message_that_arrives_in_fragments_has_a_limit():
@@ -50,4 +50,5 @@ def test_its_thread_has_a_stack(author):
           nodes: [{name: node, timers: [{name: T, period: 10 ms, execution_time: 1 us, runs_in: executor}]}]
     """).memory
     assert {user.name: user.size for user in memory.stacks.users} == {"Executor_Task": 4000, "zenoh_read": 2000}
-    assert (memory.total, memory.is_complete) == (2048 + 2048 + 6000, True)
+    # Received messages wait on the heap, in any number.
+    assert (memory.total, memory.is_complete) == (2048 + 2048 + 6000, False)

@@ -183,5 +183,5 @@ def test_heartbeats():
     # HEARTBEAT of 13 B; the client sends one after 100 ms by default, the agent after 200 ms.
     for keys, interval in (({}, 100), ({"limits": {"UCLIENT_MIN_HEARTBEAT_TIME_INTERVAL": "1 ms"}}, 1)):
         described = middleware(**keys)
-        assert profile_of(described).heartbeat(described) == (13, interval * MILLISECOND)
+        assert profile_of(described).heartbeat(described) == (13, interval * MILLISECOND, True)
         assert profile_of(described).sending(described).resends_after == interval * MILLISECOND

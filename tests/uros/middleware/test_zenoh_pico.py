@@ -67,4 +67,4 @@ def test_waiting():
 
 def test_keep_alives():
     # A third of the lease of 10 s, rounded down.
-    assert PROFILE.heartbeat(MIDDLEWARE) == (1, 10 * SECOND // 3)
+    assert PROFILE.heartbeat(MIDDLEWARE) == (1, 10 * SECOND // 3, False)

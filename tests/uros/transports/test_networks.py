@@ -1,8 +1,11 @@
 """Wires in systems: what is queued on them, what receives, and that no simulated message takes longer than its bound."""
 
+from textwrap import dedent
+
 import pytest
 from effort import every
 
+from amalthea_uros import check_files
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.network import Direction, Purpose, WireKind
 from amalthea_uros.simulate.options import Mode, Options
@@ -235,6 +238,13 @@ BA_ "GenMsgCycleTime" BO_ 16 10;
 """
 
 
+def test_frames_without_a_jitter_are_assumed_to_be_on_time(author):
+    foreign = "{name: Brake, identifier: 1, period: 10 ms}, {name: Door, identifier: 2, period: 10 ms, jitter: 1 ms}"
+    text = app(f"can: {{bitrate: 500 kbit/s, foreign: [{foreign}]}}", imu="best-effort").replace("312 B", "32 B")
+    sentence = "frames of others without a stated jitter never come earlier than their period: Brake"
+    assert sentence in analyze_system(author.describe(text).system).assumptions
+
+
 def test_a_polling_driver_keeps_the_processor_busy(author):
     def times(driver):
         system = author.describe(app(f"serial: {{baud_rate: 921600, driver: {driver}}}")).system
@@ -262,3 +272,100 @@ def test_a_classic_bus_stays_outside_where_nothing_asks_for_it(author):
         whole = author.describe(asked)
         assert [wire.kind for wire in whole.system.network.wires] == [WireKind.CAN]
         assert whole.system_with_bus() == whole.system
+
+
+@pytest.mark.parametrize(
+    ("baud_rate", "sleep", "size", "message"),
+    [
+        # 11520 bytes per second at 115200 baud, less than two messages in 10 ms.
+        (115200, 10, 115, "116"),
+        (115200, 10, 116, None),
+        # Not more than what is sent: 100 ms are 5 periods of 20 ms, and 2 messages more; each is a frame of 1 + 2 * (60 + 6) bytes.
+        (921600, 100, 7 * 133 - 1, "931"),
+        (921600, 100, 7 * 133, None),
+    ],
+)
+def test_bytes_that_arrive_while_the_loop_sleeps(author, baud_rate, sleep, size, message):
+    found = author.describe(f"""
+        amuros: 1
+        name: ring
+        hardware: {{frequency: 100 MHz}}
+        middleware:
+          executor: {{name: Exec, loop: {{spin_some: 100 ms, sleep: {sleep} ms}}}}
+          transport: {{serial: {{baud_rate: {baud_rate}, driver: {{read: dma, tick: 1 ms, buffer: {size} B}}}}}}
+        application:
+          nodes:
+            - name: node
+              subscriptions:
+                - {{name: Drive, topic: cmd, rate: 50 Hz, message_size: 48 B, execution_time: 2 us, reliability: best-effort}}
+        """).findings
+    expected = f"up to {message} bytes can arrive while the loop of 'Exec' sleeps for {sleep} ms and nothing is read, "
+    assert [each.message for each in found if each.rule == "UR139"] == (
+        [f"{expected}more than the receive buffer of {size}"] if message else []
+    )
+
+
+def test_an_imu_through_a_driver_that_waits_in_ticks(author):
+    """8 chunks are 8 ms: the 125 Hz that users measured at 921600 baud (micro-ROS/micro_ros_stm32cubemx_utils#72)."""
+    found = author.describe("""
+        amuros: 1
+        name: stm32
+        hardware: {frequency: 100 MHz}
+        middleware:
+          executor: {loop: {spin_some: 100 ms, sleep: 1 ms}}
+          transport: {serial: {baud_rate: 921600, driver: {write: dma, tick: 1 ms}}}
+        application:
+          nodes:
+            - name: node
+              publishers: [{topic: imu, message_size: 312 B, reliability: best-effort}]
+              timers: [{name: Report, period: 1 s, execution_time: 2 us, publishes: [imu]}]
+        """).findings
+    (message,) = (each.message for each in found if each.rule == "UR135")
+    assert "42,000 bytes per second at most" in message
+    assert "a message of 'imu' takes 8 ms or more, so that 125 are sent per second at most" in message
+
+
+UNACKNOWLEDGED = app(TRANSPORTS[WireKind.UDP]).replace("size: 48 B", "size: 48 B, reliability: best-effort")
+
+
+def test_an_interrupt_for_frames_that_do_not_exist_is_left_out(author):
+    # Datagrams of 60 bytes are one frame each; nothing is acknowledged, so that there are no heartbeats either.
+    system = author.describe(UNACKNOWLEDGED).system
+    assert [isr.name for isr in system.software.isrs] == ["Receive"]
+    bounds = analyze_system(system).processes
+    assert all(bounds[name].response is not None for name in ("Receive", "Drive", "Sample"))
+    # Without messages to the controller there is no interrupt at all.
+    silent = UNACKNOWLEDGED.replace("subscriptions:", "x-subscriptions:")
+    assert not author.describe(silent).system.software.isrs
+
+
+def test_messages_carry_the_effect_of_chains(author):
+    chains = "chains: [{name: there, path: [/cmd_vel, Drive, /odom]}]"
+    author.path.write_text(f"{dedent(app(TRANSPORTS[WireKind.UDP]))}\n{chains}\n")
+    assert [found for found in check_files(author.path).findings if found.rule == "TIM-CHAIN-CARRIED"] == []
+
+
+QUICK = UNACKNOWLEDGED.replace(
+    "middleware:",
+    "middleware:\n      profile: zenoh-pico\n      tasks: [{name: zenoh_read, priority: 9, execution_time: 30 us}]",
+    1,
+)
+
+
+def test_messages_that_keep_a_connection_alive_are_on_the_wire(author):
+    # A third of the lease of 10 s; they are not answered.
+    system = author.describe(QUICK).system
+    found = {each.name: each.length for each in system.network.transmissions if each.purpose is not Purpose.DATA}
+    assert found == {"heartbeat_of_agent": 1, "heartbeat_of_client": 1}
+    bounds = analyze_system(system).processes
+    # The longest of 84 bytes for less than the least frame, 0.8 us each, can be before a message.
+    (message,) = (bounds[each.name] for each in system.network.transmissions if each.topic == "cmd_vel")
+    assert message.response.worst - message.response.best == 84 * 800_000
+
+
+def test_a_message_that_can_be_dropped_has_no_bound(author):
+    chains = "chains: [{name: there, path: [/cmd_vel, Drive, /odom]}, {name: drive, path: [/cmd_vel, Drive]}]"
+    analysis = analyze_system(author.describe(f"{dedent(QUICK)}\n{chains}\n").system)
+    assert analysis.ways["there"].worst is None
+    assert analysis.ways["there"].loss == "a message of 'odom' is dropped if another thread of the middleware is sending"
+    assert analysis.ways["drive"].worst is not None

@@ -164,6 +164,10 @@ def test_usb():
     line = UsbCdcLine(section=UsbCdc(), tick=None)
     # 27 bytes in one packet with 13 more.
     assert time_on(line, line.frames(INT64, IN))[0] == (27 + 13) * 8 * 10**6 // 12
+    # With all 26 bytes after the flag escaped, 53 bytes: a full packet of 42 and one of 11, a bit stuffed after six, and before each
+    # one a full packet of the other direction.
+    assert [frame.most for frame in line.frames(INT64, IN)] == [513 + 513, 224 + 513]
+    assert line.is_duplex
     assert line.link.most is None
 
 

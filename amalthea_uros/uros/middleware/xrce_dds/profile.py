@@ -12,7 +12,7 @@ from amalthea_uros.spec.profiles import ProfileData
 from amalthea_uros.units import Time
 from amalthea_uros.uros.middleware import figures
 from amalthea_uros.uros.middleware.options import OptionRow
-from amalthea_uros.uros.middleware.profile import MemoryUse, MessageKind, MiddlewareThread, Option, Part, Sending
+from amalthea_uros.uros.middleware.profile import Heartbeat, MemoryUse, MessageKind, MiddlewareThread, Option, Part, Sending
 from amalthea_uros.uros.middleware.xrce_dds import limits, memory, messages, pools, sending
 
 
@@ -53,10 +53,11 @@ class XrceDds:
         """What is sent for a message."""
         return messages.parts(kind, content, reliable=reliable, middleware=middleware, data=self.data)
 
-    def heartbeat(self, middleware: Middleware) -> tuple[int, Time] | None:
-        """Length and least interval of heartbeats, which follow each other while something is not acknowledged."""
+    def heartbeat(self, middleware: Middleware) -> Heartbeat | None:
+        """Heartbeats, which follow each other while something is not acknowledged."""
         client = limits.heartbeat_interval(middleware, self.data)
-        return figures.size(self.data, "heartbeat"), min(client, self.data.sending.heartbeat or client)
+        interval = min(client, self.data.sending.heartbeat or client)
+        return Heartbeat(figures.size(self.data, "heartbeat"), interval, is_answered=True)
 
     def gives_up_after(self, kind: MessageKind, content: int, *, reliable: bool, middleware: Middleware) -> Time | None:
         """Time after which a sender stops waiting."""

@@ -11,6 +11,8 @@ from amalthea_uros.uros.middleware.zenoh_pico.pools import options
 
 #: Of a serial link, in bytes (eclipse-zenoh/zenoh-pico include/zenoh-pico/system/link/serial.h).
 _SERIAL_MTU = 1500
+#: rmw_zenoh_pico/src of esol-community/rmw_zenoh_pico: the depth of a history is not enforced.
+_HEAP = "not known: entities, fragments, and messages that wait, in any number"
 
 
 def memory(application: Application, middleware: Middleware, defaults: Mapping[str, int]) -> tuple[MemoryUse, ...]:
@@ -21,4 +23,5 @@ def memory(application: Application, middleware: Middleware, defaults: Mapping[s
     return (
         MemoryUse(name="buffer for sending", size=sent, formula=f"{sent} B"),
         MemoryUse(name="buffer for receiving", size=batch, formula=f"{batch} B"),
+        MemoryUse(name="heap", size=0, formula=_HEAP, is_bounded=False),
     )

@@ -12,7 +12,7 @@ from amalthea_uros.spec.profiles import ProfileData
 from amalthea_uros.units import MILLISECOND, Time
 from amalthea_uros.uros.middleware import figures
 from amalthea_uros.uros.middleware.options import OptionRow
-from amalthea_uros.uros.middleware.profile import MemoryUse, MessageKind, MiddlewareThread, Option, Part, Sending
+from amalthea_uros.uros.middleware.profile import Heartbeat, MemoryUse, MessageKind, MiddlewareThread, Option, Part, Sending
 from amalthea_uros.uros.middleware.zenoh_pico import memory, messages, pools
 
 #: In each lease (`Z_TRANSPORT_LEASE_EXPIRE_FACTOR` in CMakeLists.txt of eclipse-zenoh/zenoh-pico).
@@ -64,9 +64,10 @@ class ZenohPico:
         """What is sent for a message."""
         return messages.parts(kind, content, reliable=reliable, middleware=middleware, data=self.data)
 
-    def heartbeat(self, middleware: Middleware) -> tuple[int, Time] | None:
-        """Length and interval of messages that keep the connection alive."""
-        return figures.size(self.data, "heartbeat"), self._time("Z_TRANSPORT_LEASE", middleware) // _KEEP_ALIVES
+    def heartbeat(self, middleware: Middleware) -> Heartbeat | None:
+        """Messages that keep the connection alive."""
+        interval = self._time("Z_TRANSPORT_LEASE", middleware) // _KEEP_ALIVES
+        return Heartbeat(figures.size(self.data, "heartbeat"), interval, is_answered=False)
 
     def gives_up_after(self, kind: MessageKind, content: int, *, reliable: bool, middleware: Middleware) -> Time | None:
         """Time after which a sender stops waiting for an acknowledgement, if it does at all."""

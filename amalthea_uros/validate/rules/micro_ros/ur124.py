@@ -7,11 +7,11 @@ from amalthea_uros.validate.rule import Rule
 
 RULE = Rule(
     id="UR124",
-    title="sending that waits, or that threads do at the same time",
+    title="sending that waits",
     severity=Severity.WARNING,
     rationale=(
         "A callback that waits for an acknowledgement delays everything that runs after it in its task. With several threads, one that "
-        "waits for messages keeps the others from sending; without protection, they corrupt the session."
+        "waits for messages keeps the others from sending."
     ),
     remedy=(
         "Describe the 'loop' of the executor, so that waiting is analyzed; use 'reliability: best-effort', short timeouts, or "

@@ -7,7 +7,7 @@ from amalthea_uros.validate.rule import Rule
 
 RULE = Rule(
     id="UR129",
-    title="micro-ROS needs more memory than there is",
+    title="micro-ROS needs more memory than the board has",
     severity=Severity.WARNING,
     rationale="The static memory of the middleware and the stacks do not fit: linking fails, or the heap is too small.",
     remedy="Reduce RMW_UXRCE_MAX_HISTORY first, as each slot has the size of the longest message; then pools and stacks.",
