@@ -44,7 +44,9 @@ def become(words: list[str], cwd: Path | None, streams: Sequence[int]) -> NoRetu
             os.chdir(cwd)
         for number, stream in enumerate(streams):
             os.dup2(stream, number)
-        sys.stdin, sys.stdout, sys.stderr = open(0), open(1, "w"), open(2, "w")  # noqa: SIM115 - open up to the end of the process
+        sys.stdin, sys.stdout = open(0), open(1, "w")  # noqa: SIM115 - open up to the end of the process
+        # Errors appear line by line, as those of a new process do.
+        sys.stderr = open(2, "w", buffering=1)  # noqa: SIM115
         sys.argv = ["amuros", *words]
         runpy.run_module("amalthea_uros", run_name="__main__", alter_sys=True)
     except BaseException:
