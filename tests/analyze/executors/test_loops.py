@@ -168,6 +168,7 @@ def test_messages_are_dropped_when_the_slots_are_used():
     few = replace(model, executors=(replace(model.executors[0], waiting=Waiting(slots=1)),))
     lost = evaluate(few).handles["a"].lost
     assert lost.is_of_pool
+    assert "up to 2 messages for all handles of" in lost.sequence
     assert "use its 1 slot;" in lost.sequence
     assert "EXE014" in rules(few)
     assert "EXE015" in rules(looping(publishing, message("a", 2_000_000, depth=1), loop=SPIN))
