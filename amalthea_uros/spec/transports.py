@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
 from amalthea_uros.spec.execution_time import ExecutionTime
 from amalthea_uros.spec.executors import MessageCost
@@ -22,7 +22,11 @@ from amalthea_uros.spec.values import (
     SizeOrNothing,
     described,
     problem,
+    unexpected,
 )
+
+#: Of a message, in bits: what the middleware adds fits into a payload of XRCE-DDS, whose length has two bytes.
+_LONGEST_OVERHEAD = 8 * 2**16
 
 
 class Latency(Shorthand):
@@ -218,6 +222,12 @@ class Agent(Section):
     """Time from the last byte of a reliable message to the first byte of its acknowledgement; default: unknown."""
 
 
+def _not_too_long(bits: int) -> int:
+    if bits > _LONGEST_OVERHEAD:
+        raise unexpected("must not be greater than 64 KiB")
+    return bits
+
+
 class Transport(Section):
     """The transport between the controller and the agent: exactly one wire."""
 
@@ -235,7 +245,7 @@ class Transport(Section):
     """The virtual serial port of USB."""
     custom: CustomTransport | None = None
     """Another transport."""
-    overhead: SizeOrNothing = 12 * 8
+    overhead: Annotated[SizeOrNothing, AfterValidator(_not_too_long)] = 12 * 8
     """Overhead of XRCE-DDS per message: message header, submessage header and object ids; default: 12 B."""
     acknowledgement: Duration | None = None
     """Maximum time until a reliable message is acknowledged."""

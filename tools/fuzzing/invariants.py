@@ -210,7 +210,9 @@ def _figures(value: object) -> object:
     """A result without places in files."""
     if is_dataclass(value):
         return [
-            (part.name, _figures(getattr(value, part.name))) for part in fields(value) if part.name not in ("origin", "finding")
+            (part.name, _figures(getattr(value, part.name)))
+            for part in fields(value)
+            if part.name not in ("origin", "finding", "reason")
         ]
     if isinstance(value, Mapping):
         return {str(key): _figures(item) for key, item in value.items()}

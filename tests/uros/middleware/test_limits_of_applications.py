@@ -79,6 +79,11 @@ def test_no_message_takes_all_memory(author):
     assert ("UR121", message) in [(rule, text) for _, rule, text in found]
 
 
+def test_no_header_takes_all_memory(author):
+    found = [(rule, text) for _, rule, text in author.findings(app(transport="serial: {}, overhead: 1 TB"))]
+    assert found == [("YML012", "overhead: must not be greater than 64 KiB, found '1 TB'")]
+
+
 def test_histories_are_shared(author):
     # Reliable messages have a depth of 10 by default; the pool has 8 slots.
     ((severity, message),) = reported(author, "UR125")
