@@ -280,8 +280,6 @@ def _of_handle(seen, handle):
         sum(term.most for term in handle.terms) != response.worst or min(term.most for term in handle.terms) <= 0
     ):
         found.append(f"{name}: terms are not positive, or do not add up to {response.worst}")
-    if response.is_overload and max(seen.responses, default=0) < 10 * MS and max(seen.waiting, default=0) < 10 * MS:
-        found.append(f"{name}: no overload")
     if seen.lost:
         if handle.lost is None:
             found.append(f"{name}: lost {max(seen.lost)} untold")

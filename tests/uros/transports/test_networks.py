@@ -21,6 +21,7 @@ APP = """
     middleware:
       agent: {{to_controller: {{min: 100 us, max: 500 us}}, to_host: 1 ms, acknowledgement: {{min: 200 us, max: 800 us}}}}
       transport: {{{transport}}}
+      reliable: {{waits: {waits}}}
       executor: {{name: Exec, {executor}, execution_time: 12 us}}
     application:
       nodes:
@@ -35,7 +36,9 @@ INTERRUPT = "interrupt: {name: Receive, execution_time: 3 us}"
 
 
 def app(transport, executor="period: 10 ms", imu="best-effort"):
-    return APP.format(transport=transport, executor=executor, imu=imu)
+    """A periodic executor does not wait for acknowledgements here: nothing behind one that does has a bound."""
+    waits = "true" if "loop" in executor else "false"
+    return APP.format(transport=transport, executor=executor, imu=imu, waits=waits)
 
 
 TRANSPORTS = {
@@ -170,7 +173,7 @@ def test_messages_wait_for_those_before_them_on_a_line_without_priorities(author
         (
             "can: {bitrate: 1 Mbit/s, foreign: [{name: Exec, identifier: 1, period: 10 ms}]}",
             "APP002",
-            "duplicate process or frame name 'Exec' (first defined on line 8)",
+            "duplicate process or frame name 'Exec' (first defined on line 9)",
         ),
     ],
 )
