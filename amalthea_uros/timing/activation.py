@@ -38,11 +38,13 @@ class Cause(NamedTuple):
     ----------
     times : how often in a job at most; None if that is unknown
     counter : if only every n-th time counts
+    jobs : if only every n-th job reaches it
     """
 
     process: Process
     times: int | None
     counter: Counter | None
+    jobs: Counter | None
 
 
 @dataclass(slots=True)
@@ -66,7 +68,7 @@ class Activations:
             for position in positions:
                 if isinstance(position.activity, Trigger) and position.times != 0:
                     causes = self._triggers.setdefault(position.activity.stimulus, [])
-                    causes.append(Cause(position.process, position.times, position.activity.counter))
+                    causes.append(Cause(position.process, position.times, position.activity.counter, position.counter))
 
     def of(self, process: Process, output: Output = as_activated) -> EventModel:
         """The event model of the activations of a process.
@@ -128,7 +130,7 @@ class Activations:
             if event is None:
                 raise UnknownActivationError(f"the event {name!r} is not defined in the model")
             self._check(event)
-            causes = [Cause(p.process, p.times, None) for p in self.dataflow.events.raising(event) if p.times != 0]
+            causes = [Cause(p.process, p.times, None, p.counter) for p in self.dataflow.events.raising(event) if p.times != 0]
             if not causes and isinstance(event, CustomEvent):
                 raise UnknownActivationError(f"no activity in the model raises the event {name!r}")
             found += causes
@@ -149,7 +151,7 @@ class Activations:
             raise UnknownActivationError(
                 f"the maximum number of times that a job of {cause.process.name!r} triggers it is unknown"
             )
-        found = output(cause.process, lambda: self._of_process(cause.process, output, above))
+        found = _counted(output(cause.process, lambda: self._of_process(cause.process, output, above)), cause.jobs)
         return _counted(found if cause.times == 1 else Multiplied(found, cause.times), cause.counter)
 
 
