@@ -86,9 +86,7 @@ def _of_all_phases(
     )
 
 
-def _analysis(
-    solution: Solution, budget: JobBudget, executors: Results[ExecutorResult], ways: Results[Way]
-) -> Analysis:
+def _analysis(solution: Solution, budget: JobBudget, executors: Results[ExecutorResult], ways: Results[Way]) -> Analysis:
     """The analysis of a system; chains are evaluated for all phases of the jobs that they pass, other unknown phases are any job.
 
     Parameters

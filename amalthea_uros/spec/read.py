@@ -109,7 +109,9 @@ def _draft(node: Node, source: Source, findings: list[Finding], kind: type[S]) -
     if section is not None:
         attach_locations(section, node, source)
         return rest
-    return Draft(None, rest.with_more(finding_of(mistake, source, kind) for mistake in mistakes if not is_gap(mistake.path[-1])))
+    return Draft(
+        None, rest.with_more(finding_of(mistake, source, kind) for mistake in mistakes if not is_gap(mistake.path[-1]))
+    )
 
 
 def _validated(node: Node, kind: type[S]) -> tuple[S | None, list[Mistake]]:

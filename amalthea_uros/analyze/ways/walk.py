@@ -211,12 +211,12 @@ def _until_sent(hop: Hop, sending: Span, least: Time) -> Hop:
     ----------
     least : for which all its messages hold it up at least, as this one can be the first of them
     """
+    hop = replace(hop, best=max(0, hop.best - least))
     if hop.worst is None or sending.most is None:
         return hop
     held_up = Part(name="until it goes on after sending the message", least=-sending.least, most=-sending.most)
     return replace(
         hop,
-        best=max(0, hop.best - least),
         worst=hop.worst - sending.most,
         parts=(*hop.parts, held_up) if hop.parts and sending.most else hop.parts,
     )
