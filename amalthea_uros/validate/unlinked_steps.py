@@ -7,6 +7,7 @@ from itertools import product
 from typing import NamedTuple
 
 from amalthea_uros.perf.named import Located
+from amalthea_uros.timing.crossing import crosses
 from amalthea_uros.timing.dataflow.chains import steps
 from amalthea_uros.timing.dataflow.routes import is_linked
 from amalthea_uros.validate.system_context import SystemContext
@@ -28,9 +29,14 @@ class UnlinkedStep(NamedTuple):
 
 
 def unlinked_steps(context: SystemContext) -> Iterator[UnlinkedStep]:
-    """All of them; events of which it is unknown where they occur do not count."""
+    """All of them; events of which it is unknown where they occur do not count.
+
+    What a message passes between events on wires and in executors that loop, the analysis of its way says.
+    """
     system, events = context.system, context.system.events_by_name
     for chain in system.events.chains:
+        if crosses(chain, context.dataflow):
+            continue
         for item, starts, ends in steps(chain, system):
             for first, then in product(starts, ends):
                 is_known = first != then and first in events and then in events
