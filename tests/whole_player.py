@@ -1,6 +1,7 @@
-"""Plays a whole application from the host to the host, step by step: agent, wires, driver, interrupt, executor, callbacks, publications.
+"""Plays a whole application from the host to the host, step by step.
 
-It follows rclc, rmw_microxrcedds and Micro-XRCE-DDS-Client, knows nothing of the analysis, and takes a description instead of a system.
+Messages pass the agent, the wire, the driver, the interrupt, the executor with its callbacks, and the way back. It follows rclc,
+rmw_microxrcedds and Micro-XRCE-DDS-Client, knows nothing of the analysis, and takes a description instead of a system.
 Times are in nanoseconds. What is not known is chosen by a random generator.
 """
 
@@ -59,7 +60,7 @@ class Machine:
             else:
                 ticket = thread.ticket
                 if time is not None:
-                    self.at(time, lambda: self.wake(thread, ticket))
+                    self.at(time, lambda ticket=ticket: self.wake(thread, ticket))
                 return
         self.threads.remove(thread)
 
