@@ -28,7 +28,8 @@ application:
     - name: robot
       publishers: [{topic: wheel_speed, message_size: 8 B, reliability: reliable}]
       subscriptions:
-        - {name: On_Command, topic: cmd_vel, rate: 2 Hz, message_size: 48 B, execution_time: 60 us, writes: [command], depth: 1, reliability: best-effort}
+        - {name: On_Command, topic: cmd_vel, rate: 2 Hz, message_size: 48 B, execution_time: 60 us, writes: [command], depth: 1,
+           reliability: best-effort}
       timers:
         - {name: Control, period: 100 ms, execution_time: 450 us, reads: [command], writes: [motor], publishes: [wheel_speed]}
 chains:
