@@ -175,6 +175,12 @@ class _Run:
         system, notes = self.context.system, self.context.notes
         for name, reason in self.program.left_out.items():
             notes.error("SIM001", f"{name!r} is not simulated: {reason}", system.processes[name])
+        for executor in system.executors:
+            message = (
+                f"the loop of {executor.name!r} is not played: its task executes rounds that call by chance what may be ready, so that "
+                "the times of its callbacks, and of what they send or activate, are not those of the executor"
+            )
+            notes.warning("SIM006", message, executor)
         for name, reason in self.program.chains_left_out.items():
             notes.warning("SIM002", f"the chain {name!r} is not followed: {reason}", system.chains[name])
         for name, record in self.program.channels.items():
@@ -198,7 +204,8 @@ class _Run:
 
     def _process(self, name: str, found: JobMetrics) -> ProcessObservation:
         memory, record = self.player.memory, self.program.records[name]
-        deadline = deadline_of(name, self.context)
+        # The rounds of an executor that loops follow each other as they do not in a simulation: no verdict on them is right.
+        deadline = None if name in self.context.system.executor_of_task else deadline_of(name, self.context)
         if deadline is not None and deadline.is_implicit:
             self.context.notes.assume(ASSUMPTION)
         pending = self.player.pending(name)

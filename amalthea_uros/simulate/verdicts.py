@@ -115,6 +115,16 @@ def judge_requirements(
             yield _not_observed(constraint, type(constraint).__name__, observers.reason(constraint))
 
 
+def _is_of_loop(requirement: Requirement, system: System) -> bool:
+    """Whether a requirement limits rounds of an executor that loops, or one of its callbacks."""
+    runnables = {
+        name for executor in system.executors for handle in executor.handles for name in (handle.runnable, handle.take)
+    }
+    return requirement.process in system.executor_of_task or (
+        requirement.runnable is not None and requirement.runnable in runnables
+    )
+
+
 def _requirement(
     requirement: Requirement,
     system: System,
@@ -125,7 +135,9 @@ def _requirement(
     limit = requirement.limit
     process = next((each for each in processes if each.name == requirement.process), None)
     runnable = next((each for each in runnables if each.name == requirement.runnable), None)
-    if process is not None:
+    if _is_of_loop(requirement, system):
+        values = LimitedValues(reason="it is part of an executor that loops, whose rounds are not played; analyze the model")
+    elif process is not None:
         model = system.processes.get(process.name)
         values = limited_values(limit, process, duration, None if model is None else activation_period(model, system))
     elif runnable is not None:

@@ -60,7 +60,8 @@ class Chain(Section):
     name: Name
     """Name of the chain."""
     path: list[Name] | None = Field(None, min_length=1)
-    """Topics, executor, callbacks, tasks, interrupt service routines and functions, with labels between them, from cause to effect."""
+    """Topics, executor, callbacks, tasks, interrupt service routines and functions, with labels after those that write
+    them, from cause to effect."""
     sequence: list[Name] | None = Field(None, min_length=1)
     """Chains that follow each other; each starts with the last event of the previous one."""
     parallel: list[Annotated[list[Name], Field(min_length=1)]] | None = Field(None, min_length=2)

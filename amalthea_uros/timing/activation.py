@@ -88,8 +88,16 @@ class Activations:
             raise UnknownActivationError(f"it is triggered in a cycle: {' -> '.join((*above, process.name))}")
         found = tuple(self._of_stimulus(name, output, (*above, process.name)) for name in process.stimuli)
         if not found:
-            raise UnknownActivationError("it has no stimulus")
+            raise UnknownActivationError(self._why_never(process))
         return self._answered(process, aggregated(found))
+
+    def _why_never(self, process: Process) -> str:
+        """Why a process has no stimulus."""
+        transmission = self.system.transmissions.get(process.name)
+        if transmission is None or transmission.purpose is not Purpose.DATA or transmission.agent.most is not None:
+            return "it has no stimulus"
+        agent = self.system.network.agent
+        return f"how much later {agent!r} sends one message than another is not stated: 'middleware.agent.to_controller'"
 
     def _answered(self, process: Process, messages: EventModel) -> EventModel:
         """The activations of an acknowledgement: the receiver of the message sends it some time later."""

@@ -112,12 +112,12 @@ class Chains:
             message = f"the path only has the topic {path[0]!r}"
             self.notes.error("APP004", message, place(0), "Add the callback that receives or publishes it.")
             return None
-        for index in (0, len(path) - 1):
-            if path[index] in self.labels and path[index] not in self.elements:
-                message = f"{path[index]!r} is a label, but a chain must start and end with a process or runnable"
-                advice = f"Add the process or runnable that accesses {path[index]!r}."
-                self.notes.error("APP004", message, place(index), advice)
-                return None
+        if self._is_label(path[0]) or (self._is_label(path[-1]) and path[-2] not in self.elements):
+            index = 0 if self._is_label(path[0]) else len(path) - 1
+            message = f"{path[index]!r} is a label without a process or runnable before it that writes it"
+            advice = f"Add the process or runnable that writes {path[index]!r}."
+            self.notes.error("APP004", message, place(index), advice)
+            return None
         self._check_labels(path, place)
         try:
             found = [(index, event) for index in range(len(path)) for event in self._events_of(section, path, index, place)]
@@ -137,6 +137,9 @@ class Chains:
     def _is_topic(self, name: str) -> bool:
         return name in self.topics and name not in self.elements and name not in self.labels
 
+    def _is_label(self, name: str) -> bool:
+        return name in self.labels and name not in self.elements
+
     def _events_of(
         self, section: Chain, path: Sequence[str], index: int, place: Callable[[int], Location | None]
     ) -> Iterator[str]:
@@ -146,10 +149,10 @@ class Chains:
             yield from self._topic_events(path, index, place)
         elif index == 0:
             yield self._event_at(name, section.start)
-        elif index == len(path) - 1:
-            yield self._event_at(name, section.end)
         elif name not in self.elements:
             yield self._write_event(path[index - 1], name)
+        elif index == len(path) - 1:
+            yield self._event_at(name, section.end)
         elif path[index + 1] in self.elements or self._is_topic(path[index + 1]):
             # An element that writes the next label of the path is represented by that write.
             yield self._event_at(name, "finish")
@@ -210,6 +213,8 @@ class Chains:
                     self.notes.warning("UR130", f"{first!r} does not write {label!r}", place(start + 1))
                 if label not in self.elements[then].reads:
                     self.notes.warning("UR130", f"{then!r} does not read {label!r}", place(end))
+        if self._is_label(path[-1]) and path[-1] not in self.elements[path[-2]].writes:
+            self.notes.warning("UR130", f"{path[-2]!r} does not write {path[-1]!r}", place(len(path) - 1))
 
     def _connected(
         self, events: Sequence[tuple[int, str]], path: Sequence[str], place: Callable[[int], Location | None]

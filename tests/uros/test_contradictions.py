@@ -88,10 +88,10 @@ requirements:
         ("Executor_Task, Sub]", "Timer, Sub, Timer]", 17, "APP004", "'Timer' occurs twice in the path"),
         (
             "Executor_Task, Sub]",
-            "Timer, speed]",
+            "speed, Timer]",
             17,
             "APP004",
-            "'speed' is a label, but a chain must start and end with a process",
+            "'speed' is a label without a process or runnable before it that writes it",
         ),
         ("Executor_Task, Sub]", "Timer], to: start", 17, "APP004", "starts and ends with the same event 'Timer_start'"),
         ("path: [Executor_Task, Sub]", "sequence: [chain]", 17, "APP004", "contains itself: chain -> chain"),

@@ -23,6 +23,7 @@ from amalthea_uros.analyze.executors.window import NoWindowError, Window
 from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.perf.executors import Executor, Handle, LoopKind
 from amalthea_uros.perf.network import Span
+from amalthea_uros.timing.executors.answers import answering
 from amalthea_uros.timing.executors.loops import SLEEP_RESOLUTION, least_pace, least_sleep, longest_sleep
 from amalthea_uros.timing.executors.readiness import at_once, is_exclusive, keeps_back, stores
 from amalthea_uros.timing.executors.rounds import RoundCosts, round_costs
@@ -59,6 +60,7 @@ class Cycle:
     sending : times of publications, by the names of transmissions
     is_exclusive : whether at most one handle that receives messages is ready in a round
     held : how long others can keep the session when it is needed
+    answering : how long a wait is longer because it acknowledges what it reads
     """
 
     executor: Executor
@@ -68,6 +70,7 @@ class Cycle:
     sending: Mapping[str, Span]
     is_exclusive: bool
     held: Time | None
+    answering: Suspension
 
     @classmethod
     def of(cls, executor: Executor, solution: Solution, sending: Mapping[str, Span]) -> Cycle:
@@ -87,6 +90,7 @@ class Cycle:
                 sending,
                 is_exclusive(executor, system.executors),
                 held_by_others(executor, system, sending),
+                answering(executor, system, sending),
             )
         except (NoWindowError, UnknownDemandError) as error:
             raise UnknownCycleError(str(error)) from None
@@ -191,10 +195,10 @@ class Cycle:
 
     def longest_with(self, wait: Time) -> Time | None:
         """The longest cycle with some wait, after which the thread has to get its core again; None if it is not bounded."""
-        part, held = self.whole, self.held
-        if held is None or part.suspension.most is None or self.busy is None:
+        part, held, answering = self.whole, self.held, self.answering
+        if held is None or answering.most is None or part.suspension.most is None or self.busy is None:
             return None
-        suspended, resumed = held + wait, (1 if held else 0) + (1 if wait else 0)
+        suspended, resumed = held + answering.most + wait, (1 if held else 0) + answering.times + (1 if wait else 0)
         beginning = self.window.time(self.costs.spin.worst, suspended, 1 + resumed)
         if beginning is None:
             return None
@@ -242,4 +246,6 @@ class Cycle:
         if self.held is None or self.whole.suspension.most is None:
             why = self.whole.suspension.why or "how long others of its session keep it is unknown"
             return f"a round can be suspended without a bound: {why}"
+        if self.answering.most is None:
+            return f"a wait has no bound: {self.answering.why}"
         return "the processes that preempt it need nearly all of the core"

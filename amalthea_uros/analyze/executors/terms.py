@@ -47,6 +47,7 @@ def _of_cycle(cycle: Cycle) -> list[Term]:
         *found,
         Term(name="publications of the running round", least=0, most=suspension.most or 0, why=suspension.why),
         Term(name="sleep", least=0, most=cycle.sleep, why="the loop sleeps after each round"),
+        Term(name="acknowledgements", least=0, most=cycle.answering.most or 0, why=cycle.answering.why),
         Term(name="session", least=0, most=cycle.held or 0, why="other executors of the session wait for input and keep it"),
     ]
 

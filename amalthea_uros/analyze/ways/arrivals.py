@@ -10,8 +10,8 @@ from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.analyze.ways.messages import agent_hop, received, variation
 from amalthea_uros.units import Time
 
-#: Why a latency of the agent that nobody stated does not make arrivals unknown.
-ASSUMPTION = "where the latency of the agent is not stated, messages have the stated interval and jitter as they enter the wire"
+#: Why a latency of the agent that nobody stated does not make arrivals unknown, if the description states the jitter of messages.
+ASSUMPTION = "where the latency of the agent is not stated, the stated jitter is that of the messages that enter the wire"
 
 
 def arrival_jitter(solution: Solution) -> Mapping[str, Time | None]:
@@ -23,8 +23,9 @@ def arrival_jitter(solution: Solution) -> Mapping[str, Time | None]:
             if transmission is None:
                 continue
             agent = agent_hop(transmission, solution)
-            if agent.worst is None:
-                solution.context.notes.assume(ASSUMPTION)
+            # Otherwise, nothing activates what stands for the message on the wire, which has no bound then.
             stated = [] if agent.worst is None else [agent]
-            found[handle.name] = variation([*stated, *received(transmission, solution)])
+            jitter = found[handle.name] = variation([*stated, *received(transmission, solution)])
+            if agent.worst is None and jitter is not None:
+                solution.context.notes.assume(ASSUMPTION)
     return found

@@ -12,9 +12,9 @@ from amalthea_uros.analyze.ways.callbacks import CallbackHops
 from amalthea_uros.analyze.ways.passages import PassageHops
 from amalthea_uros.analyze.ways.publications import sending_times
 from amalthea_uros.analyze.ways.results import Way
-from amalthea_uros.analyze.ways.stations import crosses
 from amalthea_uros.analyze.ways.walk import Walk
 from amalthea_uros.perf.constraints import LatencyConstraint
+from amalthea_uros.timing.crossing import crosses
 
 
 def evaluate_ways(solution: Solution) -> tuple[Results[ExecutorResult], Results[Way]]:
@@ -30,7 +30,7 @@ def evaluate_ways(solution: Solution) -> tuple[Results[ExecutorResult], Results[
     system = solution.context.system
     limited = {each.chain for each in system.constraints.constraints if isinstance(each, LatencyConstraint)}
     chains = sorted(
-        (chain for chain in system.events.chains if crosses(chain, solution.context)),
+        (chain for chain in system.events.chains if crosses(chain, solution.context.dataflow)),
         key=lambda chain: chain.name not in limited,
     )
     ways = Results(walk.way(chain) for chain in chains)

@@ -17,16 +17,27 @@ from amalthea_uros.analyze.ways.messages import agent_hop, received, sent, wire_
 from amalthea_uros.analyze.ways.results import Hop
 from amalthea_uros.perf.executors import Publication
 from amalthea_uros.perf.network import Span, Transmission
+from amalthea_uros.timing.event_models import EventModel
+from amalthea_uros.timing.executors.answers import answers
 from amalthea_uros.units import Time
+
+#: Messages of each kind that can wait unread when a publication begins.
+WAITING = 1
+#: After which a round trip is considered unbounded.
+_STEPS = 1000
 
 
 def sending_times(solution: Solution) -> Mapping[str, Span]:
-    """How long a callback is held up by each message that it sends, by the names of transmissions."""
-    handles = (handle for executor in solution.context.system.executors for handle in executor.handles)
-    return {
+    """How long a thread is held up by each message that it sends, by the names of transmissions.
+
+    Besides the messages of callbacks, these are the acknowledgements that it sends.
+    """
+    system = solution.context.system
+    handles = (handle for executor in system.executors for handle in executor.handles)
+    return {each.name: _until_written(each, solution) for each in answers(system)} | {
         publication.transmission: _until_acknowledged(publication, solution)
         if publication.waits
-        else _until_written(solution.context.system.transmissions.get(publication.transmission), solution)
+        else _until_written(system.transmissions.get(publication.transmission), solution)
         for handle in handles
         for publication in handle.publications
         if publication.transmission is not None
@@ -43,8 +54,38 @@ def _until_acknowledged(publication: Publication, solution: Solution) -> Span:
     least = sum(hop.best for hop in hops)
     times = [hop.worst for hop in hops]
     known = None if not hops or None in times or _can_lose(publication, solution) else sum(filter(None, times))
-    most = _least(known, publication.timeout)
+    most = _least(None if known is None else _with_answers(known, solution), _gives_up(publication, solution))
     return Span(least=least if most is None else min(least, most), most=most)
+
+
+def _with_answers(time: Time, solution: Solution) -> Time | None:
+    """The time of a round trip with the acknowledgements of what is read meanwhile, or was waiting; None if it has no bound."""
+    found = [(_until_written(each, solution).most, _counted_by(each, solution)) for each in answers(solution.context.system)]
+    whole, before = time, -1
+    for _ in range(_STEPS):
+        if whole == before:
+            return whole
+        total = time
+        for write, events in found:
+            if write is None or events is None:
+                return None
+            total += write * (events.eta_plus(whole) + WAITING)
+        whole, before = total, whole
+    return None
+
+
+def _counted_by(answer: Transmission, solution: Solution) -> EventModel | None:
+    """The event model of the messages that an acknowledgement answers."""
+    return solution.event_models.get(answer.name.removesuffix("_acknowledgement"))
+
+
+def _gives_up(publication: Publication, solution: Solution) -> Time | None:
+    """When a publication gives up: the timeout begins when the message is written, and is looked at between two readings."""
+    written = _until_written(solution.context.system.transmissions.get(publication.transmission or ""), solution).most
+    answered = [_until_written(each, solution).most for each in answers(solution.context.system)]
+    if publication.timeout is None or written is None or None in answered:
+        return None
+    return written + publication.timeout + max(filter(None, answered), default=0)
 
 
 def _round_trip(publication: Publication, solution: Solution) -> Iterator[Hop]:

@@ -45,23 +45,6 @@ class Passage:
 Station: TypeAlias = Message | Callback | Passage
 
 
-def crosses(chain: EventChain, context: TimingContext) -> bool:
-    """Whether a chain passes a wire or an executor that loops, so that its latency is that of a way."""
-    system = context.system
-    if not system.executors and not system.transmissions:
-        return False
-    try:
-        unfolded = unfold(chain, system)[0]
-        names = {name for way in sequences(unfolded) for name in way}
-    except UnfoldError:
-        return False  # the analysis of chains reports it
-    return any(
-        process in system.transmissions or process in system.executor_of_task
-        for name in names
-        for process in _processes(system.events_by_name[name], context)
-    )
-
-
 def stations_of(chain: EventChain, context: TimingContext) -> list[Station]:
     """The stations of a chain, in order; events that follow each other in one place are one station.
 
@@ -85,14 +68,6 @@ def stations_of(chain: EventChain, context: TimingContext) -> list[Station]:
         if not found or found[-1] != station:
             found.append(station)
     return found
-
-
-def _processes(event: Event, context: TimingContext) -> set[str]:
-    """The processes in which an event can occur."""
-    try:
-        return {occurrence.process.name for occurrence in context.dataflow.events.of(event)}
-    except UnresolvedError:
-        return set()
 
 
 def _no_place(event: Event, error: UnresolvedError) -> str:

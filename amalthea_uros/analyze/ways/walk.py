@@ -15,11 +15,12 @@ from amalthea_uros.analyze.ways.messages import agent_hop, process_hop, received
 from amalthea_uros.analyze.ways.passages import Entry, PassageHops
 from amalthea_uros.analyze.ways.results import Hop, Part, Way
 from amalthea_uros.analyze.ways.stations import Callback, Message, Passage, Station, UnknownWayError, name_of, stations_of
-from amalthea_uros.perf.events import EventChain
+from amalthea_uros.perf.events import EventChain, LabelEvent
 from amalthea_uros.perf.executors import Publication
 from amalthea_uros.perf.network import Direction, Span, Transmission
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.dataflow.events import UnresolvedError
+from amalthea_uros.units import Time
 
 _SUM = "the latency of a way is the sum of the worst cases of its hops, which need not occur together"
 _POLLED = "{!r} takes each message in the first job that is activated after the message has arrived"
@@ -53,19 +54,27 @@ class Walk:
         try:
             stations = self._completed(stations_of(chain, self.context))
             hops, assumptions = self._hops(stations)
+            written, last = self._written(chain), stations[-1]
+            if written and isinstance(last, Callback):
+                hops[-1] = self._until_written(last, hops[-1])
         except (UnknownWayError, UnresolvedError) as error:
             return Way(name=chain.name, start=chain.stimulus or "", end=chain.response or "", hops=(), reason=str(error))
         unknown = next((hop for hop in hops if hop.worst is None), None)
         return Way(
             name=chain.name,
             start=name_of(stations[0]),
-            end=name_of(stations[-1], is_end=True),
+            end=written or name_of(stations[-1], is_end=True),
             hops=tuple(hops),
             assumptions=(_SUM, *assumptions),
             reason=unknown.reason if unknown is not None else "",
             remedy=unknown.remedy if unknown is not None else "",
             loss="; ".join(dict.fromkeys(self._losses(stations))),
         )
+
+    def _written(self, chain: EventChain) -> str:
+        """The label whose write ends a chain; "" if another event does."""
+        end = self.context.system.events_by_name.get(chain.response or "")
+        return end.label or "" if isinstance(end, LabelEvent) else ""
 
     def _completed(self, stations: list[Station]) -> list[Station]:
         """The stations with the callbacks that only take messages for others, without what a message passes by itself."""
@@ -95,6 +104,8 @@ class Walk:
         assumptions: list[str] = []
         for index, station in enumerate(stations):
             before, is_last = (stations[index - 1] if index else None), index == len(stations) - 1
+            if isinstance(before, Callback) and not isinstance(station, Message):
+                hops[-1] = self._until_written(before, hops[-1])
             match station:
                 case Message(transmission):
                     if isinstance(before, Message):
@@ -121,7 +132,7 @@ class Walk:
             publication = _publication(before, transmission)
             if publication is None:
                 raise UnknownWayError(f"{before.handle.name!r} does not publish {transmission.topic!r}")
-            hops[-1] = _until_sent(hops[-1], self.sending[transmission.name])
+            hops[-1] = _until_sent(hops[-1], self.sending[transmission.name], self._least_sending(before))
         elif isinstance(before, Message):
             raise UnknownWayError(f"{name_of(before)!r} sends nothing")
         elif isinstance(before, Passage) and not self.connections.activates(before, transmission.name):
@@ -143,6 +154,15 @@ class Walk:
             yield self.callbacks.sampling(station)
             return
         yield self.callbacks.response(station)
+
+    def _until_written(self, station: Callback, hop: Hop) -> Hop:
+        """A hop of a callback up to where it has written data: before it sends messages at the earliest."""
+        return replace(hop, best=max(0, hop.best - self._least_sending(station)))
+
+    def _least_sending(self, station: Callback) -> Time:
+        """How long all messages of a callback hold it up at least."""
+        sent = (each.transmission for each in station.handle.publications if each.transmission is not None)
+        return sum(self.sending[name].least for name in sent)
 
     def _entry(self, before: Station | None, station: Passage) -> Entry:
         if before is None:
@@ -184,17 +204,21 @@ def _publication(station: Callback, transmission: Transmission) -> Publication |
     return next((each for each in station.handle.publications if each.transmission == transmission.name), None)
 
 
-def _until_sent(hop: Hop, sending: Span) -> Hop:
+def _until_sent(hop: Hop, sending: Span, least: Time) -> Hop:
     """A hop of a callback up to where it sends a message, instead of its end.
 
     The bound of its response time has the whole time for which the message holds it up, after everything before it.
+
+    Parameters
+    ----------
+    least : for which all its messages hold it up at least, as this one can be the first of them
     """
+    hop = replace(hop, best=max(0, hop.best - least))
     if hop.worst is None or sending.most is None:
         return hop
     held_up = Part(name="until it goes on after sending the message", least=-sending.least, most=-sending.most)
     return replace(
         hop,
-        best=max(0, hop.best - sending.least),
         worst=hop.worst - sending.most,
         parts=(*hop.parts, held_up) if hop.parts and sending.most else hop.parts,
     )

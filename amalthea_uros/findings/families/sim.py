@@ -44,4 +44,15 @@ KINDS = (
         rationale="A message arrived while as many as the middleware keeps were waiting: the executor takes one in a job at most.",
         remedy="Run the executor more often, or send less often.",
     ),
+    FindingKind(
+        id="SIM006",
+        title="loop of an executor that is not played",
+        severity=Severity.WARNING,
+        rationale=(
+            "When the rounds of an executor follow each other, and what each of them calls, depends on its loop and on what has "
+            "arrived. The simulation executes a round per job of a task, whose activations and branches only stand for that: its load "
+            "is of the right size, but no time of a callback or of a message is one that the executor would have."
+        ),
+        remedy="Use `amuros analyze`, which bounds response times, lateness and the latency of messages from the loop itself.",
+    ),
 )

@@ -30,6 +30,7 @@ from amalthea_uros.simulate.operations import ENTER, LEAVE, MARK, PUBLISH, PUT, 
 from amalthea_uros.simulate.program.hooks import Hooks, Operation
 from amalthea_uros.simulate.program.obstacles import NotSimulatedError
 from amalthea_uros.simulate.program.resources import Resources
+from amalthea_uros.timing.crossing import crosses
 from amalthea_uros.timing.dataflow.chains import UnfoldError, sequences, unfold
 from amalthea_uros.timing.dataflow.events import JobPhase, UnresolvedError
 from amalthea_uros.timing.dataflow.links import LinkKind
@@ -80,6 +81,11 @@ class ChainCompiler:
 
     def add(self, chain: EventChain) -> None:
         """Follow a chain, or note why that is not possible."""
+        if crosses(chain, self.resources.context.dataflow):
+            self.left_out[chain.name] = (
+                "it passes a wire or an executor that loops, whose rounds are not played; analyze the model"
+            )
+            return
         try:
             found = [(events, route) for events, every in self._ways(chain).items() for route in every]
             for _, route in found:

@@ -30,7 +30,8 @@ def arrivals(handle: Handle, extra_jitter: Mapping[str, Time | None]) -> EventMo
         raise UnknownArrivalsError(f"the minimum time between two messages for {handle.name!r} is not stated")
     extra = extra_jitter.get(handle.name, None if handle.transmission is not None else 0)
     if extra is None:
-        raise UnknownArrivalsError(f"the jitter of the messages for {handle.name!r} on their way is not known")
+        way = "" if handle.transmission is None else f", see {handle.transmission!r}"
+        raise UnknownArrivalsError(f"the jitter of the messages for {handle.name!r} on their way is not known{way}")
     kind = Periodic if handle.is_periodic else Sporadic
     return kind(handle.interval, handle.jitter + extra)
 

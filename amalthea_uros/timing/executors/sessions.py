@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from amalthea_uros.perf.executors import Executor
 from amalthea_uros.perf.network import Span
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.executors.answers import answering
 from amalthea_uros.timing.executors.sending import suspension_of
 from amalthea_uros.timing.executors.wait import greatest_wait
 from amalthea_uros.units import Time
@@ -24,7 +25,10 @@ def held_by_others(executor: Executor, system: System, sending: Mapping[str, Spa
     for other in system.executors:
         if executor.session is None or other.session != executor.session or other.name == executor.name:
             continue
-        found = [greatest_wait(other)]
+        reading = answering(other, system, sending).most
+        if reading is None:
+            return None
+        found = [greatest_wait(other) + reading]
         for handle in other.handles:
             most = suspension_of(handle, system, sending, 0).most
             if most is None:

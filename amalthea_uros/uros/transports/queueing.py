@@ -125,13 +125,21 @@ class Queueing:
 
     def _received(self, message: WireMessage) -> Iterator[Queued]:
         agent = span_of(self.middleware.agent.to_controller)
-        # Where the latency of the agent is not stated, interval and jitter are those of the messages that leave it.
-        jitter = message.jitter + (0 if agent.most is None else agent.most - agent.least)
-        yield self._data(message, arrivals(message.name, message.interval, jitter, message.message.origin), agent)
+        yield self._data(message, self._arrivals(message, agent), agent)
         if _is_acknowledged(message):
             takes = self._takes.get(body_name(message.callback.name)) or notification_name(message.callback)
             reader = takes if takes in self.system.runnables else body_name(message.callback.name)
             yield self._acknowledgement(message, _AT_ONCE, Sender(runnable=reader, times=len(message.parts)))
+
+    def _arrivals(self, message: WireMessage, agent: Span) -> Stimulus | None:
+        """When the agent queues a message; None if nobody stated how much its times vary."""
+        if agent.most is not None:
+            jitter = message.jitter + agent.most - agent.least
+        elif message.callback.jitter:
+            jitter = message.jitter  # it is that of the messages that leave the agent
+        else:
+            return None
+        return arrivals(message.name, message.interval, jitter, message.message.origin)
 
     def _sent(self, message: WireMessage) -> Iterator[Queued]:
         callback, agent = message.callback, span_of(self.middleware.agent.to_host)
@@ -159,7 +167,7 @@ class Queueing:
     def _data(
         self,
         message: WireMessage,
-        stimulus: Stimulus,
+        stimulus: Stimulus | None,
         agent: Span,
         sender: Sender | None = None,
         answer: str | None = None,
