@@ -69,8 +69,8 @@ def test_every_requirement_and_response_time_is_there_as_analysed(path):
         rounding = Rounding.UP if requirement.is_upper else Rounding.DOWN
         # Where the verdict is unknown, the least possible value is shown, too.
         assert row["value"].split(" to ")[-1] == rounded_time_text(requirement.value, rounding, requirement.limit)
-        margin = requirement.margin if requirement.verdict != "unknown" else None
-        assert row["margin"] == rounded_time_text(margin, Rounding.DOWN)
+        is_judged = requirement.verdict != "unknown"
+        assert row["margin"] == (rounded_time_text(requirement.margin, Rounding.DOWN) if is_judged else "-")
     shown = rows(page_of(path), "response-times", "Response times by core")
     for process in analysis.processes:
         assert shown[process.name]["worst"] == rounded_time_text(process.response.worst, Rounding.UP, process.deadline)

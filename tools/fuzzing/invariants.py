@@ -206,13 +206,15 @@ def same_model(path: Path, folder: Path) -> None:
         )
 
 
+#: Parts of results that depend on where they are described.
+_PLACES_AND_WORDS = ("origin", "finding", "reason")
+
+
 def _figures(value: object) -> object:
     """A result without places in files."""
     if is_dataclass(value):
         return [
-            (part.name, _figures(getattr(value, part.name)))
-            for part in fields(value)
-            if part.name not in ("origin", "finding", "reason")
+            (part.name, _figures(getattr(value, part.name))) for part in fields(value) if part.name not in _PLACES_AND_WORDS
         ]
     if isinstance(value, Mapping):
         return {str(key): _figures(item) for key, item in value.items()}
