@@ -35,6 +35,8 @@ from amalthea_uros.units import Time
 
 #: More unread messages are considered unbounded: rounds are then hardly faster than messages.
 MAX_UNREAD = 10_000
+#: Heartbeats that can be due besides those at intervals: when a timeout begins, and when its last reading does.
+DUE = 2
 _ACKNOWLEDGEMENT = "_acknowledgement"
 
 
@@ -120,11 +122,11 @@ def publications(system: System) -> list[Publication]:
 def most_heartbeats(timeout: Time, solution: Solution) -> int | None:
     """The most heartbeats that the client writes before a timeout ends; None if that is unknown.
 
-    One can be due when it begins, and others follow at intervals: of the clock until the last reading, and of its own timeout in that.
+    They follow at intervals: of the clock until the last reading, and of its own timeout in that.
     """
     events = [solution.event_models.get(each.name) for each in heartbeats(solution.context.system)]
     intervals = [None if each is None else each.delta_min(2) for each in events]
-    return sum(2 + timeout // each for each in intervals if each) if all(intervals) else None
+    return sum(DUE + timeout // each for each in intervals if each) if all(intervals) else None
 
 
 def _read_in_rounds(sending: Mapping[str, Span], solution: Solution) -> Iterator[Arriving | None]:

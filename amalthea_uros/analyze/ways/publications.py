@@ -27,7 +27,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from amalthea_uros.analyze.executors.cycle import Cycle, UnknownCycleError
-from amalthea_uros.analyze.executors.unread import Arriving, answered, can_give_up, publications
+from amalthea_uros.analyze.executors.unread import DUE, Arriving, answered, can_give_up, publications
 from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.analyze.ways.messages import agent_hop, received, sent, wire_hop
 from amalthea_uros.analyze.ways.results import Hop
@@ -145,19 +145,17 @@ def _beating(wait: Time, session: _Session, solution: Solution) -> Time | None:
     """The time to write the heartbeats of a wait; None if it has no bound."""
     if not heartbeats(solution.context.system):
         return 0
-    if session.cycle is None:
-        return None
-    return _heartbeats(session.cycle + wait, session.is_behind, solution)
+    return None if session.cycle is None else _heartbeats(session.cycle + wait, int(session.is_behind), solution)
 
 
-def _heartbeats(time: Time, is_behind: bool, solution: Solution) -> Time | None:
-    """The time to write the heartbeats of some time; None if it has no bound."""
+def _heartbeats(time: Time, first: int, solution: Solution) -> Time | None:
+    """The time to write some heartbeats and those that follow in some time; None if it has no bound."""
     total: Time = 0
     for each in heartbeats(solution.context.system):
         events, write = solution.event_models.get(each.name), _until_written(each, solution).most
         if events is None or not (interval := events.delta_min(2)):
             return None
-        count = is_behind + time // interval
+        count = first + time // interval
         if count and write is None:
             return None
         total += count * (write or 0)
@@ -171,7 +169,7 @@ def _gives_up(publication: Publication, solution: Solution) -> Time | None:
     answering = [_until_written(each, solution).most for each in answers(solution.context.system)]
     if publication.timeout is None or written is None or None in answering:
         return None
-    beating = _heartbeats(publication.timeout, True, solution)
+    beating = _heartbeats(publication.timeout, DUE, solution)
     return None if beating is None else written + publication.timeout + max(filter(None, answering), default=0) + beating
 
 
