@@ -22,7 +22,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from amalthea_uros.analyze.executors.unread import answered, can_give_up, longest_unread, most_heartbeats, publications
+from amalthea_uros.analyze.executors.unread import answered, is_behind, longest_unread, most_heartbeats
 from amalthea_uros.analyze.executors.window import NoWindowError, Window
 from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.perf.executors import Executor, Handle, LoopKind
@@ -140,9 +140,7 @@ class Cycle:
 
         They are an interval apart, and the timeout includes them, but for the last reading of it, whose time counts from its beginning.
         """
-        found = heartbeats(self.solution.context.system)
-        sent = (each for each in publications(self.solution.context.system) if each.reliable)
-        if not found or not any(can_give_up(each, self.sending) for each in sent):
+        if not heartbeats(self.solution.context.system) or not is_behind(self.sending, self.solution):
             return 0
         return most_heartbeats(greatest_wait(self.executor), self.solution)
 

@@ -82,9 +82,11 @@ def longest_unread(length: Time | None, sending: Mapping[str, Span], solution: S
     ----------
     length : of a cycle without a wait; None if it has no bound
     """
-    kinds = list(_read_in_rounds(sending, solution))
+    if length is None:
+        return None
+    kinds = list(_read_in_rounds(length, sending, solution))
     known = [each for each in kinds if each is not None]
-    if length is None or len(known) < len(kinds):
+    if len(known) < len(kinds):
         return None
     most = most_unread(known, length)
     return None if most is None else most * length
@@ -119,22 +121,41 @@ def publications(system: System) -> list[Publication]:
     return [each for executor in system.executors for handle in executor.handles for each in handle.publications]
 
 
+def is_behind(sending: Mapping[str, Span], solution: Solution) -> bool:
+    """Whether something can be sent and not be acknowledged when a round or a publication begins."""
+    return any(each.reliable and can_give_up(each, sending) for each in publications(solution.context.system))
+
+
 def most_heartbeats(timeout: Time, solution: Solution) -> int | None:
     """The most heartbeats that the client writes before a timeout ends; None if that is unknown.
 
     They follow at intervals: of the clock until the last reading, and of its own timeout in that.
     """
-    events = [solution.event_models.get(each.name) for each in heartbeats(solution.context.system)]
-    intervals = [None if each is None else each.delta_min(2) for each in events]
+    intervals = _intervals(solution)
     return sum(DUE + timeout // each for each in intervals if each) if all(intervals) else None
 
 
-def _read_in_rounds(sending: Mapping[str, Span], solution: Solution) -> Iterator[Arriving | None]:
+def _intervals(solution: Solution) -> list[Time | None]:
+    """The intervals of the heartbeats of the client."""
+    events = [solution.event_models.get(each.name) for each in heartbeats(solution.context.system)]
+    return [None if each is None else each.delta_min(2) for each in events]
+
+
+def _read_in_rounds(length: Time, sending: Mapping[str, Span], solution: Solution) -> Iterator[Arriving | None]:
     system = solution.context.system
     read_before = {each.acknowledgement for each in publications(system) if not can_give_up(each, sending)}
     by_answer = answered(solution)
+    # Each publication ends in the cycle in which it begins: before the first heartbeat.
+    is_silent = not is_behind(sending, solution) and all(each and each > length for each in _intervals(solution))
     for each in system.transmissions.values():
         if each.direction is Direction.TO_AGENT or each.purpose is Purpose.FOREIGN or each.name in read_before:
             continue
+        if is_silent and _answers_heartbeat(each, system):
+            continue
         name = f"{each.name}{_ACKNOWLEDGEMENT}"
         yield by_answer[name] if name in by_answer else arriving(each, solution)
+
+
+def _answers_heartbeat(answer: Transmission, system: System) -> bool:
+    """Whether an acknowledgement answers a heartbeat of the client."""
+    return answer.name.removesuffix(_ACKNOWLEDGEMENT) in {each.name for each in heartbeats(system)}

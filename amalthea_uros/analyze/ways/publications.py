@@ -27,7 +27,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from amalthea_uros.analyze.executors.cycle import Cycle, UnknownCycleError
-from amalthea_uros.analyze.executors.unread import DUE, Arriving, answered, can_give_up, publications
+from amalthea_uros.analyze.executors.unread import DUE, Arriving, answered, is_behind, publications
 from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.analyze.ways.messages import agent_hop, received, sent, wire_hop
 from amalthea_uros.analyze.ways.results import Hop
@@ -91,13 +91,12 @@ def _times(sessions: Mapping[str, _Session], arrivals: Mapping[str, Arriving | N
 
 def _session(executor: Executor, sending: Mapping[str, Span], solution: Solution) -> _Session:
     """What the publications of an executor can meet, if they take such times."""
-    sent = [each for each in publications(solution.context.system) if each.reliable]
-    is_behind = any(can_give_up(each, sending) for each in sent)
+    behind = is_behind(sending, solution)
     try:
         cycle = Cycle.of(executor, solution, sending)
     except UnknownCycleError:
-        return _Session(unread=None, cycle=None, is_behind=is_behind)
-    return _Session(unread=cycle.unread, cycle=cycle.longest, is_behind=is_behind)
+        return _Session(unread=None, cycle=None, is_behind=behind)
+    return _Session(unread=cycle.unread, cycle=cycle.longest, is_behind=behind)
 
 
 def _until_written(message: Transmission | None, solution: Solution) -> Span:
