@@ -11,19 +11,23 @@ Without the wait, a cycle consists of the rest of the round, what the loop does 
 A round executes the overhead of the executor once. Which part of it comes before the wait is unknown, so that its part after the
 sleep can be all of it; the time of a cycle with a sleep is the lesser of two bounds: the sleep in the middle of one window, and two
 windows.
+
+A wait answers the heartbeats that are unread, whose number depends on the cycle: the least number that is consistent is the bound
+(`unread`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
+from amalthea_uros.analyze.executors.unread import answered, is_behind, longest_unread, most_heartbeats
 from amalthea_uros.analyze.executors.window import NoWindowError, Window
 from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.perf.executors import Executor, Handle, LoopKind
 from amalthea_uros.perf.network import Span
-from amalthea_uros.timing.executors.answers import answering
+from amalthea_uros.timing.executors.answers import Written, answering, answers, heartbeats
 from amalthea_uros.timing.executors.loops import SLEEP_RESOLUTION, least_pace, least_sleep, longest_sleep
 from amalthea_uros.timing.executors.readiness import at_once, is_exclusive, keeps_back, stores
 from amalthea_uros.timing.executors.rounds import RoundCosts, round_costs
@@ -32,6 +36,9 @@ from amalthea_uros.timing.executors.sessions import held_by_others
 from amalthea_uros.timing.executors.wait import greatest_wait, is_message, messages
 from amalthea_uros.timing.notes import UnknownDemandError
 from amalthea_uros.units import Time
+
+#: After which the number of heartbeats in a wait is considered unbounded.
+_STEPS = 1000
 
 
 class UnknownCycleError(Exception):
@@ -61,6 +68,7 @@ class Cycle:
     is_exclusive : whether at most one handle that receives messages is ready in a round
     held : how long others can keep the session when it is needed
     answering : how long a wait is longer because it acknowledges what it reads
+    unread : how long a message can lie unread; None if that has no bound, or nothing is answered
     """
 
     executor: Executor
@@ -71,6 +79,7 @@ class Cycle:
     is_exclusive: bool
     held: Time | None
     answering: Suspension
+    unread: Time | None = None
 
     @classmethod
     def of(cls, executor: Executor, solution: Solution, sending: Mapping[str, Span]) -> Cycle:
@@ -82,18 +91,58 @@ class Cycle:
         """
         system = solution.context.system
         try:
-            return cls(
+            cycle = cls(
                 executor,
                 solution,
                 Window.of(executor.task, solution),
                 round_costs(executor, solution.context),
                 sending,
                 is_exclusive(executor, system.executors),
-                held_by_others(executor, system, sending),
-                answering(executor, system, sending),
+                held=0,
+                answering=Suspension(),
             )
         except (NoWindowError, UnknownDemandError) as error:
             raise UnknownCycleError(str(error)) from None
+        return cycle._consistent()
+
+    def _consistent(self) -> Cycle:
+        """The cycle with the least number of what its wait writes."""
+        written = Written()
+        for _ in range(_STEPS):
+            found = self._with(written)
+            again = found._written()
+            if again == written:
+                return found
+            written = again
+        return self._with(Written(answers=None, heartbeats=None))
+
+    def _with(self, written: Written) -> Cycle:
+        system = self.solution.context.system
+        found = replace(
+            self,
+            held=held_by_others(self.executor, system, self.sending, written),
+            answering=answering(self.executor, system, self.sending, written),
+        )
+        if not answers(system):
+            return found
+        return replace(found, unread=longest_unread(found.longest, self.sending, self.solution))
+
+    def _written(self) -> Written:
+        """How often a wait writes, if the cycle is like this."""
+        system = self.solution.context.system
+        asked = [arriving for name, arriving in answered(self.solution).items() if system.transmissions[name].callback is None]
+        unread = [None if each is None or self.unread is None else each.most(self.unread) for each in asked]
+        return Written(answers=None if None in unread else sum(filter(None, unread)) + 1, heartbeats=self._heartbeats)
+
+    @property
+    def _heartbeats(self) -> int | None:
+        """The heartbeats of the client in a wait: only if something can be sent and not be acknowledged then.
+
+        They are an interval apart, and the timeout includes them, but for the last reading of it, whose time counts from its beginning.
+        """
+        if not heartbeats(self.solution.context.system) or not is_behind(self.sending, self.solution):
+            return 0
+        return most_heartbeats(greatest_wait(self.executor), self.solution)
 
     @property
     def time_base(self) -> int:

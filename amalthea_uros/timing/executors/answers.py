@@ -1,13 +1,24 @@
-"""Acknowledgements that the client writes while it reads.
+"""What the client writes while it reads: acknowledgements and heartbeats.
 
 It answers each part of a reliable message and each heartbeat as soon as it has read it, before the wait goes on or ends
-(eProsima/Micro-XRCE-DDS-Client, `session.c`), and writes as any other message: until its last byte is on the wire at most. A wait reads
-the parts of one message, and the heartbeats that have come: those of a cycle, and one that was waiting behind a message.
+(`read_stream`, `read_submessage_heartbeat`), and while something that it has sent is not acknowledged, it writes heartbeats of its own
+(`listen_message_reliably`; all in src/c/core/session/session.c of eProsima/Micro-XRCE-DDS-Client). It writes these as any other
+message: until the last byte is on the wire at most.
+
+How much longer a wait of a round becomes:
+
+- If data are unread when it begins, it reads what lies before them, and the first of them (`uxr_run_session_until_data`): at most all
+  heartbeats that are unread then, and the parts of one message.
+- If not, it answers the heartbeats that are unread, and ends at its timeout, which includes all that it writes meanwhile, besides the
+  answer to what it read last.
+
+So it answers those unread, one more heartbeat, and one message.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 from amalthea_uros.perf.activities import Trigger, walk
 from amalthea_uros.perf.executors import Executor
@@ -16,21 +27,33 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.timing.executors.sending import Suspension, together
 from amalthea_uros.timing.executors.wait import messages
 
-#: Heartbeats that one wait answers.
-HEARTBEATS = 2
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Written:
+    """How often a wait of a round writes what is no answer to data.
+
+    Attributes
+    ----------
+    answers : to heartbeats of the agent; None if that is not known
+    heartbeats : of the client; None if that is not known
+    """
+
+    answers: int | None = 1
+    heartbeats: int | None = 0
 
 
 def answers(system: System) -> tuple[Transmission, ...]:
     """The acknowledgements that the client sends."""
-    return tuple(
-        each
-        for each in system.transmissions.values()
-        if each.purpose is Purpose.ACKNOWLEDGEMENT and each.direction is Direction.TO_AGENT
-    )
+    return _sent(system, Purpose.ACKNOWLEDGEMENT)
 
 
-def answering(executor: Executor, system: System, sending: Mapping[str, Span]) -> Suspension:
-    """How long a wait is longer because it acknowledges what it reads.
+def heartbeats(system: System) -> tuple[Transmission, ...]:
+    """The heartbeats that the client sends."""
+    return _sent(system, Purpose.HEARTBEAT)
+
+
+def answering(executor: Executor, system: System, sending: Mapping[str, Span], written: Written) -> Suspension:
+    """How long a wait is longer because of what it writes.
 
     Parameters
     ----------
@@ -39,21 +62,15 @@ def answering(executor: Executor, system: System, sending: Mapping[str, Span]) -
     if not messages(executor):
         return Suspension()
     found = answers(system)
-    of_messages = [_of(each, _parts(each, system), sending) for each in found if each.callback is not None]
-    of_heartbeats = [_of(each, HEARTBEATS, sending) for each in found if each.callback is None]
+    of_messages = [_of(each, parts(each, system), sending) for each in found if each.callback is not None]
+    of_heartbeats = [_of(each, written.answers, sending) for each in found if each.callback is None]
+    own = [_of(each, written.heartbeats, sending) for each in heartbeats(system)]
     if of_messages and executor.waiting.messages_per_wait != 1:
         return Suspension(most=None, why="a wait acknowledges an unknown number of messages")
-    return together([*of_heartbeats, *_longest(of_messages)])
+    return together([*of_heartbeats, *own, *_longest(of_messages)])
 
 
-def _of(answer: Transmission, times: int, sending: Mapping[str, Span]) -> Suspension:
-    most = sending.get(answer.name, Span()).most
-    if most is None:
-        return Suspension(most=None, times=times, why=f"how long {answer.name!r} takes to be written has no bound")
-    return Suspension(most=times * most, times=times, why="it acknowledges reliable messages and heartbeats as it reads them")
-
-
-def _parts(answer: Transmission, system: System) -> int:
+def parts(answer: Transmission, system: System) -> int:
     """How many parts of a message are acknowledged one by one."""
     stimuli = set(system.processes[answer.name].stimuli)
     counts = (
@@ -61,6 +78,23 @@ def _parts(answer: Transmission, system: System) -> int:
         for runnable in system.software.runnables
     )
     return max(1, *counts)
+
+
+def _sent(system: System, purpose: Purpose) -> tuple[Transmission, ...]:
+    return tuple(
+        each for each in system.transmissions.values() if each.purpose is purpose and each.direction is Direction.TO_AGENT
+    )
+
+
+def _of(message: Transmission, times: int | None, sending: Mapping[str, Span]) -> Suspension:
+    if not times and times is not None:
+        return Suspension()
+    most = sending.get(message.name, Span()).most
+    if most is None:
+        return Suspension(most=None, times=times or 1, why=f"how long {message.name!r} takes to be written has no bound")
+    if times is None:
+        return Suspension(most=None, times=1, why=f"how often {message.name!r} is written in a wait has no bound")
+    return Suspension(most=times * most, times=times, why="it acknowledges reliable messages and heartbeats as it reads them")
 
 
 def _longest(found: list[Suspension]) -> list[Suspension]:

@@ -56,8 +56,11 @@ def together(parts: list[Suspension]) -> Suspension:
 
 
 def _of(publication: Publication, system: System, sending: Mapping[str, Span], held: Time | None) -> Suspension:
-    span = sending.get(publication.transmission or "") or _unstated(publication, system)
-    if span.most is None and publication.waits:
+    stated = sending.get(publication.transmission or "")
+    span = stated or _unstated(publication, system)
+    if stated is not None and stated.most is None:
+        why = _unbounded(publication)
+    elif span.most is None and publication.waits:
         span, why = _gives_up(publication, span, system)
     else:
         why = f"publish of {publication.topic} waits until it is acknowledged" if publication.waits else ""
@@ -74,6 +77,14 @@ def _unstated(publication: Publication, system: System) -> Span:
         return Span()
     transmission = system.transmissions.get(publication.transmission or "")
     return Span(most=0) if transmission is None else transmission.driver
+
+
+def _unbounded(publication: Publication) -> str:
+    """Why a publication has no bound, if not even the time until it gives up is known, which begins when it is written."""
+    if publication.waits and publication.timeout is None:
+        return f"publish of {publication.topic} waits for its acknowledgement without a timeout"
+    also = ", or what it writes while it waits," if publication.waits else ""
+    return f"how long {publication.transmission!r}{also} takes to be written has no bound"
 
 
 def _gives_up(publication: Publication, span: Span, system: System) -> tuple[Span, str]:

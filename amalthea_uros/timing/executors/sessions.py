@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from amalthea_uros.perf.executors import Executor
 from amalthea_uros.perf.network import Span
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.executors.answers import answering
+from amalthea_uros.timing.executors.answers import Written, answering
 from amalthea_uros.timing.executors.sending import suspension_of
 from amalthea_uros.timing.executors.wait import greatest_wait
 from amalthea_uros.units import Time
@@ -19,13 +19,13 @@ from amalthea_uros.units import Time
 ASSUMPTION = "threads get the mutex of a session in the order in which they ask for it, and execute at once while they hold it"
 
 
-def held_by_others(executor: Executor, system: System, sending: Mapping[str, Span]) -> Time | None:
+def held_by_others(executor: Executor, system: System, sending: Mapping[str, Span], written: Written) -> Time | None:
     """How long the other executors of its session can keep it from an executor that asks for it; None if that is not known."""
     total: Time = 0
     for other in system.executors:
         if executor.session is None or other.session != executor.session or other.name == executor.name:
             continue
-        reading = answering(other, system, sending).most
+        reading = answering(other, system, sending, written).most
         if reading is None:
             return None
         found = [greatest_wait(other) + reading]

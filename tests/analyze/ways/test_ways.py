@@ -7,21 +7,27 @@ the other way round: CMD + ACK. On the other wire /odom is alone: ODOM.
 from dataclasses import replace
 
 import pytest
+from hand_made_systems import ticks
 from ways_by_hand import ACK, CMD, MS, ODOM, US, Publication, Span, Wire, WireKind, board, tick, ways_of
 
+from amalthea_uros.analyze.executors.unread import Arriving, most_unread
 from amalthea_uros.analyze.propagation import solve
 from amalthea_uros.analyze.results import Quantity
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.analyze.verdicts import Verdict
 from amalthea_uros.analyze.ways.arrivals import arrival_jitter
+from amalthea_uros.analyze.ways.evaluate import evaluate_ways
 from amalthea_uros.analyze.ways.publications import sending_times
 from amalthea_uros.analyze.ways.results import HopKind
 from amalthea_uros.perf.activities import Trigger
 from amalthea_uros.perf.constraints import Constraints, LatencyConstraint, LatencyKind
-from amalthea_uros.perf.distributions import Uniform
+from amalthea_uros.perf.distributions import Constant, Uniform
 from amalthea_uros.perf.executors import HandleKind
+from amalthea_uros.perf.network import Purpose
+from amalthea_uros.perf.os import Policy, Scheduler
 from amalthea_uros.perf.stimuli import InterProcess, Periodic
 from amalthea_uros.timing.context import TimingContext
+from amalthea_uros.timing.event_models import Sporadic
 
 TO_PWM = ("to pwm", "cmd_published", "on_cmd_end", "speed_written", "pwm_end")
 TO_HOST = ("to host", "cmd_published", "on_cmd_end", "odom_at_host")
@@ -249,3 +255,77 @@ def test_another_sender_on_the_wire_is_waited_for():
         tasks=tuple(replace(each, scheduler="tx") if each.task == "odom_ack" else each for each in found.mapping.tasks),
     )
     assert sending_times(solution(replace(found, network=network, mapping=tasks)))["odom_out"].most == (ODOM + ACK) * US
+
+
+@pytest.mark.parametrize(
+    ("parts", "unread"),
+    [
+        # One every 10 ms, up to 40 ms late, in cycles of 6 ms. Until the end of the first one: 5, of the second: 6 less the one that is
+        # read, of the third: 6 less 2, ..., and after the eleventh nothing is unread.
+        (1, 5),
+        # In two parts, which take two cycles: 12 ms.
+        (2, None),
+    ],
+)
+def test_messages_that_come_late_lie_unread_together(parts, unread):
+    assert most_unread([Arriving(events=Sporadic(10 * MS), jitter=40 * MS, parts=parts)], 6 * MS) == unread
+
+
+def with_answers(found, interval, write):
+    """The system in which /cmd comes at intervals and is acknowledged, which takes a time on a wire of its own."""
+    stimuli = [
+        replace(each, distance=Constant(interval * US)) if each.name == "cmd_in_queued" else each
+        for each in found.stimuli.stimuli
+    ]
+    name, (structure,) = "cmd_in_acknowledgement", found.hardware.structures
+    task = replace(found.processes["odom_out"], name=name, stimuli=("cmd_in_queued",), activities=(ticks(write),))
+    allocated = replace(next(each for each in found.mapping.tasks if each.task == "odom_out"), task=name, scheduler="answers")
+    core = replace(structure.cores[-1], name="c3")
+    answer = replace(found.transmissions["odom_out"], name=name, topic=None, purpose=Purpose.ACKNOWLEDGEMENT, callback="On_cmd")
+    (operating,) = found.os.systems
+    scheduler = Scheduler(name="answers", policy=Policy.OSEK, cores=("c3",))
+    operating = replace(operating, schedulers=(*operating.schedulers, scheduler))
+    return replace(
+        found,
+        hardware=replace(found.hardware, structures=(replace(structure, cores=(*structure.cores, core)),)),
+        os=replace(found.os, systems=(operating,)),
+        software=replace(found.software, tasks=(*found.software.tasks, task)),
+        mapping=replace(found.mapping, tasks=(*found.mapping.tasks, allocated)),
+        stimuli=replace(found.stimuli, stimuli=tuple(stimuli)),
+        network=replace(found.network, transmissions=(*found.network.transmissions, answer)),
+    )
+
+
+@pytest.mark.parametrize(
+    ("interval", "write", "answered"),
+    [
+        # A cycle has 10 ms of sleep, 12.55 ms of publication, 1 ms to answer what the wait reads, and 0.75 ms of execution: 24.3 ms. In
+        # it and in its 1.74 ms of jitter one comes, which is unread for 24.3 ms at most; in 24.3 + 12.55 + 1.74 ms one.
+        (50_000, 1000, 1),
+        # One cycle of 25.3 ms and the jitter are still less than 30 ms, but 25.3 + 13.55 + 1.74 ms are more.
+        (30_000, 1000, 2),
+        # A cycle has 22.7 ms: two come in it and in the jitter, and one of them is unread for two; in 45.4 + 11.85 + 1.74 ms three.
+        (24_000, 100, 3),
+    ],
+)
+def test_a_publication_answers_what_was_unread_and_what_comes_while_it_waits(interval, write, answered):
+    round_trip = ODOM * US + 2 * MS + (ACK + CMD) * US
+    found = with_answers(board(publication=RELIABLE), interval, write)
+    assert sending_times(solution(found))["odom_out"].most == round_trip + answered * write * US
+
+
+def test_messages_that_come_faster_than_rounds_read_them_keep_a_publication_until_its_timeout():
+    # A cycle takes at least 10 ms of sleep and a round trip of 11.55 ms; the last answer can begin when the timeout ends.
+    found = with_answers(board(publication=RELIABLE), 20_000, 1000)
+    assert sending_times(solution(found))["odom_out"].most == (ODOM + 1000) * US + RELIABLE.timeout
+
+
+def test_a_publication_has_no_bound_if_its_write_has_none():
+    # More is sent than the wire can carry, so that the timeout begins at an unknown time.
+    found = board(publication=RELIABLE)
+    tasks = [replace(each, activities=(ticks(300_000),)) if each.name == "odom_out" else each for each in found.software.tasks]
+    found = replace(found, software=replace(found.software, tasks=tuple(tasks)))
+    assert sending_times(solution(found))["odom_out"].most is None
+    result = evaluate_ways(solution(found))[0]["Executor"]
+    assert result.handles["cmd"].response.worst is None
+    assert "'odom_out', or what it writes while it waits, takes to be written has no bound" in result.reason

@@ -1,0 +1,161 @@
+"""How long a message can lie unread in the buffer of the transport, and so how many can.
+
+The buffer is first in, first out, and each wait reads at least one message if any is there: data, a part of them, a heartbeat or an
+acknowledgement (`listen_message` in src/c/core/session/session.c of eProsima/Micro-XRCE-DDS-Client; with a timeout of less than 1 ms
+it looks only once). Let u be the last time at which nothing was unread. While something is, waits end at once, so that the k-th of
+them since u is at most k cycles L after it, and
+
+    unread just before it  <=  eta(k L) - (k - 1)
+
+with the most arrivals eta in such a window; nothing is unread after it if eta(k L) <= k, and it begins anew. So at most N = max over k
+are unread, and what arrives is read at most N L later: its age is at most Q = N L. At any time, the unread messages of a kind are
+those that came in the last Q, at most its eta(Q).
+
+Publications that wait read all messages up to their acknowledgement. It is read by them, and does not add to the others, unless they
+can give up before it comes.
+
+L contains the times of publications and of answers, which contain the unread messages. That the least solution of these equations
+holds is shown by induction over time: until some time was longer than in it, no cycle was longer than L, so that no more messages
+were unread than counted, and this time was not longer either. Nothing is unread when the first round begins.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from amalthea_uros.analyze.solution import Solution
+from amalthea_uros.analyze.ways.messages import received, variation
+from amalthea_uros.perf.executors import Publication
+from amalthea_uros.perf.network import Direction, Purpose, Span, Transmission
+from amalthea_uros.perf.system import System
+from amalthea_uros.timing.event_models import EventModel
+from amalthea_uros.timing.executors.answers import answers, heartbeats, parts
+from amalthea_uros.units import Time
+
+#: More unread messages are considered unbounded: rounds are then hardly faster than messages.
+MAX_UNREAD = 10_000
+#: Heartbeats that can be due besides those at intervals: when a timeout begins, and when its last reading does.
+DUE = 2
+_ACKNOWLEDGEMENT = "_acknowledgement"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Arriving:
+    """Messages of a kind as they become visible to the client.
+
+    Attributes
+    ----------
+    jitter : by which they vary after they were queued on their wire
+    parts : of each of them, read one by one
+    """
+
+    events: EventModel
+    jitter: Time
+    parts: int = 1
+
+    def most(self, window: Time) -> int:
+        """The most that arrive in a time, its ends included."""
+        return self.parts * self.events.eta_plus(window + self.jitter + 1)
+
+
+def arriving(message: Transmission, solution: Solution, parts: int = 1) -> Arriving | None:
+    """The arrivals of a message; None if they are unknown."""
+    events, jitter = solution.event_models.get(message.name), variation(list(received(message, solution)))
+    return None if events is None or jitter is None else Arriving(events=events, jitter=jitter, parts=parts)
+
+
+def answered(solution: Solution) -> Mapping[str, Arriving | None]:
+    """What the client answers, by the names of the answers; None if its arrivals are unknown."""
+    system = solution.context.system
+    found: dict[str, Arriving | None] = {}
+    for answer in answers(system):
+        message = system.transmissions.get(answer.name.removesuffix(_ACKNOWLEDGEMENT))
+        found[answer.name] = None if message is None else arriving(message, solution, parts(answer, system))
+    return found
+
+
+def longest_unread(length: Time | None, sending: Mapping[str, Span], solution: Solution) -> Time | None:
+    """The greatest age of an unread message; None if there is no bound.
+
+    Parameters
+    ----------
+    length : of a cycle without a wait; None if it has no bound
+    """
+    if length is None:
+        return None
+    kinds = list(_read_in_rounds(length, sending, solution))
+    known = [each for each in kinds if each is not None]
+    if len(known) < len(kinds):
+        return None
+    most = most_unread(known, length)
+    return None if most is None else most * length
+
+
+def most_unread(kinds: Sequence[Arriving], length: Time) -> int | None:
+    """The most messages that can be unread; None if there is no bound.
+
+    Parameters
+    ----------
+    length : of a cycle without a wait
+    """
+    if sum(each.parts * each.events.rate for each in kinds) * length >= 1:
+        return None
+    most = 1
+    for count in range(1, MAX_UNREAD):
+        arrived = sum(each.most(count * length) for each in kinds)
+        most = max(most, arrived - count + 1)
+        if arrived <= count:
+            return most
+    return None
+
+
+def can_give_up(publication: Publication, sending: Mapping[str, Span]) -> bool:
+    """Whether a publication can end before it is acknowledged; its timeout begins after it is written."""
+    most = sending.get(publication.transmission or "", Span()).most
+    return not publication.waits or most is None or publication.timeout is None or most > publication.timeout
+
+
+def publications(system: System) -> list[Publication]:
+    """All publications of callbacks of executors."""
+    return [each for executor in system.executors for handle in executor.handles for each in handle.publications]
+
+
+def is_behind(sending: Mapping[str, Span], solution: Solution) -> bool:
+    """Whether something can be sent and not be acknowledged when a round or a publication begins."""
+    return any(each.reliable and can_give_up(each, sending) for each in publications(solution.context.system))
+
+
+def most_heartbeats(timeout: Time, solution: Solution) -> int | None:
+    """The most heartbeats that the client writes before a timeout ends; None if that is unknown.
+
+    They follow at intervals: of the clock until the last reading, and of its own timeout in that.
+    """
+    intervals = _intervals(solution)
+    return sum(DUE + timeout // each for each in intervals if each) if all(intervals) else None
+
+
+def _intervals(solution: Solution) -> list[Time | None]:
+    """The intervals of the heartbeats of the client."""
+    events = [solution.event_models.get(each.name) for each in heartbeats(solution.context.system)]
+    return [None if each is None else each.delta_min(2) for each in events]
+
+
+def _read_in_rounds(length: Time, sending: Mapping[str, Span], solution: Solution) -> Iterator[Arriving | None]:
+    system = solution.context.system
+    read_before = {each.acknowledgement for each in publications(system) if not can_give_up(each, sending)}
+    by_answer = answered(solution)
+    # Each publication ends in the cycle in which it begins: before the first heartbeat.
+    is_silent = not is_behind(sending, solution) and all(each and each > length for each in _intervals(solution))
+    for each in system.transmissions.values():
+        if each.direction is Direction.TO_AGENT or each.purpose is Purpose.FOREIGN or each.name in read_before:
+            continue
+        if is_silent and _answers_heartbeat(each, system):
+            continue
+        name = f"{each.name}{_ACKNOWLEDGEMENT}"
+        yield by_answer[name] if name in by_answer else arriving(each, solution)
+
+
+def _answers_heartbeat(answer: Transmission, system: System) -> bool:
+    """Whether an acknowledgement answers a heartbeat of the client."""
+    return answer.name.removesuffix(_ACKNOWLEDGEMENT) in {each.name for each in heartbeats(system)}
