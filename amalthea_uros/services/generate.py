@@ -17,6 +17,7 @@ from amalthea_uros.findings.suppression import unsuppressed
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.services.build import describe
 from amalthea_uros.services.paths import StrPath, folder_of
+from amalthea_uros.services.waiting_messages import waiting_messages, with_analysed_storage
 from amalthea_uros.spec.application import Application, Node
 from amalthea_uros.spec.platforms import complete
 from amalthea_uros.spec.read import read_description
@@ -94,6 +95,7 @@ def generate(path: StrPath, folder: StrPath | None = None, platform: str | None 
     if not assembly.description.application.nodes:
         message, advice = "no micro-ROS application: nothing to generate", "Add nodes under 'application'."
         raise ReadError([Finding("GEN009", Severity.ERROR, message, Location(Path(path)), advice)])
+    assembly = with_analysed_storage(assembly)
     target = None if folder is None else Path(folder)
     texts = texts_of(assembly)
     result = GenerateResult(
@@ -123,8 +125,9 @@ def check_colcon_meta(path: StrPath, meta: StrPath, platform: str | None = None)
         text = read_text(file, SETTINGS_SIZE)
     except FileError as error:
         raise ReadError([Finding("GEN006", Severity.ERROR, error.reason, Location(file), error.advice)]) from None
+    description, file_options = assembly.description, parse_meta(file, text)
     findings = check_meta(
-        assembly.description.application, assembly.description.middleware, assembly.profile, parse_meta(file, text)
+        description.application, description.middleware, assembly.profile, file_options, waiting_messages(assembly)
     )
     return MetaCheck(description=Path(path), path=file, findings=findings)
 

@@ -22,6 +22,7 @@ from amalthea_uros.services.names import require_settings
 from amalthea_uros.services.paths import StrPath, as_paths, is_description
 from amalthea_uros.services.simulate import SimulationResult
 from amalthea_uros.services.subject import Subject
+from amalthea_uros.services.waiting_messages import with_analysed_storage
 from amalthea_uros.services.what_if import Changes, as_changes
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.timing.load import activation_rates
@@ -117,6 +118,8 @@ def compile_report(
     differences = describe(opened.system, unchanged, parsed)
     system, used = apply(opened.system, unchanged, parsed)
     analysis = analyze_system(system, used)
+    before = analyze_system(opened.system, unchanged) if parsed else None
+    assembly = opened.assembly
     simulation = None
     if with_simulation:
         options = Options(duration=duration or default_duration(analysis), seed=seed, settings=used)
@@ -127,13 +130,13 @@ def compile_report(
         system=system,
         settings=used,
         analysis=analysis,
-        before=analyze_system(opened.system, unchanged) if parsed else None,
+        before=before,
         differences=differences,
         simulation=simulation,
         is_duration_chosen=duration is None,
         check=_checked(opened),
         findings=_findings(opened, analysis, simulation),
-        assembly=opened.assembly,
+        assembly=None if assembly is None else with_analysed_storage(assembly, before or analysis),
     )
 
 

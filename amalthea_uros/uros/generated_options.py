@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import islice
 
 from amalthea_uros._internal.similar import Suggestions
@@ -21,6 +21,32 @@ _COUNTED = (OptionRole.POOL, OptionRole.QUEUE)
 #: Options that no figure depends on.
 _OTHERS = ("RMW_UXRCE_DEFAULT_", "RMW_UXRCE_IPV", "UCLIENT_PROFILE_", "UCLIENT_MAX_INPUT_", "UCLIENT_MAX_OUTPUT_")
 _MULTITHREAD = "UCLIENT_PROFILE_MULTITHREAD"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WaitingMessages(Brief):
+    """How many received messages can wait at the same time in a system, which a description alone does not tell.
+
+    Attributes
+    ----------
+    why : what the number is based on, after a colon
+    """
+
+    most: int
+    why: str
+
+
+def with_waiting_messages(options: Sequence[Option], waiting: WaitingMessages | None) -> tuple[Option, ...]:
+    """The options, whose storage for messages is for at least so many."""
+    return tuple(
+        replace(option, needed=waiting.most, counts=f"{option.counts}: {waiting.why}")
+        if waiting is not None
+        and option.role is OptionRole.QUEUE
+        and option.needed is not None
+        and option.needed < waiting.most
+        else option
+        for option in options
+    )
 
 
 def value_of(option: Option) -> int | None:
@@ -54,9 +80,16 @@ def with_generated_options(middleware: Middleware, options: Sequence[Option], pr
     return middleware.model_copy(update={"limits": limits})
 
 
-def check_meta(application: Application, middleware: Middleware, profile: Profile, meta: ColconMeta) -> tuple[Finding, ...]:
-    """What is wrong with a file of build options for an application."""
-    comparison = _Comparison(application, middleware, profile, profile.option_table())
+def check_meta(
+    application: Application, middleware: Middleware, profile: Profile, meta: ColconMeta, waiting: WaitingMessages | None = None
+) -> tuple[Finding, ...]:
+    """What is wrong with a file of build options for an application.
+
+    Parameters
+    ----------
+    waiting : what the storage for messages has to be for; None for what follows from the description alone
+    """
+    comparison = _Comparison(application, middleware, profile, profile.option_table(), waiting)
     return tuple(islice(comparison.findings_of(meta), MAX_FINDINGS))
 
 
@@ -74,6 +107,7 @@ class _Comparison(Brief):
     middleware: Middleware
     profile: Profile
     table: Mapping[str, OptionRow]
+    waiting: WaitingMessages | None
     values: dict[str, int] = field(default_factory=dict)
     places: dict[str, Location] = field(default_factory=dict)
     suggestions: Suggestions = field(default_factory=Suggestions)
@@ -87,7 +121,7 @@ class _Comparison(Brief):
             yield from self._accept(definition)
         described = {option.name: option for option in self.profile.options(self.application, self.middleware)}
         middleware = self._built()
-        for option in self.profile.options(self.application, middleware):
+        for option in with_waiting_messages(self.profile.options(self.application, middleware), self.waiting):
             yield from self._judge(option, described.get(option.name), middleware, Location(meta.path))
 
     def _accept(self, definition: Definition) -> Iterator[Finding]:

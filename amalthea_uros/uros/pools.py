@@ -31,8 +31,12 @@ def check_options(options: Iterable[Option], middleware: Middleware, notes: Note
 def _report_pool(option: Option, middleware: Middleware, notes: Notes) -> None:
     """Without an entity the application does not start; without a slot it loses messages."""
     default = "" if option.is_stated else " by default"
-    message = f"{option.name} is {option.available}{default}, but the application needs {option.needed}"
-    advice = f"{option.when_exhausted} Set {option.name} to {option.needed} or more in the build and under 'limits'."
+    is_queue = option.role is OptionRole.QUEUE
+    least = "at least " if is_queue else ""
+    message = f"{option.name} is {option.available}{default}, but the application needs {least}{option.needed}"
+    # How many messages wait depends on response times, which nobody knows here.
+    value = "the number that 'amuros generate' computes" if is_queue else f"{option.needed} or more"
+    advice = f"{option.when_exhausted} Set {option.name} to {value} in the build and under 'limits'."
     report = notes.error if option.is_stated and option.role is OptionRole.POOL else notes.warning
     report("UR120", message, _location(option, middleware), advice)
 

@@ -11,8 +11,11 @@ from effort import every
 from support import ROOT
 
 from amalthea_uros.errors import ReadError, WriteError
-from amalthea_uros.services.generate import check_colcon_meta, generate
+from amalthea_uros.services.analyze import analyze_files
+from amalthea_uros.services.build import describe
+from amalthea_uros.services.generate import check_colcon_meta, generate, texts_of
 from amalthea_uros.services.init import example_names
+from amalthea_uros.services.report import compile_report
 
 #: zenoh-pico has no pools.
 SAMPLES = [ROOT / "samples" / f"{name}.yaml" for name in example_names() if name != "robot-zenoh"]
@@ -333,3 +336,103 @@ def test_a_history_that_the_build_refuses_is_not_generated(tmp_path):
     text = generate(app).texts["colcon.meta"]
     assert "-DRMW_UXRCE_STREAM_HISTORY=4" in arguments(text)
     assert checked(app, text, tmp_path) == ()
+
+
+LOOPING = [sample for sample in SAMPLES if describe(sample).system.executors]
+
+
+def slots(text):
+    return int(re.search(r"-DRMW_UXRCE_MAX_HISTORY=(\d+)", text)[1])
+
+
+def with_slots(text, number, folder):
+    """A description with a number of slots for messages."""
+    shutil.copy(ROOT / "samples" / "two-controllers.dbc", folder)
+    option = f"RMW_UXRCE_MAX_HISTORY: {number}"
+    text = re.sub(r"RMW_UXRCE_MAX_HISTORY: \d+", option, text)
+    if option not in text and "  limits: {" in text:
+        text = text.replace("  limits: {", f"  limits: {{{option}, ")
+    elif option not in text:
+        text = text.replace("\napplication:", f"\n  limits: {{{option}}}\napplication:", 1)
+    app = folder / "slots.yaml"
+    app.write_text(text)
+    return app
+
+
+@pytest.mark.parametrize("sample", LOOPING, ids=lambda path: path.stem)
+def test_with_the_slots_that_are_generated_the_analysis_finds_no_message_without_one(sample, tmp_path):
+    text = sample.read_text()
+    number = slots(generate(sample).texts["colcon.meta"])
+    app = with_slots(text, number, tmp_path)
+    assert "EXE014" not in rules(analyze_files(app).findings)
+    # What the description states changes nothing in what is needed; and the number is the smallest.
+    assert slots(generate(app).texts["colcon.meta"]) == number
+    assert number == 1 or "EXE014" in rules(analyze_files(with_slots(text, number - 1, tmp_path)).findings)
+
+
+USB = (ROOT / "samples" / "stm32-usb-cdc.yaml").read_text()
+KEPT_BACK = USB.replace("    order: ", "    trigger: all\n    order: ")
+
+
+@pytest.mark.parametrize(
+    ("text", "number", "why"),
+    [
+        # A publication that waits keeps rounds from taking messages, which come every 50 ms with jitter.
+        (USB, 3, "as many as the analysis finds"),
+        # Nothing is taken while the trigger is false: as many as a best-effort history keeps.
+        (KEPT_BACK, 5, "all that are kept for On_Cmd_Vel, whose response time has no bound"),
+        (KEPT_BACK.replace("topic: cmd_vel,", "topic: cmd_vel, depth: 7,"), 7, "all that are kept for On_Cmd_Vel"),
+    ],
+)
+def test_messages_that_wait_are_counted_by_the_analysis(text, number, why, tmp_path):
+    app = with_slots(text, 9, tmp_path)
+    result = generate(app)
+    row = next(row for row in result.to_records() if row["option"] == "RMW_UXRCE_MAX_HISTORY")
+    assert row["generated"] == str(number)
+    assert why in row["counts"]
+    enough = result.texts["colcon.meta"]
+    assert checked(app, enough, tmp_path) == ()
+    stated = f"MAX_HISTORY={number}"
+    (few,) = checked(app, enough.replace(stated, f"MAX_HISTORY={number - 1}"), tmp_path)
+    assert few.rule == "GEN001"
+    assert f"the application needs {number}: received messages that wait at the same time: " in few.message
+    (many,) = checked(app, enough.replace(stated, f"MAX_HISTORY={number + 1}"), tmp_path)
+    assert (many.rule, many.message) == ("GEN002", f"RMW_UXRCE_MAX_HISTORY is {number + 1}, but {number} would be enough")
+
+
+@pytest.mark.parametrize(("described", "number"), [(1, 20), (30, 30)])
+def test_an_executor_without_a_loop_leaves_the_number_open(described, number, tmp_path):
+    app = tmp_path / "app.yaml"
+    subscription = "execution_time: 10 us, rate: 10 Hz, message_size: 4 B"
+    app.write_text(f"""amuros: 1
+name: a
+hardware: {{platform: esp32}}
+middleware:
+  executors: [{{name: A, loop: {{spin_some: 10 ms}}, priority: 4}}, {{name: B, period: 10 ms, priority: 5}}]
+  limits: {{RMW_UXRCE_MAX_HISTORY: {described}}}
+  transport: {{serial: {{}}}}
+application:
+  nodes:
+    - name: n
+      subscriptions: [{{name: S, topic: s, {subscription}}}, {{name: T, runs_in: B, topic: t, {subscription}}}]
+""")
+    # What the histories of both keep, 10 by default, or what the description has.
+    text = generate(app).texts["colcon.meta"]
+    assert slots(text) == number
+    assert "no number is known to be enough because of B" in text
+
+
+def test_a_number_without_an_analysis_is_a_lower_bound(tmp_path):
+    two = USB.replace("      subscriptions:\n", "      subscriptions:\n        - {name: B, topic: b, SAME}\n")
+    two = two.replace("SAME", "rate: 20 Hz, message_size: 4 B, execution_time: 1 us").replace(
+        "On_Cmd_Vel]\n", "On_Cmd_Vel, B]\n"
+    )
+    two = two.replace("max_handles: 2", "max_handles: 3")
+    (finding,) = [each for each in describe(with_slots(two, 1, tmp_path)).findings if each.rule == "UR120"]
+    assert finding.message == "RMW_UXRCE_MAX_HISTORY is 1, but the application needs at least 2"
+    assert "Set RMW_UXRCE_MAX_HISTORY to the number that 'amuros generate' computes" in finding.help
+
+
+def test_a_report_has_the_file_that_is_generated(tmp_path):
+    content = compile_report(with_slots(USB, 4, tmp_path), with_simulation=False)
+    assert slots(texts_of(content.assembly)["colcon.meta"]) == 3

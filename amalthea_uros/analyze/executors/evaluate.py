@@ -8,7 +8,7 @@ from dataclasses import replace
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros.analyze.executors.cycle import Cycle, UnknownCycleError
 from amalthea_uros.analyze.executors.handles import SOURCE, handle_result
-from amalthea_uros.analyze.executors.losses import with_lost_messages
+from amalthea_uros.analyze.executors.losses import slots_of_pool, stored_messages, with_lost_messages
 from amalthea_uros.analyze.executors.results import ExecutorResult, HandleResult
 from amalthea_uros.analyze.executors.window import METHOD
 from amalthea_uros.analyze.results import Claim, Response
@@ -34,10 +34,13 @@ def evaluate_executors(
     executors = solution.context.system.executors
     results = {each: _evaluated(each, solution, sending, extra_jitter) for each in executors}
     cycles = cycles_of(solution, sending)
-    for executor, cycle in cycles.items():
-        together = {each: results[each].handles for each in sharing(executor, executors)}
-        handles = Results(with_lost_messages(results[executor].handles, cycle, together, extra_jitter))
-        results[executor] = replace(results[executor], handles=handles)
+    for executor in executors:
+        together = sharing(executor, executors)
+        stored = stored_messages({each: results[each].handles for each in together}, extra_jitter)
+        needed = slots_of_pool(together, executors, stored)
+        found, cycle = results[executor], cycles.get(executor)
+        handles = found.handles if cycle is None else Results(with_lost_messages(found.handles, cycle, stored, needed))
+        results[executor] = replace(found, handles=handles, slots_needed=needed)
     return tuple(results.values())
 
 

@@ -16,7 +16,7 @@ from amalthea_uros.analyze.executors.results import HandleResult, Loss
 from amalthea_uros.perf.executors import Executor, Handle
 from amalthea_uros.perf.network import Span
 from amalthea_uros.timing.executors.arrivals import UnknownArrivalsError, arrivals
-from amalthea_uros.timing.executors.readiness import keeps_back, stores
+from amalthea_uros.timing.executors.readiness import keeps_back, sharing, stores
 from amalthea_uros.timing.executors.slots import LIFESPAN, can_exceed_depth, slots_needed
 from amalthea_uros.timing.executors.timers import lost_periods, next_expiration
 from amalthea_uros.timing.executors.wait import is_message, messages
@@ -85,28 +85,42 @@ def _lost_triggers(most: int | None, sequence: str) -> Loss:
 
 
 def with_lost_messages(
-    results: Sequence[HandleResult],
-    cycle: Cycle,
-    sharing: Mapping[Executor, Sequence[HandleResult]],
-    extra_jitter: Mapping[str, Time | None],
+    results: Sequence[HandleResult], cycle: Cycle, stored: Mapping[str, int | None], needed: int | None
 ) -> list[HandleResult]:
     """The results with the messages that can be lost because there is no room for them.
 
     Parameters
     ----------
-    sharing : the results of all executors that use its slots, its own included
+    stored : the messages of each handle that can wait at the same time
+    needed : the slots for those of all executors that share them
     """
     executor, everyone = cycle.executor, cycle.solution.context.system.executors
-    if executor.waiting.slots != 0 and all(_is_taken_at_once(each, everyone) for each in sharing):
+    if executor.waiting.slots != 0 and all(_is_taken_at_once(each, everyone) for each in sharing(executor, everyone)):
         return list(results)
-    handles = [handle for each in sharing for handle in messages(each)]
-    found = {result.name: result for each in sharing.values() for result in each}
-    stored = {handle.name: _stored(handle, found[handle.name], extra_jitter) for handle in handles}
-    needed = slots_needed(handles, stored)
     return [
         replace(result, lost=_lost(handle, result, cycle, stored[handle.name], needed)) if is_message(handle) else result
         for handle, result in zip(executor.handles, results, strict=True)
     ]
+
+
+def stored_messages(
+    results: Mapping[Executor, Sequence[HandleResult]], extra_jitter: Mapping[str, Time | None]
+) -> dict[str, int | None]:
+    """How many messages of each handle can wait at the same time; None if that is not known."""
+    return {
+        handle.name: _stored(handle, result, extra_jitter)
+        for executor, found in results.items()
+        for handle, result in zip(executor.handles, found, strict=True)
+        if is_message(handle)
+    }
+
+
+def slots_of_pool(executors: Sequence[Executor], everyone: Sequence[Executor], stored: Mapping[str, int | None]) -> int | None:
+    """The slots that executors need that share them; None if a number of messages is not known, and nothing limits it."""
+    handles = [handle for each in executors for handle in messages(each)]
+    if all(_is_taken_at_once(each, everyone) for each in executors):
+        return min(len(handles), 1)
+    return slots_needed(handles, stored)
 
 
 def _is_taken_at_once(executor: Executor, others: Sequence[Executor]) -> bool:

@@ -89,6 +89,7 @@ class ExecutorResult(Shown):
     loop : least and greatest time from the end of a wait to that of the next one
     handles : in the order in which they are called
     reason : why nothing is known of it
+    slots_needed : slots with which no message of the executors that share them finds none free; None if no number is known to be enough
     """
 
     name: str
@@ -97,6 +98,7 @@ class ExecutorResult(Shown):
     loop: Span
     handles: Results[HandleResult]
     reason: str = ""
+    slots_needed: int | None = None
 
     def __repr__(self) -> str:
         return f"<ExecutorResult {self.name}: {len(self.handles)} handles>"

@@ -13,6 +13,7 @@ from amalthea_uros.units import time_text
 from amalthea_uros.uros.assemble import Assembly
 from amalthea_uros.uros.initialisation import Initialisation
 from amalthea_uros.uros.memory.ram import Memory
+from amalthea_uros.uros.middleware.profile import Option, OptionRole
 
 
 def write(result: BuildResult, terminal: Terminal) -> None:
@@ -132,8 +133,13 @@ def _pools(terminal: Terminal, assembly: Assembly) -> None:
     if not used:
         return
     terminal.heading("Static pools")
-    rows = [(pool.name, pool.needed, pool.available, "" if pool.is_stated else "default") for pool in used]
+    rows = [(pool.name, _needed(pool), pool.available, "" if pool.is_stated else "default") for pool in used]
     terminal.table(("option", "needed", "available", ""), rows, right=(1, 2))
+
+
+def _needed(pool: Option) -> str:
+    """What a pool needs; how many messages wait depends on response times, and is known only after an analysis."""
+    return f"at least {pool.needed}" if pool.role is OptionRole.QUEUE else str(pool.needed)
 
 
 def _memory(terminal: Terminal, memory: Memory) -> None:

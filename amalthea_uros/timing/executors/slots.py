@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from amalthea_uros.perf.executors import Handle
+from amalthea_uros.perf.executors import Handle, HandleKind
 from amalthea_uros.units import SECOND
 
 #: A stored message is removed when it is older than the lifespan of its QoS, by default 30 s.
@@ -29,5 +29,8 @@ def slots_needed(handles: Iterable[Handle], stored: Mapping[str, int | None]) ->
 
 def _kept(handle: Handle, stored: int | None) -> int | None:
     """How many messages of a handle can occupy slots."""
-    known = [number for number in (handle.depth, stored) if number is not None]
+    # Each entity behind an action keeps as many; of a server's, one is a timer.
+    entities = handle.sources - (handle.kind is HandleKind.ACTION_SERVER and handle.sources > 1)
+    depth = None if handle.depth is None else handle.depth * entities
+    known = [number for number in (depth, stored) if number is not None]
     return min(known) if known else None

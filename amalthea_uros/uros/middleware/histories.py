@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
+from amalthea_uros.spec.application import Application, MessageCallback, Node, Subscription
 from amalthea_uros.spec.application import Callback as Section
-from amalthea_uros.spec.application import MessageCallback, Subscription
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.uros.callbacks import Callback
 from amalthea_uros.uros.executors.serving import stated_executors
+from amalthea_uros.uros.memory.entities import ACTION_SERVICES, ACTION_TOPICS, LIFECYCLE_SERVICES, PARAMETER_SERVICES
 from amalthea_uros.uros.middleware.profile import Profile
 from amalthea_uros.uros.notes import Notes
 
@@ -22,6 +23,22 @@ def depth_of(section: Section) -> int | None:
         return None
     is_best_effort = isinstance(section, Subscription) and section.reliability == "best-effort"
     return section.depth or (_BEST_EFFORT if is_best_effort else _RELIABLE)
+
+
+def kept_messages(application: Application) -> int:
+    """The most messages that the histories of an application keep together."""
+    return sum(count * (depth_of(section) or 0) for node in application.nodes for section, count in _receivers(node))
+
+
+def _receivers(node: Node) -> Iterator[tuple[Section, int]]:
+    """The callbacks with messages of a node, with the entities that receive them."""
+    yield from ((section, 1) for section in (*node.subscriptions, *node.services, *node.clients))
+    yield from ((section, ACTION_SERVICES) for section in node.action_servers)
+    yield from ((section, ACTION_SERVICES + ACTION_TOPICS) for section in node.action_clients)
+    if node.parameter_server is not None:
+        yield MessageCallback.model_construct(), PARAMETER_SERVICES
+    if node.lifecycle is not None:
+        yield MessageCallback.model_construct(), LIFECYCLE_SERVICES
 
 
 def check_histories(callbacks: Sequence[Callback], middleware: Middleware, profile: Profile, notes: Notes) -> None:

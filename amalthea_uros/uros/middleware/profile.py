@@ -62,7 +62,7 @@ class Option(Brief):
     Attributes
     ----------
     package : the package whose build takes it, for `colcon.meta`
-    needed : smallest value with which the application works; None if it has no use for it
+    needed : smallest value with which the application works, a lower bound for a queue; None if it has no use for it
     available : the value that the description states, or else the default
     is_stated : whether the description states it
     unit : such as "B" or "ms"; "" for a number of things

@@ -174,6 +174,30 @@ def test_messages_are_dropped_when_the_slots_are_used():
     assert "EXE015" in rules(looping(publishing, message("a", 2_000_000, depth=1), loop=SPIN))
 
 
+def test_the_slots_that_are_needed_do_not_depend_on_those_that_there_are():
+    def needed(*handles, slots=8, **parts):
+        return evaluate(looping(*handles, waiting=Waiting(slots=slots), **parts)).slots_needed
+
+    # Each wait takes one message, and its round calls it.
+    assert needed(message("a", 500_000, depth=10), message("b", 500_000, depth=10)) == 1
+    assert needed(timer("t", 500_000)) == 0
+    # As above, two of them wait while one is published; without a bound, as many as the history keeps.
+    publishing = timer("t", 5_000_000, publications=(waiting_publication(),))
+    loop = replace(SPIN, timeout=100 * MS)
+    assert {needed(publishing, message("a", 2_000_000, depth=10), loop=loop, slots=slots) for slots in (1, 2, 8)} == {2}
+    assert needed(publishing, message("a", None, depth=10), loop=loop) == 10
+    assert needed(publishing, message("a", None), loop=loop) is None
+
+
+def test_each_entity_of_an_action_has_a_history():
+    # Three services and a timer of the server, three clients and two subscriptions of the client (rcl_action).
+    publishing = timer("t", 5_000_000, publications=(waiting_publication(),))
+    handle, cost = message("a", None, depth=10)
+    server = replace(handle, kind=HandleKind.ACTION_SERVER, sources=4), cost
+    client = replace(handle, kind=HandleKind.ACTION_CLIENT, sources=5), cost
+    assert [evaluate(looping(publishing, each)).slots_needed for each in (server, client)] == [30, 50]
+
+
 def test_an_unknown_interval_makes_all_messages_unknown_but_not_the_timers():
     found = evaluate(looping(message("a", None), message("b", 500_000), timer("t", 500_000, 1000)))
     assert "between two messages for 'a' is not stated" in found.handles["b"].response.reason

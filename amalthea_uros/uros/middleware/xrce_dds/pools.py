@@ -132,7 +132,9 @@ def _needs(application: Application, middleware: Middleware, data: ProfileData) 
 
 
 def _waiting_messages(application: Application, entities: Entities, middleware: Middleware) -> int:
-    """How many received messages can wait at the same time, if each is taken before the next one of its entity arrives.
+    """How many received messages can wait at the same time at least: if each is taken before the next one of its entity arrives.
+
+    Whether it is depends on response times, so more of them can wait.
 
     An executor that waits for one message at a time takes it in the same round, so it needs one slot. While a reliable publication
     waits for its acknowledgement, while a trigger condition is false, until the next period, and with several executors on one session,

@@ -10,7 +10,10 @@ RULE = Rule(
     title="static pool of the middleware that is too small",
     severity=Severity.ERROR,
     rationale="rmw_microxrcedds does not allocate memory at run time: creating an entity fails when its pool is full.",
-    remedy="Set the build option to the number of entities that the application needs, and repeat it under 'limits'.",
+    remedy=(
+        "Set the build option to the number of entities that the application needs, and repeat it under 'limits'. For messages that "
+        "wait, the number is a lower bound: 'amuros generate' computes how many slots are enough."
+    ),
     fails="""
 amuros: 1
 name: app

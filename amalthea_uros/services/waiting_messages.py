@@ -1,0 +1,56 @@
+"""How many received messages can wait at the same time, as the analysis finds: what the size of their storage has to be."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from amalthea_uros.analyze.executors.results import ExecutorResult
+from amalthea_uros.analyze.results import Analysis
+from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.perf.executors import Executor
+from amalthea_uros.timing.executors.wait import messages
+from amalthea_uros.uros.assemble import Assembly
+from amalthea_uros.uros.generated_options import WaitingMessages, with_waiting_messages
+from amalthea_uros.uros.memory.entities import executors_of
+from amalthea_uros.uros.middleware.histories import kept_messages
+from amalthea_uros.uros.middleware.profile import OptionRole
+
+
+def with_analysed_storage(assembly: Assembly, analysis: Analysis | None = None) -> Assembly:
+    """The assembly with what the analysis finds to be needed for messages that wait.
+
+    Parameters
+    ----------
+    analysis : of its system; None: it is made
+    """
+    waiting = waiting_messages(assembly, analysis)
+    return replace(assembly, options=with_waiting_messages(assembly.options, waiting))
+
+
+def waiting_messages(assembly: Assembly, analysis: Analysis | None = None) -> WaitingMessages | None:
+    """The messages that can wait at the same time; None if the middleware has no limit for them, or no executor spins in a loop.
+
+    Parameters
+    ----------
+    analysis : of the system of the assembly; None: it is made
+    """
+    described = [each.available for each in assembly.options if each.role is OptionRole.QUEUE]
+    executors = assembly.system.executors
+    if not described or not executors:
+        return None
+    found = (analysis or analyze_system(assembly.system)).executors
+    unbounded = [name for each in executors for name in _unbounded(each, found[each.name])]
+    periodic = [each.name for each in executors_of(assembly.description.middleware) if each.loop is None]
+    needed = [each.slots_needed for each in found if each.slots_needed is not None]
+    if not periodic and len(needed) == len(found):
+        kept = f"all that are kept for {' and '.join(unbounded)}, whose response time has no bound"
+        return WaitingMessages(most=max(needed), why=kept if unbounded else "as many as the analysis finds")
+    # What nobody knows to be unnecessary is kept.
+    most = max(*needed, *described, kept_messages(assembly.description.application))
+    why = f"no number is known to be enough because of {' and '.join(periodic or unbounded)}"
+    return WaitingMessages(most=most, why=why)
+
+
+def _unbounded(executor: Executor, result: ExecutorResult) -> list[str]:
+    """The handles whose messages may wait for ever."""
+    return [each.name for each in messages(executor) if result.handles[each.name].response.worst is None]
