@@ -221,7 +221,8 @@ def _process(name: str, solution: Solution, limits: Mapping[str, Time], executor
         max_interarrival=events.max_interarrival if events is not None else None,
     )
     if executor is not None:
-        return of_rounds(found, executor, stated)
+        gap = "" if name in context.demands else context.reasons.get(name, "")
+        return of_rounds(found, executor, stated, gap)
     if name in context.following_rounds:
         return without_doubtful_losses(judged(found, process, events, context.can_borrow(name)))
     if response is None or not solution.depends_on_losses(name):

@@ -95,14 +95,18 @@ class _Extract:
         return self.with_middleware(system)
 
     def with_middleware(self, system: System) -> System:
-        """The system with its executors and its network; what is said of them in vain makes the activation of its task unknown."""
+        """The system with its executors and its network; what is said of them in vain makes the activation of its task unknown.
+
+        What is said of the whole network in vain can be about any task.
+        """
         context, tasks = self.context, self.parts(am.SWModel, "tasks")
         system = replace(
             system,
             executors=extract_executors(tasks, system, context),
             network=extract_network(self.sub_models(am.SWModel), tasks, system, context),
         )
-        unknown = {context.names[task] for task in tasks if task in context.without_property}
+        is_network_lost = any(model in context.without_property for model in self.sub_models(am.SWModel))
+        unknown = {context.names[task] for task in tasks if is_network_lost or task in context.without_property}
         return with_unknown_activation(system, unknown) if unknown else system
 
     def hardware(self) -> Hardware:

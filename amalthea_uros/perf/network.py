@@ -99,14 +99,30 @@ class Transmission(Named):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Wait(Brief):
+    """A runnable outside executors in loops waits for the acknowledgement of a message that is on no wire of the system.
+
+    Attributes
+    ----------
+    timeout : after which it gives up; None if it does not
+    """
+
+    runnable: str
+    topic: str
+    timeout: Time | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Network(Brief):
     """The network of a system.
 
     Attributes
     ----------
     agent : name of what is behind the wires
+    waits : for messages that are on none of the wires
     """
 
     wires: tuple[Wire, ...] = ()
     transmissions: tuple[Transmission, ...] = ()
     agent: str = "Agent"
+    waits: tuple[Wait, ...] = ()

@@ -9,20 +9,26 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from amalthea_uros.perf.network import Transmission
+from amalthea_uros.perf.activities import Call
+from amalthea_uros.perf.network import Transmission, Wait
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.dataflow.links import Dataflow
+from amalthea_uros.timing.stretches import executed
+from amalthea_uros.units import time_text
+
+_WAYS_OUT = "give the executor its loop, or state 'reliable: {waits: false}' if the port does not wait"
 
 
-def awaited(process: str, system: System, dataflow: Dataflow) -> Iterator[Transmission]:
+def awaited(process: str, system: System, dataflow: Dataflow) -> Iterator[Transmission | Wait]:
     """The messages whose acknowledgements the jobs of a process wait for."""
     sent = [each for each in system.network.transmissions if each.waits]
-    if not sent:
-        return
-    fired = {firing.stimulus for firing in dataflow.firings(process)}
-    for each in sent:
-        if not fired.isdisjoint(system.processes[each.name].stimuli):
-            yield each
+    if sent:
+        fired = {firing.stimulus for firing in dataflow.firings(process)}
+        yield from (each for each in sent if not fired.isdisjoint(system.processes[each.name].stimuli))
+    if system.network.waits:
+        activities = executed(system.processes[process].activities, system)
+        called = {activity.runnable for activity in activities if isinstance(activity, Call)}
+        yield from (each for each in system.network.waits if each.runnable in called)
 
 
 def why_suspended(process: str, system: System, dataflow: Dataflow) -> str:
@@ -30,8 +36,9 @@ def why_suspended(process: str, system: System, dataflow: Dataflow) -> str:
     if process in system.executor_of_task:
         return ""
     for message in awaited(process, system, dataflow):
+        most = f" up to {time_text(message.timeout)}" if isinstance(message, Wait) and message.timeout is not None else ""
         return (
-            f"it waits for the acknowledgement of {message.topic!r}, for which the analysis has no bound outside an executor with a "
-            "loop; give the executor its loop, or state 'reliable: {waits: false}' if the port does not wait"
+            f"it waits{most} for the acknowledgement of {message.topic!r}, for which the analysis has no bound outside an executor "
+            f"with a loop; {_WAYS_OUT}"
         )
     return ""

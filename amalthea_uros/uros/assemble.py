@@ -51,6 +51,7 @@ from amalthea_uros.uros.rtos import PriorityScale, check_sleeps
 from amalthea_uros.uros.tasks import PlannedIsr, PlannedTask
 from amalthea_uros.uros.transports.foreign import ForeignFrame
 from amalthea_uros.uros.transports.network import PlannedNetwork, planned_network, with_network
+from amalthea_uros.uros.waits import waits_outside
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -195,6 +196,8 @@ def _system(context: AssemblyContext, callbacks: Sequence[Callback], network: Pl
     check_unique_data(labels, context.channels.values(), notes)
     elements = chain_elements(context, callbacks)
     system = triggered_rounds(with_network(_without_demands(context, labels), network, context))
+    waits = waits_outside(callbacks, system, description.middleware, context.profile)
+    system = replace(system, network=replace(system.network, waits=tuple(waits)))
     check_shared_priorities(system, context.tasks, notes, context.priority_scale)
     chains = Chains(elements, Topics.of(callbacks, system.network), Dataflow(system), notes)
     limits = chains.add_all(description.chains)

@@ -50,14 +50,15 @@ def _worst_of(handles: Sequence[HandleResult]) -> Response:
     return replace(longest, best=min(response.best for response in responses))
 
 
-def of_rounds(process: ProcessResult, executor: ExecutorResult, deadline: Time | None) -> ProcessResult:
+def of_rounds(process: ProcessResult, executor: ExecutorResult, deadline: Time | None, gap: str) -> ProcessResult:
     """The result of the process that executes the rounds of an executor: its response time is that of a round, after its wait.
 
-    Without a deadline, it is met if all callbacks have a bound, and nothing is lost.
+    Without a deadline, it is met if all callbacks have a bound, nothing is lost, and the core is left to others.
 
     Parameters
     ----------
     deadline : that is stated for it; it has no implicit one, because its rounds follow each other
+    gap : why it is unknown how much its rounds execute, as when they follow each other without rest; "" if it is known
     """
     response = Response(
         worst=executor.round.most,
@@ -83,6 +84,8 @@ def of_rounds(process: ProcessResult, executor: ExecutorResult, deadline: Time |
     if failing is not None:
         verdict, failure, reason = failing
         return replace(found, verdict=verdict, failure=failure, reason=reason)
+    if gap:
+        return replace(found, verdict=Verdict.UNKNOWN, reason=gap)
     if deadline is None:
         return replace(found, verdict=Verdict.MET)
     verdict = decide(worst_response(found), deadline, is_upper=True)

@@ -59,10 +59,17 @@ def extract_network(models: Iterable[am.SWModel], tasks: Iterable[am.Task], syst
     """The network of all files; what refers to something that the system has not is left out, with a finding."""
     found = list(
         _extracted(
-            models, _NETWORK, lambda _, text: from_text(Network, text), lambda network: _flaw_of_wires(network, system), context
+            models,
+            _NETWORK,
+            lambda _, text: from_text(Network, text),
+            lambda network: _flaw_of_network(network, system),
+            context,
         )
     )
-    network = Network(wires=tuple(wire for each in found for wire in each.wires), agent=found[-1].agent) if found else Network()
+    network = Network()
+    if found:
+        wires = tuple(wire for each in found for wire in each.wires)
+        network = Network(wires=wires, agent=found[-1].agent, waits=tuple(wait for each in found for wait in each.waits))
     transmissions = _extracted(
         tasks,
         _TRANSMISSION,
@@ -106,8 +113,11 @@ def _flaw_of_executor(executor: Executor, system: System) -> str | None:
     return _missing("runnable", (executor.spin, *called, *takes), system.runnables)
 
 
-def _flaw_of_wires(network: Network, system: System) -> str | None:
-    return _missing("core", (core for wire in network.wires for core in wire.cores), system.cores)
+def _flaw_of_network(network: Network, system: System) -> str | None:
+    cores = (core for wire in network.wires for core in wire.cores)
+    return _missing("core", cores, system.cores) or _missing(
+        "runnable", (each.runnable for each in network.waits), system.runnables
+    )
 
 
 def _flaw_of_transmission(transmission: Transmission, network: Network, system: System) -> str | None:

@@ -57,7 +57,7 @@ KINDS = (
         title="property of amuros that cannot be read",
         severity=Severity.WARNING,
         rationale="The property says what a task means: an executor, or a message on a wire. Without it, the activation of the task is "
-        "unknown.",
+        "unknown; without that of the network, the activation of all tasks.",
         remedy="Build the model again, or remove the property if the task is an ordinary one.",
         fails="""
 <swModel>

@@ -33,7 +33,7 @@ def _check_waiting_outside(senders: Iterable[Callback], middleware: Middleware, 
         topics = [message.topic for message in callback.outgoing if message.reliable]
         if topics:
             longest = time_text(min(acknowledgement, how.timeout) * len(topics))
-            text = f"{callback.name!r} waits up to {longest} for acknowledgements, which its response time does not include"
+            text = f"{callback.name!r} waits up to {longest} for acknowledgements, so that its response time is unknown"
             advice = (
                 "Describe the 'loop' of the executor that runs it, set 'reliable: {waits: false}' if this port does not wait, "
                 "or use 'reliability: best-effort'."

@@ -245,6 +245,15 @@ def test_an_executor_that_never_rests_leaves_nothing_for_lower_priorities():
     assert found.executors[0].handles["t"].response.worst == 1 * MS
 
 
+def test_an_executor_that_never_rests_is_not_schedulable_for_certain_although_it_serves_its_callbacks():
+    # What the operating system itself does below it, such as to feed a watchdog, is never executed.
+    found = analyze_system(looping(timer("t", 50_000, 500), loop=SPIN))
+    assert found.executors[0].handles["t"].response.worst == 1 * MS
+    assert found.processes["Executor"].verdict is Verdict.UNKNOWN
+    assert "because it has only timers" in found.processes["Executor"].reason
+    assert found.summary.schedulable == "unknown"
+
+
 def test_rounds_that_need_not_be_the_longest_are_no_overload():
     # A round of 30 ms every 1 ms at most; it is called every 500 ms.
     low = Proc("low", (ticks(1000),), period=100_000, priority=1)

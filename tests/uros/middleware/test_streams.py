@@ -62,7 +62,7 @@ def test_unacknowledged_messages_fit_into_the_stream_of_a_port_that_does_not_wai
 
 def test_a_sender_that_waits_has_one_message_in_the_stream(author):
     # Whatever the acknowledgement time is; but the model of periodic executors has no time for waiting.
-    waiting = "'Report' waits up to 41 ms for acknowledgements, which its response time does not include"
+    waiting = "'Report' waits up to 41 ms for acknowledgements, so that its response time is unknown"
     assert reported(author, transport="acknowledgement: 41 ms", waits="true") == [("UR124", waiting)]
 
 
