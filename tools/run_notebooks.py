@@ -24,7 +24,8 @@ def executed(path: Path) -> str:
     notebook = nbformat.read(path, as_version=4)
     with TemporaryDirectory() as folder:
         for sample in (ROOT / "samples").iterdir():
-            shutil.copy(sample, folder)
+            if sample.is_file():
+                shutil.copy(sample, folder)
         NotebookClient(notebook, timeout=120, resources={"metadata": {"path": folder}}).execute()
     return normalised(notebook)
 

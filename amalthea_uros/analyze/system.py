@@ -260,7 +260,8 @@ def _processors(solution: Solution) -> Iterator[ProcessorResult]:
     known = {core for core in context.system.cores if _is_load_known(core, possible.get(core, ()), solution)}
     shares: Mapping[str, Mapping[str, Fraction]] = {}
     if len(known) < len(context.system.cores):
-        shares = known_loads(allowed, activation_rates(context.system, context.activations), context.demand_model)
+        rates = activation_rates(context.system, context.activations)
+        shares = known_loads(allowed, rates, context.demand_model, context.following_rounds)
     for core in context.system.cores:
         best, mean, worst = _loads(core, solution) if core in known else (None, None, None)
         yield ProcessorResult(
@@ -269,15 +270,8 @@ def _processors(solution: Solution) -> Iterator[ProcessorResult]:
             best=best,
             mean=mean,
             worst=worst,
-            at_least=_sum(_certain(shares.get(core, {}), solution))
-            if worst is None
-            else _certain_load(context.on_core(core), solution),
+            at_least=_sum(shares.get(core, {}).values()) if worst is None else _certain_load(context.on_core(core), solution),
         )
-
-
-def _certain(shares: Mapping[str, Fraction], solution: Solution) -> Iterator[Fraction]:
-    """The loads of processes that do not depend on rounds of executors."""
-    return (load for name, load in shares.items() if name not in solution.context.following_rounds)
 
 
 def _is_load_known(core: str, possible: Iterable[str], solution: Solution) -> bool:

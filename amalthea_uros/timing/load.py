@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from fractions import Fraction
 
 from amalthea_uros.perf.system import System
@@ -23,7 +23,7 @@ def activation_rates(system: System, activations: Activations) -> Mapping[str, F
 
 
 def loads(
-    cores: Mapping[str, frozenset[str]], rates: Mapping[str, Fraction], demand_model: DemandModel
+    cores: Mapping[str, frozenset[str]], rates: Mapping[str, Fraction], demand_model: DemandModel, uncertain: Collection[str]
 ) -> Mapping[str, Mapping[str, Fraction]]:
     """The worst-case utilisation of its core by each process with a single core, as far as it is certain.
 
@@ -33,11 +33,12 @@ def loads(
     ----------
     cores : on which each process can run
     rates : activations per picosecond
+    uncertain : processes that may be activated less often, such as those that execute rounds of executors
     """
     found: dict[str, dict[str, Fraction]] = {}
     for name, allowed in cores.items():
         process = demand_model.system.processes.get(name)
-        if process is None or name not in rates or len(allowed) > 1:
+        if process is None or name not in rates or len(allowed) > 1 or name in uncertain:
             continue
         (core,) = allowed
         try:

@@ -13,6 +13,7 @@ from amalthea_uros.timing.allocation import allocated_cores
 from amalthea_uros.timing.clocks import controller_of_core
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.timing.demand import DemandModel
+from amalthea_uros.timing.executors.followers import with_followers
 from amalthea_uros.timing.load import activation_rates, loads
 from amalthea_uros.timing.notes import Notes
 
@@ -46,4 +47,5 @@ class SystemContext:
     @cached_property
     def loads(self) -> Mapping[str, Mapping[str, Fraction]]:
         """The share of each core that its processes demand in the worst case."""
-        return loads(self.cores, self.rates, DemandModel(self.system, Notes()))
+        uncertain = with_followers(self.system, self.dataflow)
+        return loads(self.cores, self.rates, DemandModel(self.system, Notes()), uncertain)

@@ -114,7 +114,8 @@ def test_messages_come_as_before_if_the_change_says_so():
 
 @pytest.mark.parametrize("path", SAMPLES, ids=lambda path: path.stem)
 @pytest.mark.parametrize("newline", ["\n", "\r\n"], ids=["LF", "CRLF"])
-def test_a_change_touches_one_line_of_each_sample(path, newline):
+def test_a_change_touches_one_line_of_each_sample(path, newline, monkeypatch):
+    monkeypatch.chdir(path.parent)  # where the databases lie that it names
     text = path.read_text().replace("\n", newline).removesuffix(newline)
     system = describe_text(text).system
     process = [task.name for task in system.software.tasks if task.name not in system.transmissions][-1]

@@ -144,7 +144,7 @@ def _loads(analysis: Analysis) -> dict[str, Fraction]:
     """The worst-case load by each process, where it is known."""
     context = analysis.solution.context
     rates = activation_rates(context.system, context.activations)
-    found = loads(allocated_cores(context.system), rates, context.demand_model)
+    found = loads(allocated_cores(context.system), rates, context.demand_model, uncertain=())
     return {process: load for of_core in found.values() for process, load in of_core.items()}
 
 
