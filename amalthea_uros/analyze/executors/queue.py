@@ -10,6 +10,10 @@ them. The count remains the same, because each cycle serves one message that cam
 the message that the wait took, or, if it took none, the oldest of its handle. If a wait takes all messages that are there, only those
 of the same handle delay each other.
 
+A wait that cannot wait any longer reads only what comes first: when a timer is due or nearly due, the timeout is cut to 0, and answers
+that are written while it reads use it up. That can also be an acknowledgement, a heartbeat, or a part of a message (`unread`), so that
+these count like messages.
+
 Executors of one session read from the same buffer: the messages of the others are also before it, and what the others read only makes
 it earlier.
 """
@@ -21,8 +25,11 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from amalthea_uros.analyze.executors.cycle import Cycle
+from amalthea_uros.analyze.executors.unread import besides_data
 from amalthea_uros.perf.executors import Handle
 from amalthea_uros.timing.event_models import EventModel, aggregated
+from amalthea_uros.timing.event_models.aggregated import Multiplied
+from amalthea_uros.timing.executors.answers import answers, parts
 from amalthea_uros.timing.executors.arrivals import UnknownArrivalsError, arrivals, certain_rate
 from amalthea_uros.timing.executors.readiness import sharing
 from amalthea_uros.timing.executors.wait import messages
@@ -56,8 +63,31 @@ def competing(handle: Handle, cycle: Cycle, extra_jitter: Mapping[str, Time | No
     ------
     UnknownArrivalsError : it is unknown how many there are.
     """
-    everyone = [handle] if cycle.executor.waiting.messages_per_wait is None else _before_pool(cycle)
-    return aggregated(tuple(arrivals(each, extra_jitter) for each in everyone))
+    if cycle.executor.waiting.messages_per_wait is None:
+        return arrivals(handle, extra_jitter)
+    data = [_parts(each, arrivals(each, extra_jitter), cycle) for each in _before_pool(cycle)]
+    return aggregated((*data, *_besides_data(cycle)))
+
+
+def _parts(handle: Handle, events: EventModel, cycle: Cycle) -> EventModel:
+    """The messages of a handle, with all parts of each."""
+    system = cycle.solution.context.system
+    count = next((parts(each, system) for each in answers(system) if each.callback == handle.name), 1)
+    return events if count == 1 else Multiplied(events, count)
+
+
+def _besides_data(cycle: Cycle) -> list[EventModel]:
+    """What else waits can read.
+
+    Raises
+    ------
+    UnknownArrivalsError : it is unknown how much there is.
+    """
+    found = [] if cycle.longest is None else besides_data(cycle.longest, cycle.sending, cycle.solution)
+    known = [each.as_events for each in found if each is not None]
+    if len(known) < len(found):
+        raise UnknownArrivalsError("how many acknowledgements and heartbeats arrive is not known")
+    return known
 
 
 def _before_pool(cycle: Cycle) -> list[Handle]:

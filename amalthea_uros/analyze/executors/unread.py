@@ -30,6 +30,8 @@ from amalthea_uros.perf.executors import Publication
 from amalthea_uros.perf.network import Direction, Purpose, Span, Transmission
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.event_models import EventModel
+from amalthea_uros.timing.event_models.aggregated import Multiplied
+from amalthea_uros.timing.event_models.output import Delayed
 from amalthea_uros.timing.executors.answers import answers, heartbeats, parts
 from amalthea_uros.units import Time
 
@@ -53,6 +55,12 @@ class Arriving:
     events: EventModel
     jitter: Time
     parts: int = 1
+
+    @property
+    def as_events(self) -> EventModel:
+        """Each of its parts as an event."""
+        found = Delayed(self.events, self.jitter + 1)
+        return found if self.parts == 1 else Multiplied(found, self.parts)
 
     def most(self, window: Time) -> int:
         """The most that arrive in a time, its ends included."""
@@ -84,7 +92,7 @@ def longest_unread(length: Time | None, sending: Mapping[str, Span], solution: S
     """
     if length is None:
         return None
-    kinds = list(_read_in_rounds(length, sending, solution))
+    kinds = [found for _, found in _read_in_rounds(length, sending, solution)]
     known = [each for each in kinds if each is not None]
     if len(known) < len(kinds):
         return None
@@ -141,7 +149,19 @@ def _intervals(solution: Solution) -> list[Time | None]:
     return [None if each is None else each.delta_min(2) for each in events]
 
 
-def _read_in_rounds(length: Time, sending: Mapping[str, Span], solution: Solution) -> Iterator[Arriving | None]:
+def besides_data(length: Time, sending: Mapping[str, Span], solution: Solution) -> list[Arriving | None]:
+    """The acknowledgements and heartbeats that waits of rounds can read; None for one whose arrivals are unknown.
+
+    Parameters
+    ----------
+    length : of a cycle without a wait
+    """
+    return [found for each, found in _read_in_rounds(length, sending, solution) if each.purpose is not Purpose.DATA]
+
+
+def _read_in_rounds(
+    length: Time, sending: Mapping[str, Span], solution: Solution
+) -> Iterator[tuple[Transmission, Arriving | None]]:
     system = solution.context.system
     read_before = {each.acknowledgement for each in publications(system) if not can_give_up(each, sending)}
     by_answer = answered(solution)
@@ -153,7 +173,7 @@ def _read_in_rounds(length: Time, sending: Mapping[str, Span], solution: Solutio
         if is_silent and _answers_heartbeat(each, system):
             continue
         name = f"{each.name}{_ACKNOWLEDGEMENT}"
-        yield by_answer[name] if name in by_answer else arriving(each, solution)
+        yield each, by_answer[name] if name in by_answer else arriving(each, solution)
 
 
 def _answers_heartbeat(answer: Transmission, system: System) -> bool:
