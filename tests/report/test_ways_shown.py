@@ -57,7 +57,7 @@ def test_a_summary_has_the_latency(shown):
     (line,) = [line for line in shown.markdown.splitlines() if line.startswith("| command | /cmd_vel |")]
     (way,) = shown.content.analysis.ways
     assert amuros.units.rounded_time_text(way.worst, amuros.units.Rounding.UP) in line
-    assert "most of it: wire Serial" in line
+    assert "most of it: messages before it (executor Executor)" in line
 
 
 def test_a_latency_that_is_unknown_is_none(tmp_path):
