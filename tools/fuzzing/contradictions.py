@@ -12,9 +12,11 @@ from amalthea_uros.simulate.results import ChainObservation, ObservedVerdict, Re
 def contradictions(analysis: Analysis, simulation: Simulation) -> Iterator[str]:
     """Where observations exceed the claims of an analysis; minima are claimed for the steady state, and are not compared."""
     observed = {process.name: process for process in simulation.processes}
+    # A round begins when the one before has ended; the simulation plays jobs in its place, which wait for each other.
+    rounds = analysis.solution.context.system.executor_of_task
     for process in analysis.processes:
         found, response = observed.get(process.name), process.response
-        if found is None:
+        if found is None or process.name in rounds:
             continue
         if response is not None and response.worst is not None:
             longest = max(found.longest_unfinished, found.response_time.max if found.response_time else 0)
