@@ -93,7 +93,7 @@ class Handle(Named):
     depth : most messages that are kept for it; None for timers and guard conditions
     overwrites : whether a message beyond `depth` overwrites the oldest one, or is dropped itself
     reliable : whether its messages are sent again until they are acknowledged
-    sources : entities of the middleware behind it, which are added to the wait set: 1, or several for actions
+    sources : number of entities of the middleware that it adds to the wait set: 1, or several for actions
     """
 
     kind: HandleKind

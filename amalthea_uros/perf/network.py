@@ -1,4 +1,4 @@
-"""The network: wires between the controller and others, what is sent on them, and what lies behind them.
+"""The network: wires between the controller and others, the messages on them, and the agent at the other end.
 
 In `hardware`, a wire is a core whose clock is its bit rate, and in `software` each message on it is a task of that core, so that both
 have response times and loads as others have. This model says what these cores and tasks are.
@@ -118,7 +118,7 @@ class Network(Brief):
 
     Attributes
     ----------
-    agent : name of what is behind the wires
+    agent : name of the agent at the other end of the wires
     waits : for messages that are on none of the wires
     """
 

@@ -7,7 +7,7 @@ from amalthea_uros.uros.memory.stack import StackUse
 
 
 def memory_rows(memory: Memory) -> list[tuple[str, str, str]]:
-    """The parts with sizes and remarks, then the sum and what there is; nothing without micro-ROS and without a stated stack."""
+    """The parts with sizes and remarks, then total, budget and memory of the board; empty without micro-ROS and stated stacks."""
     rows = [(use.name, f"{use.size} B" if use.is_bounded else "?", use.formula) for use in memory.uses]
     if memory.stacks.users:
         rows.append(("stack, shared" if memory.stacks.shared else "stacks", f"{memory.stacks.size} B", _stacks(memory.stacks)))

@@ -106,7 +106,7 @@ class PoolSizes(Section):
     RMW_UXRCE_ALLOW_DYNAMIC_ALLOCATIONS: bool | None = None
     """Whether pools of entities grow on the heap when they are full; the slots for received messages never do."""
     RMW_UROS_ERROR_HANDLING: bool | None = None
-    """Whether a callback of the application is told of errors, such as dropped messages."""
+    """Whether the middleware reports errors, such as dropped messages, to a callback of the application."""
     UCLIENT_UDP_TRANSPORT_MTU: Size | None = None
     """Maximum size of a message, for the transport `udp`."""
     UCLIENT_TCP_TRANSPORT_MTU: Size | None = None

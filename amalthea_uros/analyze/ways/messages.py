@@ -1,4 +1,4 @@
-"""The hops of a message outside executors: the agent, the wire, what lies behind it, the driver, interrupts, tasks of the middleware.
+"""The hops of a message outside executors: the agent, the wire, the link, the driver, interrupts, tasks of the middleware.
 
 A transmission is a task of its wire: its response time is the time from queueing to the end of its last frame, with all waiting for
 the wire. Interrupts and tasks of the middleware are processes that it activates one after the other: each takes at most its response

@@ -1,7 +1,7 @@
 """What the model, the checks and the pools ask of a middleware.
 
-A profile answers for one middleware. What is a number or a choice stands in its `profile.yaml`, with its source; what is a rule is
-code beside it. A user's profile is a file that names the profile that it changes (`base`), and the values that differ.
+Each middleware has a profile. Its numbers and choices are in `profile.yaml`, with their sources; its rules are code in the same
+folder. A user's profile is a file that names the profile that it changes (`base`), and the values that differ.
 """
 
 from __future__ import annotations
