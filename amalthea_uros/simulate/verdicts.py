@@ -142,6 +142,8 @@ def _requirement(
         values = limited_values(limit, process, duration, None if model is None else activation_period(model, system))
     elif runnable is not None:
         values = limited_values_of_runnable(limit, runnable)
+    elif requirement.process in system.processes:
+        values = LimitedValues(reason="the process that it limits is not simulated")
     else:
         kind = "process" if requirement.runnable is None else "runnable"
         values = LimitedValues(reason=f"the {kind} that it limits is not defined, or was left out when reading")

@@ -83,9 +83,12 @@ _NUMBERS = {
     "ChannelReceive": ("elements",),
     "ChannelSend": ("elements",),
     "CountRequirementLimit": ("limitValue",),
+    "DataRate": ("value",),
+    "DataSize": ("value",),
     "MinAvgMaxStatistic": ("min", "avg", "max"),
     "PercentageRequirementLimit": ("limitValue",),
     "SingleValueStatistic": ("value",),
+    "Time": ("value",),
 }
 
 

@@ -66,7 +66,9 @@ PLATFORM = """
     definition="D?type=ProcessingUnitDefinition"/></structures>
   <domains t="FrequencyDomain" name="F"><defaultValue value="100.0" unit="MHz"/></domains>
 </hwModel>
-<osModel><operatingSystems name="OS"><taskSchedulers name="TS"><schedulingAlgorithm t="OSEK"/></taskSchedulers></operatingSystems></osModel>
+<osModel><operatingSystems name="OS">
+  <taskSchedulers name="TS"><schedulingAlgorithm t="OSEK"/></taskSchedulers>
+</operatingSystems></osModel>
 <mappingModel>
   <schedulerAllocation scheduler="TS?type=TaskScheduler" responsibility="C?type=ProcessingUnit"/>
   <taskAllocation task="A?type=Task" scheduler="TS?type=TaskScheduler"><schedulingParameters priority="1"/></taskAllocation>
@@ -166,3 +168,17 @@ def test_the_open_bound_of_the_vector(tmp_path):
     before, after = answer([path]), answer(migrated(path, tmp_path / "migrated"))
     assert after == before
     assert before[1]["summary"]["schedulable"] == "unknown"
+
+
+DISTANCES = """<stimuli t="RelativePeriodicStimulus" name="P"><nextOccurrence t="TimeGaussDistribution"><lowerBound value="{}"{}/>
+    <upperBound value="100" unit="ms"/><mean value="30" unit="ms"/><sd value="5" unit="ms"/></nextOccurrence></stimuli>"""
+
+
+def test_0_without_unit_is_0_in_any_unit(tmp_path):
+    bare, stated, wrong = (tmp_path / f"{name}.amxmi" for name in ("bare", "stated", "wrong"))
+    bare.write_text(with_item("1.0.0", ONE_MS, DISTANCES.format(0, "")))
+    stated.write_text(with_item("1.0.0", ONE_MS, DISTANCES.format(0, ' unit="ms"')))
+    wrong.write_text(with_item("1.0.0", ONE_MS, DISTANCES.format(5, "")))
+    assert answer([bare]) == answer([stated])
+    assert observed([bare]) == observed([stated]) != []
+    assert observed([wrong]) == []
