@@ -73,11 +73,13 @@ def main() -> None:
     for seed, said, tally in _results(range(first, end), arguments.jobs):
         total.add_all(tally)
         failing += bool(said)
-        for kind, text in {kind_of(text): text for text in reversed(said)}.items():
+        for kind, text in list({kind_of(text): text for text in reversed(said)}.items())[::-1]:
             kinds[kind] += 1
             if kinds[kind] <= arguments.shrink:
-                path = f" {written(seed, text, arguments.out)}" if arguments.out and not text.startswith("hunt") else ""
-                print(f"seed {seed}: {text}{path}", flush=True)  # noqa: T201
+                print(f"seed {seed}: {text}", flush=True)  # noqa: T201
+        new = [text for text in said[:1] if kinds[kind_of(text)] <= arguments.shrink and not text.startswith("hunt")]
+        for text in new if arguments.out else ():
+            print(f"    {written(seed, text, arguments.out)}", flush=True)  # noqa: T201
     print(f"{summary(total, kinds)}\n{failing} failing models of {end - first}, {time.monotonic() - begin:.0f} s")  # noqa: T201
 
 

@@ -162,12 +162,12 @@ def falsely_met(analysis: Analysis, limits: Iterable[Limit], tally: Tally) -> It
 
 
 def is_determined(facts: Facts) -> bool:
-    """Whether nothing is left to chance: all plays are alike."""
+    """Whether nothing is left to chance, and all readings were played."""
     ticks = str([process.body for process in facts.played.processes]) + str(facts.played.runnables)
     kinds = {stimulus.kind for stimulus in facts.played.stimuli.values()}
     random = kinds & {"RelativePeriodic", "ArrivalCurve", "VariableRate"} or "chance" in ticks
     jitters = any("jitter" in stimulus.given for stimulus in facts.played.stimuli.values())
-    return not (random or jitters or facts.lost or _varies(facts))
+    return facts.is_complete and not (random or jitters or facts.lost or facts.played.servers or _varies(facts))
 
 
 def _varies(facts: Facts) -> bool:

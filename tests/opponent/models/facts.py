@@ -35,7 +35,15 @@ class Extremes:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Facts:
-    """What occurs under every reading; `lost`: activations were beyond a limit in some play."""
+    """What occurs under every reading.
+
+    Attributes
+    ----------
+    greatest, least : the least of the maxima under all readings, and the greatest of the minima
+    spread : the least and the greatest value under any reading
+    lost : processes of which activations were beyond a limit in some play
+    is_complete : whether all readings were played
+    """
 
     played: Played
     chains: tuple[Chain, ...]
@@ -44,7 +52,7 @@ class Facts:
     least: dict[Key, int]
     spread: dict[Key, tuple[int, int]]
     lost: frozenset[str]
-    variants: int
+    is_complete: bool
 
 
 def horizon(played: Played) -> int:
@@ -86,7 +94,7 @@ def facts_of(
     greatest, least = under_all(results)
     spread = {key: (min(r.least[key] for r in results), max(r.greatest[key] for r in results)) for key in least}
     return Facts(
-        played=played, chains=chains, delays=pairs, greatest=greatest, least=least, spread=spread, lost=frozenset(lost), variants=len(chosen)
+        played=played, chains=chains, delays=pairs, greatest=greatest, least=least, spread=spread, lost=frozenset(lost), is_complete=len(chosen) == len(variants)
     )
 
 

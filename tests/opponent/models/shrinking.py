@@ -20,11 +20,19 @@ _PARTS = {
 }  # fmt: skip
 
 
+_QUANTITIES = (
+    "response_time", "response time", "start_to_start", "end_to_end", "end_to_start", "activate_to_activate", "initial_pending_time",
+    "gross_execution_time", "running_time", "negative", "played in", "is above", "analysis", "simulation",
+)  # fmt: skip
+
+
 def kind_of(text: str) -> str:
-    """What false answers of the same kind have in common."""
-    text = re.sub(r"simulated \w+ \d+", "simulated", text)
-    text = re.sub(r"T\d+ (start|terminate) T\d+ (start|terminate)", "delay", text)
-    return re.sub(r"\bT\d+\b|-?\d+", "#", text)
+    """What false answers of the same kind have in common: who shows it, about what, and whether a limit is met."""
+    who = "simulation" if text.startswith("simulated") else "play"
+    delay = re.search(r"T\d+ (start|terminate) T\d+ (start|terminate)", text)
+    quantity = next((name for name in _QUANTITIES if name in text), "chain" if "chain" in text else "something else")
+    side = "low" if " low" in text or "at least" in text or "min_" in text else "up"
+    return f"{who}: {'delay' if delay else quantity} {side}, {'a limit is met' if ' met' in text else 'beyond a bound'}"
 
 
 def shrunk(model: RandomModel, false: Callable[[RandomModel], list[str]], wanted: str) -> RandomModel:
