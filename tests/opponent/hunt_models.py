@@ -1,4 +1,7 @@
-"""Looks for false answers about many random models: `python -m opponent.hunt_models --seeds 0..20000` with `tests` and `tools` on the path."""
+"""Looks for false answers about many random models.
+
+`python -m opponent.hunt_models --seeds 0..20000 --jobs 2 --out FOLDER` with `tests` and `tools` on the path.
+"""
 
 from __future__ import annotations
 

@@ -9,7 +9,9 @@ from opponent.models.writing import Parts, item, parameter, scheduler, stimulus,
 PERIODIC = time("recurrence", 20) + time("offset", 0)
 
 
-def task(parts: Parts, name: str, priority: int, body: str, stimuli: str = "", kind: str = "Periodic", where: str = "Sc0") -> None:
+def task(
+    parts: Parts, name: str, priority: int, body: str, stimuli: str = "", kind: str = "Periodic", where: str = "Sc0"
+) -> None:
     parts.tasks.append(
         f'<tasks name="{name}" stimuli="s{name}?type={kind}Stimulus" preemption="preemptive" multipleTaskActivationLimit="9">'
         f"<activityGraph>{body}</activityGraph></tasks>"
@@ -67,7 +69,9 @@ def test_a_trigger_before_the_end(parts):
 
 def test_a_budget(parts):
     server = "".join(parameter(name, value) for name, value in {"priority": 9, "capacity": 2, "period": 5}.items())
-    parts.schedulers.append(scheduler("V0", "DeferrableServer", f'<parentAssociation parent="Sc0">{server}</parentAssociation>'))
+    parts.schedulers.append(
+        scheduler("V0", "DeferrableServer", f'<parentAssociation parent="Sc0">{server}</parentAssociation>')
+    )
     task(parts, "served", 1, ticks(5, 5), where="V0")
     # 2 units at 0, 2 at 5, 1 at 10
     assert responses(played(parts), "served") == (11, 11)
@@ -93,7 +97,9 @@ def test_a_task_goes_on_on_another_core(parts):
 
 
 def test_bursts_and_times(parts):
-    burst = stimulus("PeriodicBurst", "sB", 'occurrenceCount="3"', PERIODIC + time("burstLength", 5) + time("occurrenceMinDistance", 2))
+    burst = stimulus(
+        "PeriodicBurst", "sB", 'occurrenceCount="3"', PERIODIC + time("burstLength", 5) + time("occurrenceMinDistance", 2)
+    )
     task(parts, "B", 2, ticks(1, 1), " ", "PeriodicBurst")
     parts.stimuli[-1] = burst
     task(parts, "S", 1, ticks(1, 1), PERIODIC + time("occurrenceTimes", 0) + time("occurrenceTimes", 13), "PeriodicSynthetic")

@@ -38,7 +38,14 @@ def published(name: str) -> Facts:
             (greatest if quantity.startswith("max") else least)["chain", chain, quantity] = value
     spread = {key: (least[key], greatest[key]) for key in least if key in greatest}
     return Facts(
-        played=None, chains=(), delays=(), greatest=greatest, least=least, spread=spread, lost=frozenset(), is_complete=False  # type: ignore[arg-type]
+        played=None,
+        chains=(),
+        delays=(),
+        greatest=greatest,
+        least=least,
+        spread=spread,
+        lost=frozenset(),
+        is_complete=False,  # type: ignore[arg-type]
     )
 
 

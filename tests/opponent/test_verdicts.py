@@ -135,7 +135,12 @@ def test_a_migrated_file_means_the_same(name, tmp_path):
     amuros("migrate", path_of(name), "-o", target)
     for process in analyze(path_of(name)).processes:
         again = analyze(target)[process.name]
-        assert (again.bcet, again.wcet, again.wcrt, again.verdict) == (process.bcet, process.wcet, process.wcrt, process.verdict)
+        assert (again.bcet, again.wcet, again.wcrt, again.verdict) == (
+            process.bcet,
+            process.wcet,
+            process.wcrt,
+            process.verdict,
+        )
 
 
 @needs_models

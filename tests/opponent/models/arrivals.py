@@ -89,7 +89,9 @@ def _curve(stimulus: Stimulus, choices: Choices) -> Iterator[int]:
         yield found[-1]
         past = len(found)
         earliest = max((found[past - n + 1] + lower for n, lower, _ in curve if past >= n - 1), default=found[-1])
-        latest = min((found[past - n + 1] + upper for n, _, upper in curve if upper is not None and past >= n - 1), default=None)
+        latest = min(
+            (found[past - n + 1] + upper for n, _, upper in curve if upper is not None and past >= n - 1), default=None
+        )
         if latest is not None and latest < earliest:
             raise UnplayableError("a curve without room")
         end = earliest + spread if latest is None else latest

@@ -64,7 +64,9 @@ def chains_of(text: str | bytes, played: Played) -> Iterator[Chain]:
 def _links(played: Played, source: str, target: str) -> Iterator[str]:
     """What leads from a process to another one; nothing if it is not clear."""
     accesses = {process.name: _accesses(played, process.name) for process in played.processes}
-    for name in sorted({n for kind, n in accesses[source] if kind == "write"} & {n for kind, n in accesses[target] if kind == "read"}):
+    for name in sorted(
+        {n for kind, n in accesses[source] if kind == "write"} & {n for kind, n in accesses[target] if kind == "read"}
+    ):
         writers = [process for process, found in accesses.items() if ("write", name) in found]
         if writers == [source]:
             yield name
@@ -81,7 +83,9 @@ def _items(played: Played, process: str) -> Iterator[tuple[object, ...]]:
     bodies = [next(p.body for p in played.processes if p.name == process)]
     known: set[str] = set()
     while bodies:
-        alone = Played(**{f: getattr(played, f) for f in played.__slots__} | {"processes": (), "runnables": {"": (bodies.pop(), ())}})
+        alone = Played(
+            **{f: getattr(played, f) for f in played.__slots__} | {"processes": (), "runnables": {"": (bodies.pop(), ())}}
+        )
         for item in items_of(alone):
             yield item
             if item[0] == "call" and item[1] not in known:
@@ -102,12 +106,16 @@ def latencies(played: Played, play: Player, chain: Chain, links: tuple[str, ...]
     """All values of each quantity, over one link a step; none if it is not clear which data a job is based on."""
     index = {process.name: number for number, process in enumerate(played.processes)}
     stages = [play.jobs[index[name]] for name in chain.processes]
-    hops = [_Hop.of(*pair, link, index[name]) for pair, link, name in zip(pairwise(stages), links, chain.processes, strict=False)]
+    hops = [
+        _Hop.of(*pair, link, index[name]) for pair, link, name in zip(pairwise(stages), links, chain.processes, strict=False)
+    ]
     if not all(hop.is_clear for hop in hops):
         return
     stimuli = [time for job in stages[0] if (time := _time(job, chain.stimulus)) is not None]
     responses = [time for job in stages[-1] if (time := _time(job, chain.response)) is not None]
-    yield from _forward(hops, stimuli, responses, until)
+    # Of a job that has not ended, it is not known yet what it reads.
+    known = min([until, *(time for job in stages[-1] if job.end is None and (time := _time(job, chain.response)) is not None)])
+    yield from _forward(hops, stimuli, responses, known)
     yield from _backward(hops, stimuli, responses)
 
 
@@ -120,6 +128,8 @@ def _forward(hops: list[_Hop], stimuli: list[int], responses: list[int], until: 
             reached += 1
         is_answered = reached is not None and reached < len(responses)
         end = responses[reached] if is_answered and reached is not None else until
+        if not is_answered and stimulus >= until:
+            return
         yield "max_reduced_reaction_time", end - stimulus
         if number:
             yield "max_reaction_time", end - stimuli[number - 1]
@@ -158,7 +168,9 @@ class _Hop:
             return cls(caused, [], True, len(caused) == len(target))
         writes = [(times[-1], job.number) for job in source if (times := job.accesses.get(("write", label)))]
         reads = [(times[0], job.number) for job in target if (times := job.accesses.get(("read", label)))]
-        single = all(len(times) == 1 for job in (*source, *target) for access, times in job.accesses.items() if access[1] == label)
+        single = all(
+            len(times) == 1 for job in (*source, *target) for access, times in job.accesses.items() if access[1] == label
+        )
         ended = sum(job.end is not None for job in target)
         return cls(writes, reads, False, single and len(reads) >= ended)
 

@@ -9,10 +9,11 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from fuzzing.contradictions import contradictions
-from opponent.models.facts import Facts, facts_of
+from opponent.models.facts import Facts, facts_of, horizon
 from opponent.models.generator import RandomModel
 from opponent.models.limits import Limit, limits_of, with_limits
 from opponent.models.reading import UnplayableError
+from opponent.models.variants import items_of
 
 from amalthea_uros.analyze.results import Analysis, ChainResult, ProcessResult
 from amalthea_uros.analyze.verdicts import Verdict
@@ -98,8 +99,6 @@ def wrong_answers(path: Path, facts: Facts, limits: Iterable[Limit], tally: Tall
 
 
 def _duration(facts: Facts) -> int:
-    from opponent.models.facts import horizon
-
     return horizon(facts.played)
 
 
@@ -171,8 +170,6 @@ def is_determined(facts: Facts) -> bool:
 
 
 def _varies(facts: Facts) -> bool:
-    from opponent.models.variants import items_of
-
     return any(item[0] == "execute" and any(t[0] != t[1] for t in item[1].values()) for item in items_of(facts.played))
 
 

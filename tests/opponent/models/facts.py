@@ -11,7 +11,7 @@ from random import Random
 from opponent.models.chains import Chain, Event, chains_of, latencies, readings
 from opponent.models.player import Job, Player, play
 from opponent.models.reading import Played, read
-from opponent.models.variants import Choices, Variant, variants_of
+from opponent.models.variants import Choices, variants_of
 
 #: What is measured: its kind ("process", "chain", "delay"), of what, and the quantity.
 Key = tuple[str, str, str]
@@ -63,7 +63,12 @@ def horizon(played: Played) -> int:
 
 
 def facts_of(
-    text: str | bytes, delays: Iterable[tuple[Event, Event]] = (), *, plays: int = PLAYS, most: int = MOST_VARIANTS, until: int | None = None
+    text: str | bytes,
+    delays: Iterable[tuple[Event, Event]] = (),
+    *,
+    plays: int = PLAYS,
+    most: int = MOST_VARIANTS,
+    until: int | None = None,
 ) -> Facts:
     """Play a model under all readings, or some of them."""
     played = read(text)
@@ -94,7 +99,14 @@ def facts_of(
     greatest, least = under_all(results)
     spread = {key: (min(r.least[key] for r in results), max(r.greatest[key] for r in results)) for key in least}
     return Facts(
-        played=played, chains=chains, delays=pairs, greatest=greatest, least=least, spread=spread, lost=frozenset(lost), is_complete=len(chosen) == len(variants)
+        played=played,
+        chains=chains,
+        delays=pairs,
+        greatest=greatest,
+        least=least,
+        spread=spread,
+        lost=frozenset(lost),
+        is_complete=len(chosen) == len(variants),
     )
 
 

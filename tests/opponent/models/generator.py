@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from itertools import pairwise
 from random import Random
 
 from opponent.models import writing
@@ -74,7 +75,9 @@ class _Generator:
         number = rng.choice((1, 1, 2))
         if self.has("migration"):
             number = 2
-        parts.cores = {f"c{n}": rng.choice(("2.0", "0.5", "4.0")) if n and self.has("core frequency") else "1.0" for n in range(number)}
+        parts.cores = {
+            f"c{n}": rng.choice(("2.0", "0.5", "4.0")) if n and self.has("core frequency") else "1.0" for n in range(number)
+        }
         self.policy = next((POLICIES[f] for f in POLICIES if f in self.features), "FixedPriorityPreemptive")
         self.used |= self.features & set(POLICIES)
         for n in range(rng.choice((2, 3, 3, 4))):
@@ -96,12 +99,15 @@ class _Generator:
         if self.has("modes", "stimulus condition", "mode switch"):
             data.append('<modes xsi:type="am:NumericMode" xmi:id="num?type=NumericMode" name="num"/>')
             data += [
-                f'<modeLabels xmi:id="{name}?type=ModeLabel" name="{name}" mode="num?type=NumericMode" initialValue="{self.rng.randrange(3)}"/>'
+                f'<modeLabels xmi:id="{name}?type=ModeLabel" name="{name}" mode="num?type=NumericMode" '
+                f'initialValue="{self.rng.randrange(3)}"/>'
                 for name in "MN"
             ]
         if self.has("channel"):
             most = self.rng.randint(2, 4)
-            data.append(f'<channels xmi:id="Q?type=Channel" name="Q" defaultElements="{self.rng.randint(0, 2)}" maxElements="{most}"/>')
+            data.append(
+                f'<channels xmi:id="Q?type=Channel" name="Q" defaultElements="{self.rng.randint(0, 2)}" maxElements="{most}"/>'
+            )
 
     def _condition(self) -> str:
         rng = self.rng
@@ -113,7 +119,9 @@ class _Generator:
             f'relation="{rng.choice(RELATIONS)}"/>'
             for _ in range(rng.choice((1, 1, 2)))
         ]
-        return compared[0] if len(compared) == 1 else f'<entries xsi:type="am:ConditionConjunction">{"".join(compared)}</entries>'
+        return (
+            compared[0] if len(compared) == 1 else f'<entries xsi:type="am:ConditionConjunction">{"".join(compared)}</entries>'
+        )
 
     # Bodies.
 
@@ -131,7 +139,9 @@ class _Generator:
     def _item(self, plan: Plan) -> str:
         rng = self.rng
         if self.has("modes", "mode switch", chance=0.3):
-            return item("ModeLabelAccess", f'data="{rng.choice("MN")}?type=ModeLabel" access="set" value="{rng.randrange(3)}" step="1"')
+            return item(
+                "ModeLabelAccess", f'data="{rng.choice("MN")}?type=ModeLabel" access="set" value="{rng.randrange(3)}" step="1"'
+            )
         if self.has("modes", "channel", "mode switch", chance=0.3):
             branch = f'<entries name="e0">{self._ticks()}<condition>{self._condition()}</condition></entries>'
             default = f"<defaultEntry>{self._ticks()}</defaultEntry>" if rng.random() < 0.6 else ""
@@ -144,7 +154,9 @@ class _Generator:
                 'data="Q?type=Channel" elements="1" receiveOperation="FIFO_Take" dataMustBeNew="false" elementIndex="0" lowerBound="0"',
             )
         if self.has("group", chance=0.4):
-            return item("Group", f'ordered="true" interruptible="{rng.choice(("true", "false"))}"', self._ticks() + self._ticks())
+            return item(
+                "Group", f'ordered="true" interruptible="{rng.choice(("true", "false"))}"', self._ticks() + self._ticks()
+            )
         if rng.random() < 0.3:
             return self._call()
         return self._ticks()
@@ -219,9 +231,8 @@ class _Generator:
             return ""
         sets = ""
         if self.rng.random() < 0.5:
-            sets = (
-                f'<setModeValueList><entries label="{self.rng.choice("MN")}?type=ModeLabel" value="{self.rng.randrange(3)}"/></setModeValueList>'
-            )
+            label, value = self.rng.choice("MN"), self.rng.randrange(3)
+            sets = f'<setModeValueList><entries label="{label}?type=ModeLabel" value="{value}"/></setModeValueList>'
         return f"{sets}<executionCondition>{self._condition()}</executionCondition>" if self.rng.random() < 0.8 else sets
 
     def _timed(self, plan: Plan) -> None:
@@ -270,7 +281,7 @@ class _Generator:
             return
         path = rng.sample(self.plans, 2 if rng.random() < 0.6 else min(3, len(self.plans)))
         path.sort(key=lambda plan: plan.name) if rng.random() < 0.5 else None
-        for n, (source, target) in enumerate(zip(path, path[1:], strict=False)):
+        for n, (source, target) in enumerate(pairwise(path)):
             is_linked = any(f'"s{target.name}?' in text or f'"E{target.name}?' in text for text in source.items)
             if not is_linked or self.has("several links", chance=0.7) or rng.random() < 0.3:
                 self._share(source, target, f"L{n}")
@@ -305,15 +316,21 @@ class _Generator:
     def _share_mode(self, source: Plan, target: Plan, label: str) -> None:
         if not any('"num?' in text for text in self.parts.data):
             self.parts.data.append('<modes xsi:type="am:NumericMode" xmi:id="num?type=NumericMode" name="num"/>')
-        self.parts.data.append(f'<modeLabels xmi:id="{label}?type=ModeLabel" name="{label}" mode="num?type=NumericMode" initialValue="0"/>')
+        self.parts.data.append(
+            f'<modeLabels xmi:id="{label}?type=ModeLabel" name="{label}" mode="num?type=NumericMode" initialValue="0"/>'
+        )
         for plan, access in ((source, 'access="set" value="1"'), (target, 'access="read"')):
-            plan.items.insert(self.rng.randint(0, len(plan.items)), item("ModeLabelAccess", f'data="{label}?type=ModeLabel" {access}'))
+            plan.items.insert(
+                self.rng.randint(0, len(plan.items)), item("ModeLabelAccess", f'data="{label}?type=ModeLabel" {access}')
+            )
 
     def _delays(self) -> tuple[tuple[tuple[str, str], tuple[str, str]], ...]:
         found = []
         for _ in range(2):
             one, other = self.rng.sample(self.plans, 2)
-            found.append(((one.name, self.rng.choice(("start", "terminate"))), (other.name, self.rng.choice(("start", "terminate")))))
+            found.append(
+                ((one.name, self.rng.choice(("start", "terminate"))), (other.name, self.rng.choice(("start", "terminate"))))
+            )
         return tuple(dict.fromkeys(found))
 
     # The rest.
@@ -330,7 +347,8 @@ class _Generator:
                     f"<activityGraph>{body}</activityGraph></isrs>"
                 )
                 parts.allocations.append(
-                    f'<isrAllocation isr="{plan.name}?type=ISR" controller="I{plan.core}?type=InterruptController" priority="{priority}"/>'
+                    f'<isrAllocation isr="{plan.name}?type=ISR" controller="I{plan.core}?type=InterruptController" '
+                    f'priority="{priority}"/>'
                 )
                 continue
             if self.has("migration", chance=0.5) and self.policy == "FixedPriorityPreemptive" and not self.has("server"):
@@ -358,7 +376,9 @@ class _Generator:
 
     def _schedulers(self) -> None:
         rng, parts = self.rng, self.parts
-        decides = f"<computationItems xsi:type=\"am:Ticks\"><default xsi:type=\"am:DiscreteValueConstant\" value=\"1\"/></computationItems>"
+        decides = (
+            '<computationItems xsi:type="am:Ticks"><default xsi:type="am:DiscreteValueConstant" value="1"/></computationItems>'
+        )
         with_cost = self.has("scheduler overhead")
         for core in parts.cores:
             parts.schedulers.append(writing.scheduler(f"S{core}", self.policy, decides if with_cost else ""))
@@ -376,7 +396,9 @@ class _Generator:
         if "activation overhead" in self.features and self.used & {"activation overhead"} and "core frequency" not in self.used:
             overheads += f"<apiOverhead><apiActivateTask>{constant.format(2)}</apiActivateTask></apiOverhead>"
         if "isr overhead" in self.used and "core frequency" not in self.used:
-            before, after = (f"<{when}ExecutionOverhead>{constant.format(1)}</{when}ExecutionOverhead>" for when in ("pre", "post"))
+            before, after = (
+                f"<{when}ExecutionOverhead>{constant.format(1)}</{when}ExecutionOverhead>" for when in ("pre", "post")
+            )
             overheads += f"<isrCategory2Overhead>{before}{after}</isrCategory2Overhead>"
         if overheads:
             parts.overheads.append(f'<osOverheads xmi:id="ov?type=OsOverhead" name="ov">{overheads}</osOverheads>')

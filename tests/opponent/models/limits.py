@@ -55,7 +55,8 @@ class _Text:
         identity = f"{quote_plus(name)}?type=ProcessEvent"
         kind = "ISR" if process in self.isrs else "Task"
         self.events[name] = (
-            f'<events xsi:type="am:ProcessEvent" xmi:id="{identity}" name="{name}" eventType="{change}" entity="{process}?type={kind}"/>'
+            f'<events xsi:type="am:ProcessEvent" xmi:id="{identity}" name="{name}" eventType="{change}" '
+            f'entity="{process}?type={kind}"/>'
         )
         return identity
 
@@ -67,6 +68,9 @@ def limits_of(facts: Facts) -> Iterator[Limit]:
     for found, is_upper in ((facts.greatest, True), (facts.least, False)):
         for key, value in found.items():
             if key[0] == "chain" and (key[2] not in LATENCIES or key[2].startswith("max") != is_upper):
+                continue
+            # Some later target event always keeps a lower limit of a delay.
+            if key[0] == "delay" and not is_upper:
                 continue
             judged = found.get((key[0], key[1], JUDGED.get(key[2], key[2])), value)
             limit = _one_inside(judged, is_upper=is_upper)
@@ -128,4 +132,6 @@ def _add(text: _Text, limit: Limit) -> None:
 
 def _constraint(kind: str, name: str, attributes: str, content: str) -> str:
     identity = f"{quote_plus(name)}?type={kind}"
-    return f'<timingConstraints xsi:type="am:{kind}" xmi:id="{identity}" name="{name}" {attributes}>{content}</timingConstraints>'
+    return (
+        f'<timingConstraints xsi:type="am:{kind}" xmi:id="{identity}" name="{name}" {attributes}>{content}</timingConstraints>'
+    )

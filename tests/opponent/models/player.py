@@ -90,6 +90,7 @@ class Player:
     def play(self, until: int) -> Player:
         """Play up to a time."""
         for _ in range(_MOST_STEPS):
+            self._end_finished()
             if not self.variant.ends_late:
                 self._continue_ended()
             self._requeue(at_once=not self.variant.requeue_late)
@@ -142,7 +143,9 @@ class Player:
         is_sliced = self._is_sliced(process)
         body = process.body
         if process.is_isr:
-            before, after = (self.played.overhead.get(f"isrCategory2Overhead/{when}ExecutionOverhead", 0) for when in ("pre", "post"))
+            before, after = (
+                self.played.overhead.get(f"isrCategory2Overhead/{when}ExecutionOverhead", 0) for when in ("pre", "post")
+            )
             body = (("raw", before), *body, ("raw", after))
         elif process.core in self.played.decisions:
             self.deciding[process.core] += self.played.decisions[process.core]
@@ -239,6 +242,12 @@ class Player:
 
     # What jobs do.
 
+    def _end_finished(self) -> None:
+        """Who has nothing left to do ends, whatever else happens now."""
+        for job in self.running.values():
+            if job is not None and job.end is None and not job.remaining and not job.has_more():
+                self._end(job)
+
     def _continue_ended(self) -> None:
         """Do what follows executions that end now."""
         for core, job in self.running.items():
@@ -275,7 +284,7 @@ class Player:
         if is_true(condition, self.modes, self.fills) and self._counts(key, counter):
             job.enter(body)
 
-    def _do_group(self, job: Job, body: Body, is_ordered: bool, is_interruptible: bool) -> None:  # noqa: FBT001
+    def _do_group(self, job: Job, body: Body, is_ordered: bool, is_interruptible: bool) -> None:
         inner = list(body)
         if not is_ordered:
             self.choices.rng.shuffle(inner)

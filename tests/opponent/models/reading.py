@@ -234,7 +234,12 @@ class _Reader:
                 tuple((float(entry.get("probability", "0")), self._body(entry)) for entry in e.findall("entries")),
             ),
             "LabelAccess": _label_access,
-            "ModeLabelAccess": lambda e: ("mode", reference(e.get("data")), e.get("access"), int(e.get("value", e.get("step", "1")))),
+            "ModeLabelAccess": lambda e: (
+                "mode",
+                reference(e.get("data")),
+                e.get("access"),
+                int(e.get("value", e.get("step", "1"))),
+            ),
             "ChannelSend": lambda e: ("send", reference(e.get("data")), int(e.get("elements", "1"))),
             "ChannelReceive": lambda e: (
                 "receive",
@@ -284,7 +289,11 @@ class _Reader:
             for group in overhead:
                 for entry in group:
                     found[f"{group.tag}/{entry.tag}"] = self._worst(entry, core)
-        known = {"apiOverhead/apiActivateTask", "isrCategory2Overhead/preExecutionOverhead", "isrCategory2Overhead/postExecutionOverhead"}
+        known = {
+            "apiOverhead/apiActivateTask",
+            "isrCategory2Overhead/preExecutionOverhead",
+            "isrCategory2Overhead/postExecutionOverhead",
+        }
         if set(found) - known or (found and len({*self.cores.values()}) > 1):
             raise UnplayableError("such overheads")
         return found
@@ -295,7 +304,9 @@ class _Reader:
             name=element.get("name", ""),
             kind=kind,
             given=_arrivals(element, kind),
-            sets=tuple((reference(e.get("label")), int(e.get("value", "0"))) for e in element.iterfind("setModeValueList/entries")),
+            sets=tuple(
+                (reference(e.get("label")), int(e.get("value", "0"))) for e in element.iterfind("setModeValueList/entries")
+            ),
             condition=_condition(element.find("executionCondition")),
             counter=_counter(element),
         )
@@ -316,7 +327,11 @@ def _arrivals(e: Element, kind: str) -> dict[str, Any]:
         given["count"] = int(e.get("occurrenceCount", "0"))
     if kind == "ArrivalCurve":
         given["curve"] = [
-            (int(entry.get("numberOfOccurrences", "0")), time_of(entry.find("lowerTimeBorder")), time_of(entry.find("upperTimeBorder"), None))
+            (
+                int(entry.get("numberOfOccurrences", "0")),
+                time_of(entry.find("lowerTimeBorder")),
+                time_of(entry.find("upperTimeBorder"), None),
+            )
             for entry in e.findall("entries")
         ]
     return given

@@ -70,7 +70,9 @@ def _leave_out(root: ElementTree.Element, element: ElementTree.Element) -> None:
     name = element.get("name") if element.get("{http://www.omg.org/XMI}id") else None
     for parent in list(root.iter()):
         for child in list(parent):
-            refers = name and any(name in references(value) for key, value in child.attrib.items() if "?" in value and "id" not in key)
+            refers = name and any(
+                name in references(value) for key, value in child.attrib.items() if "?" in value and "id" not in key
+            )
             is_stimuli = child.tag in ("tasks", "isrs")
             if child is element or (refers and not is_stimuli):
                 parent.remove(child)

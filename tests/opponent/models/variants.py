@@ -75,7 +75,9 @@ def items_of(played: Played) -> Iterator[tuple[Any, ...]]:
 def _inside(body: Body) -> Iterator[tuple[Any, ...]]:
     for item in body:
         yield item
-        inner = [item[1]] if item[0] == "group" else [branch for _, branch in item[1]] if item[0] in ("switch", "chance") else []
+        inner = (
+            [item[1]] if item[0] == "group" else [branch for _, branch in item[1]] if item[0] in ("switch", "chance") else []
+        )
         inner += [item[2]] if item[0] == "switch" else []
         for part in inner:
             yield from _inside(part)

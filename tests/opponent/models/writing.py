@@ -121,7 +121,11 @@ def parameter(name: str, value: int) -> str:
 
 def item(kind: str, attributes: str = "", content: str = "") -> str:
     """An item of a graph."""
-    return f'<items xsi:type="am:{kind}" {attributes}>{content}</items>' if content else f'<items xsi:type="am:{kind}" {attributes}/>'
+    return (
+        f'<items xsi:type="am:{kind}" {attributes}>{content}</items>'
+        if content
+        else f'<items xsi:type="am:{kind}" {attributes}/>'
+    )
 
 
 def ticks(least: int, most: int) -> str:
