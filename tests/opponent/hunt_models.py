@@ -38,9 +38,9 @@ def written(seed: int, text: str, folder: Path) -> Path:
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / f"seed-{seed}-{sum(1 for _ in folder.glob(f'seed-{seed}-*.md'))}.amxmi"
     facts = facts_of(model.text, model.delays)
-    path.write_text(with_limits(model.text, facts, list(limits_of(facts))), encoding="utf-8")
+    path.write_text(with_limits(model.told()[0], facts, list(limits_of(facts))), encoding="utf-8")
     said = [found for found in false_claims(model) if kind_of(found) == wanted]
-    path.with_suffix(".md").write_text("\n".join([f"seed {seed}, {', '.join(sorted(model.features))}", *said]) + "\n")
+    path.with_suffix(".md").write_text("\n".join([f"seed {seed}, {', '.join(sorted(model.told()[1]))}", *said]) + "\n")
     return path
 
 

@@ -31,8 +31,8 @@ def make_model(rng: Random) -> bytes:
     try:
         facts = facts_of(model.text, model.delays)
     except UnplayableError:
-        return model.text.encode()
-    return (with_limits(model.text, facts, list(limits_of(facts))) + _MARK).encode()
+        return model.told()[0].encode()
+    return (with_limits(model.told()[0], facts, list(limits_of(facts))) + _MARK).encode()
 
 
 def require_broken(path: Path, analysis: Analysis) -> None:

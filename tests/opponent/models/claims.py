@@ -69,12 +69,15 @@ def false_claims(model: RandomModel, tally: Tally | None = None) -> list[str]:
     limits = list(limits_of(facts))
     with TemporaryDirectory() as folder:
         path = Path(folder) / "model.amxmi"
-        path.write_text(with_limits(model.text, facts, limits), encoding="utf-8")
-        return wrong_answers(path, facts, limits, tally, model.features)
+        text, features = model.told()
+        path.write_text(with_limits(text, facts, limits), encoding="utf-8")
+        return wrong_answers(path, facts, limits, tally, features, is_told=text == model.text)
 
 
-def wrong_answers(path: Path, facts: Facts, limits: Iterable[Limit], tally: Tally, features: frozenset[str]) -> list[str]:
-    """What analysis and simulation of a file say falsely."""
+def wrong_answers(
+    path: Path, facts: Facts, limits: Iterable[Limit], tally: Tally, features: frozenset[str], *, is_told: bool = True
+) -> list[str]:
+    """What analysis and simulation of a file say falsely; `is_told`: it says all that was played."""
     try:
         analysis = analyze_files(path).analysis
     except AmurosError:
@@ -93,7 +96,7 @@ def wrong_answers(path: Path, facts: Facts, limits: Iterable[Limit], tally: Tall
         except Exception as error:  # whatever it is, it is a finding
             return [*found, f"simulation: {error!r}"]
         found += [f"simulated {mode} {seed}: {text}" for text in contradictions(analysis, simulation)]
-        if mode is Mode.WORST and is_determined(facts):
+        if mode is Mode.WORST and is_told and is_determined(facts):
             found += [f"simulated: {text}" for text in played_otherwise(simulation, facts)]
     return found
 

@@ -7,6 +7,7 @@ from itertools import pairwise
 from random import Random
 
 from opponent.models import writing
+from opponent.models.erasing import erased
 from opponent.models.writing import Parts, item, ticks, time
 
 #: What is in some models; a model has one to four of them.
@@ -17,6 +18,8 @@ FEATURES = (
     "non-preemptive", "jitter", "sporadic", "two stimuli", "migration", "counter",
 )  # fmt: skip
 RELATIONS = ("EQUAL", "NOT_EQUAL", "LESS_THAN", "GREATER_THAN", "LESS_THAN_OR_EQUAL", "GREATER_THAN_OR_EQUAL")
+#: Of the models, those of which something is not told.
+SHARE_HIDING = 0.2
 PERIODS = (40, 60, 80, 120)
 POLICIES = {"EDF": "EarliestDeadlineFirst", "deadline monotonic": "DeadlineMonotonic", "round robin": "PriorityBasedRoundRobin"}
 
@@ -41,11 +44,24 @@ class Plan:
 
 @dataclass(frozen=True, slots=True)
 class RandomModel:
-    """A model, what it has in it, and pairs of events between which a delay can be limited."""
+    """A model, what it has in it, and pairs of events between which a delay can be limited.
+
+    Attributes
+    ----------
+    hides : number of what is not told; None: nothing is
+    """
 
     text: str
     features: frozenset[str]
     delays: tuple[tuple[tuple[str, str], tuple[str, str]], ...]
+    hides: int | None = None
+
+    def told(self) -> tuple[str, frozenset[str]]:
+        """What is told of the model, and what is in it."""
+        if self.hides is None:
+            return self.text, self.features
+        text, name = erased(self.text, Random(self.hides))
+        return text, self.features | ({name} if name else set())
 
 
 def random_model(seed: int) -> RandomModel:
@@ -90,7 +106,9 @@ class _Generator:
         self._activations()
         self._chain()
         self._delivered()
-        return RandomModel(parts.text(), frozenset(self.used | ({"plain"} if not self.used else set())), self._delays())
+        features = frozenset(self.used or {"plain"})
+        hides = rng.randrange(10**6) if rng.random() < SHARE_HIDING else None
+        return RandomModel(parts.text(), features, self._delays(), hides)
 
     # Data.
 

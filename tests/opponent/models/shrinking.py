@@ -4,14 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from xml.etree import ElementTree
 
 from opponent.models.generator import RandomModel
 from opponent.models.reading import references
-
-ElementTree.register_namespace("am", "http://app4mc.eclipse.org/amalthea/3.3.0")
-ElementTree.register_namespace("xmi", "http://www.omg.org/XMI")
-ElementTree.register_namespace("xsi", "http://www.w3.org/2001/XMLSchema-instance")
 
 #: What is tried to be left out, with whatever refers to it; the rest of a model says how these are understood.
 _PARTS = {
@@ -48,7 +45,7 @@ def shrunk(model: RandomModel, false: Callable[[RandomModel], list[str]], wanted
     while is_smaller:
         is_smaller = False
         for text in _smaller(model.text):
-            candidate = RandomModel(text, model.features, model.delays)
+            candidate = replace(model, text=text)
             if still(candidate):
                 model, is_smaller = candidate, True
                 break
