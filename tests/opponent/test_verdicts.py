@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from command import amuros
+from effort import IS_THOROUGH
 from fuzzing.contradictions import contradictions
 from support import SHARED
 
@@ -120,7 +121,7 @@ def test_simulation_agrees(name):
 
 
 @needs_models
-@each
+@pytest.mark.parametrize("name", sorted(EXPECTED) if IS_THOROUGH else ["migration", "report-without-jobs"])
 def test_a_report_can_be_written(name, tmp_path):
     target = tmp_path / "report.html"
     ended = amuros("report", path_of(name), "-o", target)
