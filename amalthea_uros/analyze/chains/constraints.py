@@ -7,8 +7,9 @@ that caused it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from itertools import permutations
 
 import numpy as np
@@ -16,11 +17,11 @@ import numpy as np
 from amalthea_uros._internal.failures import failure
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.chains.event_windows import EventWindows, UnknownError
+from amalthea_uros.analyze.chains.runnable_orders import holds_across, holds_in_each_job
 from amalthea_uros.analyze.chains.stage_timing import UnboundedStageError
 from amalthea_uros.analyze.implausible_limits import note_implausible
 from amalthea_uros.analyze.results import ChainResult, Claim, Quantity, RequirementResult, Value
 from amalthea_uros.analyze.verdicts import Ends, Verdict, decide, undecided
-from amalthea_uros.perf.activities import Call
 from amalthea_uros.perf.constraints import (
     ChainEnd,
     ChainSynchronization,
@@ -41,7 +42,7 @@ from amalthea_uros.timing.dataflow.routes import routes
 from amalthea_uros.timing.event_models import EventModel, Periodic, is_strictly_periodic
 from amalthea_uros.timing.jitter import jitter_name, jitter_of
 from amalthea_uros.timing.releases import known_releases
-from amalthea_uros.timing.runnable_order import satisfies_order
+from amalthea_uros.timing.runnable_order import order_scope
 from amalthea_uros.units import Time, time_text
 
 _REACTION = (Quantity.MIN_FIRST_TO_FIRST, Quantity.MAX_REDUCED_REACTION_TIME)
@@ -206,24 +207,15 @@ class ConstraintEvaluator:
     # Order
 
     def _order(self, constraint: OrderConstraint) -> Iterator[RequirementResult]:
-        wanted = [name for group in constraint.groups for name in group]
-        for process in constraint.processes or tuple(self.evaluation.context.system.processes):
-            called = [
-                position.activity.runnable
-                for position in self.evaluation.context.dataflow.events.positions(process)
-                if isinstance(position.activity, Call) and len(position.outer) == 1
-            ]
-            if not any(name in called for name in wanted):
-                continue
-            holds = satisfies_order(called, constraint)
-            yield RequirementResult(
-                name=constraint.name,
-                object=process,
-                quantity="order of runnables",
-                is_upper=True,
-                limit=None,
-                verdict=Verdict.MET if holds else Verdict.MISSED,
-            )
+        context = self.evaluation.context
+        scope = order_scope(constraint, context.system, context.dataflow.events)
+        if scope.reason:
+            raise UnknownError(scope.reason)
+        for process in scope.alone:
+            yield _of_order(constraint, process, partial(holds_in_each_job, process, constraint, context))
+        if scope.together:
+            holds = partial(holds_across, scope, constraint, self.windows)
+            yield _of_order(constraint, ", ".join(scope.processes), holds)
 
 
 @dataclass(frozen=True, slots=True)
@@ -282,6 +274,23 @@ def _result(
         upper=ends.upper,
         verdict=verdict,
         reason=(reason or undecided(ends, is_upper)) if verdict is Verdict.UNKNOWN else "",
+    )
+
+
+def _of_order(constraint: OrderConstraint, what: str, holds: Callable[[], bool]) -> RequirementResult:
+    """The result of an order of runnables, which has no limit."""
+    try:
+        verdict, reason = Verdict.MET if holds() else Verdict.MISSED, ""
+    except UnknownError as error:
+        verdict, reason = Verdict.UNKNOWN, str(error)
+    return RequirementResult(
+        name=constraint.name,
+        object=what,
+        quantity="order of runnables",
+        is_upper=True,
+        limit=None,
+        verdict=verdict,
+        reason=reason,
     )
 
 

@@ -194,15 +194,16 @@ class ChainEvaluator:
         parts: list[list[TimedStage]] = []
         before = None
         for group, follower in _with_followers(self.groups(route)):
-            controller = self._controller(group[0])
+            controller = self.controller(group[0].process.name)
             if controller != before or not parts:
                 parts.append([])
             parts[-1].append(self.timing.group(group, follower))
             before = controller
         return RouteLatencies(parts, self.timing.unit, is_certain=route.is_timed, budget=self.budget)
 
-    def _controller(self, stage: Stage) -> str:
-        scheduled = self.context.scheduled.get(stage.process.name)
+    def controller(self, process: str) -> str:
+        """The controller of a process; "" if it is unknown."""
+        scheduled = self.context.scheduled.get(process)
         return self.controllers.get(scheduled.core, "") if scheduled is not None else ""
 
 
