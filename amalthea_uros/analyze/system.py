@@ -28,13 +28,13 @@ from amalthea_uros.analyze.ways.results import Way
 from amalthea_uros.perf.events import EventChain
 from amalthea_uros.perf.network import Purpose
 from amalthea_uros.perf.software import Preemption, Task
-from amalthea_uros.perf.stimuli import RelativePeriodic
+from amalthea_uros.perf.stimuli import EventTriggered, InterProcess, RelativePeriodic
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.allocation import allocated_cores
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.deadlines import ASSUMPTION, implicit_deadline
-from amalthea_uros.timing.load import activation_rates
-from amalthea_uros.timing.load import loads as known_loads
+from amalthea_uros.timing.job_paths import JobDemand
+from amalthea_uros.timing.load import CoreLoad, certain_loads
 from amalthea_uros.timing.overheads import COUNTED
 from amalthea_uros.timing.phases import (
     Occurrence,
@@ -236,17 +236,25 @@ def _process(name: str, solution: Solution, limits: Mapping[str, Time], executor
 
 
 def _without_doubtful_overload(name: str, solution: Solution) -> Response | None:
-    """The response time of a process; without bound, but not overloaded for certain, if modes may exclude what overloads it."""
+    """The response time of a process; without bound, but not overloaded for certain, if what overloads it may exclude each other."""
     found, context = solution.responses.get(name), solution.context
     if found is None or not found.is_overload or name not in context.scheduled:
         return found
     item = context.scheduled[name]
-    here = [other for other in context.on_core(item.core) if solution.is_known(other.name)]
-    if all(context.demands[other.name].mean_occurring == context.demands[other.name].mean_worst for other in here):
+    here = [other for other in context.on_core(item.core) if other.rank >= item.rank and solution.is_known(other.name)]
+    each = _sum(context.demands[other.name].mean_worst * solution.event_models[other.name].rate for other in here)
+    together = _load((other.name for other in here), item.core, solution)
+    if together.certain * context.time_base(name) == each:
         return found
-    if _certain_load((other for other in here if other.rank >= item.rank), solution) > 1:
-        return found
+    if _certain_load(here, item.core, solution) > 1:
+        return replace(found, reason=f"overload: tasks at this priority or higher need {_percent(together.worst)} of the core")
+    if together.worst <= 1:
+        return replace(found, is_overload=False, reason=f"{found.reason}, if what excludes each other is added up")
     return replace(found, is_overload=False, reason=f"{found.reason}, unless modes exclude a part of it")
+
+
+def _percent(load: Fraction) -> str:
+    return f"{100 * float(load):.1f} %"
 
 
 def _processors(solution: Solution) -> Iterator[ProcessorResult]:
@@ -258,19 +266,18 @@ def _processors(solution: Solution) -> Iterator[ProcessorResult]:
         for core in cores:
             possible.setdefault(core, []).append(name)
     known = {core for core in context.system.cores if _is_load_known(core, possible.get(core, ()), solution)}
-    shares: Mapping[str, Mapping[str, Fraction]] = {}
+    certain: Mapping[str, Fraction] = {}
     if len(known) < len(context.system.cores):
-        rates = activation_rates(context.system, context.activations)
-        shares = known_loads(allowed, rates, context.demand_model, context.following_rounds)
+        certain = certain_loads(allowed, context.activations, context.demand_model, context.following_rounds)
     for core in context.system.cores:
-        best, mean, worst = _loads(core, solution) if core in known else (None, None, None)
+        load = _load((item.name for item in context.on_core(core)), core, solution) if core in known else None
         yield ProcessorResult(
             name=core,
             frequency=context.demand_model.frequency(core),
-            best=best,
-            mean=mean,
-            worst=worst,
-            at_least=_sum(shares.get(core, {}).values()) if worst is None else _certain_load(context.on_core(core), solution),
+            best=None if load is None else load.best,
+            mean=None if load is None else load.mean,
+            worst=None if load is None else load.worst,
+            at_least=certain.get(core, Fraction(0)) if load is None else _certain_load(context.on_core(core), core, solution),
         )
 
 
@@ -283,29 +290,29 @@ def _is_load_known(core: str, possible: Iterable[str], solution: Solution) -> bo
     return here.issuperset(possible) and all(map(solution.is_known, here))
 
 
-def _loads(core: str, solution: Solution) -> tuple[Fraction, Fraction, Fraction]:
-    """The best, mean and worst load of a core."""
+def _load(names: Iterable[str], core: str, solution: Solution) -> JobDemand:
+    """The load of a core by some of its processes."""
     context = solution.context
-    time_base = context.demand_model.time_base(core)
-    names = [scheduled.name for scheduled in context.on_core(core)]
-    rates = [(context.demands[name], solution.event_models[name].rate / time_base) for name in names]
-    return (
-        _sum(demand.mean_best * rate for demand, rate in rates),
-        _sum(demand.mean * rate for demand, rate in rates),
-        _sum(demand.mean_worst * rate for demand, rate in rates),
-    )
+    demands = {name: context.demands[name] for name in names}
+    return CoreLoad(core, demands, context.activations, context.demand_model).load(_external_rates(solution))
 
 
-def _certain_load(items: Iterable[ScheduledProcess], solution: Solution) -> Fraction:
+def _external_rates(solution: Solution) -> Mapping[str, Fraction]:
+    """Activations per picosecond that no process triggers, of processes whose activations are known."""
+    context, found = solution.context, {}
+    for name, events in solution.event_models.items():
+        process = context.system.processes[name]
+        stimuli = [context.system.stimuli_by_name.get(each) for each in process.stimuli]
+        is_triggered = any(isinstance(each, InterProcess | EventTriggered) for each in stimuli)
+        # The rounds of an executor are not as frequent as its stimulus.
+        found[name] = context.activations.external_rate(process) if is_triggered else events.rate
+    return found
+
+
+def _certain_load(items: Iterable[ScheduledProcess], core: str, solution: Solution) -> Fraction:
     """The worst load of processes of a core, without what modes may exclude for ever, and what rounds of executors need."""
-    context = solution.context
-    return _sum(
-        context.demands[item.name].mean_occurring
-        * solution.event_models[item.name].rate
-        / context.demand_model.time_base(item.core)
-        for item in items
-        if item.name not in context.following_rounds
-    )
+    uncertain = solution.context.following_rounds
+    return _load((item.name for item in items if item.name not in uncertain), core, solution).certain
 
 
 def _sum(values: Iterable[Fraction]) -> Fraction:

@@ -18,6 +18,7 @@ from amalthea_uros.timing.critical_sections import Locks, Protection, protection
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.timing.demand import DemandModel
 from amalthea_uros.timing.event_models import EventModel
+from amalthea_uros.timing.exclusive_jobs import TriggeredTogether, triggered_together
 from amalthea_uros.timing.executors.followers import with_followers
 from amalthea_uros.timing.executors.loops import never_rests
 from amalthea_uros.timing.limits import MAX_INPUT
@@ -115,6 +116,11 @@ class TimingContext:
     def activations(self) -> Activations:
         """The activations of processes."""
         return Activations(self.system, self.dataflow)
+
+    @cached_property
+    def triggered_together(self) -> Sequence[TriggeredTogether]:
+        """Processes of which each job of another process triggers some, each once at most."""
+        return triggered_together(self.activations)
 
     def time_base(self, process: str) -> int:
         """Time units per picosecond on the core of a process."""

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
 
-from amalthea_uros.analyze.response_times import priority_levels, schedule
+from amalthea_uros.analyze.response_times import busy_period, priority_levels, schedule
 from amalthea_uros.analyze.response_times.blocked_window import BlockedWindow
 from amalthea_uros.analyze.response_times.blocking import Blocking
 from amalthea_uros.analyze.response_times.supply import FULL, Budget, Supply
@@ -179,9 +179,30 @@ class _CoreAnalysis:
             if isinstance(item, ScheduledProcess):
                 window = BlockedWindow(notes, self.time_base, blocking, usable, [*tasks, *decisions], waits[index], supply)
                 found[index] = window.response(index, item, found[index])
+        for index, item in enumerate(usable):
+            if found[index].worst is None and isinstance(item, ScheduledProcess):
+                rank = blocking.level(item).rank
+                level = [task for task, other in zip(tasks, usable, strict=False) if other.rank >= rank]
+                merged = self._with_longest_paths([*level, *decisions])
+                if len(merged) < len(level) + len(decisions):
+                    found[index] = busy_period.response_time(tasks[index], merged, waits[index], supply, found[index])
         # The methods are exact for independent activations; offsets can make the worst case impossible.
         bounds = [replace(response, claim=Claim.BOUND) for response in found[: len(usable)]]
         return [self._without_rounds(item, response) for item, response in zip(usable, bounds, strict=True)]
+
+    def _with_longest_paths(self, tasks: Sequence[Task]) -> list[Task]:
+        """The tasks, and for those that exclude each other one that takes as long as the longest path of the job that triggers them."""
+        found = {task.name: task for task in tasks}
+        for together in self.context.triggered_together:
+            demands = {name: found[name].demand.worst for name in together.numbers if name in found}
+            if len(demands) < 2:
+                continue
+            longest = together.longest(demands, self.context.activations, self.context.settings.modes)
+            if longest < sum(demands.values()):
+                members = [found.pop(name) for name in demands]
+                demand = MultiframeDemand.constant(longest, best=0)
+                found[members[0].name] = replace(members[0], demand=demand)
+        return list(found.values())
 
     def _without_rounds(self, item: ScheduledProcess | Server, response: Response) -> Response:
         """A response time; an overload is not certain if rounds of executors are counted that need not be as long and as dense."""
