@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from itertools import compress
 
 from amalthea_uros.analyze.callbacks import CallbackEvaluator
 from amalthea_uros.analyze.chains.constraints import ConstraintEvaluator
@@ -33,7 +34,7 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.timing.allocation import allocated_cores
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.deadlines import ASSUMPTION, implicit_deadline
-from amalthea_uros.timing.load import activation_rates
+from amalthea_uros.timing.load import activation_rates, suppressible
 from amalthea_uros.timing.load import loads as known_loads
 from amalthea_uros.timing.overheads import COUNTED
 from amalthea_uros.timing.phases import (
@@ -242,11 +243,17 @@ def _without_doubtful_overload(name: str, solution: Solution) -> Response | None
         return found
     item = context.scheduled[name]
     here = [other for other in context.on_core(item.core) if solution.is_known(other.name)]
-    if all(context.demands[other.name].mean_occurring == context.demands[other.name].mean_worst for other in here):
+    if all(_is_certain(other.name, solution) for other in here):
         return found
     if _certain_load((other for other in here if other.rank >= item.rank), solution) > 1:
         return found
     return replace(found, is_overload=False, reason=f"{found.reason}, unless modes exclude a part of it")
+
+
+def _is_certain(name: str, solution: Solution) -> bool:
+    """Whether neither modes nor conditions may exclude a part of the worst load of a process for ever."""
+    demand = solution.context.demands[name]
+    return demand.mean_occurring == demand.mean_worst and not solution.event_models[name].can_be_suppressed
 
 
 def _processors(solution: Solution) -> Iterator[ProcessorResult]:
@@ -261,7 +268,8 @@ def _processors(solution: Solution) -> Iterator[ProcessorResult]:
     shares: Mapping[str, Mapping[str, Fraction]] = {}
     if len(known) < len(context.system.cores):
         rates = activation_rates(context.system, context.activations)
-        shares = known_loads(allowed, rates, context.demand_model, context.following_rounds)
+        uncertain = {*context.following_rounds, *suppressible(context.system, context.activations)}
+        shares = known_loads(allowed, rates, context.demand_model, uncertain)
     for core in context.system.cores:
         best, mean, worst = _loads(core, solution) if core in known else (None, None, None)
         yield ProcessorResult(
@@ -283,28 +291,32 @@ def _is_load_known(core: str, possible: Iterable[str], solution: Solution) -> bo
     return here.issuperset(possible) and all(map(solution.is_known, here))
 
 
-def _loads(core: str, solution: Solution) -> tuple[Fraction, Fraction, Fraction]:
-    """The best, mean and worst load of a core."""
+def _loads(core: str, solution: Solution) -> tuple[Fraction, Fraction | None, Fraction]:
+    """The best, mean and worst load of a core; no mean if conditions may suppress activations."""
     context = solution.context
     time_base = context.demand_model.time_base(core)
-    names = [scheduled.name for scheduled in context.on_core(core)]
-    rates = [(context.demands[name], solution.event_models[name].rate / time_base) for name in names]
+    activations = {scheduled.name: solution.event_models[scheduled.name] for scheduled in context.on_core(core)}
+    rates = [(context.demands[name], events.rate / time_base) for name, events in activations.items()]
+    is_certain = [not events.can_be_suppressed for events in activations.values()]
     return (
-        _sum(demand.mean_best * rate for demand, rate in rates),
-        _sum(demand.mean * rate for demand, rate in rates),
+        _sum(demand.mean_best * rate for demand, rate in compress(rates, is_certain)),
+        _sum(demand.mean * rate for demand, rate in rates) if all(is_certain) else None,
         _sum(demand.mean_worst * rate for demand, rate in rates),
     )
 
 
 def _certain_load(items: Iterable[ScheduledProcess], solution: Solution) -> Fraction:
-    """The worst load of processes of a core, without what modes may exclude for ever, and what rounds of executors need."""
+    """The worst load of processes of a core, without what modes may exclude for ever, and what rounds of executors need.
+
+    Nor does it contain activations that conditions may suppress.
+    """
     context = solution.context
     return _sum(
         context.demands[item.name].mean_occurring
         * solution.event_models[item.name].rate
         / context.demand_model.time_base(item.core)
         for item in items
-        if item.name not in context.following_rounds
+        if item.name not in context.following_rounds and not solution.event_models[item.name].can_be_suppressed
     )
 
 

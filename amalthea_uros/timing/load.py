@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
+from contextlib import suppress
 from fractions import Fraction
 
 from amalthea_uros.perf.system import System
@@ -20,6 +21,16 @@ def activation_rates(system: System, activations: Activations) -> Mapping[str, F
         except UnknownActivationError:
             continue
     return found
+
+
+def suppressible(system: System, activations: Activations) -> frozenset[str]:
+    """The processes of which conditions of stimuli may suppress activations."""
+    found = set()
+    for process in system.processes.values():
+        with suppress(UnknownActivationError):
+            if activations.of(process).can_be_suppressed:
+                found.add(process.name)
+    return frozenset(found)
 
 
 def loads(

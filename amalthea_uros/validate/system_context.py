@@ -14,7 +14,7 @@ from amalthea_uros.timing.clocks import controller_of_core
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.timing.demand import DemandModel
 from amalthea_uros.timing.executors.followers import with_followers
-from amalthea_uros.timing.load import activation_rates, loads
+from amalthea_uros.timing.load import activation_rates, loads, suppressible
 from amalthea_uros.timing.notes import Notes
 
 
@@ -42,10 +42,14 @@ class SystemContext:
     @cached_property
     def rates(self) -> Mapping[str, Fraction]:
         """Maximum number of activations per picosecond of each process."""
-        return activation_rates(self.system, Activations(self.system, self.dataflow))
+        return activation_rates(self.system, self._activations)
+
+    @cached_property
+    def _activations(self) -> Activations:
+        return Activations(self.system, self.dataflow)
 
     @cached_property
     def loads(self) -> Mapping[str, Mapping[str, Fraction]]:
         """The share of each core that its processes demand in the worst case."""
-        uncertain = with_followers(self.system, self.dataflow)
+        uncertain = {*with_followers(self.system, self.dataflow), *suppressible(self.system, self._activations)}
         return loads(self.cores, self.rates, DemandModel(self.system, Notes()), uncertain)

@@ -38,7 +38,7 @@ from amalthea_uros.perf.named import Named
 from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.links import LinkKind
 from amalthea_uros.timing.dataflow.routes import routes
-from amalthea_uros.timing.event_models import EventModel, Periodic, is_strictly_periodic
+from amalthea_uros.timing.event_models import EventModel, Periodic, can_be_dense, is_strictly_periodic
 from amalthea_uros.timing.jitter import jitter_name, jitter_of
 from amalthea_uros.timing.releases import known_releases
 from amalthea_uros.timing.runnable_order import satisfies_order
@@ -191,13 +191,13 @@ class ConstraintEvaluator:
         moves, span = late - early, max(1, constraint.span)
         if constraint.upper is not None:
             longest = Ends(None, _longest(activations, span))
-            if isinstance(activations, Periodic):
+            if can_be_dense(activations):
                 # Other event models only bound the activations.
                 longest = Ends(longest.upper, longest.upper)
             yield _result(constraint, constraint.event, "repetition", constraint.upper, _moved(longest, moves))
         if constraint.lower is not None:
             shortest = activations.delta_min(span + 1)
-            ends = Ends(shortest, shortest if isinstance(activations, Periodic) else None)
+            ends = Ends(shortest, shortest if can_be_dense(activations) else None)
             yield _result(constraint, constraint.event, "repetition", constraint.lower, _moved(ends, moves), is_upper=False)
         if constraint.jitter is not None:
             jitter, reason = _jitter(constraint, activations, moves)
