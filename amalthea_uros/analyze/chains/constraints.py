@@ -128,8 +128,12 @@ class ConstraintEvaluator:
     def _delay(self, constraint: DelayConstraint) -> Iterator[RequirementResult]:
         source, target = self.windows.event(constraint.source), self.windows.event(constraint.target)
         if constraint.matching is not Matching.REACTION:
-            links = {link.kind for route in routes([source, target], self.evaluation.context.dataflow) for link in route.links}
-            if not links <= {LinkKind.JOB, LinkKind.TRIGGER}:
+            found = routes([source, target], self.evaluation.context.dataflow)
+            links = {link.kind for route in found for link in route.links}
+            later = any(
+                stage.jobs_later is not None for route in found for group in self.evaluation.groups(route) for stage in group
+            )
+            if later or not links <= {LinkKind.JOB, LinkKind.TRIGGER}:
                 raise UnknownError(
                     "data between the events can be overwritten or read again, so their occurrences do not correspond one to one"
                 )

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from amalthea_uros.analyze.chains import job_chains
 from amalthea_uros.analyze.chains.bounds import becker, bi, davare, duerr, hamann, kloda
 from amalthea_uros.analyze.chains.bounds.chain_task import ChainTask
-from amalthea_uros.analyze.chains.stage_timing import in_picoseconds
+from amalthea_uros.analyze.chains.stage_timing import UnboundedStageError, in_picoseconds
 from amalthea_uros.analyze.chains.timed_stage import TimedStage
 from amalthea_uros.analyze.results import Claim, Quantity, Value
 from amalthea_uros.units import Time
@@ -23,6 +23,13 @@ if TYPE_CHECKING:
 EXACT = "job chains over the hyperperiod"
 BOUNDED = "job chains with earliest reads and latest writes"
 SUMMED = "sum over controllers whose clocks are not synchronized"
+
+
+#: A minimum and the maximum of the same times.
+_RANGES = (
+    (Quantity.MIN_FIRST_TO_FIRST, Quantity.MAX_REDUCED_REACTION_TIME),
+    (Quantity.MIN_LAST_TO_LAST, Quantity.MAX_REDUCED_DATA_AGE),
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +72,21 @@ class RouteLatencies:
         return next((timed.why_irregular for part in self.parts for timed in part if timed.why_irregular), "")
 
     def values(self) -> Iterator[Value]:
-        """The values of all methods."""
+        """The values of all methods.
+
+        Raises
+        ------
+        UnboundedStageError : a maximum is negative or below a minimum, so that a response can come before its stimulus.
+        """
+        found = list(self._values())
+        for minimum, maximum in _RANGES:
+            lowest = max((value.value or 0 for value in found if value.quantity is minimum), default=0)
+            highest = min((value.value or 0 for value in found if value.quantity is maximum), default=lowest)
+            if not 0 <= lowest <= highest:
+                raise UnboundedStageError("a response of the chain can come before its stimulus, which is not evaluated")
+        yield from found
+
+    def _values(self) -> Iterator[Value]:
         yield from self._of_job_chains()
         tasks = [timed.task for part in self.parts for timed in part]
         yield from self._of_periods(tasks)
