@@ -7,7 +7,7 @@ from dataclasses import replace
 from amalthea_uros.analyze.results import Claim, ProcessResult, Response
 from amalthea_uros.analyze.verdicts import Ends, Failure, Verdict, decide, undecided
 from amalthea_uros.perf.software import Process, Task
-from amalthea_uros.timing.event_models import EventModel, Periodic
+from amalthea_uros.timing.event_models import EventModel, can_be_dense
 
 
 def worst_response(process: ProcessResult) -> Ends:
@@ -50,7 +50,7 @@ def pending(process: ProcessResult, events: EventModel) -> Ends:
     ends = worst_response(process)
     upper = None if ends.upper is None else events.eta_plus(ends.upper)
     # Other event models only bound the activations.
-    lower = events.eta_plus(ends.lower or 0) if isinstance(events, Periodic) else 1
+    lower = events.eta_plus(ends.lower or 0) if can_be_dense(events) else 1
     return Ends(lower, upper)
 
 

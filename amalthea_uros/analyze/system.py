@@ -34,7 +34,7 @@ from amalthea_uros.timing.allocation import allocated_cores
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.deadlines import ASSUMPTION, implicit_deadline
 from amalthea_uros.timing.job_paths import JobDemand
-from amalthea_uros.timing.load import CoreLoad, certain_loads
+from amalthea_uros.timing.load import CoreLoad, certain_loads, suppressible
 from amalthea_uros.timing.overheads import COUNTED
 from amalthea_uros.timing.phases import (
     Occurrence,
@@ -244,7 +244,8 @@ def _without_doubtful_overload(name: str, solution: Solution) -> Response | None
     here = [other for other in context.on_core(item.core) if other.rank >= item.rank and solution.is_known(other.name)]
     each = _sum(context.demands[other.name].mean_worst * solution.event_models[other.name].rate for other in here)
     together = _load((other.name for other in here), item.core, solution)
-    if together.certain * context.time_base(name) == each:
+    are_suppressed = any(solution.event_models[other.name].can_be_suppressed for other in here)
+    if together.certain * context.time_base(name) == each and not are_suppressed:
         return found
     if _certain_load(here, item.core, solution) > 1:
         return replace(found, reason=f"overload: tasks at this priority or higher need {_percent(together.worst)} of the core")
@@ -268,17 +269,27 @@ def _processors(solution: Solution) -> Iterator[ProcessorResult]:
     known = {core for core in context.system.cores if _is_load_known(core, possible.get(core, ()), solution)}
     certain: Mapping[str, Fraction] = {}
     if len(known) < len(context.system.cores):
-        certain = certain_loads(allowed, context.activations, context.demand_model, context.following_rounds)
+        uncertain = {*context.following_rounds, *suppressible(context.system, context.activations)}
+        certain = certain_loads(allowed, context.activations, context.demand_model, uncertain)
     for core in context.system.cores:
-        load = _load((item.name for item in context.on_core(core)), core, solution) if core in known else None
+        best, mean, worst = _loads(core, solution) if core in known else (None, None, None)
         yield ProcessorResult(
             name=core,
             frequency=context.demand_model.frequency(core),
-            best=None if load is None else load.best,
-            mean=None if load is None else load.mean,
-            worst=None if load is None else load.worst,
-            at_least=certain.get(core, Fraction(0)) if load is None else _certain_load(context.on_core(core), core, solution),
+            best=best,
+            mean=mean,
+            worst=worst,
+            at_least=certain.get(core, Fraction(0)) if worst is None else _certain_load(context.on_core(core), core, solution),
         )
+
+
+def _loads(core: str, solution: Solution) -> tuple[Fraction, Fraction | None, Fraction]:
+    """The best, mean and worst load of a core; no mean if conditions may suppress activations."""
+    names = [item.name for item in solution.context.on_core(core)]
+    load, regular = _load(names, core, solution), _never_suppressed(names, solution)
+    if regular == names:
+        return load.best, load.mean, load.worst
+    return _load(regular, core, solution).best, None, load.worst
 
 
 def _is_load_known(core: str, possible: Iterable[str], solution: Solution) -> bool:
@@ -310,9 +321,17 @@ def _external_rates(solution: Solution) -> Mapping[str, Fraction]:
 
 
 def _certain_load(items: Iterable[ScheduledProcess], core: str, solution: Solution) -> Fraction:
-    """The worst load of processes of a core, without what modes may exclude for ever, and what rounds of executors need."""
-    uncertain = solution.context.following_rounds
-    return _load((item.name for item in items if item.name not in uncertain), core, solution).certain
+    """The worst load of processes of a core, without what modes may exclude for ever, and what rounds of executors need.
+
+    Nor does it contain activations that conditions may suppress.
+    """
+    names = (item.name for item in items if item.name not in solution.context.following_rounds)
+    return _load(_never_suppressed(names, solution), core, solution).certain
+
+
+def _never_suppressed(names: Iterable[str], solution: Solution) -> list[str]:
+    """The processes of which no condition can suppress activations."""
+    return [name for name in names if not solution.event_models[name].can_be_suppressed]
 
 
 def _sum(values: Iterable[Fraction]) -> Fraction:

@@ -13,13 +13,13 @@ from amalthea_uros.perf.activities import Trigger
 from amalthea_uros.perf.events import CustomEvent, Event, ModeLabelEvent, RunnableChange, RunnableEvent
 from amalthea_uros.perf.network import Purpose
 from amalthea_uros.perf.software import Process
-from amalthea_uros.perf.stimuli import Counter, EventTriggered, InterProcess
+from amalthea_uros.perf.stimuli import Counter, EventTriggered, InterProcess, Stimulus
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.counters import is_always
 from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.timing.dataflow.positions import ActivityPosition
-from amalthea_uros.timing.event_models import Delayed, Downsampled, EventModel, Multiplied, aggregated
+from amalthea_uros.timing.event_models import Delayed, Downsampled, EventModel, Multiplied, aggregated, thinned
 from amalthea_uros.timing.event_models.stimuli import event_model_of
 from amalthea_uros.timing.job_paths import most_in_a_job
 
@@ -142,6 +142,12 @@ class Activations:
         stimulus = self.system.stimuli_by_name.get(name)
         if stimulus is None:
             raise UnknownActivationError(f"the stimulus {name!r} is not defined in the model")
+        found = self._occurrences(stimulus, output, above)
+        return found if stimulus.condition is None else thinned(found)
+
+    def _occurrences(self, stimulus: Stimulus, output: Output, above: tuple[str, ...]) -> EventModel:
+        """The occurrences of a stimulus, as if its condition were always true."""
+        name = stimulus.name
         if not isinstance(stimulus, InterProcess | EventTriggered):
             found = event_model_of(stimulus, self.system)
             if found is None:
@@ -156,9 +162,7 @@ class Activations:
         found = [each for _, group in by_process for each in self._caused_by_process(list(group), output, above)]
         return _counted(aggregated(tuple(found)), stimulus.counter)
 
-    def _caused_by_process(
-        self, causes: Sequence[Cause], output: Output, above: tuple[str, ...]
-    ) -> Iterator[EventModel]:
+    def _caused_by_process(self, causes: Sequence[Cause], output: Output, above: tuple[str, ...]) -> Iterator[EventModel]:
         """The events that the activities of a process cause: those of one path of a job, if others exclude it."""
         if all(cause.is_each_time for cause in causes) and (most := self.most_in_a_job(causes)) < len(causes):
             events = self._caused_by(causes[0], output, above)

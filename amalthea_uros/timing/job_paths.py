@@ -45,13 +45,9 @@ class JobDemand:
 
     def __add__(self, other: JobDemand) -> JobDemand:
         """Both."""
-        return JobDemand(
-            self.best + other.best, self.mean + other.mean, self.worst + other.worst, self.certain + other.certain
-        )
+        return JobDemand(self.best + other.best, self.mean + other.mean, self.worst + other.worst, self.certain + other.certain)
 
-    def times(
-        self, best: Fraction | int, mean: Fraction | int, worst: Fraction | int, certain: Fraction | int
-    ) -> JobDemand:
+    def times(self, best: Fraction | int, mean: Fraction | int, worst: Fraction | int, certain: Fraction | int) -> JobDemand:
         """Each part multiplied by a number of times."""
         return JobDemand(self.best * best, self.mean * mean, self.worst * worst, self.certain * certain)
 

@@ -26,6 +26,16 @@ def activation_rates(system: System, activations: Activations) -> Mapping[str, F
     return found
 
 
+def suppressible(system: System, activations: Activations) -> frozenset[str]:
+    """The processes of which conditions of stimuli may suppress activations."""
+    found = set()
+    for process in system.processes.values():
+        with suppress(UnknownActivationError):
+            if activations.of(process).can_be_suppressed:
+                found.add(process.name)
+    return frozenset(found)
+
+
 @dataclass(frozen=True, slots=True)
 class CoreLoad:
     """The load of a core by some processes.

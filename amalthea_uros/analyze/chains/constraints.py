@@ -39,7 +39,7 @@ from amalthea_uros.perf.named import Named
 from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.links import LinkKind
 from amalthea_uros.timing.dataflow.routes import routes
-from amalthea_uros.timing.event_models import EventModel, Periodic, is_strictly_periodic
+from amalthea_uros.timing.event_models import EventModel, Periodic, can_be_dense, is_strictly_periodic
 from amalthea_uros.timing.jitter import jitter_name, jitter_of
 from amalthea_uros.timing.releases import known_releases
 from amalthea_uros.timing.runnable_order import order_scope
@@ -129,8 +129,12 @@ class ConstraintEvaluator:
     def _delay(self, constraint: DelayConstraint) -> Iterator[RequirementResult]:
         source, target = self.windows.event(constraint.source), self.windows.event(constraint.target)
         if constraint.matching is not Matching.REACTION:
-            links = {link.kind for route in routes([source, target], self.evaluation.context.dataflow) for link in route.links}
-            if not links <= {LinkKind.JOB, LinkKind.TRIGGER}:
+            found = routes([source, target], self.evaluation.context.dataflow)
+            links = {link.kind for route in found for link in route.links}
+            later = any(
+                stage.jobs_later is not None for route in found for group in self.evaluation.groups(route) for stage in group
+            )
+            if later or not links <= {LinkKind.JOB, LinkKind.TRIGGER}:
                 raise UnknownError(
                     "data between the events can be overwritten or read again, so their occurrences do not correspond one to one"
                 )
@@ -192,13 +196,13 @@ class ConstraintEvaluator:
         moves, span = late - early, max(1, constraint.span)
         if constraint.upper is not None:
             longest = Ends(None, _longest(activations, span))
-            if isinstance(activations, Periodic):
+            if can_be_dense(activations):
                 # Other event models only bound the activations.
                 longest = Ends(longest.upper, longest.upper)
             yield _result(constraint, constraint.event, "repetition", constraint.upper, _moved(longest, moves))
         if constraint.lower is not None:
             shortest = activations.delta_min(span + 1)
-            ends = Ends(shortest, shortest if isinstance(activations, Periodic) else None)
+            ends = Ends(shortest, shortest if can_be_dense(activations) else None)
             yield _result(constraint, constraint.event, "repetition", constraint.lower, _moved(ends, moves), is_upper=False)
         if constraint.jitter is not None:
             jitter, reason = _jitter(constraint, activations, moves)

@@ -117,11 +117,11 @@ class ChainEvaluator:
         for events, found_routes in ways.items():
             try:
                 methods = [self.latencies(route) for route in found_routes]
+                values = [list(method.values()) for method in methods]
             except UnboundedStageError as error:
                 found.reason = str(error)
                 found.values[events] = []
                 continue
-            values = [list(method.values()) for method in methods]
             found.values[events] = _worst_of(values)
             found.why = found.why or methods[0].why(values[0])
             found.why_unbounded = found.why_unbounded or next((m.why_unbounded for m in methods if m.why_unbounded), "")

@@ -77,6 +77,42 @@ class Inputs:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class StartUp:
+    """The job chains before the cycle: the first jobs can wait for longer for each other, until all have been released.
+
+    Attributes
+    ----------
+    reaction_times, first_to_first, data_ages, last_to_last : as those of the cycle
+    uncertain_data_ages, uncertain_last_to_last : at most, of outputs that use what was there at the start of the system by these
+        times, but, if these are only bounds, may use the output of a job
+    """
+
+    reaction_times: Numbers
+    first_to_first: Numbers
+    data_ages: Numbers
+    last_to_last: Numbers
+    uncertain_data_ages: Numbers
+    uncertain_last_to_last: Numbers
+
+    @classmethod
+    def of(cls, chain: Sequence[ReadWriteTimes], until: Time) -> StartUp:
+        """Those of the jobs that are released before a time."""
+        first, last = chain[0], chain[-1]
+        begin, end = (np.arange(np.searchsorted(task.releases, until), dtype=np.int64) for task in (first, last))
+        ends, known = last.writes[forward(chain, begin)], _based_on_a_job(chain, end)
+        unknown = np.setdiff1d(end, known, assume_unique=True)
+        starts = first.reads[backward(chain, known)]
+        return cls(
+            reaction_times=ends[1:] - first.reads[begin[:-1]],
+            first_to_first=ends - first.reads[begin],
+            data_ages=last.writes[known + 1] - starts,
+            last_to_last=last.writes[known] - starts,
+            uncertain_data_ages=last.writes[unknown + 1] - first.reads[0],
+            uncertain_last_to_last=last.writes[unknown] - first.reads[0],
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class JobChains:
     """The job chains that start at the jobs of the first task, and those that end at the jobs of the last one, in one cycle.
 
@@ -89,6 +125,7 @@ class JobChains:
     writes : of the jobs at which they end
     next_writes : of the jobs after those
     inputs : jobs whose data reach the end
+    before : those of the jobs before the cycle, from the start of the system
     """
 
     reads: Numbers
@@ -98,6 +135,7 @@ class JobChains:
     writes: Numbers
     next_writes: Numbers
     inputs: Inputs
+    before: StartUp
 
     @property
     def reaction_time(self) -> Time:
@@ -162,6 +200,7 @@ def build_job_chains(chain: Sequence[ReadWriteTimes], steady_state_start: Time) 
         writes=last.writes[end],
         next_writes=last.writes[end + 1],
         inputs=_inputs(whole, start, cycle, length),
+        before=StartUp.of(whole, start),
     )
 
 
@@ -201,8 +240,15 @@ def forward(chain: Sequence[ReadWriteTimes], jobs: Numbers) -> Numbers:
     return jobs
 
 
+def _based_on_a_job(chain: Sequence[ReadWriteTimes], jobs: Numbers) -> Numbers:
+    """Those jobs of the last task that use the output of a job of the first one, not what was there at the start of the system."""
+    for count in range(2, len(chain) + 1):
+        jobs = jobs[backward(chain[-count:], jobs) >= 0]
+    return jobs
+
+
 def backward(chain: Sequence[ReadWriteTimes], jobs: Numbers) -> Numbers:
-    """The jobs of the first task whose outputs jobs of the last task use."""
+    """The jobs of the first task whose outputs jobs of the last task use; -1 for what was there at the start of the system."""
     for writer, task in zip(chain[-2::-1], chain[:0:-1], strict=True):
         if writer.jobs_later is not None:
             found = np.searchsorted(writer.releases, task.releases[jobs], side="left" if writer.jobs_later else "right")

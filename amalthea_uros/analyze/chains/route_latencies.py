@@ -7,10 +7,12 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from amalthea_uros.analyze.chains import job_chains
 from amalthea_uros.analyze.chains.bounds import becker, bi, davare, duerr, hamann, kloda
 from amalthea_uros.analyze.chains.bounds.chain_task import ChainTask
-from amalthea_uros.analyze.chains.stage_timing import in_picoseconds
+from amalthea_uros.analyze.chains.stage_timing import UnboundedStageError, in_picoseconds
 from amalthea_uros.analyze.chains.timed_stage import TimedStage
 from amalthea_uros.analyze.results import Claim, Quantity, Value
 from amalthea_uros.units import Time
@@ -19,10 +21,18 @@ _Make = Callable[[Quantity, "Time | float"], Value]
 
 if TYPE_CHECKING:
     from amalthea_uros.analyze.chains.job_chains import JobBudget, JobChains
+    from amalthea_uros.analyze.response_times.kernel import Numbers
 
 EXACT = "job chains over the hyperperiod"
 BOUNDED = "job chains with earliest reads and latest writes"
 SUMMED = "sum over controllers whose clocks are not synchronized"
+
+
+#: A minimum and the maximum of the same times.
+_RANGES = (
+    (Quantity.MIN_FIRST_TO_FIRST, Quantity.MAX_REDUCED_REACTION_TIME),
+    (Quantity.MIN_LAST_TO_LAST, Quantity.MAX_REDUCED_DATA_AGE),
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +75,21 @@ class RouteLatencies:
         return next((timed.why_irregular for part in self.parts for timed in part if timed.why_irregular), "")
 
     def values(self) -> Iterator[Value]:
-        """The values of all methods."""
+        """The values of all methods.
+
+        Raises
+        ------
+        UnboundedStageError : a maximum is negative or below a minimum, so that a response can come before its stimulus.
+        """
+        found = list(self._values())
+        for minimum, maximum in _RANGES:
+            lowest = max((value.value or 0 for value in found if value.quantity is minimum), default=0)
+            highest = min((value.value or 0 for value in found if value.quantity is maximum), default=lowest)
+            if not 0 <= lowest <= highest:
+                raise UnboundedStageError("a response of the chain can come before its stimulus, which is not evaluated")
+        yield from found
+
+    def _values(self) -> Iterator[Value]:
         yield from self._of_job_chains()
         tasks = [timed.task for part in self.parts for timed in part]
         yield from self._of_periods(tasks)
@@ -93,18 +117,24 @@ class RouteLatencies:
             whole = round(exactly) if quantity.is_mean else in_picoseconds(exactly, 1, quantity.is_upper)
             return Value(quantity=quantity, value=whole, claim=claim, method=method, source=job_chains.SOURCE)
 
-        yield value(Quantity.MAX_REACTION_TIME, chains.reaction_time)
-        yield value(Quantity.MAX_REDUCED_REACTION_TIME, int(chains.first_to_first.max()))
-        yield value(Quantity.MAX_DATA_AGE, chains.data_age)
-        yield value(Quantity.MAX_REDUCED_DATA_AGE, int(chains.last_to_last.max()))
+        # Maxima and minima are those of all jobs from the start of the system on, means those of the jobs that repeat.
+        before = chains.before
+        ages, outputs = [before.data_ages], [before.last_to_last]
+        if not is_exact:
+            ages.append(before.uncertain_data_ages)
+            outputs.append(before.uncertain_last_to_last)
+        yield value(Quantity.MAX_REACTION_TIME, _highest(chains.reaction_time, before.reaction_times))
+        yield value(Quantity.MAX_REDUCED_REACTION_TIME, _highest(int(chains.first_to_first.max()), before.first_to_first))
+        yield value(Quantity.MAX_DATA_AGE, _highest(chains.data_age, *ages))
+        yield value(Quantity.MAX_REDUCED_DATA_AGE, _highest(int(chains.last_to_last.max()), *outputs))
         if not is_exact:
             yield from self._minima(value)
             return
         yield value(Quantity.MAX_FIRST_TO_LAST, int(chains.inputs.first_to_last.max()))
         yield value(Quantity.MAX_LAST_TO_FIRST, int(chains.inputs.last_to_first.max()))
         yield value(Quantity.MIN_LAST_TO_FIRST, int(chains.inputs.last_to_first.min()))
-        yield value(Quantity.MIN_FIRST_TO_FIRST, int(chains.first_to_first.min()))
-        yield value(Quantity.MIN_LAST_TO_LAST, int(chains.last_to_last.min()))
+        yield value(Quantity.MIN_FIRST_TO_FIRST, int(np.concatenate((before.first_to_first, chains.first_to_first)).min()))
+        yield value(Quantity.MIN_LAST_TO_LAST, int(np.concatenate((before.last_to_last, chains.last_to_last)).min()))
         yield value(Quantity.MEAN_REACTION_TIME, chains.mean_reaction_time)
         yield value(Quantity.MEAN_FIRST_TO_FIRST, float(chains.first_to_first.mean()))
         yield value(Quantity.MEAN_LAST_TO_LAST, float(chains.last_to_last.mean()))
@@ -115,8 +145,8 @@ class RouteLatencies:
         if chains is None:
             return
         for quantity, times in (
-            (Quantity.MIN_FIRST_TO_FIRST, chains.first_to_first),
-            (Quantity.MIN_LAST_TO_LAST, chains.last_to_last),
+            (Quantity.MIN_FIRST_TO_FIRST, np.concatenate((chains.before.first_to_first, chains.first_to_first))),
+            (Quantity.MIN_LAST_TO_LAST, np.concatenate((chains.before.last_to_last, chains.last_to_last))),
         ):
             # With a long time between reading and writing, no job of the cycle has to pass anything on.
             if times.size:
@@ -188,3 +218,8 @@ class RouteLatencies:
         if len({task.offset for task in tasks}) == 1:
             age = bi.reduced_data_age(tasks)
             yield self._bound(Quantity.MAX_REDUCED_DATA_AGE, age, "grid of releases", bi.SOURCE)
+
+
+def _highest(highest: Time, *before: Numbers) -> Time:
+    """The highest of a value and others."""
+    return max([highest, *(int(times.max()) for times in before if times.size)])

@@ -191,11 +191,20 @@ class StageTiming:
                 return f"it is unknown which jobs of {stage.process.name!r} take part"
             if any(can_be_skipped(position, system, modes) for position in stage.positions):
                 return f"jobs of {stage.process.name!r} can end without the access or event of the chain"
+        for stage in stages[1:]:
+            if self._has_condition(stage.process):
+                return f"a trigger of {stage.process.name!r} has no effect if the condition of its stimulus is false"
         return ""
+
+    def _has_condition(self, process: Process) -> bool:
+        stimuli = self.context.system.stimuli_by_name
+        return any(stimuli[name].condition is not None for name in process.stimuli if name in stimuli)
 
     def _why_irregular(self, process: Process) -> str:
         """Why there is no maximum time between two jobs of a process; "" if there is one."""
         events = self.solution.event_models.get(process.name)
+        if events is not None and events.can_be_suppressed:
+            return f"{process.name!r} is activated only if the condition of a stimulus is true"
         if events is None or events.max_interarrival is None:
             return f"the maximum time between two activations of {process.name!r} is unknown"
         return ""

@@ -151,7 +151,7 @@ class ChainCompiler:
                 position = None if is_captured else where
                 has_snapshot = communication is Communication.IMPLICIT
             case Pass():
-                position = stage.positions[0]
+                position = stage.positions[0] if stage.positions else None
         is_first = isinstance(stage.enter, At)
         hooks.start.append((ENTER, record, int(position is None and not is_first)))
         if is_captured:
@@ -181,14 +181,14 @@ class ChainCompiler:
                 self._publish(stage.process, record, hooks)
             case Write(communication=Communication.EXPLICIT, position=ActivityPosition() as position):
                 hooks.after.setdefault(position.number, []).append((PUT, record, 0))
-            case Write() | Fire(position=None):
+            case Pass() if stage.positions:
+                hooks.after.setdefault(stage.positions[-1].number, []).append((PUT, record, 0))
+            case Write() | Fire(position=None) | Pass():
                 hooks.end.append((LEAVE, record, 0))
             case Fire(position=ActivityPosition() as position, is_before=is_before):
                 # Before the operation that fires: a trigger fires at its own operation, an event when its activity ends.
                 side = hooks.before if is_before or not _raises_event(position) else hooks.after
                 side.setdefault(position.number, []).append((PUT, record, 0))
-            case Pass():
-                hooks.after.setdefault(stage.positions[-1].number, []).append((PUT, record, 0))
             case At(communication=Communication.LET):
                 self._publish(stage.process, record, hooks)
             case At(occurrence=occurrence):

@@ -14,7 +14,7 @@ from amalthea_uros.perf.activities import Communication, Group, LabelAccess
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.timing.counters import ALWAYS
-from amalthea_uros.timing.dataflow.events import EventOccurrence
+from amalthea_uros.timing.dataflow.events import EventOccurrence, JobPhase
 from amalthea_uros.timing.dataflow.links import Link, LinkKind
 from amalthea_uros.timing.dataflow.positions import ActivityPosition
 from amalthea_uros.timing.dataflow.routes import Route
@@ -117,6 +117,10 @@ def stages(route: Route, communication: Communication | None) -> list[Stage]:
         leave = Fire(link.write, link.is_before) if is_trigger else Write(write, link.write)
         is_same = before.process.name == then.process.name and not is_trigger
         later = _jobs_later(link, write, read) if is_same else None
+        if _has_left_before(enter, leave):
+            # What the job has sent before the event does not come from it: the next job sends.
+            found.append(Stage(before.process, enter, Pass(), jobs_later=NEXT_JOB))
+            enter = Pass()
         found += _within(
             Stage(before.process, enter, leave, is_triggered=is_triggered, jobs_later=later), [*passed, link.write]
         )
@@ -124,6 +128,14 @@ def stages(route: Route, communication: Communication | None) -> list[Stage]:
         enter = Read(read, link.read)
     last = route.occurrences[-1]
     return found + _within(Stage(last.process, enter, At(last, how, is_end=True), is_triggered=is_triggered), passed)
+
+
+def _has_left_before(enter: Boundary, leave: Boundary) -> bool:
+    """Whether a stage begins with the end of a job that leaves it before its end."""
+    if not isinstance(enter, At) or enter.communication is Communication.LET or enter.occurrence.when is not JobPhase.END:
+        return False
+    is_inside = isinstance(leave, Fire) or (isinstance(leave, Write) and leave.communication is Communication.EXPLICIT)
+    return is_inside and leave.position is not None
 
 
 def _within(stage: Stage, passed: Sequence[ActivityPosition | None]) -> list[Stage]:
