@@ -252,16 +252,11 @@ def _without_doubtful_overload(name: str, solution: Solution) -> Response | None
 def _processors(solution: Solution) -> Iterator[ProcessorResult]:
     """The load of each core; unknown if the demand or activation of a process that can run on it is unknown."""
     context = solution.context
-    allowed = allocated_cores(context.system)
-    possible: dict[str, list[str]] = {}
-    for name, cores in allowed.items():
-        for core in cores:
-            possible.setdefault(core, []).append(name)
-    known = {core for core in context.system.cores if _is_load_known(core, possible.get(core, ()), solution)}
+    known = {core for core in context.system.cores if _is_load_known(core, solution)}
     shares: Mapping[str, Mapping[str, Fraction]] = {}
     if len(known) < len(context.system.cores):
         rates = activation_rates(context.system, context.activations)
-        shares = known_loads(allowed, rates, context.demand_model, context.following_rounds)
+        shares = known_loads(allocated_cores(context.system), rates, context.demand_model, context.following_rounds)
     for core in context.system.cores:
         best, mean, worst = _loads(core, solution) if core in known else (None, None, None)
         yield ProcessorResult(
@@ -274,13 +269,9 @@ def _processors(solution: Solution) -> Iterator[ProcessorResult]:
         )
 
 
-def _is_load_known(core: str, possible: Iterable[str], solution: Solution) -> bool:
+def _is_load_known(core: str, solution: Solution) -> bool:
     """Whether all processes that can run on a core run nowhere else, and their demand and activations are known."""
-    context = solution.context
-    if (core, True) in context.unanalysable_cores or (core, False) in context.unanalysable_cores:
-        return False
-    here = {scheduled.name for scheduled in context.on_core(core)}
-    return here.issuperset(possible) and all(map(solution.is_known, here))
+    return solution.is_closed(core) and all(solution.is_known(item.name) for item in solution.context.on_core(core))
 
 
 def _loads(core: str, solution: Solution) -> tuple[Fraction, Fraction, Fraction]:
@@ -288,7 +279,8 @@ def _loads(core: str, solution: Solution) -> tuple[Fraction, Fraction, Fraction]
     context = solution.context
     time_base = context.demand_model.time_base(core)
     names = [scheduled.name for scheduled in context.on_core(core)]
-    rates = [(context.demands[name], solution.event_models[name].rate / time_base) for name in names]
+    per_job = [(name, demands[name]) for demands in (context.demands, context.decisions) for name in names if name in demands]
+    rates = [(demand, solution.event_models[name].rate / time_base) for name, demand in per_job]
     return (
         _sum(demand.mean_best * rate for demand, rate in rates),
         _sum(demand.mean * rate for demand, rate in rates),
