@@ -35,6 +35,7 @@ from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.deadlines import ASSUMPTION, implicit_deadline
 from amalthea_uros.timing.job_paths import JobDemand
 from amalthea_uros.timing.load import CoreLoad, certain_loads, suppressible
+from amalthea_uros.timing.multiframe import MultiframeDemand
 from amalthea_uros.timing.overheads import COUNTED
 from amalthea_uros.timing.phases import (
     Occurrence,
@@ -242,7 +243,7 @@ def _without_doubtful_overload(name: str, solution: Solution) -> Response | None
         return found
     item = context.scheduled[name]
     here = [other for other in context.on_core(item.core) if other.rank >= item.rank and solution.is_known(other.name)]
-    each = _sum(context.demands[other.name].mean_worst * solution.event_models[other.name].rate for other in here)
+    each = _sum(_demand(other.name, context).mean_worst * solution.event_models[other.name].rate for other in here)
     together = _load((other.name for other in here), item.core, solution)
     are_suppressed = any(solution.event_models[other.name].can_be_suppressed for other in here)
     if together.certain * context.time_base(name) == each and not are_suppressed:
@@ -261,16 +262,11 @@ def _percent(load: Fraction) -> str:
 def _processors(solution: Solution) -> Iterator[ProcessorResult]:
     """The load of each core; unknown if the demand or activation of a process that can run on it is unknown."""
     context = solution.context
-    allowed = allocated_cores(context.system)
-    possible: dict[str, list[str]] = {}
-    for name, cores in allowed.items():
-        for core in cores:
-            possible.setdefault(core, []).append(name)
-    known = {core for core in context.system.cores if _is_load_known(core, possible.get(core, ()), solution)}
+    known = {core for core in context.system.cores if _is_load_known(core, solution)}
     certain: Mapping[str, Fraction] = {}
     if len(known) < len(context.system.cores):
         uncertain = {*context.following_rounds, *suppressible(context.system, context.activations)}
-        certain = certain_loads(allowed, context.activations, context.demand_model, uncertain)
+        certain = certain_loads(allocated_cores(context.system), context.activations, context.demand_model, uncertain)
     for core in context.system.cores:
         best, mean, worst = _loads(core, solution) if core in known else (None, None, None)
         yield ProcessorResult(
@@ -292,20 +288,22 @@ def _loads(core: str, solution: Solution) -> tuple[Fraction, Fraction | None, Fr
     return _load(regular, core, solution).best, None, load.worst
 
 
-def _is_load_known(core: str, possible: Iterable[str], solution: Solution) -> bool:
+def _is_load_known(core: str, solution: Solution) -> bool:
     """Whether all processes that can run on a core run nowhere else, and their demand and activations are known."""
-    context = solution.context
-    if (core, True) in context.unanalysable_cores or (core, False) in context.unanalysable_cores:
-        return False
-    here = {scheduled.name for scheduled in context.on_core(core)}
-    return here.issuperset(possible) and all(map(solution.is_known, here))
+    return solution.is_closed(core) and all(solution.is_known(item.name) for item in solution.context.on_core(core))
 
 
 def _load(names: Iterable[str], core: str, solution: Solution) -> JobDemand:
     """The load of a core by some of its processes."""
     context = solution.context
-    demands = {name: context.demands[name] for name in names}
+    demands = {name: _demand(name, context) for name in names}
     return CoreLoad(core, demands, context.activations, context.demand_model).load(_external_rates(solution))
+
+
+def _demand(name: str, context: TimingContext) -> MultiframeDemand:
+    """The demand of a job of a process with what its scheduler needs to decide when it is activated."""
+    own, decision = context.demands[name], context.decisions.get(name)
+    return own if decision is None else MultiframeDemand((*own.frames, *decision.frames))
 
 
 def _external_rates(solution: Solution) -> Mapping[str, Fraction]:

@@ -31,6 +31,7 @@ from amalthea_uros.simulate.layout import (
 from amalthea_uros.simulate.metrics import chains, jobs
 from amalthea_uros.simulate.metrics.chains import RouteMetrics, chain_observation
 from amalthea_uros.simulate.metrics.jobs import JobMetrics
+from amalthea_uros.simulate.not_simulated import NotSimulated
 from amalthea_uros.simulate.observers import Observers
 from amalthea_uros.simulate.operations import POLLING, RUNNING
 from amalthea_uros.simulate.options import Options
@@ -151,11 +152,13 @@ class _Run:
         system, program, notes = self.context.system, self.program, self.context.notes
         self._note_left_out()
         self.observers.finish()
-        processes = Results(map(judge_process, self._processes()))
+        left_out = NotSimulated(self.context, frozenset(program.left_out))
+        processes = Results(left_out.process(judge_process(found)) for found in self._processes())
         found = Results(self._chain(name) for name in system.chains)
         duration = self.options.duration
         runnables = Results(map(self._runnable, self.program.runnables, self.runnables))
-        requirements = Results(judge_requirements(system, processes, found, duration, runnables, self.observers))
+        judged = judge_requirements(system, processes, found, duration, runnables, self.observers)
+        requirements = Results(left_out.requirements(judged))
         return Simulation(
             duration=duration,
             seed=self.options.seed,

@@ -149,10 +149,10 @@ class Activations:
         """The occurrences of a stimulus, as if its condition were always true."""
         name = stimulus.name
         if not isinstance(stimulus, InterProcess | EventTriggered):
-            found = event_model_of(stimulus, self.system)
-            if found is None:
+            stated = event_model_of(stimulus, self.system)
+            if stated is None:
                 raise UnknownActivationError(f"the rate of the stimulus {name!r} is unbounded")
-            return found
+            return stated
         if self._incomplete:
             raise UnknownActivationError(f"the processes that trigger {name!r} are unknown: {self._incomplete}")
         causes = self.causes(stimulus)

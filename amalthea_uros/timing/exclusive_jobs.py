@@ -1,4 +1,4 @@
-"""Processes that a job of another process triggers on paths that exclude each other: together, they take as long as the longest path."""
+"""The demand of processes whose jobs exclude each other: together, they take as long as the longest path of a job that triggers them."""
 
 from __future__ import annotations
 

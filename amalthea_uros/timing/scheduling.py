@@ -221,8 +221,9 @@ class Scheduling:
             self.notes.warning("ANA002", message, scheduler)
             raise NotSchedulableError(f"the parent of its scheduler {scheduler.name!r} schedules by {base.equal_priority}")
         if policy is None:
-            message = f"the scheduler {scheduler.name!r} has no policy; assuming fixed-priority preemptive scheduling"
+            message = f"the scheduler {scheduler.name!r} has no policy, so its tasks are not analysed"
             self.notes.warning("ANA001", message, scheduler)
+            raise NotSchedulableError(f"its scheduler {scheduler.name!r} has no policy")
         if policy in _NEEDING_PRIORITY and parameters.priority is None and self._serves_one(scheduler):
             # Nothing competes with what is alone.
             parameters = replace(parameters, priority=0)
@@ -412,10 +413,9 @@ def _earliest_deadline_first(_scheduler: Scheduler, parameters: _Parameters, bas
 
 
 #: The policies for which what they serve needs a priority.
-_NEEDING_PRIORITY = (None, Policy.FIXED_PRIORITY_PREEMPTIVE, Policy.OSEK, Policy.PRIORITY_BASED_ROUND_ROBIN)
-#: The scheduling by each policy; without a policy, fixed priorities are assumed.
-_BY_POLICY: Mapping[str | None, Callable[[Scheduler, _Parameters, SchedulingContext], SchedulingContext]] = {
-    None: _fixed_priority,
+_NEEDING_PRIORITY = (Policy.FIXED_PRIORITY_PREEMPTIVE, Policy.OSEK, Policy.PRIORITY_BASED_ROUND_ROBIN)
+#: The scheduling by each policy.
+_BY_POLICY: Mapping[str, Callable[[Scheduler, _Parameters, SchedulingContext], SchedulingContext]] = {
     Policy.FIXED_PRIORITY_PREEMPTIVE: _fixed_priority,
     Policy.OSEK: _osek,
     Policy.PRIORITY_BASED_ROUND_ROBIN: _round_robin,

@@ -191,6 +191,8 @@ class ChainEvaluator:
                 raise UnboundedStageError(
                     f"the message {link.names[0]!r} leaves the system and comes back, and nobody stated how long that takes"
                 )
+            if link.kind is LinkKind.DATA:
+                self._require_known_writers(link.names)
         parts: list[list[TimedStage]] = []
         before = None
         for group, follower in _with_followers(self.groups(route)):
@@ -200,6 +202,13 @@ class ChainEvaluator:
             parts[-1].append(self.timing.group(group, follower))
             before = controller
         return RouteLatencies(parts, self.timing.unit, is_certain=route.is_timed, budget=self.budget)
+
+    def _require_known_writers(self, labels: Iterable[str]) -> None:
+        """Refuse data that an unknown process writes, too: what a job reads can be of that one; raises as `latencies`."""
+        for label in labels:
+            for name in self.context.touching.writers(label):
+                if name in self.solution.reasons:
+                    raise UnboundedStageError(f"{name!r}, which could not be analysed, writes {label!r}")
 
     def controller(self, process: str) -> str:
         """The controller of a process; "" if it is unknown."""

@@ -48,7 +48,7 @@ class _CoreAnalysis:
         here = self.context.served(self.core, server)
         usable = self._analysable(here)
         processes = [item for item in usable if isinstance(item, ScheduledProcess)]
-        is_complete = len(processes) == len(here) and supply is FULL
+        is_complete = len(processes) == len(here) and supply is FULL and self.solution.is_closed(self.core)
         found = self.exact(processes) if is_complete else None
         if found is None:
             found = self.bounds(usable, [item for item in here if isinstance(item, ScheduledProcess)], supply)
@@ -61,13 +61,11 @@ class _CoreAnalysis:
     def _analysable(self, here: Sequence[ScheduledProcess | Server]) -> list[ScheduledProcess | Server]:
         """The items that depend on no unknown process of the same or a higher rank; the others are marked unknown."""
         found: list[ScheduledProcess | Server] = []
-        unanalysable = self.context.unanalysable_cores
-        unknown: str | None = None
+        unknown = self.solution.intruder(self.core, above_isrs=True)
         for (is_isr, _), group in groupby(here, key=lambda item: (_is_isr(item), item.rank)):
             level = list(group)
-            unknown = unknown or unanalysable.get((self.core, True))
             if not is_isr:
-                unknown = unknown or unanalysable.get((self.core, False))
+                unknown = unknown or self.solution.intruder(self.core, above_isrs=False)
             unknown = unknown or next((item.name for item in level if not self._is_known(item)), None)
             if unknown is None:
                 found += level
@@ -253,7 +251,7 @@ def periodic_tasks(core: str, solution: Solution) -> list[schedule.PeriodicTask]
     processes = [item for item in here if isinstance(item, ScheduledProcess)]
     if len(processes) < len(here) or not all(solution.is_analysable(item.name) for item in processes):
         return []
-    if (core, True) in context.unanalysable_cores or (core, False) in context.unanalysable_cores:
+    if not solution.is_closed(core):
         return []
     return _CoreAnalysis(solution, core).released(processes)
 

@@ -105,6 +105,10 @@ class ChainCompiler:
         for link, (first, then) in zip(route.links, pairwise(route.events), strict=True):
             if link.kind in _NOT_FOLLOWED:
                 raise NotSimulatedError(f"from {first!r} to {then!r} it follows {link.kind}, which is not followed")
+            for label in link.names if link.kind is LinkKind.DATA else ():
+                for name in self.resources.context.touching.writers(label):
+                    if name not in self.processes:
+                        raise NotSimulatedError(f"{name!r}, which is not simulated, writes {label!r}")
         for occurrence in route.occurrences:
             if occurrence.process.name not in self.processes:
                 raise NotSimulatedError(f"it passes {occurrence.process.name!r}, which is not simulated")

@@ -134,8 +134,9 @@ def _has_left_before(enter: Boundary, leave: Boundary) -> bool:
     """Whether a stage begins with the end of a job that leaves it before its end."""
     if not isinstance(enter, At) or enter.communication is Communication.LET or enter.occurrence.when is not JobPhase.END:
         return False
-    is_inside = isinstance(leave, Fire) or (isinstance(leave, Write) and leave.communication is Communication.EXPLICIT)
-    return is_inside and leave.position is not None
+    if isinstance(leave, Write):
+        return leave.communication is Communication.EXPLICIT and leave.position is not None
+    return isinstance(leave, Fire) and leave.position is not None
 
 
 def _within(stage: Stage, passed: Sequence[ActivityPosition | None]) -> list[Stage]:
