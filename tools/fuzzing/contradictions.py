@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from amalthea_uros.analyze.results import Analysis, ChainResult, RequirementResult
-from amalthea_uros.analyze.verdicts import Verdict
-from amalthea_uros.simulate.results import ChainObservation, ObservedVerdict, RequirementObservation, Simulation
+from amalthea_uros.judge.verdict import ObservedVerdict, Verdict
+from amalthea_uros.simulate.results import ChainObservation, RequirementObservation, Simulation
 
 
 def contradictions(analysis: Analysis, simulation: Simulation) -> Iterator[str]:
