@@ -62,10 +62,7 @@ if TYPE_CHECKING:
     from amalthea_uros.analyze.results import Value as Value
     from amalthea_uros.analyze.sensitivity import Sensitivity as Sensitivity
     from amalthea_uros.analyze.sensitivity import sensitivity as sensitivity
-    from amalthea_uros.analyze.summary import Schedulable as Schedulable
-    from amalthea_uros.analyze.summary import Summary as Summary
     from amalthea_uros.analyze.system import analyze_system as analyze_system
-    from amalthea_uros.analyze.verdicts import Verdict as Verdict
     from amalthea_uros.analyze.ways.results import Hop as Hop
     from amalthea_uros.analyze.ways.results import HopKind as HopKind
     from amalthea_uros.analyze.ways.results import Way as Way
@@ -83,6 +80,9 @@ if TYPE_CHECKING:
     from amalthea_uros.errors import InvalidArgumentError as InvalidArgumentError
     from amalthea_uros.errors import ReadError as ReadError
     from amalthea_uros.errors import WriteError as WriteError
+    from amalthea_uros.judge.summary import Schedulable as Schedulable
+    from amalthea_uros.judge.summary import Summary as Summary
+    from amalthea_uros.judge.verdict import Verdict as Verdict
     from amalthea_uros.measure.series import Counts as Counts
     from amalthea_uros.measure.series import Measurement as Measurement
     from amalthea_uros.measure.series import Series as Series
@@ -185,9 +185,9 @@ _NAMES = {
         "Value",
     ),
     "analyze.sensitivity": ("Sensitivity", "sensitivity"),
-    "analyze.summary": ("Schedulable", "Summary"),
+    "judge.summary": ("Schedulable", "Summary"),
     "analyze.system": ("analyze_system",),
-    "analyze.verdicts": ("Verdict",),
+    "judge.verdict": ("Verdict",),
     "analyze.ways.results": ("Hop", "HopKind", "Way"),
     "bridge.build": ("build_model",),
     "bridge.extract": ("Extraction", "extract"),

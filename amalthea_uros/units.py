@@ -227,6 +227,26 @@ def rounded(value: Fraction, rounding: Rounding, limit: int | Fraction | None = 
     return found
 
 
+def percent_text(share: Fraction | float, decimals: int, rounding: Rounding = Rounding.NEAREST) -> str:
+    """A share in percent with some decimals, and with more of them where it takes more to be on its side of 100.
+
+    >>> percent_text(Fraction(11, 10), 1), percent_text(Fraction(10_001, 10_000), 1)
+    ('110.0', '100.01')
+    """
+    exact = Fraction(share) * 100
+    found = _with_decimals(exact, decimals, rounding)
+    while _side(found, 100) != _side(exact, 100):
+        decimals += 1
+        found = _with_decimals(exact, decimals, rounding)
+    return f"{float(found):.{decimals}f}"
+
+
+def _with_decimals(value: Fraction, decimals: int, rounding: Rounding) -> Fraction:
+    whole = value * 10**decimals
+    number = ceil(whole) if rounding is Rounding.UP else floor(whole) if rounding is Rounding.DOWN else round(whole)
+    return Fraction(number, 10**decimals)
+
+
 def _with_digits(value: Fraction, rounding: Rounding, digits: int) -> Fraction:
     context = Context(prec=digits, rounding=rounding, Emax=MAX_EMAX)
     return Fraction(context.divide(Decimal(value.numerator), Decimal(value.denominator)))

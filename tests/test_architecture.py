@@ -31,11 +31,12 @@ ROOMS = {
     "bridge": (*BASE, "metamodel", "perf"),
     "difference": (*BASE, "metamodel"),
     "validate": (*BASE, "findings", "metamodel", "perf", "timing"),
-    "analyze": (*BASE, "perf", "timing"),
-    "optimize": (*BASE, "analyze", "changes", "perf", "timing"),
+    "judge": (*BASE, "perf", "timing"),
+    "analyze": (*BASE, "judge", "perf", "timing"),
+    "optimize": (*BASE, "analyze", "changes", "judge", "perf", "timing"),
     "trace": BASE,
     "measure": (*BASE, "timing", "trace"),
-    "simulate": (*BASE, "perf", "timing", "trace"),
+    "simulate": (*BASE, "judge", "perf", "timing", "trace"),
 }
 INNER = tuple(ROOMS)
 ROOMS["services"] = INNER

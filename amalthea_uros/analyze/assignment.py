@@ -11,9 +11,8 @@ from math import factorial
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.priority_orders import Order, PriorityOrders, with_priorities
 from amalthea_uros.analyze.results import Analysis, require_analysis
-from amalthea_uros.analyze.summary import FAILURES
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.analyze.verdicts import Verdict
+from amalthea_uros.judge.verdict import FAILURES, Verdict
 from amalthea_uros.timing.scheduling import ScheduledProcess
 
 #: All orders of at most this many tasks are tried.

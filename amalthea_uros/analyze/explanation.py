@@ -14,9 +14,8 @@ from amalthea_uros.analyze.response_times import schedule
 from amalthea_uros.analyze.response_times.core import periodic_tasks
 from amalthea_uros.analyze.results import Analysis, CallbackResult, ProcessResult, Response
 from amalthea_uros.analyze.solution import Solution
-from amalthea_uros.analyze.summary import FAILURES
 from amalthea_uros.analyze.unknown_origins import Origin, origins
-from amalthea_uros.analyze.verdicts import Verdict
+from amalthea_uros.judge.verdict import FAILURES, Verdict
 from amalthea_uros.timing.counters import takes_effect
 from amalthea_uros.timing.multiframe import MultiframeDemand
 from amalthea_uros.timing.scheduling import ScheduledProcess, Server

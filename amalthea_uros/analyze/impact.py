@@ -26,7 +26,7 @@ from amalthea_uros.analyze.results import (
     RequirementResult,
     Response,
 )
-from amalthea_uros.analyze.verdicts import Failure, Verdict
+from amalthea_uros.judge.verdict import Failure, Verdict
 
 #: The value of a figure.
 Amount: TypeAlias = int | Fraction | StrEnum

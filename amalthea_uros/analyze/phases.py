@@ -25,8 +25,10 @@ from amalthea_uros.analyze.results import (
     Value,
 )
 from amalthea_uros.analyze.solution import Solution
-from amalthea_uros.analyze.summary import summarize
-from amalthea_uros.analyze.verdicts import Ends, Verdict, decide, undecided
+from amalthea_uros.judge.evidence import Ends
+from amalthea_uros.judge.limits import SystemLimit
+from amalthea_uros.judge.summary import summarize
+from amalthea_uros.judge.verdict import WORST_FIRST, prove
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.jitter import jitter_of
 from amalthea_uros.timing.phases import Occurrence, phase_combinations, phase_count, with_phases
@@ -35,9 +37,6 @@ from amalthea_uros.units import Time
 #: With more combinations of phases, or more jobs in all of them, any job can be the one that takes what comes from outside.
 MAX_COMBINATIONS = 1000
 MAX_JOBS = 1_000_000
-
-#: The verdict over all phases is the first of these that occurs.
-_WORST_FIRST = (Verdict.MISSED, Verdict.UNBOUNDED, Verdict.UNKNOWN, Verdict.MET, None)
 
 T = TypeVar("T")
 
@@ -113,7 +112,7 @@ def merged(analyses: Mapping[int, Analysis], cases: PhaseCases, solution: Soluti
         callbacks=Results(callbacks),
         chains=Results(chains),
         requirements=requirements,
-        summary=summarize(first.processors, processes, requirements),
+        summary=summarize(first.processors, (*processes, *requirements), solution.context),
         assumptions=_each_once(analyses.values(), lambda analysis: analysis.assumptions),
         findings=_each_once(analyses.values(), lambda analysis: analysis.findings),
     )
@@ -132,7 +131,7 @@ def _badness(result: ProcessResult | CallbackResult) -> tuple[int, int]:
 
 def _process(results: Sequence[ProcessResult], counts: Sequence[int]) -> ProcessResult:
     worst = max(results, key=_badness)
-    judged = min(results, key=lambda result: _WORST_FIRST.index(result.verdict))
+    judged = min(results, key=lambda result: WORST_FIRST.index(result.verdict))
     found = metrics.merged([result.metrics for result in results], counts)
     worst = replace(worst, verdict=judged.verdict, failure=judged.failure, reason=judged.reason, metrics=found)
     return worst if worst.response is None else replace(worst, response=_response(worst.response, results, counts))
@@ -218,21 +217,20 @@ def _requirements(analyses: Sequence[Analysis]) -> Iterator[RequirementResult]:
 
 
 def _requirement(results: Sequence[RequirementResult]) -> RequirementResult:
-    worst = min(results, key=lambda result: _WORST_FIRST.index(result.verdict))
+    worst = min(results, key=lambda result: WORST_FIRST.index(result.verdict))
     extreme = max if worst.is_upper else min
     lower, upper = [result.lower for result in results], [result.upper for result in results]
     found = replace(worst, lower=_extreme(lower, extreme), upper=_extreme(upper, extreme))
     spreads = [result.spread for result in results]
-    return found if None in spreads or found.limit is None else _jitter(found, found.limit, list(filter(None, spreads)))
+    if found.stated is None or None in spreads or found.limit is None:
+        return found
+    return _jitter(found, found.stated, list(filter(None, spreads)))
 
 
-def _jitter(found: RequirementResult, limit: Time, spreads: Sequence[tuple[Time, Time]]) -> RequirementResult:
+def _jitter(found: RequirementResult, limit: SystemLimit, spreads: Sequence[tuple[Time, Time]]) -> RequirementResult:
     """A jitter from the least minimum to the greatest maximum of all phases: nobody states that a phase never drifts."""
     spread = min(low for low, _ in spreads), max(high for _, high in spreads)
-    ends = Ends(found.lower, jitter_of(*spread))
-    verdict = decide(ends, limit, is_upper=True)
-    reason = undecided(ends, is_upper=True) if verdict is Verdict.UNKNOWN else ""
-    return replace(found, upper=ends.upper, spread=spread, verdict=verdict, reason=reason)
+    return RequirementResult.of(limit, replace(prove(limit, Ends(found.lower, jitter_of(*spread))), spread=spread))
 
 
 def _extreme(ends: Sequence[Time | None], extreme: Callable[[Sequence[Time]], Time]) -> Time | None:

@@ -15,9 +15,8 @@ from dataclasses import dataclass, field, replace
 
 from amalthea_uros.analyze.response_times.critical_instant import certain_response, keep_off_alike
 from amalthea_uros.analyze.results import Analysis, Claim
-from amalthea_uros.analyze.summary import FAILURES
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.analyze.verdicts import Verdict
+from amalthea_uros.judge.verdict import FAILURES, Verdict
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.activation import UnknownActivationError
@@ -27,7 +26,7 @@ from amalthea_uros.timing.event_models import EventModel
 from amalthea_uros.timing.preemption import is_preemptive
 from amalthea_uros.timing.releases import known_releases
 from amalthea_uros.timing.scheduling import EqualPriority, ScheduledProcess
-from amalthea_uros.units import Time, time_text
+from amalthea_uros.units import Time, percent_text, time_text
 
 #: Names of tasks, lowest priority first.
 Order = Sequence[str]
@@ -109,7 +108,7 @@ class PriorityOrders:
         core = self.analysis.processors[self.core]
         if core.worst is None or not core.is_overloaded or self._is_any_triggered():
             return ""
-        return f"with any priorities, the tasks need {100 * float(core.at_least):.1f} % of the core"
+        return f"with any priorities, the tasks need {percent_text(core.at_least, 1)} % of the core"
 
     def dead_end(self, order: Order, unfitting: Iterable[str]) -> str:
         """Why no order exists if no task fits directly above some, where `is_independent`; "" if bounds leave it open."""

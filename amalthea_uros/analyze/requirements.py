@@ -1,20 +1,22 @@
-"""Verdicts on requirements."""
+"""What is proved of the metrics that requirements limit."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import TypeAlias
 
 from amalthea_uros.analyze import metrics
 from amalthea_uros.analyze.implausible_limits import note_implausible
-from amalthea_uros.analyze.process_verdicts import worst_response
+from amalthea_uros.analyze.process_evidence import worst_response
 from amalthea_uros.analyze.results import CallbackResult, JobMetric, Metric, ProcessResult, RequirementResult, Results
-from amalthea_uros.analyze.verdicts import Ends, Verdict, decide, undecided
-from amalthea_uros.perf.constraints import Bound, JitterLimit, Requirement, TimeLimit, TimeMetric
+from amalthea_uros.judge.evidence import Ends
+from amalthea_uros.judge.limits import SystemLimit, is_from_period, limits_of, nominal_period
+from amalthea_uros.judge.verdict import Verdict, prove, unknown
+from amalthea_uros.perf.constraints import Requirement, TimeMetric
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.jitter import is_deviation_from_period, jitter_name, jitter_of
+from amalthea_uros.timing.jitter import jitter_of
 from amalthea_uros.timing.notes import Notes
-from amalthea_uros.timing.releases import activation_period
 from amalthea_uros.units import Time
 
 #: What the analysis computes; a running time is bounded by the net execution time, and each kind of waiting by all waiting.
@@ -56,49 +58,33 @@ def evaluate_requirements(
     for callback in callbacks:
         by_runnable.setdefault(callback.name, []).append(callback)
     for requirement in system.constraints.requirements:
-        limit = requirement.limit
-        if isinstance(limit, TimeLimit | JitterLimit):
-            process = by_name.get(requirement.process or "")
-            calls = by_runnable.get(requirement.runnable, ())
-            holders = [process] if process is not None else calls
-            if isinstance(limit, TimeLimit):
-                result = _judged(requirement, limit, holders)
-            else:
-                result = _judged_jitter(requirement, limit, holders, system)
-            note_implausible(result, requirement, notes)
-            yield result
+        (limit,) = limits_of(requirement)
+        if not isinstance(requirement.limit.metric, TimeMetric):
+            reason = f"it limits {limit.quantity}, which is not a time"
+            notes.warning("ANA009", f"the requirement {requirement.name!r} is not evaluated: {reason}", requirement)
+            yield RequirementResult.of(limit, unknown(reason))
             continue
-        reason = f"it limits {limit.metric}, which is not a time"
-        notes.warning("ANA009", f"the requirement {requirement.name!r} is not evaluated: {reason}", requirement)
-        yield RequirementResult(
-            name=requirement.name,
-            object=requirement.process or requirement.runnable or "",
-            quantity=str(limit.metric),
-            is_upper=limit.bound is Bound.UPPER,
-            limit=None,
-            verdict=Verdict.UNKNOWN,
-            reason=reason,
-        )
+        process = by_name.get(requirement.process or "")
+        holders = [process] if process is not None else by_runnable.get(requirement.runnable, ())
+        result = _judged(limit, requirement.limit.metric, holders, system)
+        note_implausible(result, requirement, notes)
+        yield result
 
 
-def _judged(requirement: Requirement, limit: TimeLimit, holders: Sequence[Holder]) -> RequirementResult:
-    is_upper = limit.bound is Bound.UPPER
-    ends = _ends(holders, limit.metric, is_upper)
-    verdict = decide(ends, limit.value, is_upper)
-    is_overloaded = any(map(_is_overloaded, holders))
-    if is_upper and limit.metric is TimeMetric.RESPONSE_TIME and is_overloaded:
-        verdict = Verdict.MISSED
-    return RequirementResult(
-        name=requirement.name,
-        object=requirement.process or requirement.runnable or "",
-        quantity=str(limit.metric),
-        is_upper=is_upper,
-        limit=limit.value,
-        lower=ends.lower,
-        upper=ends.upper,
-        verdict=verdict,
-        reason="" if verdict is Verdict.MET else _reason(requirement, limit, holders, ends),
-    )
+def _judged(limit: SystemLimit, metric: TimeMetric, holders: Sequence[Holder], system: System) -> RequirementResult:
+    reason = _missing(limit, metric, holders)
+    if not limit.is_jitter:
+        ends = _ends(holders, metric, limit.is_upper)
+        is_infinite = metric is TimeMetric.RESPONSE_TIME and any(map(_is_overloaded, holders))
+        return RequirementResult.of(limit, prove(limit, replace(ends, is_infinite=is_infinite), reason))
+    if not is_from_period(limit):
+        ends, spread = _peak_to_peak(holders, metric)
+        return RequirementResult.of(limit, replace(prove(limit, ends, reason), spread=spread))
+    period = nominal_period(limit, system)
+    if holders and period is None:
+        reason = f"{limit.object!r} is not activated by exactly one periodic stimulus, so it has no nominal period"
+    ends = Ends() if period is None else _deviation(holders, metric, period)
+    return RequirementResult.of(limit, prove(limit, ends, reason))
 
 
 def _is_overloaded(holder: Holder) -> bool:
@@ -106,34 +92,6 @@ def _is_overloaded(holder: Holder) -> bool:
     if isinstance(holder, ProcessResult):
         return holder.verdict is Verdict.UNBOUNDED
     return holder.response is not None and holder.response.is_overload
-
-
-def _judged_jitter(
-    requirement: Requirement, limit: JitterLimit, holders: Sequence[Holder], system: System
-) -> RequirementResult:
-    reason, spread = "", None
-    if not is_deviation_from_period(limit.metric):
-        ends, spread = _peak_to_peak(holders, limit.metric)
-    else:
-        process = system.processes.get(requirement.process or "")
-        period = None if process is None else activation_period(process, system)
-        ends = Ends() if period is None else _deviation(holders, limit.metric, period)
-        if holders and period is None:
-            name = requirement.process or requirement.runnable
-            reason = f"{name!r} is not activated by exactly one periodic stimulus, so it has no nominal period"
-    verdict = decide(ends, limit.value, is_upper=True)
-    return RequirementResult(
-        name=requirement.name,
-        object=requirement.process or requirement.runnable or "",
-        quantity=jitter_name(limit.metric),
-        is_upper=True,
-        limit=limit.value,
-        lower=ends.lower,
-        upper=ends.upper,
-        spread=spread,
-        verdict=verdict,
-        reason="" if verdict is Verdict.MET else reason or _reason(requirement, limit, holders, ends),
-    )
 
 
 def _peak_to_peak(holders: Sequence[Holder], metric: TimeMetric) -> tuple[Ends, tuple[Time, Time] | None]:
@@ -153,17 +111,14 @@ def _deviation(holders: Sequence[Holder], metric: TimeMetric, period: Time) -> E
     return Ends(lower, jitter_of(found.min, found.max, period))
 
 
-def _reason(requirement: Requirement, limit: TimeLimit | JitterLimit, holders: Sequence[Holder], ends: Ends) -> str:
-    """Why a limit is not met, or why that is unknown; nothing if the ends show it."""
-    if not holders and requirement.runnable is not None:
-        return f"no process of the model calls {requirement.runnable!r}"
+def _missing(limit: SystemLimit, metric: TimeMetric, holders: Sequence[Holder]) -> str:
+    """Why nothing is known of a metric."""
+    if not holders and isinstance(limit.item, Requirement) and limit.item.runnable is not None:
+        return f"no process of the model calls {limit.item.runnable!r}"
     if not holders:
         return "the process that it limits is not defined, or was left out when reading"
-    is_upper = limit.bound is Bound.UPPER
-    if (ends.upper if is_upper else ends.lower) is None:
-        stated = next((holder.reason for holder in holders if holder.reason), "")
-        return stated or f"the {limit.metric} of {holders[0].name!r} is not computed"
-    return undecided(ends, is_upper) if decide(ends, limit.value, is_upper) is Verdict.UNKNOWN else ""
+    stated = next((holder.reason for holder in holders if holder.reason), "")
+    return stated or f"the {metric} of {holders[0].name!r} is not computed"
 
 
 def _ends(holders: Sequence[Holder], metric: TimeMetric, is_upper: bool) -> Ends:

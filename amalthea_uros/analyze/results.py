@@ -6,20 +6,22 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from amalthea_uros._internal.by_name import Results as Results
 from amalthea_uros._internal.plural import counted
 from amalthea_uros._internal.shown import Shown
-from amalthea_uros.analyze.verdicts import Failure, Verdict
 from amalthea_uros.diagnostics import Finding
+from amalthea_uros.judge.limits import DEADLINE, PERIOD, SystemLimit
+from amalthea_uros.judge.margins import margin_of
+from amalthea_uros.judge.summary import Summary
+from amalthea_uros.judge.verdict import Failure, Judgement, Verdict
 from amalthea_uros.timing.job_metric import JobMetric as JobMetric
 from amalthea_uros.units import Frequency, Time, time_text
 
 if TYPE_CHECKING:
     from amalthea_uros.analyze.executors.results import ExecutorResult
     from amalthea_uros.analyze.solution import Solution
-    from amalthea_uros.analyze.summary import Summary
     from amalthea_uros.analyze.ways.results import Way
 
 
@@ -162,10 +164,47 @@ class ProcessResult(Shown):
         """The best-case response time; None if it is unknown."""
         return None if self.response is None else self.response.best
 
+    # As a limit that was judged.
+
+    @property
+    def object(self) -> str:
+        """The process itself."""
+        return self.name
+
+    @property
+    def quantity(self) -> str:
+        """The response time, and what limits it."""
+        return PERIOD if self.is_implicit else DEADLINE
+
+    @property
+    def is_upper(self) -> bool:
+        """A deadline limits the maximum."""
+        return True
+
+    @property
+    def limit(self) -> Time | None:
+        """The deadline."""
+        return self.deadline
+
+    @property
+    def value(self) -> Time | None:
+        """The worst-case response time."""
+        return self.wcrt
+
     @property
     def margin(self) -> Time | None:
         """Distance of the worst-case response time from the deadline; negative if it is later."""
-        return None if self.deadline is None or self.wcrt is None else self.deadline - self.wcrt
+        return margin_of(self.wcrt, self.deadline, is_upper=True)
+
+    @property
+    def overloaded_core(self) -> str | None:
+        """The core that has more work than it can execute, if that is what is wrong."""
+        return self.processor if self.failure is Failure.OVERLOAD else None
+
+    @property
+    def stated(self) -> None:
+        """The deadline follows from the process itself."""
+        return
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -276,6 +315,7 @@ class RequirementResult(Shown):
     lower, upper : between these the limited maximum or minimum lies; equal if it is exact, None if that end is unknown
     spread : minimum and maximum, of which a jitter is the difference; None for what is no such jitter, or unknown
     reason : why the verdict is unknown
+    stated : the limit in the system
     """
 
     name: str
@@ -288,6 +328,24 @@ class RequirementResult(Shown):
     upper: Time | None = None
     spread: tuple[Time, Time] | None = None
     reason: str = ""
+    stated: SystemLimit | None = field(default=None, repr=False, compare=False)
+
+    @classmethod
+    def of(cls, limit: SystemLimit, found: Judgement) -> RequirementResult:
+        """The result for a limit that was judged."""
+        return cls(
+            name=limit.name,
+            object=limit.object,
+            quantity=limit.quantity,
+            is_upper=limit.is_upper,
+            limit=limit.time,
+            lower=found.ends.lower,
+            upper=found.ends.upper,
+            spread=found.spread,
+            verdict=found.verdict,
+            reason=found.reason,
+            stated=limit,
+        )
 
     @property
     def value(self) -> Time | None:
@@ -297,9 +355,16 @@ class RequirementResult(Shown):
     @property
     def margin(self) -> Time | None:
         """Distance of the value from the limit; negative if the limit is missed."""
-        if self.value is None or self.limit is None:
-            return None
-        return self.limit - self.value if self.is_upper else self.value - self.limit
+        return margin_of(self.value, self.limit, self.is_upper)
+
+    @property
+    def overloaded_core(self) -> None:
+        """That of a process."""
+        return
+
+
+Judged: TypeAlias = ProcessResult | RequirementResult
+SystemSummary: TypeAlias = Summary[Judged, ProcessorResult]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -325,7 +390,7 @@ class Analysis(Shown):
     callbacks: Results[CallbackResult]
     chains: Results[ChainResult]
     requirements: Results[RequirementResult]
-    summary: Summary
+    summary: SystemSummary
     assumptions: tuple[str, ...]
     findings: tuple[Finding, ...]
     worst_solutions: Mapping[str, Solution] = field(default_factory=dict, repr=False, compare=False)

@@ -14,7 +14,7 @@ from fractions import Fraction
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.results import Analysis, RequirementResult, require_analysis
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.analyze.verdicts import Verdict
+from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.perf.constraints import ChainSynchronization, LatencyConstraint
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.settings import Settings

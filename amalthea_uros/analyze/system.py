@@ -11,20 +11,21 @@ from amalthea_uros.analyze.chains.constraints import ConstraintEvaluator
 from amalthea_uros.analyze.chains.core_schedule import CoreSchedules
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.chains.job_chains import JobBudget
-from amalthea_uros.analyze.executors.callbacks import METRICS_OF_ROUNDS, of_rounds, without_doubtful_losses
+from amalthea_uros.analyze.executors.callbacks import METRICS_OF_ROUNDS, of_rounds
 from amalthea_uros.analyze.executors.findings import note_executors
 from amalthea_uros.analyze.executors.results import ExecutorResult
 from amalthea_uros.analyze.metrics import MetricEvaluator
 from amalthea_uros.analyze.phases import Phases, merged, merged_chain
-from amalthea_uros.analyze.process_verdicts import judged
+from amalthea_uros.analyze.process_evidence import evidence_of, judged
 from amalthea_uros.analyze.propagation import solve
 from amalthea_uros.analyze.requirements import evaluate_requirements
 from amalthea_uros.analyze.results import Analysis, ChainResult, Claim, ProcessorResult, ProcessResult, Response, Results
 from amalthea_uros.analyze.solution import Solution
-from amalthea_uros.analyze.summary import summarize
 from amalthea_uros.analyze.ways.chain_results import chain_result
 from amalthea_uros.analyze.ways.evaluate import evaluate_ways
 from amalthea_uros.analyze.ways.results import Way
+from amalthea_uros.judge.limits import deadline_of
+from amalthea_uros.judge.summary import summarize
 from amalthea_uros.perf.events import EventChain
 from amalthea_uros.perf.network import Purpose
 from amalthea_uros.perf.software import Preemption, Task
@@ -32,7 +33,8 @@ from amalthea_uros.perf.stimuli import EventTriggered, InterProcess, RelativePer
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.allocation import allocated_cores
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.deadlines import ASSUMPTION, implicit_deadline
+from amalthea_uros.timing.deadlines import ASSUMPTION
+from amalthea_uros.timing.event_models import EventModel
 from amalthea_uros.timing.job_paths import JobDemand
 from amalthea_uros.timing.load import CoreLoad, certain_loads, suppressible
 from amalthea_uros.timing.multiframe import MultiframeDemand
@@ -44,10 +46,8 @@ from amalthea_uros.timing.phases import (
     with_stated_phases,
 )
 from amalthea_uros.timing.preemption import preemption
-from amalthea_uros.timing.releases import response_time_limits
 from amalthea_uros.timing.scheduling import ScheduledProcess
 from amalthea_uros.timing.settings import Settings
-from amalthea_uros.units import Time
 
 
 def analyze_system(system: System, settings: Settings | None = None) -> Analysis:
@@ -119,7 +119,7 @@ def _analysis(solution: Solution, budget: JobBudget, executors: Results[Executor
         callbacks=callbacks,
         chains=chains,
         requirements=requirements,
-        summary=summarize(processors, processes, requirements),
+        summary=summarize(processors, (*processes, *requirements), context),
         assumptions=tuple(context.notes.assumptions),
         findings=tuple(context.notes.found),
         executors=executors,
@@ -178,10 +178,10 @@ def _note_ignored(solution: Solution) -> None:
 def _processes(solution: Solution, schedules: CoreSchedules, executors: Results[ExecutorResult]) -> Iterator[ProcessResult]:
     """The results of all processes."""
     system = solution.context.system
-    limits, metrics = response_time_limits(system), MetricEvaluator(solution, schedules)
+    metrics = MetricEvaluator(solution, schedules)
     by_task = {executor.task: executor for executor in executors}
     for name in system.processes:
-        found = _process(name, solution, limits, by_task.get(name))
+        found = _process(name, solution, by_task.get(name))
         if name not in by_task:
             yield replace(found, metrics=metrics.of(found))
             continue
@@ -189,7 +189,7 @@ def _processes(solution: Solution, schedules: CoreSchedules, executors: Results[
         yield replace(found, metrics={kind: known[kind] for kind in METRICS_OF_ROUNDS if kind in known})
 
 
-def _process(name: str, solution: Solution, limits: Mapping[str, Time], executor: ExecutorResult | None) -> ProcessResult:
+def _process(name: str, solution: Solution, executor: ExecutorResult | None) -> ProcessResult:
     """The result of a process, possibly that of the rounds of an executor; execution times are in picoseconds."""
     context, response = solution.context, _without_doubtful_overload(name, solution)
     process, demand = context.system.processes[name], context.stated_demand(name)
@@ -197,11 +197,8 @@ def _process(name: str, solution: Solution, limits: Mapping[str, Time], executor
     time_base = context.demand_model.time_base(placement.core) if placement.core else 1
     events = solution.event_models.get(name) or (context.stated_activations(name) if response is None else None)
     scheduled = context.scheduled.get(name)
-    stated = scheduled.deadline if scheduled is not None and scheduled.deadline is not None else limits.get(name)
-    # The distance of activations that depend on rounds of executors is a bound, and no period.
-    has_period = events is not None and name not in context.following_rounds
-    implicit = implicit_deadline(events) if stated is None and events is not None and has_period else None
-    if implicit is not None:
+    deadline = deadline_of(name, context)
+    if deadline is not None and deadline.is_implicit:
         context.notes.assume(ASSUMPTION)
     found = ProcessResult(
         name=name,
@@ -214,8 +211,8 @@ def _process(name: str, solution: Solution, limits: Mapping[str, Time], executor
         wcet=-(-demand.worst // time_base) if demand else None,
         least_wcet=demand.least_worst // time_base if demand else None,
         response=response,
-        deadline=implicit if stated is None else stated,
-        is_implicit=implicit is not None,
+        deadline=None if deadline is None else deadline.value,
+        is_implicit=deadline is not None and deadline.is_implicit,
         verdict=None,
         reason=response.reason if response is not None else solution.reasons.get(name, ""),
         min_interarrival=events.delta_min(2) if events is not None else None,
@@ -223,17 +220,22 @@ def _process(name: str, solution: Solution, limits: Mapping[str, Time], executor
     )
     if executor is not None:
         gap = "" if name in context.demands else context.reasons.get(name, "")
-        return of_rounds(found, executor, stated, gap)
-    if name in context.following_rounds:
-        return without_doubtful_losses(judged(found, process, events, context.can_borrow(name)))
-    if response is None or not solution.depends_on_losses(name):
-        return judged(found, process, events, context.can_borrow(name))
+        return of_rounds(found, process, executor, found.deadline, gap)
+    if response is None or name in context.following_rounds or not solution.depends_on_losses(name):
+        return _judged(found, events, context)
     # Without the lost jobs, others can be earlier, but not later.
     bound = replace(found, response=replace(response, claim=Claim.BOUND, best=min(response.best, found.bcet or 0)))
     if solution.follows_losses(name):
-        return judged(bound, process, events, context.can_borrow(name))
+        return _judged(bound, events, context)
     # Until its first activation is lost, the schedule has all jobs.
-    return replace(judged(found, process, events, context.can_borrow(name)), response=bound.response)
+    return replace(_judged(found, events, context), response=bound.response)
+
+
+def _judged(process: ProcessResult, events: EventModel | None, context: TimingContext) -> ProcessResult:
+    """The result with its verdict; what rounds of executors activate may be activated less often."""
+    model = context.system.processes[process.name]
+    can_borrow, may_be_less = context.can_borrow(process.name), process.name in context.following_rounds
+    return judged(process, model, evidence_of(process, model, events, can_borrow, may_be_less))
 
 
 def _without_doubtful_overload(name: str, solution: Solution) -> Response | None:

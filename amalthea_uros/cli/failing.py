@@ -7,7 +7,7 @@ from typing import Any
 
 import click
 
-from amalthea_uros.analyze.summary import Schedulable
+from amalthea_uros.judge.summary import Schedulable
 
 #: The closing verdicts that make the exit code 1.
 FAILING = {

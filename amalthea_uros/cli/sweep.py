@@ -8,7 +8,6 @@ from pathlib import Path
 
 import click
 
-from amalthea_uros.analyze.summary import Schedulable
 from amalthea_uros.changes import sweep as sweeping
 from amalthea_uros.changes.change import Change
 from amalthea_uros.cli.ends import INTERRUPTED
@@ -29,6 +28,7 @@ from amalthea_uros.cli.output import (
 from amalthea_uros.cli.parsed import Parsed
 from amalthea_uros.cli.settings_options import Assignment, analysis_options, set_option
 from amalthea_uros.cli.workers_options import workers_options
+from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.services.campaign.run import Outcome
 from amalthea_uros.services.campaign.tables import table_format, write_table
 from amalthea_uros.services.sweep import SweepResult, sweep_files

@@ -6,8 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
-from amalthea_uros.analyze.results import Analysis, Claim, Quantity
-from amalthea_uros.analyze.summary import Judged
+from amalthea_uros.analyze.results import Analysis, Claim, Judged, Quantity
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.optimize.candidate import Candidate

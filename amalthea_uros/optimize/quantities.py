@@ -9,10 +9,10 @@ from fractions import Fraction
 from typing import TypeAlias
 
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
-from amalthea_uros.analyze.process_verdicts import worst_response
+from amalthea_uros.analyze.process_evidence import worst_response
 from amalthea_uros.analyze.results import Analysis, ChainResult, Claim, JobMetric, Metric, ProcessResult, Quantity
-from amalthea_uros.analyze.verdicts import Ends
 from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.judge.evidence import Ends
 from amalthea_uros.names import require
 from amalthea_uros.perf.system import System
 

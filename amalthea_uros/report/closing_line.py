@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from collections import Counter
+from fractions import Fraction
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.analyze.process_verdicts import worst_response
-from amalthea_uros.analyze.results import ProcessorResult, ProcessResult, RequirementResult
-from amalthea_uros.analyze.summary import Judged, Schedulable, Summary
-from amalthea_uros.analyze.verdicts import Ends, Failure
+from amalthea_uros.analyze.process_evidence import worst_response
+from amalthea_uros.analyze.results import Judged, ProcessorResult, RequirementResult, SystemSummary
+from amalthea_uros.judge.evidence import Ends
+from amalthea_uros.judge.summary import Schedulable
+from amalthea_uros.judge.verdict import Failure
 from amalthea_uros.units import Rounding, number_text, rounded, rounded_time_text, time_text
 
 #: Reasons that are only consequences of others end like this.
 _CONSEQUENCE = "could not be analysed"
 
 
-def closing_line(summary: Summary) -> str:
+def closing_line(summary: SystemSummary) -> str:
     """Whether everything is met, such as "Schedulable: yes"; otherwise what fails, or how much is unknown and why."""
     unknown = _unknown(summary)
     match summary.schedulable:
@@ -26,22 +28,25 @@ def closing_line(summary: Summary) -> str:
     return f"Schedulable: {unknown}"
 
 
-def _tightest(summary: Summary) -> str:
+def _tightest(summary: SystemSummary) -> str:
     item = summary.tightest
-    if item is None or item.margin is None:
+    if item is None or item.margin is None or item.limit is None:
         return ""
-    limit = item.deadline if isinstance(item, ProcessResult) else item.limit
-    margin = rounded_time_text(item.margin, Rounding.DOWN)
-    if limit is None or (isinstance(item, RequirementResult) and not item.is_upper):
-        return f"; tightest: {item.name}, {margin} left"
-    return f"; tightest: {item.name}, {margin} of {time_text(limit)} left"
+    return f"; tightest: {item.name}, {left_text(item.margin, item.limit, item.is_upper)}"
 
 
-def _failures(summary: Summary) -> str:
-    """The first failure, and the number of the others."""
-    sentences = [*map(_core_failure, summary.overloaded), *map(_failure, summary.failing)]
-    others = len(sentences) - 1
-    return sentences[0] + (f"; {counted(others, 'other failure')}" if others else "")
+def left_text(margin: Fraction | int, limit: Fraction | int, is_upper: bool) -> str:
+    """How much is left up to a limit: "971 us of 1 ms left", or "5 ms above at least 20 ms"."""
+    distance, stated = rounded_time_text(margin, Rounding.DOWN), time_text(limit)
+    return f"{distance} of {stated} left" if is_upper else f"{distance} above at least {stated}"
+
+
+def _failures(summary: SystemSummary) -> str:
+    """The first failure with the number of its consequences, and the number of the others."""
+    first, *others = summary.causes
+    sentence = _core_failure(first.root) if isinstance(first.root, ProcessorResult) else _failure(first.root)
+    consequences = f", with {counted(first.consequences, 'consequence')}" if first.consequences else ""
+    return sentence + consequences + (f"; {counted(len(others), 'other failure')}" if others else "")
 
 
 def _core_failure(core: ProcessorResult) -> str:
@@ -85,7 +90,7 @@ def _ends_text(ends: Ends, is_upper: bool = True) -> str:
     return text if ends.lower == ends.upper else f"at {'least' if is_upper else 'most'} {text}"
 
 
-def _unknown(summary: Summary) -> str:
+def _unknown(summary: SystemSummary) -> str:
     """How much is unknown, and the most frequent cause."""
     if not summary.judged:
         return "unknown: no deadline, requirement or constraint can be judged"
@@ -101,7 +106,7 @@ def _unknown(summary: Summary) -> str:
     return f"{count}, because of {first!r}: {reason}{more}"
 
 
-def _causes(summary: Summary) -> Counter[str]:
+def _causes(summary: SystemSummary) -> Counter[str]:
     """The reasons of unknown verdicts with their numbers; without consequences of others if there is anything else."""
     reasons = Counter(item.reason for item in summary.unknown if item.reason)
     roots = Counter({reason: number for reason, number in reasons.items() if not reason.endswith(_CONSEQUENCE)})

@@ -8,15 +8,15 @@ from fractions import Fraction
 from math import inf
 from typing import TypeAlias
 
-from amalthea_uros.analyze.results import Analysis, ChainResult, Claim, ProcessResult, Quantity, RequirementResult
-from amalthea_uros.analyze.summary import FAILURES, Judged
-from amalthea_uros.analyze.verdicts import Verdict
+from amalthea_uros.analyze.results import Analysis, ChainResult, Claim, Judged, ProcessResult, Quantity, RequirementResult
+from amalthea_uros.judge.summary import urgency
+from amalthea_uros.judge.verdict import FAILURES, WORST_FIRST, Verdict
 from amalthea_uros.timing.jitter import jitter_name
 from amalthea_uros.units import Rounding, Time, number_text, rounded, rounded_time_text, time_text
 
-_BADNESS = (Verdict.UNBOUNDED, Verdict.MISSED, Verdict.UNKNOWN, Verdict.MET)
 #: Sorts the worst first.
 _Rank: TypeAlias = tuple[int, Fraction | float]
+_LAST: _Rank = (len(WORST_FIRST), inf)
 #: The quantities of chains that limits of these names limit.
 LIMITED = {"reaction": Quantity.MAX_REDUCED_REACTION_TIME, "data age": Quantity.MAX_REDUCED_DATA_AGE}
 #: With those whose jitter is limited.
@@ -54,7 +54,7 @@ def judged_rows(analysis: Analysis) -> list[JudgedRow]:
     )
     items: list[Judged] = [*processes, *analysis.requirements]
     claims = _claims(analysis)
-    return [_row(item, claims) for item in sorted(items, key=_rank)]
+    return [_row(item, claims) for item in sorted(items, key=urgency)]
 
 
 def _claims(analysis: Analysis) -> Mapping[tuple[str, str], str]:
@@ -67,20 +67,7 @@ def _claims(analysis: Analysis) -> Mapping[tuple[str, str], str]:
 
 
 def _is_worse(verdict: Verdict, stated: Verdict | None) -> bool:
-    return stated is None or (stated not in FAILURES and _BADNESS.index(verdict) < _BADNESS.index(stated))
-
-
-def _rank(item: Judged) -> _Rank:
-    """A verdict, and how near the value is to the limit: a maximum from below, a minimum from above."""
-    badness = len(_BADNESS) if item.verdict is None else _BADNESS.index(item.verdict)
-    if isinstance(item, ProcessResult):
-        parts = item.response.worst if item.response is not None else None, item.deadline
-    else:
-        parts = (item.value, item.limit) if item.is_upper else (item.limit, item.value)
-    part, whole = parts
-    if part is None or whole is None:
-        return badness, 0
-    return badness, -Fraction(part, whole) if whole else -inf
+    return stated is None or (stated not in FAILURES and WORST_FIRST.index(verdict) < WORST_FIRST.index(stated))
 
 
 def _row(item: Judged, claims: Mapping[tuple[str, str], str]) -> JudgedRow:
@@ -94,7 +81,7 @@ def _row(item: Judged, claims: Mapping[tuple[str, str], str]) -> JudgedRow:
 
 
 def _of(item: Judged, what: str, lower: Time | None, upper: Time | None, limit: Time | None, claim: str) -> JudgedRow:
-    is_upper = isinstance(item, ProcessResult) or item.is_upper
+    is_upper = item.is_upper
     return JudgedRow(
         item=item,
         what=what,
@@ -118,9 +105,7 @@ def _value_text(item: Judged, lower: Time | None, upper: Time | None, limit: Tim
 
 def limit_text(item: Judged) -> str:
     """The limit with its direction."""
-    limit = item.deadline if isinstance(item, ProcessResult) else item.limit
-    is_upper = isinstance(item, ProcessResult) or item.is_upper
-    return "-" if limit is None else f"{'≤' if is_upper else '≥'} {time_text(limit)}"
+    return "-" if item.limit is None else f"{'≤' if item.is_upper else '≥'} {time_text(item.limit)}"
 
 
 def margin_text(item: Judged) -> str:
@@ -155,19 +140,21 @@ def why(item: Judged) -> str:
     """Why a verdict is not met."""
     if item.reason or item.verdict is Verdict.MET or item.margin is None or item.verdict is Verdict.UNKNOWN:
         return item.reason
-    return f"exceeds its limit by {rounded_time_text(-item.margin, Rounding.UP)}" if item.margin < 0 else ""
+    if item.margin >= 0:
+        return ""
+    return f"{'exceeds' if item.is_upper else 'falls short of'} its limit by {rounded_time_text(-item.margin, Rounding.UP)}"
 
 
 def worst_chains(analysis: Analysis) -> list[ChainResult]:
     """The chains, those with the worst requirements first, then by reaction time."""
     ranks = _ranks(analysis.requirements)
-    return sorted(analysis.chains, key=lambda chain: (ranks.get(chain.name, (len(_BADNESS), 0)), -_reaction(chain)))
+    return sorted(analysis.chains, key=lambda chain: (ranks.get(chain.name, _LAST), -_reaction(chain)))
 
 
 def _ranks(requirements: Iterable[RequirementResult]) -> dict[str, _Rank]:
     found: dict[str, _Rank] = {}
-    for requirement in sorted(requirements, key=_rank):
-        found.setdefault(requirement.object, _rank(requirement))
+    for requirement in sorted(requirements, key=urgency):
+        found.setdefault(requirement.object, urgency(requirement))
     return found
 
 
@@ -178,7 +165,7 @@ def _reaction(chain: ChainResult) -> float:
 
 def requirements_of(chain: str, analysis: Analysis) -> Sequence[RequirementResult]:
     """The requirements on the latencies of a chain and on their jitter, the worst first."""
-    return sorted((each for each in analysis.requirements if each.object == chain and each.quantity in _CONCERNED), key=_rank)
+    return sorted((each for each in analysis.requirements if each.object == chain and each.quantity in _CONCERNED), key=urgency)
 
 
 def decisive_quantity(chain: str, analysis: Analysis) -> Quantity:

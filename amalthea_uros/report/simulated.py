@@ -10,8 +10,10 @@ from amalthea_uros._internal.plural import counted
 from amalthea_uros.analyze.impact import Impact
 from amalthea_uros.changes.apply import Difference
 from amalthea_uros.diagnostics import Finding
-from amalthea_uros.simulate.results import Judged, ProcessObservation, RequirementObservation, Simulation
-from amalthea_uros.units import SECOND, Rounding, Time, number_text, rounded_time_text, time_text
+from amalthea_uros.judge.causes import distinct
+from amalthea_uros.report.closing_line import left_text
+from amalthea_uros.simulate.results import Judged, RequirementObservation, Simulation
+from amalthea_uros.units import SECOND, Time, number_text, time_text
 
 _MINUTE = 60 * SECOND
 REMINDER = "Observed values are no bounds; for bounds use `amuros analyze`."
@@ -78,7 +80,7 @@ def _incomplete(simulation: Simulation) -> str:
 
 
 def _missed(simulation: Simulation) -> str:
-    missed = simulation.missed
+    missed = distinct(simulation.missed)
     if missed:
         others = len(missed) - 1
         return _failure(missed[0]) + (f"; {counted(others, 'other failure')}" if others else "")
@@ -90,11 +92,9 @@ def _missed(simulation: Simulation) -> str:
 
 def _tightest(simulation: Simulation) -> str:
     item = simulation.tightest
-    if item is None or item.margin is None:
+    if item is None or item.margin is None or item.limit is None:
         return ""
-    limit = item.deadline if isinstance(item, ProcessObservation) else item.limit if item.is_upper else None
-    of_limit = "" if limit is None else f" of {time_text(round(limit))}"
-    return f"; tightest: {item.name}, {rounded_time_text(item.margin, Rounding.DOWN)}{of_limit} left"
+    return f"; tightest: {item.name}, {left_text(item.margin, item.limit, item.is_upper)}"
 
 
 def _failure(item: Judged) -> str:

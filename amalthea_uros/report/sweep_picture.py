@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from amalthea_uros.analyze.summary import Schedulable
-from amalthea_uros.analyze.verdicts import Verdict
 from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.judge.summary import Schedulable
+from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.report.pictures.swept import SweptPicture, draw_swept
 from amalthea_uros.services.sweep import SweepResult
 from amalthea_uros.services.sweep_job import SCHEDULABLE

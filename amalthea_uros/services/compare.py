@@ -13,6 +13,7 @@ from amalthea_uros.changes.change import Change
 from amalthea_uros.changes.key import Configuration
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.findings.suppression import unsuppressed
+from amalthea_uros.judge.verdict import ObservedVerdict
 from amalthea_uros.measure.event_chains import BEGINS
 from amalthea_uros.measure.series import Kind, Measurement
 from amalthea_uros.names import require
@@ -40,7 +41,6 @@ from amalthea_uros.services.simulate import time_of
 from amalthea_uros.services.subject import Subject, open_subject, paths_of, reusable
 from amalthea_uros.services.timing_changes import described
 from amalthea_uros.services.what_if import Changes, as_changes
-from amalthea_uros.simulate.results import ObservedVerdict
 from amalthea_uros.timing.overheads import processes_with_overhead
 from amalthea_uros.timing.phases import with_first_arrivals
 from amalthea_uros.timing.settings import Settings
@@ -236,7 +236,7 @@ def _compared(system: System, settings: Settings, measurement: Measurement, opti
         tolerance=options.tolerance,
         uncertainty=uncertainty,
         rows=rows,
-        limits=tuple(_with_doubt(limit, rule) for limit in judge_limits(system, settings, measurement, found)),
+        limits=tuple(_with_doubt(limit, rule) for limit in judge_limits(system, settings, found)),
         distributions=tuple(distributions(found, rows, runs, rule, options.overheads, basis_of)),
         duration=None if simulation is None else simulation.duration,
         seed=None if simulation is None else simulation.seed,

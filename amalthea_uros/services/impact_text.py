@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from enum import StrEnum
 from fractions import Fraction
-from math import ceil, floor
 
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.analyze.impact import Effect, Figure, Goal, Impact, ImpactRow, Unit
-from amalthea_uros.units import Rounding, number_text, rounded_time_text
+from amalthea_uros.units import Rounding, number_text, percent_text, rounded_time_text
 
 HEADINGS = ("object", "quantity", "before", "after", "effect", "claim")
 #: The columns with numbers.
@@ -96,4 +95,4 @@ def _number(figure: Figure, value: Fraction, other: int | Fraction | None) -> st
 
 def _percent(load: Fraction, goal: Goal) -> str:
     """A load in percent with three decimals, rounded to the safe side."""
-    return f"{(ceil if goal is Goal.LOW else floor)(load * 100_000) / 1000:.3f}%"
+    return f"{percent_text(load, 3, Rounding.UP if goal is Goal.LOW else Rounding.DOWN)}%"

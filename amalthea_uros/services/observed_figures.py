@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from amalthea_uros.analyze.impact import Figure, Goal, Impact, Part, Unit, compare, verdict_figure
 from amalthea_uros.analyze.results import Claim
-from amalthea_uros.simulate.results import ObservedVerdict
+from amalthea_uros.judge.verdict import ObservedVerdict
 from amalthea_uros.timing.chain_quantity import ChainQuantity
 
 if TYPE_CHECKING:

@@ -6,13 +6,13 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 
 from amalthea_uros._internal.shown import Shown
-from amalthea_uros.analyze.summary import Schedulable
 from amalthea_uros.changes.apply import Difference, apply
 from amalthea_uros.changes.change import Change
 from amalthea_uros.changes.key import Configuration
 from amalthea_uros.changes.sweep import Sweep
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.findings.suppression import unsuppressed
+from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.names import require
 from amalthea_uros.services.campaign.campaign import finished_runs
 from amalthea_uros.services.campaign.executors import executor_for

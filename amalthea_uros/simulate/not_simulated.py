@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
+from amalthea_uros.judge.limits import Stated
 from amalthea_uros.perf.constraints import DataAgeConstraint, LatencyConstraint, OrderConstraint, Requirement
 from amalthea_uros.perf.events import Event
 from amalthea_uros.simulate.program.watches import event_names, simple_events
-from amalthea_uros.simulate.results import ObservedVerdict, ProcessObservation, RequirementObservation
-from amalthea_uros.simulate.verdicts import ObservedConstraint
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.dataflow.chains import UnfoldError, sequences, unfold
 from amalthea_uros.timing.dataflow.events import UnresolvedError
@@ -35,21 +34,14 @@ class NotSimulated:
         """The processes that they can touch, each with one of them."""
         return self.context.touching.closure(name for name in self.context.system.processes if name in self.names)
 
-    def process(self, found: ProcessObservation) -> ProcessObservation:
-        """The observations of a process, without a verdict that depends on what is not simulated."""
-        origin = self._touched.get(found.name)
-        if origin is None or found.verdict is None:
-            return found
-        return replace(found, verdict=ObservedVerdict.NOT_OBSERVED, reason=_reason(origin))
+    def doubt_about(self, process: str) -> str:
+        """Why what is seen of a process is no behaviour of the system; "" if it is one."""
+        origin = self._touched.get(process)
+        return "" if origin is None else _reason(origin)
 
-    def requirements(self, found: Iterable[RequirementObservation]) -> Iterator[RequirementObservation]:
-        """The verdicts on requirements and constraints; those that depend on what is not simulated are not observed."""
-        for each in found:
-            origin = self._origins.get(each.name)
-            if origin is None or each.verdict is ObservedVerdict.NOT_OBSERVED:
-                yield each
-            else:
-                yield replace(each, verdict=ObservedVerdict.NOT_OBSERVED, reason=_reason(origin))
+    def doubt_about_limits(self) -> Mapping[str, str]:
+        """The same for requirements and constraints, by their names."""
+        return {name: _reason(origin) for name, origin in self._origins.items()}
 
     @cached_property
     def _origins(self) -> Mapping[str, str]:
@@ -64,7 +56,7 @@ class NotSimulated:
                 found.setdefault(each.name, origin)
         return found
 
-    def _limited(self, limiting: Requirement | ObservedConstraint) -> Iterator[str]:
+    def _limited(self, limiting: Stated) -> Iterator[str]:
         """The processes of which something is limited; all if that is unknown."""
         try:
             match limiting:

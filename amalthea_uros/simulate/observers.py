@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
+from amalthea_uros.judge.limits import EventConstraint
 from amalthea_uros.perf.constraints import (
     ChainSynchronization,
     Constraint,
@@ -31,7 +32,6 @@ from amalthea_uros.simulate.program.program import Program
 from amalthea_uros.simulate.program.watches import Source, event_names, events_of_order, is_of_label, is_of_order, is_source
 from amalthea_uros.simulate.results import LabelObservation
 from amalthea_uros.simulate.rows import Observation
-from amalthea_uros.simulate.verdicts import ObservedConstraint
 from amalthea_uros.timing.dataflow.events import EventLocator
 from amalthea_uros.timing.runnable_order import order_scope
 
@@ -122,16 +122,10 @@ class Observers:
                 return delays(constraint, base)
             case RepetitionConstraint():
                 return Repetitions(constraint, base)
-            case EventSynchronization():
-                what, quantity = ", ".join(constraint.events), "spread"
-            case ChainSynchronization():
-                what, quantity = ", ".join(constraint.chains), f"spread at the {constraint.end}"
-            case _:
-                return None
-        if not names:
-            return None
-        reading = AllOccurrences if constraint.every_occurrence else SubsequentOccurrences
-        return reading(object=what, quantity=quantity, tolerance=constraint.tolerance, events=len(names), base=base)
+            case EventSynchronization() | ChainSynchronization() if names:
+                reading = AllOccurrences if constraint.every_occurrence else SubsequentOccurrences
+                return reading(constraint=constraint, events=len(names), base=base)
+        return None
 
     def _observe_order(self, order: OrderConstraint) -> None:
         scope = order_scope(order, self.system, self._events)
@@ -189,14 +183,14 @@ class Observers:
             if label in self._labels:
                 self._labels[label].add(found)
 
-    def quantities(self, constraint: ObservedConstraint) -> list[LimitedQuantity]:
+    def quantities(self, constraint: EventConstraint) -> list[LimitedQuantity]:
         """What was observed of a constraint; nothing if it limits nothing, or cannot be observed."""
         if (ages := self._ages.get(id(constraint))) is not None:
             return list(ages.quantities(self.end))
         observers = self._of_constraints.get(id(constraint), ())
         return [quantity for observer in observers for quantity in observer.metrics.quantities(self.end)]
 
-    def reason(self, constraint: ObservedConstraint) -> str:
+    def reason(self, constraint: EventConstraint) -> str:
         """Why nothing was observed of a constraint."""
         return self._reasons.get(id(constraint), "it states no limit, or nothing that is simulated is limited by it")
 

@@ -8,13 +8,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from enum import StrEnum
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros._internal.shown import Record, Shown
 from amalthea_uros.diagnostics import Finding, Severity
+from amalthea_uros.judge.limits import DEADLINE, PERIOD, SystemLimit
+from amalthea_uros.judge.margins import margin_of, tightest
+from amalthea_uros.judge.verdict import WORST_OBSERVED_FIRST, ObservedJudgement, ObservedVerdict
 from amalthea_uros.simulate.options import Mode
 from amalthea_uros.timing.chain_quantity import ChainQuantity
 from amalthea_uros.timing.job_metric import JobMetric
@@ -25,17 +27,6 @@ if TYPE_CHECKING:
 
 #: A cell of a table of runs.
 Cell: TypeAlias = int | float | str | None
-
-
-class ObservedVerdict(StrEnum):
-    """Whether a limit was kept in the run; that it was kept is no proof that it always is."""
-
-    OK = "observed_ok"
-    MISSED = "observed_missed"
-    NOT_OBSERVED = "not_observed"
-
-
-_BEST_FIRST = (ObservedVerdict.OK, ObservedVerdict.NOT_OBSERVED, ObservedVerdict.MISSED)
 
 
 #: The metrics of processes of which histograms are kept; of chains, all quantities have one.
@@ -195,12 +186,37 @@ class ProcessObservation(Shown):
         """Whether the margin is a time, as that of a requirement can be."""
         return True
 
+    # As a limit that was judged.
+
+    @property
+    def object(self) -> str:
+        """The process itself."""
+        return self.name
+
+    @property
+    def quantity(self) -> str:
+        """The response time, and what limits it."""
+        return PERIOD if self.is_implicit else DEADLINE
+
+    @property
+    def is_upper(self) -> bool:
+        """A deadline limits the maximum."""
+        return True
+
+    @property
+    def limit(self) -> Fraction | None:
+        """The deadline."""
+        return None if self.deadline is None else Fraction(self.deadline)
+
+    @property
+    def value(self) -> Fraction | None:
+        """The longest response time."""
+        return None if self.response_time is None else self.response_time.max
+
     @property
     def margin(self) -> Fraction | None:
         """Distance of the longest response time from the deadline; negative if it is later."""
-        if self.deadline is None or self.response_time is None:
-            return None
-        return self.deadline - self.response_time.max
+        return margin_of(self.value, self.limit, is_upper=True)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -324,12 +340,26 @@ class RequirementObservation(Shown):
     reason: str = ""
     at: Fraction | None = None
 
+    @classmethod
+    def of(cls, limit: SystemLimit, found: ObservedJudgement) -> RequirementObservation:
+        """The observation of a limit that was judged."""
+        return cls(
+            name=limit.name,
+            object=limit.object,
+            quantity=limit.quantity,
+            is_upper=limit.is_upper,
+            limit=None if limit.limit is None else Fraction(limit.limit),
+            is_time=limit.is_time,
+            verdict=found.verdict,
+            value=found.value,
+            reason=found.reason,
+            at=found.at,
+        )
+
     @property
     def margin(self) -> Fraction | None:
         """Distance of the value from the limit; negative if the limit is missed."""
-        if self.value is None or self.limit is None:
-            return None
-        return self.limit - self.value if self.is_upper else self.value - self.limit
+        return margin_of(self.value, self.limit, self.is_upper)
 
 
 Judged: TypeAlias = ProcessObservation | RequirementObservation
@@ -406,9 +436,8 @@ class Simulation(Shown):
 
     @property
     def tightest(self) -> Judged | None:
-        """The process, requirement or constraint that was kept with the least time left; None if there is none."""
-        kept = [item for item in self.judged if item.verdict is ObservedVerdict.OK and item.is_time]
-        return min(kept, key=lambda item: item.margin or 0, default=None)
+        """The process, requirement or constraint on a time that was kept with the smallest share of its limit left."""
+        return tightest(item for item in self.judged if item.verdict is ObservedVerdict.OK and item.is_time)
 
     def record(self) -> dict[str, Cell]:
         """The values as one row of a table, such as `Task_5ms.response_time.max_ps`; times in whole picoseconds."""
@@ -447,7 +476,7 @@ class Simulation(Shown):
         for name, quantity, found in self._observations():
             yield from ((f"{name}.{quantity}.{column}", value) for column, value in _times(found).items())
         # Of several limits with one name, the worst verdict counts: the last cell.
-        for requirement in sorted(self.requirements, key=lambda each: _BEST_FIRST.index(each.verdict)):
+        for requirement in sorted(self.requirements, key=lambda each: -WORST_OBSERVED_FIRST.index(each.verdict)):
             yield f"{requirement.name}.{requirement.quantity.replace(' ', '_')}.verdict", requirement.verdict
         yield "lost_activations", self.lost_activations
         if self.errors:

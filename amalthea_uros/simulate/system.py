@@ -12,6 +12,7 @@ import numpy as np
 
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros._internal.plural import counted
+from amalthea_uros.judge.limits import deadline_of
 from amalthea_uros.perf.software import Isr
 from amalthea_uros.perf.system import System
 from amalthea_uros.simulate.layout import (
@@ -32,6 +33,7 @@ from amalthea_uros.simulate.metrics import chains, jobs
 from amalthea_uros.simulate.metrics.chains import RouteMetrics, chain_observation
 from amalthea_uros.simulate.metrics.jobs import JobMetrics
 from amalthea_uros.simulate.not_simulated import NotSimulated
+from amalthea_uros.simulate.observed_limits import judge_process, judge_requirements
 from amalthea_uros.simulate.observers import Observers
 from amalthea_uros.simulate.operations import POLLING, RUNNING
 from amalthea_uros.simulate.options import Options
@@ -46,7 +48,6 @@ from amalthea_uros.simulate.results import (
     Simulation,
 )
 from amalthea_uros.simulate.rows import OCCURRENCE, Observation
-from amalthea_uros.simulate.verdicts import deadline_of, judge_process, judge_requirements
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.critical_sections import spinlocks_of
 from amalthea_uros.timing.deadlines import ASSUMPTION
@@ -153,12 +154,14 @@ class _Run:
         self._note_left_out()
         self.observers.finish()
         left_out = NotSimulated(self.context, frozenset(program.left_out))
-        processes = Results(left_out.process(judge_process(found)) for found in self._processes())
+        processes = Results(
+            judge_process(each, system.processes[each.name], left_out.doubt_about(each.name)) for each in self._processes()
+        )
         found = Results(self._chain(name) for name in system.chains)
         duration = self.options.duration
         runnables = Results(map(self._runnable, self.program.runnables, self.runnables))
-        judged = judge_requirements(system, processes, found, duration, runnables, self.observers)
-        requirements = Results(left_out.requirements(judged))
+        doubts = left_out.doubt_about_limits()
+        requirements = Results(judge_requirements(system, processes, found, duration, runnables, self.observers, doubts))
         return Simulation(
             duration=duration,
             seed=self.options.seed,

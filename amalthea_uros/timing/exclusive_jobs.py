@@ -1,4 +1,4 @@
-"""The demand of processes whose jobs exclude each other: together, they take as long as the longest path of a job that triggers them."""
+"""Processes that jobs trigger on paths that exclude each other: together, they take as long as the longest of these paths."""
 
 from __future__ import annotations
 

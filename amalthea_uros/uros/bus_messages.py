@@ -10,7 +10,7 @@ from amalthea_uros.perf.network import Direction
 from amalthea_uros.perf.stimuli import Burst, Periodic, Stimulus
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.spec.transports import Can, Transport
-from amalthea_uros.units import SECOND, Time
+from amalthea_uros.units import SECOND, Time, percent_text
 from amalthea_uros.uros.callbacks import Callback, Message
 from amalthea_uros.uros.can import FRAME_BYTES, CanBus, Identifier, frames, max_message_bits
 from amalthea_uros.uros.notes import Notes
@@ -83,7 +83,7 @@ def check_bus_load(messages: Iterable[BusMessage], transport: Transport, notes: 
     """Report an overload of the bus."""
     load = float(sum(message.bus_load for message in messages))
     if load > 1 and transport.can is not None:
-        text = f"overload: the messages need up to {100 * load:.1f} % of the CAN bus"
+        text = f"overload: the messages need up to {percent_text(load, 1)} % of the CAN bus"
         advice = "Increase the bit rate, or send fewer or smaller messages."
         notes.warning("UR131", text, transport.can.location("bitrate"), advice)
 

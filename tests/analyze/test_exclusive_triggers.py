@@ -14,7 +14,7 @@ from support import SHARED, analysis_of
 from test_system import one_core, ticks
 
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.analyze.verdicts import Verdict
+from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.perf.activities import Case, Chance, Group, ProbabilitySwitch, Switch, Trigger
 from amalthea_uros.perf.stimuli import Counter, InterProcess
 from amalthea_uros.units import MICROSECOND as US

@@ -10,9 +10,8 @@ from support import ROOT
 
 import amalthea_uros as amuros
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.analyze.verdicts import Verdict
+from amalthea_uros.judge.verdict import ObservedVerdict, Verdict
 from amalthea_uros.simulate.options import Mode, Options
-from amalthea_uros.simulate.results import ObservedVerdict
 from amalthea_uros.simulate.system import simulate_system
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS

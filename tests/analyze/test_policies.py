@@ -11,7 +11,7 @@ from system_strategies import systems
 
 from amalthea_uros.analyze.assignment import propose_priorities
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.analyze.verdicts import Verdict
+from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.perf import conditions, hardware, mapping, os
 from amalthea_uros.perf.activities import (
     AccessKind,

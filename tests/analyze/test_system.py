@@ -9,7 +9,7 @@ from support import ROOT, SHARED, analysis_of
 
 from amalthea_uros import extract, load
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.analyze.verdicts import Verdict
+from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.perf import stimuli as perf_stimuli
 from amalthea_uros.perf.activities import Call, Case, Chance, Demand, Execute, Loop, ProbabilitySwitch, Switch, Trigger
 from amalthea_uros.perf.constraints import Bound, Constraints, CountLimit, CountMetric, Requirement, TimeLimit, TimeMetric

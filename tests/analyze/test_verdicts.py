@@ -7,7 +7,6 @@ import pytest
 from test_system import by_name, one_core, system, ticks
 
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.analyze.verdicts import Ends, Verdict, decide
 from amalthea_uros.perf.activities import Call, Loop, Trigger
 from amalthea_uros.perf.constraints import (
     Bound,
@@ -24,40 +23,6 @@ from amalthea_uros.perf.os import OperatingSystem, Os, Policy, Scheduler
 from amalthea_uros.perf.software import Runnable, Task
 from amalthea_uros.perf.stimuli import InterProcess, Periodic, RelativePeriodic
 from amalthea_uros.units import MICROSECOND as US
-
-
-@pytest.mark.parametrize(
-    ("ends", "limit", "verdict"),
-    [
-        (Ends.exactly(10), 10, "met"),
-        (Ends.exactly(11), 10, "missed"),
-        (Ends(5, 10), 10, "met"),
-        (Ends(5, 11), 10, "unknown"),
-        (Ends(11, 20), 10, "missed"),
-        (Ends(None, 11), 10, "unknown"),
-        (Ends(11, None), 10, "missed"),
-        (Ends(5, None), 10, "unknown"),
-        (Ends(), 10, "unknown"),
-    ],
-)
-def test_a_maximum(ends, limit, verdict):
-    assert decide(ends, limit, is_upper=True) == verdict
-
-
-@pytest.mark.parametrize(
-    ("ends", "limit", "verdict"),
-    [
-        (Ends.exactly(10), 10, "met"),
-        (Ends.exactly(9), 10, "missed"),
-        (Ends(10, 20), 10, "met"),
-        (Ends(9, 20), 10, "unknown"),
-        (Ends(5, 9), 10, "missed"),
-        (Ends(None, 9), 10, "missed"),
-        (Ends(9, None), 10, "unknown"),
-    ],
-)
-def test_a_minimum(ends, limit, verdict):
-    assert decide(ends, limit, is_upper=False) == verdict
 
 
 def changed(built, name, **changes):
@@ -281,4 +246,3 @@ class TestSummary:
         )
         summary = analyze_system(built).summary
         assert (summary.schedulable, [item.name for item in summary.unknown]) == ("unknown", ["T"])
-        assert decide(Ends(), 0, is_upper=True) is Verdict.UNKNOWN

@@ -13,7 +13,7 @@ from opponent.models.facts import Facts, facts_of
 from opponent.models.reading import UnplayableError, read
 from support import SHARED
 
-from amalthea_uros.analyze.verdicts import Verdict
+from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.services.analyze import analyze_files
 from amalthea_uros.services.simulate import simulate
 

@@ -4,7 +4,7 @@ from support import ROOT
 
 import amalthea_uros as amuros
 from amalthea_uros.analyze.results import Quantity
-from amalthea_uros.analyze.verdicts import Verdict
+from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.report.judged import decisive_quantity, judged_rows, requirements_of
 
 #: Reactions from 1.016 to 20.029 ms over all phases, which are met with a limit of 25 ms; of 15 ms of jitter, that is unknown.

@@ -4,7 +4,7 @@ import pytest
 from support import ROOT
 
 from amalthea_uros import analyze, task, taskset
-from amalthea_uros.analyze.verdicts import Verdict
+from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.report.judged import judged_rows
 
 ADVANCED = ROOT / "samples" / "bodas-test-advanced.yaml"

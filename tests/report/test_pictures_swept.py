@@ -5,8 +5,8 @@ from fractions import Fraction
 
 import pytest
 
-from amalthea_uros.analyze.verdicts import Verdict
 from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.report.pictures.swept import SweptPicture, draw_swept
 
 MS = 10**9

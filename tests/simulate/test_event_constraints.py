@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from amalthea_uros.perf.constraints import DelayConstraint, Matching, RepetitionConstraint
+from amalthea_uros.perf.constraints import DelayConstraint, EventSynchronization, Matching, RepetitionConstraint
 from amalthea_uros.simulate.metrics.delays import delays
 from amalthea_uros.simulate.metrics.repetitions import Repetitions
 from amalthea_uros.simulate.metrics.synchronizations import AllOccurrences, SubsequentOccurrences
@@ -47,13 +47,13 @@ def delay(matching, occurrences, end=100, sizes=(1000,), **limits):
 def test_a_reaction_ends_with_the_first_target_that_is_not_too_early():
     occurrences = each(0, 0, 10) + each(1, 1, 4, 13)
     (upper, lower) = delay(Matching.REACTION, occurrences, lower=2, upper=5)
-    assert (upper.is_upper, upper.values.low, upper.values.high, upper.values.high_at) == (True, 3, 4, 0)
-    assert (lower.is_upper, lower.limit) == (False, 2)
+    assert (upper.limit.is_upper, upper.values.low, upper.values.high, upper.values.high_at) == (True, 3, 4, 0)
+    assert (lower.limit.is_upper, lower.limit.limit) == (False, 2)
 
 
 def test_sources_share_a_target_and_stray_targets_are_ignored():
     (upper,) = delay(Matching.REACTION, each(0, 5, 7) + each(1, 0, 9, 20), upper=5)
-    assert (upper.values.low, upper.values.high, upper.violation) == (2, 4, "")
+    assert (upper.values.low, upper.values.high, upper.values.violation) == (2, 4, "")
 
 
 def test_a_source_without_target_waits_until_the_end_of_the_run():
@@ -69,19 +69,19 @@ def test_one_to_one_the_number_decides():
 @pytest.mark.parametrize("occurrences", [each(0, 0) + each(1, 1, 2), each(1, 0) + each(0, 1)])
 def test_one_to_one_a_target_does_not_occur_before_its_source(occurrences):
     (upper,) = delay(Matching.ONE_TO_ONE, occurrences, upper=8)
-    assert upper.violation == "a target occurs before the source that it belongs to"
+    assert upper.values.violation == "a target occurs before the source that it belongs to"
 
 
 def test_unique_reactions_go_on_after_a_missed_source_and_a_stray_target():
     # The source at 0 is missed: the target at 12 belongs to the one at 10, and that at 15 to none.
     (upper,) = delay(Matching.UNIQUE_REACTION, each(0, 0, 10, 20) + each(1, 12, 15, 23), upper=5)
-    assert (upper.violation, upper.violated_at) == ("1 without a target, 1 without a source", 0)
+    assert (upper.values.violation, upper.values.violated_at) == ("1 without a target, 1 without a source", 0)
     assert (upper.values.low, upper.values.high) == (2, 3)
 
 
 def test_a_unique_reaction_can_still_come_after_the_end_of_the_run():
-    assert [each.violation for each in delay(Matching.UNIQUE_REACTION, each(0, 96), upper=5)] == [""]
-    assert [each.violation for each in delay(Matching.UNIQUE_REACTION, each(0, 94), upper=5)] == ["1 without a target"]
+    assert [each.values.violation for each in delay(Matching.UNIQUE_REACTION, each(0, 96), upper=5)] == [""]
+    assert [each.values.violation for each in delay(Matching.UNIQUE_REACTION, each(0, 94), upper=5)] == ["1 without a target"]
 
 
 @given(OCCURRENCES, SIZES, st.integers(0, 9), st.integers(0, 20))
@@ -127,15 +127,15 @@ def is_matching(sources, targets, lower, upper, end):
 
 def is_violated(found):
     """Whether limits are exceeded, or something else is wrong."""
-    return any(each.violation or is_exceeded(each) for each in found)
+    return any(each.values.violation or is_exceeded(each) for each in found)
 
 
 def is_exceeded(quantity):
-    values, limit = quantity.values, quantity.limit
-    if quantity.is_upper and values.pending > limit:
+    values, limit = quantity.values, quantity.limit.limit
+    if quantity.limit.is_upper and values.pending > limit:
         return True
-    value = values.high if quantity.is_upper else values.low
-    return value is not None and (value > limit if quantity.is_upper else value < limit)
+    value = values.high if quantity.limit.is_upper else values.low
+    return value is not None and (value > limit if quantity.limit.is_upper else value < limit)
 
 
 # Repetitions
@@ -166,7 +166,7 @@ def test_one_occurrence_is_no_repetition():
 def test_the_jitter_is_about_the_nominal_period_if_one_is_stated():
     # 0, 10, 20, 30 moved by 2, 0, 5, 1: ideal points from 0 on, and 5 after one of them.
     (jitter,) = repetition([2, 10, 25, 31], period=10, jitter=4)
-    assert (jitter.quantity, jitter.values.high) == ("jitter", 5)
+    assert (jitter.limit.quantity, jitter.values.high) == ("jitter", 5)
 
 
 def test_a_jitter_needs_ideal_points():
@@ -202,7 +202,8 @@ def has_ideal_points(times, span, lower, upper, jitter):
 
 
 def spread(reading, occurrences, end=100, sizes=(1000,), events=2, tolerance=5):
-    metrics = reading(object="a, b", quantity="spread", tolerance=tolerance, events=events, base=1)
+    constraint = EventSynchronization(name="S", events=("a", "b"), tolerance=tolerance)
+    metrics = reading(constraint=constraint, events=events, base=1)
     (found,) = observed(metrics, occurrences, end, sizes)
     return found
 

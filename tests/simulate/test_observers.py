@@ -2,6 +2,7 @@
 
 import pytest
 
+from amalthea_uros.judge.verdict import ObservedVerdict
 from amalthea_uros.perf.activities import (
     AccessKind,
     Call,
@@ -56,7 +57,6 @@ from amalthea_uros.perf.stimuli import Counter, InterProcess, Periodic, Stimuli
 from amalthea_uros.perf.system import System
 from amalthea_uros.simulate import machine_code
 from amalthea_uros.simulate.options import ALL_LABELS, Options
-from amalthea_uros.simulate.results import ObservedVerdict
 from amalthea_uros.simulate.system import simulate_system
 from amalthea_uros.timing.job_metric import JobMetric
 from amalthea_uros.timing.settings import Settings

@@ -7,6 +7,8 @@ import pytest
 from simulations import CHAIN, CONTROL, EXECUTOR, SIMULATION, latencies, observation, process
 
 from amalthea_uros._internal.by_name import Results
+from amalthea_uros.judge.limits import Deadline, deadline_of
+from amalthea_uros.judge.verdict import ObservedVerdict
 from amalthea_uros.perf.constraints import (
     Bound,
     Constraints,
@@ -29,8 +31,8 @@ from amalthea_uros.perf.mapping import Mapping, TaskAllocation
 from amalthea_uros.perf.software import Software, Task
 from amalthea_uros.perf.stimuli import Periodic, Stimuli
 from amalthea_uros.perf.system import System
-from amalthea_uros.simulate.results import ChainObservation, CountObservation, ObservedVerdict, RunnableObservation
-from amalthea_uros.simulate.verdicts import Deadline, deadline_of, judge_process, judge_requirements
+from amalthea_uros.simulate.observed_limits import judge_process, judge_requirements
+from amalthea_uros.simulate.results import ChainObservation, CountObservation, RunnableObservation
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.job_metric import JobMetric
 from amalthea_uros.units import MICROSECOND as US
@@ -160,7 +162,7 @@ def test_without_stimulus_there_is_no_deadline():
     ],
 )
 def test_the_verdict_on_a_process(changes, verdict, reason):
-    found = judge_process(replace(CONTROL, verdict=None, **changes))
+    found = judge_process(replace(CONTROL, verdict=None, **changes), Task(name="Control"))
     assert found.verdict is verdict
     assert reason is None or found.reason == reason
 

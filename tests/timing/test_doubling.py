@@ -7,7 +7,7 @@ from hand_made_systems import READ, WRITE, Proc, access, ticks
 from hand_made_systems import system as build
 
 from amalthea_uros import analyze_system
-from amalthea_uros.analyze.verdicts import Verdict
+from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.perf.activities import Call, Chance, Group, ProbabilitySwitch
 from amalthea_uros.perf.events import (
     ChainReference,

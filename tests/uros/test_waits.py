@@ -9,9 +9,9 @@ from dataclasses import replace
 import pytest
 
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.analyze.verdicts import Verdict
 from amalthea_uros.bridge.build import build_model
 from amalthea_uros.bridge.extract import extract
+from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.perf.network import Wait
 from amalthea_uros.units import SECOND
 from amalthea_uros.xmi.load import load

@@ -5,14 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from amalthea_uros.analyze.results import Analysis, ChainResult, ProcessResult, RequirementResult
-from amalthea_uros.analyze.verdicts import Verdict
-from amalthea_uros.simulate.results import (
-    ChainObservation,
-    ObservedVerdict,
-    ProcessObservation,
-    RequirementObservation,
-    Simulation,
-)
+from amalthea_uros.judge.verdict import ObservedVerdict, Verdict
+from amalthea_uros.simulate.results import ChainObservation, ProcessObservation, RequirementObservation, Simulation
 from amalthea_uros.timing.job_metric import JobMetric
 
 

@@ -14,10 +14,10 @@ from lxml import etree
 from templating import ROOT
 
 from amalthea_uros.analyze.results import Analysis
-from amalthea_uros.analyze.verdicts import Verdict
 from amalthea_uros.diagnostics import Location, Severity
 from amalthea_uros.difference.comparison import ChangeKind
 from amalthea_uros.errors import AmurosError, WriteError
+from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.services.analyze import analyze_files
 from amalthea_uros.services.check import check_files

@@ -9,7 +9,7 @@ from random import Random
 from templating import ROOT
 
 from amalthea_uros.analyze.results import Analysis
-from amalthea_uros.analyze.verdicts import Verdict
+from amalthea_uros.judge.verdict import Verdict
 from fuzzing.commands import require
 
 # The player is independent of the product, and lives with the tests that check it.

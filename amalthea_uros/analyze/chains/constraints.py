@@ -1,4 +1,4 @@
-"""Verdicts on timing constraints of chains and events.
+"""What is proved of the times that constraints on chains and events limit.
 
 The constraints have the semantics of TADL2 (TIMMO-2-USE, deliverable D11), from which AMALTHEA adopted them: a reaction constraint
 looks from each stimulus forward to the first response caused by it, an age constraint from each response back to the last stimulus
@@ -7,10 +7,11 @@ that caused it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import permutations
+from typing import TypeAlias
 
 import numpy as np
 
@@ -21,7 +22,9 @@ from amalthea_uros.analyze.chains.runnable_orders import holds_across, holds_in_
 from amalthea_uros.analyze.chains.stage_timing import UnboundedStageError
 from amalthea_uros.analyze.implausible_limits import note_implausible
 from amalthea_uros.analyze.results import ChainResult, Claim, Quantity, RequirementResult, Value
-from amalthea_uros.analyze.verdicts import Ends, Verdict, decide, undecided
+from amalthea_uros.judge.evidence import Ends
+from amalthea_uros.judge.limits import EventConstraint, SystemLimit, limits_of, without_number
+from amalthea_uros.judge.verdict import Judgement, prove, prove_kept, unknown
 from amalthea_uros.perf.constraints import (
     ChainEnd,
     ChainSynchronization,
@@ -35,18 +38,19 @@ from amalthea_uros.perf.constraints import (
     RepetitionConstraint,
 )
 from amalthea_uros.perf.events import EventChain, LabelChange, LabelEvent
-from amalthea_uros.perf.named import Named
 from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.links import LinkKind
 from amalthea_uros.timing.dataflow.routes import routes
 from amalthea_uros.timing.event_models import EventModel, Periodic, can_be_dense, is_strictly_periodic
-from amalthea_uros.timing.jitter import jitter_name, jitter_of
+from amalthea_uros.timing.jitter import jitter_of
 from amalthea_uros.timing.releases import known_releases
 from amalthea_uros.timing.runnable_order import order_scope
 from amalthea_uros.units import Time, time_text
 
 _REACTION = (Quantity.MIN_FIRST_TO_FIRST, Quantity.MAX_REDUCED_REACTION_TIME)
 _AGE = (Quantity.MIN_LAST_TO_LAST, Quantity.MAX_REDUCED_DATA_AGE)
+#: A limit, and the verdict on it.
+_Judged: TypeAlias = tuple[SystemLimit, Judgement]
 
 
 @dataclass(slots=True)
@@ -64,55 +68,54 @@ class ConstraintEvaluator:
         """The verdict on each limit of each constraint."""
         constraints = self.evaluation.context.system.constraints
         for constraint in (*constraints.constraints, *constraints.data_ages, *constraints.orders):
+            limits = limits_of(constraint)
             try:
-                found = list(self._one(constraint))
+                found = [RequirementResult.of(limit, judgement) for limit, judgement in self._one(constraint, limits)]
                 for result in found:
                     note_implausible(result, constraint, self.evaluation.context.notes)
                 # What limits nothing is not met.
-                yield from found or [_unknown(constraint, "it states no limit, or nothing in the model is limited by it")]
+                nothing = "it states no limit, or nothing in the model is limited by it"
+                yield from found or _unknown(constraint, limits, nothing)
             except (UnknownError, UnresolvedError, UnboundedStageError) as error:
-                yield _unknown(constraint, str(error))
+                yield from _unknown(constraint, limits, str(error))
             except Exception as error:
                 # An error of this program leaves one constraint unknown, not all.
                 reason = f"the evaluation failed: {failure(error)}"
                 message = f"the constraint {constraint.name!r} is unknown: {reason}"
                 self.evaluation.context.notes.error("CHN006", message, constraint)
-                yield _unknown(constraint, reason)
+                yield from _unknown(constraint, limits, reason)
 
-    def _one(self, constraint: Named) -> Iterator[RequirementResult]:
+    def _one(self, constraint: EventConstraint, limits: Sequence[SystemLimit]) -> Iterator[_Judged]:
         match constraint:
             case LatencyConstraint():
-                yield from self._latency(constraint)
+                yield from self._latency(constraint, limits)
             case DelayConstraint():
-                yield from self._delay(constraint)
+                yield from self._delay(constraint, limits)
             case RepetitionConstraint():
-                yield from self._repetition(constraint)
-            case EventSynchronization(events=events, tolerance=tolerance):
-                yield _result(constraint, ", ".join(events), "spread", tolerance, self.windows.spread(events))
+                yield from self._repetition(constraint, limits)
+            case EventSynchronization(events=events):
+                yield from _proved(limits, lambda _: self.windows.spread(events))
             case ChainSynchronization():
-                yield self._chain_synchronization(constraint)
+                yield from self._chain_synchronization(constraint, limits)
             case DataAgeConstraint():
-                yield from self._data_age(constraint)
+                yield from self._data_age(constraint, limits)
             case OrderConstraint():
                 yield from self._order(constraint)
 
     # Chains
 
-    def _latency(self, constraint: LatencyConstraint) -> Iterator[RequirementResult]:
+    def _latency(self, constraint: LatencyConstraint, limits: Sequence[SystemLimit]) -> Iterator[_Judged]:
         chain = self.chains.get(constraint.chain)
         if chain is None:
             raise UnknownError(f"the chain {constraint.chain!r} is not defined in the model")
-        minimum, maximum = _AGE if constraint.kind is LatencyKind.AGE else _REACTION
-        kind = "data age" if constraint.kind is LatencyKind.AGE else "reaction"
-        ends = _Latencies(chain.values, minimum, maximum)
-        if constraint.maximum is not None:
-            yield _result(constraint, chain.name, kind, constraint.maximum, ends.of_maximum, chain.reason)
-        if constraint.minimum is not None:
-            yield _result(constraint, chain.name, kind, constraint.minimum, ends.of_minimum, chain.reason, is_upper=False)
-        if constraint.jitter is not None:
-            jitter = ends.jitter(self._is_one_run(self.evaluation.context.system.chains[chain.name]))
-            found = _result(constraint, chain.name, jitter_name(kind), constraint.jitter, jitter, chain.reason)
-            yield replace(found, spread=ends.spread)
+        latencies = _Latencies(chain.values, *(_AGE if constraint.kind is LatencyKind.AGE else _REACTION))
+        for limit in limits:
+            if limit.is_jitter:
+                is_one_run = self._is_one_run(self.evaluation.context.system.chains[chain.name])
+                judgement = prove(limit, latencies.jitter(is_one_run), chain.reason)
+                yield limit, replace(judgement, spread=latencies.spread)
+            else:
+                yield limit, prove(limit, latencies.limited(limit), chain.reason)
 
     def _is_one_run(self, chain: EventChain) -> bool:
         """Whether jobs that a chain passes can only run in one way: with known phases, and best cases that are the worst ones."""
@@ -126,7 +129,7 @@ class ConstraintEvaluator:
                 return False
         return True
 
-    def _delay(self, constraint: DelayConstraint) -> Iterator[RequirementResult]:
+    def _delay(self, constraint: DelayConstraint, limits: Sequence[SystemLimit]) -> Iterator[_Judged]:
         source, target = self.windows.event(constraint.source), self.windows.event(constraint.target)
         if constraint.matching is not Matching.REACTION:
             found = routes([source, target], self.evaluation.context.dataflow)
@@ -138,14 +141,9 @@ class ConstraintEvaluator:
                 raise UnknownError(
                     "data between the events can be overwritten or read again, so their occurrences do not correspond one to one"
                 )
-        ends = _Latencies(self.evaluation.pair(source, target), *_REACTION)
-        what = f"{constraint.source} to {constraint.target}"
-        if constraint.upper is not None:
-            yield _result(constraint, what, "delay", constraint.upper, ends.of_maximum)
-        if constraint.lower is not None:
-            yield _result(constraint, what, "delay", constraint.lower, ends.of_minimum, is_upper=False)
+        yield from _proved(limits, _Latencies(self.evaluation.pair(source, target), *_REACTION).limited)
 
-    def _chain_synchronization(self, constraint: ChainSynchronization) -> RequirementResult:
+    def _chain_synchronization(self, constraint: ChainSynchronization, limits: Sequence[SystemLimit]) -> Iterator[_Judged]:
         found = [self.chains.get(name) for name in constraint.chains]
         system = self.evaluation.context.system
         chains = [system.chains[name] for name in constraint.chains if name in system.chains]
@@ -157,11 +155,9 @@ class ConstraintEvaluator:
             spread = _spread([_Latencies(each.values, *_REACTION) for each in found if each is not None])
         else:
             spread = self.windows.spread([end for end in ends if end is not None])
-        return _result(
-            constraint, ", ".join(constraint.chains), f"spread at the {constraint.end}", constraint.tolerance, spread
-        )
+        yield from _proved(limits, lambda _: spread)
 
-    def _data_age(self, constraint: DataAgeConstraint) -> Iterator[RequirementResult]:
+    def _data_age(self, constraint: DataAgeConstraint, limits: Sequence[SystemLimit]) -> Iterator[_Judged]:
         """The age of the data written by the runnable at each read of another process."""
         written = LabelEvent(name="write", label=constraint.label, change=LabelChange.WRITE, runnable=constraint.runnable)
         (occurrence, *others) = self.evaluation.context.dataflow.events.of(written)
@@ -175,42 +171,29 @@ class ConstraintEvaluator:
         }
         releases = known_releases(occurrence.process, self.evaluation.context.system)
         cycle = releases.period if releases is not None else None
-        latest = _cycles(constraint.latest, constraint.latest_cycle, cycle)
-        earliest = _cycles(constraint.earliest, constraint.earliest_cycle, cycle)
         for name in sorted(readers):
-            ends = _Latencies(self.evaluation.pair(written, replace(reading, process=name)), *_AGE)
-            what = f"{constraint.label} in {name}"
-            if latest is not None:
-                yield _result(constraint, what, "data age", latest, ends.of_maximum)
-            if earliest is not None:
-                yield _result(constraint, what, "data age", earliest, ends.of_minimum, is_upper=False)
+            latencies = _Latencies(self.evaluation.pair(written, replace(reading, process=name)), *_AGE)
+            here = (replace(limit, object=f"{constraint.label} in {name}") for limit in limits)
+            yield from _proved([_in_time(limit, cycle) for limit in here], latencies.limited)
 
     # Events
 
-    def _repetition(self, constraint: RepetitionConstraint) -> Iterator[RequirementResult]:
+    def _repetition(self, constraint: RepetitionConstraint, limits: Sequence[SystemLimit]) -> Iterator[_Judged]:
         occurrence = self.windows.occurrence(constraint.event)
         activations = self.evaluation.solution.event_models.get(occurrence.process.name)
         if activations is None:
             raise UnknownError(f"the activation pattern of {occurrence.process.name!r} is unknown")
         early, late = self.windows.of(occurrence)
         moves, span = late - early, max(1, constraint.span)
-        if constraint.upper is not None:
-            longest = Ends(None, _longest(activations, span))
-            if can_be_dense(activations):
-                # Other event models only bound the activations.
-                longest = Ends(longest.upper, longest.upper)
-            yield _result(constraint, constraint.event, "repetition", constraint.upper, _moved(longest, moves))
-        if constraint.lower is not None:
-            shortest = activations.delta_min(span + 1)
-            ends = Ends(shortest, shortest if can_be_dense(activations) else None)
-            yield _result(constraint, constraint.event, "repetition", constraint.lower, _moved(ends, moves), is_upper=False)
-        if constraint.jitter is not None:
-            jitter, reason = _jitter(constraint, activations, moves)
-            yield _result(constraint, constraint.event, "jitter", constraint.jitter, jitter, reason)
+        for limit in limits:
+            if limit.is_jitter:
+                yield limit, prove(limit, *_jitter(constraint, activations, moves))
+            else:
+                yield limit, prove(limit, _moved(_distance(activations, span, limit.is_upper), moves))
 
     # Order
 
-    def _order(self, constraint: OrderConstraint) -> Iterator[RequirementResult]:
+    def _order(self, constraint: OrderConstraint) -> Iterator[_Judged]:
         context = self.evaluation.context
         scope = order_scope(constraint, context.system, context.dataflow.events)
         if scope.reason:
@@ -246,6 +229,10 @@ class _Latencies:
             return Ends.exactly(lowest.value)
         return Ends(_time(lowest) or 0, _time(highest))
 
+    def limited(self, limit: SystemLimit) -> Ends:
+        """Between which ends the limited maximum or minimum lies."""
+        return self.of_maximum if limit.is_upper else self.of_minimum
+
     @property
     def spread(self) -> tuple[Time, Time] | None:
         """A lower bound of the minimum and an upper bound of the maximum; None if one of them is unknown."""
@@ -264,51 +251,23 @@ class _Latencies:
         return next((value for value in self.values if value.quantity is quantity), None)
 
 
-def _result(
-    constraint: Named, what: str, quantity: str, limit: Time, ends: Ends, reason: str = "", is_upper: bool = True
-) -> RequirementResult:
-    verdict = decide(ends, limit, is_upper)
-    return RequirementResult(
-        name=constraint.name,
-        object=what,
-        quantity=quantity,
-        is_upper=is_upper,
-        limit=limit,
-        lower=ends.lower,
-        upper=ends.upper,
-        verdict=verdict,
-        reason=(reason or undecided(ends, is_upper)) if verdict is Verdict.UNKNOWN else "",
-    )
+def _proved(limits: Iterable[SystemLimit], of: Callable[[SystemLimit], Ends]) -> Iterator[_Judged]:
+    """The verdicts on limits by the ends of what they limit."""
+    return ((limit, prove(limit, of(limit))) for limit in limits)
 
 
-def _of_order(constraint: OrderConstraint, what: str, holds: Callable[[], bool]) -> RequirementResult:
-    """The result of an order of runnables, which has no limit."""
+def _of_order(constraint: OrderConstraint, what: str, holds: Callable[[], bool]) -> _Judged:
+    """The verdict on an order of runnables, which has no number."""
+    limit = without_number(constraint, what, "order of runnables")
     try:
-        verdict, reason = Verdict.MET if holds() else Verdict.MISSED, ""
+        return limit, prove_kept(holds())
     except UnknownError as error:
-        verdict, reason = Verdict.UNKNOWN, str(error)
-    return RequirementResult(
-        name=constraint.name,
-        object=what,
-        quantity="order of runnables",
-        is_upper=True,
-        limit=None,
-        verdict=verdict,
-        reason=reason,
-    )
+        return limit, unknown(str(error))
 
 
-def _unknown(constraint: Named, reason: str) -> RequirementResult:
-    """The result of a constraint that cannot be evaluated."""
-    return RequirementResult(
-        name=constraint.name,
-        object="",
-        quantity=type(constraint).__name__,
-        is_upper=True,
-        limit=None,
-        verdict=Verdict.UNKNOWN,
-        reason=reason,
-    )
+def _unknown(constraint: EventConstraint, limits: Sequence[SystemLimit], reason: str) -> Iterator[RequirementResult]:
+    """The results of a constraint that cannot be evaluated."""
+    return (RequirementResult.of(limit, unknown(reason)) for limit in limits or [without_number(constraint)])
 
 
 def _time(value: Value | None) -> Time | None:
@@ -353,12 +312,21 @@ def _jitter(constraint: RepetitionConstraint, activations: EventModel, moves: Ti
     return Ends(lower, activations.jitter + moves), ""
 
 
-def _cycles(time: Time | None, cycles: int | None, period: Time | None) -> Time | None:
-    if time is not None or cycles is None:
-        return time
+def _in_time(limit: SystemLimit, period: Time | None) -> SystemLimit:
+    """A limit in cycles of the writer as one of a time."""
+    if limit.is_time or limit.limit is None:
+        return limit
     if period is None:
         raise UnknownError("a limit in cycles needs a writer with a known period")
-    return cycles * period
+    return replace(limit, quantity="data age", limit=int(limit.limit) * period, is_time=True)
+
+
+def _distance(events: EventModel, count: int, is_upper: bool) -> Ends:
+    """Between which ends the distance of `count` repetitions lies; event models that are not periodic only bound it."""
+    distance = _longest(events, count) if is_upper else events.delta_min(count + 1)
+    if can_be_dense(events):
+        return Ends(distance, distance)
+    return Ends(None, distance) if is_upper else Ends(distance, None)
 
 
 def _longest(events: EventModel, count: int) -> Time | None:

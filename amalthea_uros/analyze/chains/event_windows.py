@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
-from amalthea_uros.analyze.verdicts import Ends
+from amalthea_uros.judge.evidence import Ends
 from amalthea_uros.perf.events import Event, EventSet
 from amalthea_uros.timing.counters import is_always
 from amalthea_uros.timing.dataflow.events import EventOccurrence, JobPhase

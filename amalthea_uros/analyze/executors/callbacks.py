@@ -7,9 +7,10 @@ from dataclasses import replace
 
 from amalthea_uros.analyze.executors.results import ExecutorResult, HandleResult
 from amalthea_uros.analyze.executors.window import METHOD
-from amalthea_uros.analyze.process_verdicts import worst_response
+from amalthea_uros.analyze.process_evidence import judged, worst_response
 from amalthea_uros.analyze.results import CallbackResult, Claim, JobMetric, Metric, ProcessResult, Response
-from amalthea_uros.analyze.verdicts import Failure, Verdict, decide, undecided
+from amalthea_uros.judge.evidence import Loss, ProcessEvidence
+from amalthea_uros.perf.software import Process
 from amalthea_uros.units import Time
 
 #: Others are about activations by stimuli.
@@ -50,7 +51,9 @@ def _worst_of(handles: Sequence[HandleResult]) -> Response:
     return replace(longest, best=min(response.best for response in responses))
 
 
-def of_rounds(process: ProcessResult, executor: ExecutorResult, deadline: Time | None, gap: str) -> ProcessResult:
+def of_rounds(
+    process: ProcessResult, model: Process, executor: ExecutorResult, deadline: Time | None, gap: str
+) -> ProcessResult:
     """The result of the process that executes the rounds of an executor: its response time is that of a round, after its wait.
 
     Without a deadline, it is met if all callbacks have a bound, nothing is lost, and the core is left to others.
@@ -74,42 +77,34 @@ def of_rounds(process: ProcessResult, executor: ExecutorResult, deadline: Time |
         least_wcet=None,
         deadline=deadline,
         is_implicit=False,
-        verdict=None,
-        failure=None,
         reason=executor.reason,
         min_interarrival=executor.loop.least or None,
         max_interarrival=executor.loop.most,
     )
-    failing = _failing(executor)
-    if failing is not None:
-        verdict, failure, reason = failing
-        return replace(found, verdict=verdict, failure=failure, reason=reason)
-    if gap:
-        return replace(found, verdict=Verdict.UNKNOWN, reason=gap)
-    if deadline is None:
-        return replace(found, verdict=Verdict.MET)
-    verdict = decide(worst_response(found), deadline, is_upper=True)
-    failure = Failure.MISSED if verdict is Verdict.MISSED else None
-    reason = executor.reason or (undecided(worst_response(found), is_upper=True) if verdict is Verdict.UNKNOWN else "")
-    return replace(found, verdict=verdict, failure=failure, reason=reason)
+    overload = next((handle.response.reason for handle in executor.handles if handle.response.is_overload), None)
+    loss = _loss(executor)
+    possible = loss.reason if loss is not None and not loss.is_certain else None
+    evidence = ProcessEvidence(
+        response=worst_response(found),
+        overload=overload,
+        loss=loss,
+        gap=possible or _unserved(executor) or gap or None,
+        is_served=True,
+    )
+    return judged(found, model, evidence)
 
 
-def _failing(executor: ExecutorResult) -> tuple[Verdict, Failure | None, str] | None:
-    """The verdict on an executor of which a callback is not served, or may not be; None if all are."""
-    for handle in executor.handles:
-        if handle.response.is_overload:
-            return Verdict.UNBOUNDED, Failure.OVERLOAD, handle.response.reason
-    lost = [(handle, handle.lost) for handle in executor.handles if handle.lost is not None and not handle.lost.is_replaced]
-    for handle, loss in sorted(lost, key=lambda pair: not pair[1].is_certain):
-        certainly = "loses" if loss.is_certain else "can lose"
-        reason = f"{handle.name!r} {certainly} {loss.what}"
-        return (Verdict.MISSED, Failure.LOST, reason) if loss.is_certain else (Verdict.UNKNOWN, None, reason)
+def _loss(executor: ExecutorResult) -> Loss | None:
+    """What callbacks lose for certain, or may lose; values that newer ones replace are not lost."""
+    lost = [
+        (handle.name, handle.lost) for handle in executor.handles if handle.lost is not None and not handle.lost.is_replaced
+    ]
+    for name, loss in sorted(lost, key=lambda pair: not pair[1].is_certain):
+        return Loss(f"{name!r} {'loses' if loss.is_certain else 'can lose'} {loss.what}", loss.is_certain)
+    return None
+
+
+def _unserved(executor: ExecutorResult) -> str | None:
+    """Why it is unknown whether all callbacks are called in time; None if all have a bound."""
     unknown = next((handle for handle in executor.handles if handle.response.worst is None), None)
-    return None if unknown is None else (Verdict.UNKNOWN, None, f"{unknown.name!r}: {unknown.response.reason}")
-
-
-def without_doubtful_losses(process: ProcessResult) -> ProcessResult:
-    """The result of a process that rounds of an executor activate: as it may be activated less often, losses are not certain."""
-    if process.failure not in (Failure.LOST, Failure.OVERLOAD):
-        return process
-    return replace(process, verdict=Verdict.UNKNOWN, failure=None)
+    return None if unknown is None else f"{unknown.name!r}: {unknown.response.reason}"

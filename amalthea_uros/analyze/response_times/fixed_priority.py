@@ -17,7 +17,7 @@ from amalthea_uros.analyze.response_times.busy_window import Interference, deman
 from amalthea_uros.analyze.response_times.task import Task
 from amalthea_uros.analyze.results import Claim, Response
 from amalthea_uros.timing.event_models import Periodic
-from amalthea_uros.units import Time
+from amalthea_uros.units import Time, percent_text
 
 METHOD = "busy window, fixed priorities, preemptive"
 SOURCE = "Lehoczky 1990; Tindell, Burns, Wellings 1994"
@@ -83,7 +83,7 @@ def max_jobs(*tasks: Task) -> int:
 def unbounded(best: Time, higher: Interference, task: Task, method: str, source: str) -> Response:
     """The response time of a task that is overloaded together with those of higher priority."""
     rate = higher.rate + float(demand_rate(task))
-    reason = f"overload: tasks at this priority or higher need {100 * rate:.1f} % of the core"
+    reason = f"overload: tasks at this priority or higher need {percent_text(rate, 1)} % of the core"
     if higher.supply.rate < 1:
-        reason += f", and their server provides {100 * float(higher.supply.rate):.1f} %"
+        reason += f", and their server provides {percent_text(higher.supply.rate, 1)} %"
     return Response(worst=None, best=best, method=method, source=source, reason=reason, is_overload=True)

@@ -14,11 +14,10 @@ from itertools import permutations, product
 
 from amalthea_uros.analyze.response_times.critical_instant import certain_response
 from amalthea_uros.analyze.results import Analysis
-from amalthea_uros.analyze.summary import FAILURES
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.analyze.verdicts import Verdict
 from amalthea_uros.changes.change import Change
 from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.judge.verdict import FAILURES, Verdict
 from amalthea_uros.optimize.candidate import Candidate
 from amalthea_uros.optimize.problem import Problem
 from amalthea_uros.optimize.space import Choice, Kind

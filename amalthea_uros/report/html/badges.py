@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from amalthea_uros.analyze.results import ProcessResult, RequirementResult
-from amalthea_uros.analyze.summary import Schedulable
-from amalthea_uros.analyze.verdicts import Verdict
 from amalthea_uros.diagnostics import Severity
+from amalthea_uros.judge.summary import Schedulable
+from amalthea_uros.judge.verdict import ObservedVerdict, Verdict
 from amalthea_uros.report.html.blocks import Badge, Tone
-from amalthea_uros.simulate.results import ObservedVerdict
 
 _TONES = {
     Verdict.MET: Tone.GOOD,

@@ -12,7 +12,7 @@ from amalthea_uros._internal.addresses import DOCUMENTATION
 from amalthea_uros._internal.plural import counted
 from amalthea_uros._internal.resources import resource_folder
 from amalthea_uros._version import __version__
-from amalthea_uros.analyze.verdicts import Verdict
+from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.report.closing_line import closing_line
 from amalthea_uros.report.escape import visible
 from amalthea_uros.report.html.badges import tone_of, verdict_badge

@@ -67,6 +67,7 @@ def summary_json(analysis: Analysis) -> dict[str, Any]:
     return {
         "schedulable": summary.schedulable,
         "missed": summary.missed,
+        "failures": len(summary.causes),
         "unknown": len(summary.unknown),
         "judged": summary.judged,
         "overloaded": [processor.name for processor in analysis.processors if processor.is_overloaded],

@@ -8,7 +8,8 @@ from fractions import Fraction
 
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.analyze.results import Analysis, ProcessResult
-from amalthea_uros.analyze.verdicts import Verdict
+from amalthea_uros.judge.summary import urgency
+from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.report.pictures.page import MARGIN, TOP, WIDTH, LegendEntry, document, draw_legend
 from amalthea_uros.report.pictures.style import SMALL_SIZE, TEXT_SIZE, UNKNOWN
 from amalthea_uros.report.pictures.svg import Markup, element, joined, number, text, tooltip
@@ -63,7 +64,7 @@ def draw_responses(analysis: Analysis, simulation: Simulation | None = None) -> 
     The shares of deadlines have the same scale for all. What a worst case is made of fills the width of its column, with the best case
     and the observed response times on the same scale: both are readable for periods of milliseconds beside those of seconds.
     """
-    processes = sorted(analysis.processes, key=_tightness)
+    processes = sorted(analysis.processes, key=urgency)
     rows = _rows(processes[:MOST_ROWS], simulation)
     bottom = TOP + _HEADER + _ROW * max(len(rows), 1)
     nothing = element("text", text("the model has no processes"), class_="muted", x=MARGIN, y=TOP + _HEADER + 20)
@@ -81,13 +82,6 @@ def _rows(processes: Sequence[ProcessResult], simulation: Simulation | None) -> 
     observed = {} if simulation is None else {each.name: each.response_time for each in simulation.processes}
     top = TOP + _HEADER
     return [_Row(process, observed.get(process.name), top + _ROW * index) for index, process in enumerate(processes)]
-
-
-def _tightness(process: ProcessResult) -> tuple[int, Fraction]:
-    """Missed, then unknown, then by share of the deadline, then those without a deadline."""
-    share = _share(process)
-    order = {Verdict.MISSED: 0, Verdict.UNBOUNDED: 0, Verdict.UNKNOWN: 1, Verdict.MET: 2, None: 3}[process.verdict]
-    return order, Fraction(0) if share is None else -share
 
 
 def _share(process: ProcessResult) -> Fraction | None:

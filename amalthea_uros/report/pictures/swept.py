@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TypeAlias
 
-from amalthea_uros.analyze.verdicts import Verdict
 from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.report.pictures.page import MARGIN, TOP, WIDTH, LegendEntry, document, draw_legend
 from amalthea_uros.report.pictures.style import PALETTE, SMALL_SIZE, UNKNOWN
 from amalthea_uros.report.pictures.svg import Markup, element, joined, number, text, tooltip

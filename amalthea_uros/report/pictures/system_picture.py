@@ -10,7 +10,7 @@ from itertools import pairwise
 
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.analyze.results import Analysis, ProcessorResult
-from amalthea_uros.analyze.verdicts import Verdict
+from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.perf.software import Isr, Process
 from amalthea_uros.perf.system import System
 from amalthea_uros.report.flows import ChainPath, Flow, SystemFlows

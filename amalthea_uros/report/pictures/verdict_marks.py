@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from amalthea_uros.analyze.verdicts import Verdict
+from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.report.pictures.page import LegendEntry
 from amalthea_uros.report.pictures.svg import Markup, element, tooltip
 

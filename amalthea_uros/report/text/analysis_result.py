@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from fractions import Fraction
-from math import ceil, floor
+from math import ceil
 
 from amalthea_uros.analyze.results import Analysis, ProcessorResult, ProcessResult, RequirementResult
-from amalthea_uros.analyze.verdicts import Verdict
+from amalthea_uros.judge.verdict import WORST_FIRST, Verdict
 from amalthea_uros.report.closing_line import closing_line
 from amalthea_uros.report.latencies import write_chains
 from amalthea_uros.report.process_order import by_core_and_priority
@@ -17,10 +16,9 @@ from amalthea_uros.report.text.executors import write_executors
 from amalthea_uros.report.text.metrics import write_callbacks, write_metrics
 from amalthea_uros.report.ways import write_ways
 from amalthea_uros.services.analyze import AnalysisResult
-from amalthea_uros.units import Rounding, Time, frequency_text, rounded_time_text, time_text
+from amalthea_uros.units import Rounding, Time, frequency_text, percent_text, rounded_time_text, time_text
 
 BAR = 20
-_BADNESS = (Verdict.UNBOUNDED, Verdict.MISSED, Verdict.UNKNOWN, Verdict.MET, None)
 
 
 def write(result: AnalysisResult, terminal: Terminal) -> None:
@@ -67,8 +65,8 @@ def _processors(terminal: Terminal, analysis: Analysis) -> None:
         (
             processor.name,
             frequency_text(processor.frequency) if processor.frequency else "?",
-            _percent(processor.best, floor),
-            _percent(processor.mean, round),
+            _percent(processor.best, Rounding.DOWN),
+            _percent(processor.mean, Rounding.NEAREST),
             _worst(processor),
             _bar(processor),
         )
@@ -77,16 +75,16 @@ def _processors(terminal: Terminal, analysis: Analysis) -> None:
     terminal.table(("core", "clock", "best", "mean", "worst", ""), rows, right=(1, 2, 3, 4))
 
 
-def _percent(load: Fraction | None, rounding: Callable[[Fraction], int]) -> str:
+def _percent(load: Fraction | None, rounding: Rounding) -> str:
     """A load in percent with three decimals; bounds are rounded so that they remain bounds."""
-    return "?" if load is None else f"{rounding(load * 100_000) / 1000:.3f}%"
+    return "?" if load is None else f"{percent_text(load, 3, rounding)}%"
 
 
 def _worst(processor: ProcessorResult) -> str:
     """The worst load, or the part of it that is known."""
     if processor.worst is not None or not processor.at_least:
-        return _percent(processor.worst, ceil)
-    return f"at least {_percent(processor.at_least, floor)}"
+        return _percent(processor.worst, Rounding.UP)
+    return f"at least {_percent(processor.at_least, Rounding.DOWN)}"
 
 
 def _bar(processor: ProcessorResult) -> str:
@@ -133,7 +131,7 @@ def _requirements(terminal: Terminal, analysis: Analysis) -> None:
     if not analysis.requirements:
         return
     terminal.heading("Requirements")
-    ordered = sorted(analysis.requirements, key=lambda r: _BADNESS.index(r.verdict))
+    ordered = sorted(analysis.requirements, key=lambda r: WORST_FIRST.index(r.verdict))
     rows = [
         (
             requirement.name,

@@ -9,7 +9,7 @@ from amalthea_uros.report.activation_text import activation_text
 from amalthea_uros.report.memory_text import memory_rows
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.services.build import BuildResult
-from amalthea_uros.units import time_text
+from amalthea_uros.units import percent_text, time_text
 from amalthea_uros.uros.assemble import Assembly
 from amalthea_uros.uros.initialisation import Initialisation
 from amalthea_uros.uros.memory.ram import Memory
@@ -103,7 +103,7 @@ def _traffic(terminal: Terminal, assembly: Assembly) -> None:
     if not assembly.messages:
         return
     load = float(sum(item.bus_load for item in assembly.messages))
-    terminal.heading(f"Messages on the CAN bus (bus load at most {100 * load:.1f} %)")
+    terminal.heading(f"Messages on the CAN bus (bus load at most {percent_text(load, 1)} %)")
     rows = [
         (
             item.message.topic,

@@ -12,9 +12,9 @@ from amalthea_uros.analyze.chains.explanation import ChainExplanation
 from amalthea_uros.analyze.execution_shares import ExecutionShare
 from amalthea_uros.analyze.executors.results import HandleResult
 from amalthea_uros.analyze.explanation import ProcessExplanation
-from amalthea_uros.analyze.results import CallbackResult, ProcessResult, Response, Value
+from amalthea_uros.analyze.results import CallbackResult, Judged, ProcessResult, Response, Value
 from amalthea_uros.analyze.unknown_origins import OriginKind
-from amalthea_uros.analyze.verdicts import Verdict
+from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.perf.executors import HandleKind
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.report.chain_causes import cause_text
@@ -25,7 +25,7 @@ from amalthea_uros.report.text.executors import write_terms
 from amalthea_uros.report.ways import write_hops_of_way
 from amalthea_uros.services.analyze import Explanation
 from amalthea_uros.services.improvements import Improvements
-from amalthea_uros.units import Time, time_text
+from amalthea_uros.units import Time, percent_text, time_text
 
 #: More executions of the worst case are only counted.
 _MOST_EXECUTIONS = 20
@@ -67,18 +67,18 @@ def _process(explanation: ProcessExplanation, terminal: Terminal) -> None:
 
 def _deadline(process: ProcessResult, terminal: Terminal) -> None:
     """Write how far the response time is from the deadline."""
-    if process.deadline is None or process.margin is None:
+    if process.deadline is None or process.margin is None or process.verdict is None:
         return
-    verdict = process.verdict or Verdict.UNKNOWN
-    terminal.line(f"  deadline {time_text(process.deadline)}: {verdict}, {_margin(verdict, process.margin)}")
+    margin = _margin(process, process.margin)
+    terminal.line(f"  deadline {time_text(process.deadline)}: {process.verdict}, {margin}")
 
 
-def _margin(verdict: Verdict, margin: Time) -> str:
+def _margin(judged: Judged, margin: Time) -> str:
     """How far a value is from its limit; of a bound beyond the limit it is unknown how far the value itself is."""
     if margin >= 0:
         return f"{time_text(margin)} left"
-    distance = f"{time_text(-margin)} beyond the limit"
-    return f"the bound is {distance}" if verdict is Verdict.UNKNOWN else distance
+    distance = f"{time_text(-margin)} {'beyond' if judged.is_upper else 'short of'} the limit"
+    return f"the bound is {distance}" if judged.verdict is Verdict.UNKNOWN else distance
 
 
 def _largest_term(explanation: ProcessExplanation, response: Response, worst: Time, terminal: Terminal) -> None:
@@ -232,7 +232,7 @@ def _loads(explanation: ProcessExplanation, terminal: Terminal) -> None:
 
 
 def _percent(load: Fraction | None) -> str:
-    return "?" if load is None else f"{float(load):.3%}"
+    return "?" if load is None else f"{percent_text(load, 3)}%"
 
 
 def _chain(explanation: ChainExplanation, found: Improvements | None, terminal: Terminal) -> None:
@@ -275,7 +275,7 @@ def _requirements(explanation: ChainExplanation, terminal: Terminal) -> None:
         if each.limit is None or each.value is None:
             rest = f": {each.reason}" if each.reason else ""
         else:
-            rest = f", {_margin(each.verdict, each.margin or 0)}"
+            rest = f", {_margin(each, each.margin or 0)}"
         limit = "" if each.limit is None else f" {'at most' if each.is_upper else 'at least'} {time_text(each.limit)}"
         terminal.line(f"  {each.name}, {each.quantity}{limit}: {each.verdict}{rest}")
 

@@ -9,7 +9,7 @@ from fractions import Fraction
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.analyze.impact import Impact, ImpactRow, Part
 from amalthea_uros.analyze.results import Analysis, RequirementResult
-from amalthea_uros.analyze.verdicts import Verdict
+from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.optimize.problem import Feasibility
 from amalthea_uros.optimize.quantities import Amount, Dimension, Range, dimension
 from amalthea_uros.report.load_text import load_text

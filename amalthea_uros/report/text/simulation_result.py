@@ -5,6 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from math import ceil, floor
 
+from amalthea_uros.judge.verdict import WORST_OBSERVED_FIRST, ObservedVerdict
 from amalthea_uros.report.findings import joined
 from amalthea_uros.report.latencies import HEADING
 from amalthea_uros.report.process_order import by_core_and_priority
@@ -14,16 +15,13 @@ from amalthea_uros.report.text import impact
 from amalthea_uros.simulate.results import (
     ChainObservation,
     MetricObservation,
-    ObservedVerdict,
     ProcessObservation,
     RequirementObservation,
     Simulation,
 )
 from amalthea_uros.timing.chain_quantity import ChainQuantity
 from amalthea_uros.timing.job_metric import JobMetric
-from amalthea_uros.units import NANOSECOND, Rounding, Time, rounded_time_text, time_text
-
-_BADNESS = (ObservedVerdict.MISSED, ObservedVerdict.NOT_OBSERVED, ObservedVerdict.OK, None)
+from amalthea_uros.units import NANOSECOND, Rounding, Time, percent_text, rounded_time_text, time_text
 
 
 def write(result: SimulationShown, terminal: Terminal) -> None:
@@ -62,7 +60,7 @@ def _cores(terminal: Terminal, simulation: Simulation) -> None:
 
 
 def _percent(load: Fraction) -> str:
-    return f"{float(load):.3%}"
+    return f"{percent_text(load, 3)}%"
 
 
 def _processes(terminal: Terminal, simulation: Simulation) -> None:
@@ -186,7 +184,7 @@ def _requirements(terminal: Terminal, simulation: Simulation) -> None:
             "" if requirement.margin is None else _rounded(requirement, requirement.margin, Rounding.DOWN),
             _remark(requirement),
         )
-        for requirement in sorted(simulation.requirements, key=lambda each: _BADNESS.index(each.verdict))
+        for requirement in sorted(simulation.requirements, key=lambda each: WORST_OBSERVED_FIRST.index(each.verdict))
     ]
     terminal.table(("requirement", "what", "limit", "observed", "verdict", "margin", ""), rows, right=(3, 5))
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from fractions import Fraction
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.analyze.summary import Schedulable
+from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.services.campaign.run import Outcome, Value
 from amalthea_uros.services.sweep import SweepResult

@@ -9,9 +9,11 @@ from fractions import Fraction
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.changes.apply import Difference
 from amalthea_uros.diagnostics import Finding
+from amalthea_uros.judge.limits import SystemLimit
+from amalthea_uros.judge.margins import margin_of
+from amalthea_uros.judge.verdict import ObservedJudgement, ObservedVerdict
 from amalthea_uros.measure.distances import Distance
 from amalthea_uros.measure.series import Kind, Measurement, Series
-from amalthea_uros.simulate.results import ObservedVerdict
 from amalthea_uros.units import Time
 
 
@@ -158,12 +160,26 @@ class MeasuredLimit(Shown):
     is_time: bool = True
     reason: str = ""
 
+    @classmethod
+    def of(cls, limit: SystemLimit, found: ObservedJudgement, samples: int) -> MeasuredLimit:
+        """The result for a limit that was judged."""
+        return cls(
+            name=limit.name,
+            object=limit.object,
+            quantity=limit.quantity,
+            is_upper=limit.is_upper,
+            limit=None if limit.limit is None else Fraction(limit.limit),
+            value=found.value,
+            verdict=found.verdict,
+            samples=samples,
+            is_time=limit.is_time,
+            reason=found.reason,
+        )
+
     @property
     def margin(self) -> Fraction | None:
         """Distance of the value from the limit; negative if the limit is missed."""
-        if self.value is None or self.limit is None:
-            return None
-        return self.limit - self.value if self.is_upper else self.value - self.limit
+        return margin_of(self.value, self.limit, self.is_upper)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)

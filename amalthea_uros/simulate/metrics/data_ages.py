@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from amalthea_uros.judge.evidence import ObservedValues
+from amalthea_uros.judge.limits import limits_of
 from amalthea_uros.perf.constraints import DataAgeConstraint
-from amalthea_uros.simulate.limited_values import LimitedQuantity, LimitedValues
+from amalthea_uros.simulate.limited_values import LimitedQuantity
 from amalthea_uros.simulate.metrics.distributions import Distributions
 from amalthea_uros.simulate.metrics.extremes import Extremes
 from amalthea_uros.simulate.metrics.label_values import LabelValues, Reading
@@ -56,26 +58,14 @@ class DataAges:
 
     def quantities(self, _end: int) -> Iterator[LimitedQuantity]:
         """What was observed."""
-        constraint = self.constraint
-        limits = (
-            (constraint.latest, self.times, True, True),
-            (constraint.earliest, self.times, False, True),
-            (constraint.latest_cycle, self.cycles, True, False),
-            (constraint.earliest_cycle, self.cycles, False, False),
-        )
-        for limit, ages, is_upper, is_time in limits:
-            if limit is None:
-                continue
-            for process in sorted(ages) or [""]:
-                missing = LimitedValues(reason=f"no other process read what {constraint.runnable!r} writes")
-                yield LimitedQuantity(
-                    object=f"{constraint.label} in {process}" if process else constraint.label,
-                    quantity="data age" if is_time else "data age in cycles",
-                    limit=limit,
-                    values=ages[process].limited("") if process else missing,
-                    is_upper=is_upper,
-                    is_time=is_time,
-                )
+        missing = ObservedValues(reason=f"no other process read what {self.constraint.runnable!r} writes")
+        for limit in limits_of(self.constraint):
+            ages = self.times if limit.is_time else self.cycles
+            for process in sorted(ages):
+                here = replace(limit, object=f"{limit.object} in {process}")
+                yield LimitedQuantity(here, ages[process].limited(""))
+            if not ages:
+                yield LimitedQuantity(limit, missing)
 
 
 @dataclass(slots=True)

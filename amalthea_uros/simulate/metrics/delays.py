@@ -10,14 +10,16 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from amalthea_uros.judge.evidence import ObservedValues
+from amalthea_uros.judge.limits import limits_of
 from amalthea_uros.perf.constraints import DelayConstraint, Matching
-from amalthea_uros.simulate.limited_values import LimitedQuantity, LimitedValues
+from amalthea_uros.simulate.limited_values import LimitedQuantity
 from amalthea_uros.simulate.metrics.extremes import WINDOW, Extremes
 
 if TYPE_CHECKING:
@@ -62,21 +64,12 @@ class Delays(ABC):
 
     def quantities(self, end: int) -> Iterator[LimitedQuantity]:
         """What was observed up to the end of the run."""
-        values, violation = self._values(end), self._violation()
-        for limit, is_upper in ((self.constraint.upper, True), (self.constraint.lower, False)):
-            if limit is not None:
-                yield LimitedQuantity(
-                    object=f"{self.constraint.source} to {self.constraint.target}",
-                    quantity="delay",
-                    limit=limit,
-                    is_upper=is_upper,
-                    values=values,
-                    violation=violation,
-                    violated_at=Fraction(self.first_violation, self.base) if self.first_violation >= 0 else None,
-                )
+        at = Fraction(self.first_violation, self.base) if self.first_violation >= 0 else None
+        values = replace(self._values(end), violation=self._violation(), violated_at=at)
+        yield from (LimitedQuantity(limit, values) for limit in limits_of(self.constraint))
 
     @abstractmethod
-    def _values(self, end: int) -> LimitedValues:
+    def _values(self, end: int) -> ObservedValues:
         """The values, and what is missing of them."""
 
     def _violation(self) -> str:
@@ -104,7 +97,7 @@ class Reactions(Delays):
         over = int(np.searchsorted(waiting + self.lower, times[-1:], "right").sum())
         self._waiting = np.concatenate([waiting[:1], waiting[over - 1 :]]) if over > 2 else waiting
 
-    def _values(self, end: int) -> LimitedValues:
+    def _values(self, end: int) -> ObservedValues:
         pending = end - int(self._waiting[0]) if len(self._waiting) else 0
         return self.extremes.limited("no target occurred after a source", pending)
 
@@ -132,7 +125,7 @@ class OneToOne(Delays):
         if len(early) or len(self._targets):
             self._violated(int(targets[early[0] if len(early) else count]))
 
-    def _values(self, end: int) -> LimitedValues:
+    def _values(self, end: int) -> ObservedValues:
         pending = end - int(self._sources[0]) if len(self._sources) else 0
         return self.extremes.limited(_TOO_FAR if self._is_over else "no target occurred", pending, not self._is_over)
 
@@ -175,7 +168,7 @@ class UniqueReactions(Delays):
             self._missed += 1
             self._violated(self._sources.popleft())
 
-    def _values(self, end: int) -> LimitedValues:
+    def _values(self, end: int) -> ObservedValues:
         self._drop_missed(end)
         return self.extremes.limited("no target occurred" if self._is_complete else _TOO_FAR, is_complete=self._is_complete)
 

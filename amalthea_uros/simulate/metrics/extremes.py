@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from amalthea_uros.simulate.limited_values import LimitedValues
+from amalthea_uros.judge.evidence import ObservedValues
 
 if TYPE_CHECKING:
     import numpy as np
@@ -42,11 +42,11 @@ class Extremes:
         if self.high is None or values[highest] > self.high[0]:
             self.high = int(values[highest]), int(times[highest])
 
-    def limited(self, reason: str, pending: int = 0, is_complete: bool = True) -> LimitedValues:
+    def limited(self, reason: str, pending: int = 0, is_complete: bool = True) -> ObservedValues:
         """The extremes in picoseconds, or the reason why there are none, or not all of them."""
         if self.low is None or self.high is None:
-            return LimitedValues(pending=Fraction(pending, self.base), reason=reason)
-        return LimitedValues(
+            return ObservedValues(pending=Fraction(pending, self.base), reason=reason)
+        return ObservedValues(
             low=Fraction(self.low[0], self.base),
             high=Fraction(self.high[0], self.base),
             pending=Fraction(pending, self.base),

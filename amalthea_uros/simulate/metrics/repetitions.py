@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from amalthea_uros._internal.plural import counted
+from amalthea_uros.judge.evidence import ObservedValues
+from amalthea_uros.judge.limits import limits_of
 from amalthea_uros.perf.constraints import RepetitionConstraint
-from amalthea_uros.simulate.limited_values import LimitedQuantity, LimitedValues
+from amalthea_uros.simulate.limited_values import LimitedQuantity
 from amalthea_uros.simulate.metrics.extremes import Extremes
 
 if TYPE_CHECKING:
@@ -97,22 +99,14 @@ class Repetitions:
 
     def quantities(self, end: int) -> Iterator[LimitedQuantity]:
         """What was observed up to the end of the run."""
-        constraint = self.constraint
         count = self._before
         waited = end - int(self._tail[0]) if count >= self.span else 0
         reason = f"it occurred {counted(count, 'time')}"
-        distances = self.extremes.limited(reason, waited)
-        for limit, is_upper in ((constraint.upper, True), (constraint.lower, False)):
-            if limit is not None:
-                yield LimitedQuantity(
-                    object=constraint.event, quantity="repetition", limit=limit, is_upper=is_upper, values=distances
-                )
-        if constraint.jitter is not None:
-            yield LimitedQuantity(
-                object=constraint.event, quantity="jitter", limit=constraint.jitter, values=self._jitter(reason)
-            )
+        for limit in limits_of(self.constraint):
+            values = self._jitter(reason) if limit.is_jitter else self.extremes.limited(reason, waited)
+            yield LimitedQuantity(limit, values)
 
-    def _jitter(self, reason: str) -> LimitedValues:
+    def _jitter(self, reason: str) -> ObservedValues:
         if self.constraint.period is None and self.constraint.lower is None and self.constraint.upper is None:
-            return LimitedValues(reason="neither a period nor limits state at which distance it ideally occurs")
+            return ObservedValues(reason="neither a period nor limits state at which distance it ideally occurs")
         return self.jitter.limited(reason)

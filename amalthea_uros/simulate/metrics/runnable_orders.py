@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import takewhile
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from amalthea_uros.judge.evidence import ObservedValues
+from amalthea_uros.judge.limits import without_number
 from amalthea_uros.perf.constraints import OrderConstraint, Ordering
 from amalthea_uros.perf.events import ProcessChange, ProcessEvent, RunnableChange
-from amalthea_uros.simulate.limited_values import LimitedQuantity, LimitedValues
+from amalthea_uros.simulate.limited_values import LimitedQuantity
 from amalthea_uros.simulate.program.watches import Source
 from amalthea_uros.timing.runnable_order import satisfies_order
 
@@ -71,16 +73,11 @@ class RunnableOrder:
 
     def quantities(self, _end: int) -> Iterator[LimitedQuantity]:
         """What was observed."""
-        values = LimitedValues.only(self.wrong) if self.jobs else LimitedValues(reason="no job called one of the runnables")
-        yield LimitedQuantity(
-            object=self.process,
-            quantity="order of runnables",
-            limit=None,
-            values=values,
-            is_time=False,
-            violation=f"{self.wrong:,} of {self.jobs:,} jobs in another order" if self.wrong else "",
-            violated_at=Fraction(self._first_wrong, self.base) if self.wrong else None,
-        )
+        values = ObservedValues.only(self.wrong) if self.jobs else ObservedValues(reason="no job called one of the runnables")
+        if self.wrong:
+            violation = f"{self.wrong:,} of {self.jobs:,} jobs in another order"
+            values = replace(values, violation=violation, violated_at=Fraction(self._first_wrong, self.base))
+        yield LimitedQuantity(without_number(self.constraint, self.process, "order of runnables"), values)
 
 
 @dataclass(slots=True)
@@ -130,13 +127,8 @@ class ExecutionOrder:
             if executions
             else "none of them ran"
         )
-        violation = f"{self._wrong:,} of {executions:,} executions in another order" if self._wrong else ""
-        yield LimitedQuantity(
-            object=", ".join(self.processes),
-            quantity="order of runnables",
-            limit=None,
-            values=LimitedValues.only(self._wrong) if is_known else LimitedValues(reason=reason),
-            is_time=False,
-            violation=violation,
-            violated_at=Fraction(self._first_wrong, self.base) if self._wrong else None,
-        )
+        values = ObservedValues.only(self._wrong) if is_known else ObservedValues(reason=reason)
+        if self._wrong:
+            violation = f"{self._wrong:,} of {executions:,} executions in another order"
+            values = replace(values, violation=violation, violated_at=Fraction(self._first_wrong, self.base))
+        yield LimitedQuantity(without_number(self.constraint, ", ".join(self.processes), "order of runnables"), values)

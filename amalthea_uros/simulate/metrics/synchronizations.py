@@ -15,10 +15,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from amalthea_uros.judge.evidence import ObservedValues
+from amalthea_uros.judge.limits import limits_of
+from amalthea_uros.perf.constraints import ChainSynchronization, EventSynchronization
 from amalthea_uros.simulate.layout import NEVER
-from amalthea_uros.simulate.limited_values import LimitedQuantity, LimitedValues
+from amalthea_uros.simulate.limited_values import LimitedQuantity
 from amalthea_uros.simulate.metrics.extremes import WINDOW, Extremes
-from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -36,9 +38,7 @@ class Synchronization(ABC):
     base : time units in a picosecond
     """
 
-    object: str
-    quantity: str
-    tolerance: Time
+    constraint: EventSynchronization | ChainSynchronization
     events: int
     base: int
     extremes: Extremes = field(init=False)
@@ -53,10 +53,10 @@ class Synchronization(ABC):
     def quantities(self, end: int) -> Iterator[LimitedQuantity]:
         """What was observed up to the end of the run."""
         values = self._values(end)
-        yield LimitedQuantity(object=self.object, quantity=self.quantity, limit=self.tolerance, values=values)
+        yield from (LimitedQuantity(limit, values) for limit in limits_of(self.constraint))
 
     @abstractmethod
-    def _values(self, end: int) -> LimitedValues:
+    def _values(self, end: int) -> ObservedValues:
         """The values, and what is missing of them."""
 
 
@@ -79,7 +79,7 @@ class SubsequentOccurrences(Synchronization):
         windows = np.array(found, np.int64).reshape(-1, 2)
         self.extremes.add(windows[:, 0], windows[:, 1])
 
-    def _values(self, end: int) -> LimitedValues:
+    def _values(self, end: int) -> ObservedValues:
         return self.extremes.limited("not every event occurred", end - self._start if self._seen else 0)
 
 
@@ -136,7 +136,7 @@ class AllOccurrences(Synchronization):
                 latest[event] = here[-1]
         self._latest, self._times, self._which = latest, self._times[count:], self._which[count:]
 
-    def _values(self, end: int) -> LimitedValues:
+    def _values(self, end: int) -> ObservedValues:
         """Windows that end after the end of the run are as long at least as what has passed of them."""
         widths, _ = self._narrowest()
         pending = int(np.minimum(widths, end - self._times).max()) if len(self._times) else 0

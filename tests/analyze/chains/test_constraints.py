@@ -54,7 +54,7 @@ def test_latencies_of_a_chain(kind, minimum, maximum, expected):
 
 
 def test_a_chain_that_is_not_there():
-    assert evaluate(LatencyConstraint(name="L", chain="none", maximum=1)) == [("LatencyConstraint", None, "unknown")]
+    assert evaluate(LatencyConstraint(name="L", chain="none", maximum=1)) == [("reaction", None, "unknown")]
 
 
 def test_a_delay():
@@ -66,7 +66,7 @@ def test_a_delay_whose_occurrences_belong_together_one_by_one():
     within = DelayConstraint(name="D", source=MADE, target=EVENTS[1].name, matching=Matching.ONE_TO_ONE, upper=5 * US)
     assert evaluate(within) == [("delay", 5, "met")]
     across = DelayConstraint(name="D", source=MADE, target=OUT, matching=Matching.ONE_TO_ONE, upper=99 * US)
-    assert evaluate(across) == [("DelayConstraint", None, "unknown")]
+    assert evaluate(across) == [("delay", None, "unknown")]
 
 
 def test_repetition():
@@ -122,7 +122,7 @@ def test_events_that_should_come_together():
     together = EventSynchronization(name="S", events=("A terminate", "B terminate"), tolerance=3 * US)
     assert evaluate(together, built=built) == [("spread", 3, "met")]
     apart = EventSynchronization(name="S", events=("A terminate", "C terminate"), tolerance=99 * US)
-    assert evaluate(apart, built=built) == [("EventSynchronization", None, "unknown")]
+    assert evaluate(apart, built=built) == [("spread", None, "unknown")]
 
 
 def test_chains_that_should_end_together():

@@ -22,7 +22,7 @@ from looping_executors import (
 )
 
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.analyze.verdicts import Failure, Verdict
+from amalthea_uros.judge.verdict import Failure, Verdict
 from amalthea_uros.perf.constraints import Bound, Constraints, Requirement, TimeLimit, TimeMetric
 from amalthea_uros.perf.executors import HandleKind, Loop, LoopKind, Publication
 from amalthea_uros.perf.network import Span

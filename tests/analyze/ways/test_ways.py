@@ -14,11 +14,11 @@ from amalthea_uros.analyze.executors.unread import Arriving, most_unread
 from amalthea_uros.analyze.propagation import solve
 from amalthea_uros.analyze.results import Quantity
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.analyze.verdicts import Verdict
 from amalthea_uros.analyze.ways.arrivals import arrival_jitter
 from amalthea_uros.analyze.ways.evaluate import evaluate_ways
 from amalthea_uros.analyze.ways.publications import sending_times
 from amalthea_uros.analyze.ways.results import HopKind
+from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.perf.activities import Trigger
 from amalthea_uros.perf.constraints import Constraints, LatencyConstraint, LatencyKind
 from amalthea_uros.perf.distributions import Constant, Uniform

@@ -16,8 +16,8 @@ from opponent.models.reading import UnplayableError
 from opponent.models.variants import items_of
 
 from amalthea_uros.analyze.results import Analysis, ChainResult, ProcessResult
-from amalthea_uros.analyze.verdicts import Verdict
 from amalthea_uros.errors import AmurosError
+from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.services.analyze import analyze_files
 from amalthea_uros.services.simulate import simulate_files
 from amalthea_uros.simulate.options import Mode, Options

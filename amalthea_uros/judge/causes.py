@@ -1,0 +1,154 @@
+"""Failures by their root causes: each is counted once, however many limits show it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterable, Sequence
+from dataclasses import dataclass
+from typing import Generic, Protocol, TypeAlias, TypeVar
+
+from amalthea_uros.judge.limits import SystemLimit
+from amalthea_uros.perf.activities import Call
+from amalthea_uros.perf.constraints import (
+    ChainSynchronization,
+    DelayConstraint,
+    EventSynchronization,
+    LatencyConstraint,
+    RepetitionConstraint,
+    Requirement,
+)
+from amalthea_uros.timing.context import TimingContext
+from amalthea_uros.timing.dataflow.chains import events_of
+from amalthea_uros.timing.dataflow.events import UnresolvedError
+
+
+class LimitedObject(Protocol):
+    """What a limit is about."""
+
+    @property
+    def object(self) -> str:
+        """What has the quantity."""
+
+    @property
+    def quantity(self) -> str:
+        """What is limited."""
+
+    @property
+    def is_upper(self) -> bool:
+        """Whether the maximum is limited; otherwise the minimum."""
+
+
+class Failing(LimitedObject, Protocol):
+    """What is not met."""
+
+    @property
+    def overloaded_core(self) -> str | None:
+        """The core that cannot execute a process; None if nothing is overloaded."""
+
+    @property
+    def stated(self) -> SystemLimit | None:
+        """The limit in the system; None for a process."""
+
+
+class NamedCore(Protocol):
+    """A core."""
+
+    @property
+    def name(self) -> str:
+        """Of the core."""
+
+
+F = TypeVar("F", bound=Failing)
+Q = TypeVar("Q", bound=LimitedObject)
+K = TypeVar("K", bound=NamedCore)
+#: An overloaded core, or a limited quantity.
+_Key: TypeAlias = tuple[object, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Cause(Generic[F, K]):
+    """A failure.
+
+    Attributes
+    ----------
+    root : what shows it first: an overloaded core, or a limit that is missed
+    consequences : number of other limits that are missed because of it
+    """
+
+    root: F | K
+    consequences: int = 0
+
+
+def distinct(items: Iterable[Q]) -> list[Q]:
+    """One item for each quantity: a late task and the requirement on its response time are one failure."""
+    found: dict[_Key, Q] = {}
+    for item in items:
+        found.setdefault(_quantity(item), item)
+    return list(found.values())
+
+
+def causes(
+    overloaded: Iterable[K], failing: Sequence[F], processes_of: Callable[[SystemLimit], Collection[str]]
+) -> tuple[Cause[F, K], ...]:
+    """The failures, in order: what an overload makes endless is a consequence of it.
+
+    Parameters
+    ----------
+    overloaded : the cores that no process shows as overloaded
+    processes_of : the processes whose jobs decide about a limited quantity
+    """
+    core_of = {item.object: item.overloaded_core for item in failing if item.overloaded_core is not None}
+    by_key: dict[_Key, list[F]] = {}
+    for item in distinct(failing):
+        core = item.overloaded_core
+        if core is None and item.stated is not None and core_of:
+            core = next((core_of[name] for name in sorted(processes_of(item.stated)) if name in core_of), None)
+        by_key.setdefault(_quantity(item) if core is None else (core,), []).append(item)
+    of_cores: list[Cause[F, K]] = [Cause(core) for core in overloaded]
+    of_limits: list[Cause[F, K]] = [Cause(_root(items), len(items) - 1) for items in by_key.values()]
+    return (*of_cores, *of_limits)
+
+
+def _root(items: Sequence[F]) -> F:
+    return next((item for item in items if item.overloaded_core is not None), items[0])
+
+
+def _quantity(item: LimitedObject) -> _Key:
+    """The limited quantity; that of a process says after a comma what limits it."""
+    return item.object, item.quantity.partition(",")[0], item.is_upper
+
+
+def processes_of(limit: SystemLimit, context: TimingContext) -> set[str]:
+    """The processes whose jobs decide about a limited quantity, as far as that is known."""
+    system, item = context.system, limit.item
+    names: Collection[str]
+    match item:
+        case Requirement(process=str(process)):
+            return {process}
+        case Requirement(runnable=runnable):
+            return {process for process in system.processes if _calls(process, runnable, context)}
+        case LatencyConstraint(chain=chain):
+            names = events_of(system.chains[chain], system) if chain in system.chains else ()
+        case DelayConstraint(source=source, target=target):
+            names = (source, target)
+        case RepetitionConstraint(event=event):
+            names = (event,)
+        case EventSynchronization(events=events):
+            names = events
+        case ChainSynchronization(chains=chains):
+            names = {name for chain in chains if chain in system.chains for name in events_of(system.chains[chain], system)}
+        case _:
+            names = ()
+    return {process for name in names for process in _raising(name, context)}
+
+
+def _calls(process: str, runnable: str | None, context: TimingContext) -> bool:
+    positions = context.dataflow.events.positions(process)
+    return any(isinstance(each.activity, Call) and each.activity.runnable == runnable for each in positions)
+
+
+def _raising(name: str, context: TimingContext) -> set[str]:
+    event = context.system.events_by_name.get(name)
+    try:
+        return set() if event is None else {each.process.name for each in context.dataflow.events.of(event)}
+    except UnresolvedError:
+        return set()
