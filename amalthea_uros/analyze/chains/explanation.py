@@ -386,9 +386,10 @@ def _worst_path(part: Sequence[TimedStage], quantity: Quantity) -> _Path | None:
     chain = [each.pessimistic for each in bounds]
     if len(bounds) < len(part):
         return None
-    found = JobBudget().build(chain, max(each.steady_state_start for each in bounds))
-    if found is None:
+    built = JobBudget().build(chain, max(each.steady_state_start for each in bounds))
+    if built is None:
         return None
+    found = built.from_start(is_exact=True)
     until = int(max(found.ends.max(), found.next_writes.max())) + 2 * reach(chain)
     times = [task.extended(until) for task in chain]
     if quantity in _REACTIONS:

@@ -40,7 +40,7 @@ from amalthea_uros.timing.dataflow.stages import SAME_JOB, Boundary, Fire, Pass,
 from amalthea_uros.timing.demand import MAX_TIME_BASE
 from amalthea_uros.timing.limits import LIMIT
 from amalthea_uros.timing.multiframe import MultiframeDemand
-from amalthea_uros.timing.releases import known_releases
+from amalthea_uros.timing.releases import known_releases, latest_first_release
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
@@ -218,8 +218,14 @@ class StageTiming:
             is_regular=is_regular,
             response=response,
             offset=offset,
+            first_release=self._first_release(base.process, counter),
             preempts_reader=preempts_reader,
         )
+
+    def _first_release(self, process: Process, counter: Counter) -> Time:
+        """The latest time at which the first job that takes part is released."""
+        before = first_effect(counter) - 1 if counter.is_phase_known else max_distance(counter)
+        return latest_first_release(process, self.context.system) * self.unit + before * self._max_interarrival(process)
 
     def _max_interarrival(self, process: Process) -> Time:
         """The maximum time between two activations; 0 if there is none."""

@@ -134,9 +134,10 @@ def _has_left_before(enter: Boundary, leave: Boundary) -> bool:
     """Whether a stage begins with the end of a job that leaves it before its end."""
     if not isinstance(enter, At) or enter.communication is Communication.LET or enter.occurrence.when is not JobPhase.END:
         return False
-    if isinstance(leave, Write):
-        return leave.communication is Communication.EXPLICIT and leave.position is not None
-    return isinstance(leave, Fire) and leave.position is not None
+    match leave:
+        case Fire(position=ActivityPosition()) | Write(communication=Communication.EXPLICIT, position=ActivityPosition()):
+            return True
+    return False
 
 
 def _within(stage: Stage, passed: Sequence[ActivityPosition | None]) -> list[Stage]:
