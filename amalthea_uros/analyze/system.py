@@ -22,6 +22,7 @@ from amalthea_uros.analyze.requirements import evaluate_requirements
 from amalthea_uros.analyze.results import Analysis, ChainResult, Claim, ProcessorResult, ProcessResult, Response, Results
 from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.analyze.summary import summarize
+from amalthea_uros.analyze.verdicts import Verdict
 from amalthea_uros.analyze.ways.chain_results import chain_result
 from amalthea_uros.analyze.ways.evaluate import evaluate_ways
 from amalthea_uros.analyze.ways.results import Way
@@ -44,9 +45,9 @@ from amalthea_uros.timing.phases import (
 )
 from amalthea_uros.timing.preemption import preemption
 from amalthea_uros.timing.releases import response_time_limits
-from amalthea_uros.timing.scheduling import ScheduledProcess
+from amalthea_uros.timing.scheduling import EqualPriority, ScheduledProcess
 from amalthea_uros.timing.settings import Settings
-from amalthea_uros.units import Time
+from amalthea_uros.units import Rounding, Time, rounded_time_text
 
 
 def analyze_system(system: System, settings: Settings | None = None) -> Analysis:
@@ -181,11 +182,24 @@ def _processes(solution: Solution, schedules: CoreSchedules, executors: Results[
     by_task = {executor.task: executor for executor in executors}
     for name in system.processes:
         found = _process(name, solution, limits, by_task.get(name))
+        found = _with_order(found, solution)
         if name not in by_task:
             yield replace(found, metrics=metrics.of(found))
             continue
         known = metrics.of(found)
         yield replace(found, metrics={kind: known[kind] for kind in METRICS_OF_ROUNDS if kind in known})
+
+
+def _with_order(found: ProcessResult, solution: Solution) -> ProcessResult:
+    """The result, which says so if an order of priorities could decide what is unknown."""
+    item = solution.context.scheduled.get(found.name)
+    if item is None or item.equal_priority is not EqualPriority.UNKNOWN or found.verdict is not Verdict.UNKNOWN:
+        return found
+    why = "it has no priority" if item.priority is None else "a task of its scheduler has no priority"
+    if found.response is None or found.response.worst is None:
+        return replace(found, reason=f"{why}; {found.reason}")
+    needed = rounded_time_text(found.response.worst, Rounding.UP)
+    return replace(found, reason=f"{why}; as the lowest it needs up to {needed}")
 
 
 def _process(name: str, solution: Solution, limits: Mapping[str, Time], executor: ExecutorResult | None) -> ProcessResult:

@@ -156,9 +156,7 @@ class Activations:
         found = [each for _, group in by_process for each in self._caused_by_process(list(group), output, above)]
         return _counted(aggregated(tuple(found)), stimulus.counter)
 
-    def _caused_by_process(
-        self, causes: Sequence[Cause], output: Output, above: tuple[str, ...]
-    ) -> Iterator[EventModel]:
+    def _caused_by_process(self, causes: Sequence[Cause], output: Output, above: tuple[str, ...]) -> Iterator[EventModel]:
         """The events that the activities of a process cause: those of one path of a job, if others exclude it."""
         if all(cause.is_each_time for cause in causes) and (most := self.most_in_a_job(causes)) < len(causes):
             events = self._caused_by(causes[0], output, above)

@@ -1,4 +1,4 @@
-"""Processes that a job of another process triggers on paths that exclude each other: together, they take as long as the longest path."""
+"""Processes that a job of another one triggers on paths that exclude each other: together, they take as long as the longest path."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """What a job demands in the long run with all that it triggers, by the paths through its branches.
 
-What a path triggers belongs to it: of branches that exclude each other, a job takes one, and only that one triggers. So the worst case is
-the greatest sum of own and triggered demand over all paths, not the sum of the greatest ones.
+What a path triggers belongs to it: of branches that exclude each other, a job takes one, and only that one triggers. So the worst case
+is the greatest sum of own and triggered demand over all paths, not the sum of the greatest ones.
 """
 
 from __future__ import annotations
@@ -45,13 +45,9 @@ class JobDemand:
 
     def __add__(self, other: JobDemand) -> JobDemand:
         """Both."""
-        return JobDemand(
-            self.best + other.best, self.mean + other.mean, self.worst + other.worst, self.certain + other.certain
-        )
+        return JobDemand(self.best + other.best, self.mean + other.mean, self.worst + other.worst, self.certain + other.certain)
 
-    def times(
-        self, best: Fraction | int, mean: Fraction | int, worst: Fraction | int, certain: Fraction | int
-    ) -> JobDemand:
+    def times(self, best: Fraction | int, mean: Fraction | int, worst: Fraction | int, certain: Fraction | int) -> JobDemand:
         """Each part multiplied by a number of times."""
         return JobDemand(self.best * best, self.mean * mean, self.worst * worst, self.certain * certain)
 
