@@ -26,6 +26,7 @@ from amalthea_uros.analyze.ways.evaluate import evaluate_ways
 from amalthea_uros.analyze.ways.results import Way
 from amalthea_uros.judge.limits import deadline_of
 from amalthea_uros.judge.summary import summarize
+from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.perf.events import EventChain
 from amalthea_uros.perf.network import Purpose
 from amalthea_uros.perf.software import Preemption, Task
@@ -46,8 +47,9 @@ from amalthea_uros.timing.phases import (
     with_stated_phases,
 )
 from amalthea_uros.timing.preemption import preemption
-from amalthea_uros.timing.scheduling import ScheduledProcess
+from amalthea_uros.timing.scheduling import EqualPriority, ScheduledProcess
 from amalthea_uros.timing.settings import Settings
+from amalthea_uros.units import Rounding, rounded_time_text
 
 
 def analyze_system(system: System, settings: Settings | None = None) -> Analysis:
@@ -181,12 +183,24 @@ def _processes(solution: Solution, schedules: CoreSchedules, executors: Results[
     metrics = MetricEvaluator(solution, schedules)
     by_task = {executor.task: executor for executor in executors}
     for name in system.processes:
-        found = _process(name, solution, by_task.get(name))
+        found = _with_order(_process(name, solution, by_task.get(name)), solution)
         if name not in by_task:
             yield replace(found, metrics=metrics.of(found))
             continue
         known = metrics.of(found)
         yield replace(found, metrics={kind: known[kind] for kind in METRICS_OF_ROUNDS if kind in known})
+
+
+def _with_order(found: ProcessResult, solution: Solution) -> ProcessResult:
+    """The result, which says so if an order of priorities could decide what is unknown."""
+    item = solution.context.scheduled.get(found.name)
+    if item is None or item.equal_priority is not EqualPriority.UNKNOWN or found.verdict is not Verdict.UNKNOWN:
+        return found
+    why = "it has no priority" if item.priority is None else "a task of its scheduler has no priority"
+    if found.response is None or found.response.worst is None:
+        return replace(found, reason=f"{why}; {found.reason}")
+    needed = rounded_time_text(found.response.worst, Rounding.UP)
+    return replace(found, reason=f"{why}; as the lowest it needs up to {needed}")
 
 
 def _process(name: str, solution: Solution, executor: ExecutorResult | None) -> ProcessResult:

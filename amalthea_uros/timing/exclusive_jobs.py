@@ -1,4 +1,4 @@
-"""Processes that jobs trigger on paths that exclude each other: together, they take as long as the longest of these paths."""
+"""Processes that a job of another one triggers on paths that exclude each other: together, they take as long as the longest path."""
 
 from __future__ import annotations
 

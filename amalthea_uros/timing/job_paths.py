@@ -1,7 +1,7 @@
 """What a job demands in the long run with all that it triggers, by the paths through its branches.
 
-What a path triggers belongs to it: of branches that exclude each other, a job takes one, and only that one triggers. So the worst
-case is the greatest sum of own and triggered demand over all paths, not the sum of the greatest ones.
+What a path triggers belongs to it: of branches that exclude each other, a job takes one, and only that one triggers. So the worst case
+is the greatest sum of own and triggered demand over all paths, not the sum of the greatest ones.
 """
 
 from __future__ import annotations

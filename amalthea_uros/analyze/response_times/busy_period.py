@@ -1,9 +1,9 @@
 """The longest busy period of the processes of a level: within it, each of their jobs ends, in whatever order they are served.
 
 A busy period is an interval in which a job of the level is always pending; the longest one is the least fixed point of what is
-activated in it (J. P. Lehoczky, "Fixed priority scheduling of periodic task sets with arbitrary deadlines", RTSS 1990). It serves
-jobs of which a process triggers only some, because they exclude each other, as one job that takes as long as the longest path: the
-busy period is bounded even where the sum of all paths overloads the core.
+activated in it (J. P. Lehoczky, "Fixed priority scheduling of periodic task sets with arbitrary deadlines", RTSS 1990). Of jobs that
+exclude each other, because a process triggers only some of them, it serves one that takes as long as the longest path: it is bounded
+even where the sum of all paths overloads the core.
 """
 
 from __future__ import annotations

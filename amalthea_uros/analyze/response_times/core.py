@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
 
-from amalthea_uros.analyze.response_times import busy_period, priority_levels, schedule
+from amalthea_uros.analyze.response_times import busy_period, priority_levels, schedule, unknown_order
 from amalthea_uros.analyze.response_times.blocked_window import BlockedWindow
 from amalthea_uros.analyze.response_times.blocking import Blocking
 from amalthea_uros.analyze.response_times.supply import FULL, Budget, Supply
@@ -171,6 +171,8 @@ class _CoreAnalysis:
         if tasks:
             notes.assume("if not all releases on a core are known, all tasks can be released together at the worst moment")
             notes.assume("best cases on such cores hold once all tasks have been released")
+        if any(item.equal_priority is EqualPriority.UNKNOWN for item in usable):
+            notes.assume(unknown_order.ASSUMPTION)
         decisions = self._decisions(len(ranks)) if supply is FULL else []
         found = priority_levels.response_times([*tasks, *decisions], [*waits, *[0] * len(decisions)], supply)
         for index, item in enumerate(usable):
