@@ -37,7 +37,7 @@ from amalthea_uros.perf.events import EventChain, LabelChange, LabelEvent
 from amalthea_uros.perf.named import Named
 from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.links import LinkKind
-from amalthea_uros.timing.dataflow.routes import routes
+from amalthea_uros.timing.dataflow.routes import corresponding, routes
 from amalthea_uros.timing.event_models import EventModel, Periodic, is_strictly_periodic
 from amalthea_uros.timing.jitter import jitter_name, jitter_of
 from amalthea_uros.timing.releases import known_releases
@@ -109,7 +109,8 @@ class ConstraintEvaluator:
         if constraint.minimum is not None:
             yield _result(constraint, chain.name, kind, constraint.minimum, ends.of_minimum, chain.reason, is_upper=False)
         if constraint.jitter is not None:
-            jitter = ends.jitter(self._is_one_run(self.evaluation.context.system.chains[chain.name]))
+            is_one_run = len(chain.routes) == 1 and self._is_one_run(self.evaluation.context.system.chains[chain.name])
+            jitter = ends.jitter(is_one_run)
             found = _result(constraint, chain.name, jitter_name(kind), constraint.jitter, jitter, chain.reason)
             yield replace(found, spread=ends.spread)
 
@@ -127,13 +128,14 @@ class ConstraintEvaluator:
 
     def _delay(self, constraint: DelayConstraint) -> Iterator[RequirementResult]:
         source, target = self.windows.event(constraint.source), self.windows.event(constraint.target)
+        found = corresponding(source, target, self.evaluation.context.dataflow)
         if constraint.matching is not Matching.REACTION:
-            links = {link.kind for route in routes([source, target], self.evaluation.context.dataflow) for link in route.links}
+            links = {link.kind for route in found for link in route.links}
             if not links <= {LinkKind.JOB, LinkKind.TRIGGER}:
                 raise UnknownError(
                     "data between the events can be overwritten or read again, so their occurrences do not correspond one to one"
                 )
-        ends = _Latencies(self.evaluation.pair(source, target), *_REACTION)
+        ends = _Latencies(self.evaluation.worst(found), *_REACTION)
         what = f"{constraint.source} to {constraint.target}"
         if constraint.upper is not None:
             yield _result(constraint, what, "delay", constraint.upper, ends.of_maximum)
@@ -173,7 +175,8 @@ class ConstraintEvaluator:
         latest = _cycles(constraint.latest, constraint.latest_cycle, cycle)
         earliest = _cycles(constraint.earliest, constraint.earliest_cycle, cycle)
         for name in sorted(readers):
-            ends = _Latencies(self.evaluation.pair(written, replace(reading, process=name)), *_AGE)
+            found = routes([written, replace(reading, process=name)], self.evaluation.context.dataflow)
+            ends = _Latencies(self.evaluation.worst(found), *_AGE)
             what = f"{constraint.label} in {name}"
             if latest is not None:
                 yield _result(constraint, what, "data age", latest, ends.of_maximum)
