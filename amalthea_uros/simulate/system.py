@@ -257,11 +257,7 @@ class _Run:
         return CoreObservation(name=name, load=Fraction(int(memory[record + BUSY]) + last, self.end))
 
     def _chain(self, name: str) -> ChainObservation:
-        routes = {
-            " -> ".join(route.events): self.routes[number]
-            for number, route in enumerate(self.program.routes)
-            if route.chain == name
-        }
+        routes = [(route.text, self.routes[number]) for number, route in enumerate(self.program.routes) if route.chain == name]
         return chain_observation(name, routes, self.end, self.program.chains_left_out.get(name, ""))
 
 

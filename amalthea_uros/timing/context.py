@@ -109,7 +109,7 @@ class TimingContext:
     @cached_property
     def dataflow(self) -> Dataflow:
         """The positions of activities, and the links between processes."""
-        return Dataflow(self.system)
+        return Dataflow(self.system, self.settings.communication)
 
     @cached_property
     def activations(self) -> Activations:

@@ -40,7 +40,7 @@ from amalthea_uros.perf.constraints import (
 from amalthea_uros.perf.events import EventChain, LabelChange, LabelEvent
 from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.links import LinkKind
-from amalthea_uros.timing.dataflow.routes import routes
+from amalthea_uros.timing.dataflow.routes import corresponding, routes
 from amalthea_uros.timing.event_models import EventModel, Periodic, can_be_dense, is_strictly_periodic
 from amalthea_uros.timing.jitter import jitter_of
 from amalthea_uros.timing.releases import known_releases
@@ -111,7 +111,7 @@ class ConstraintEvaluator:
         latencies = _Latencies(chain.values, *(_AGE if constraint.kind is LatencyKind.AGE else _REACTION))
         for limit in limits:
             if limit.is_jitter:
-                is_one_run = self._is_one_run(self.evaluation.context.system.chains[chain.name])
+                is_one_run = len(chain.routes) == 1 and self._is_one_run(self.evaluation.context.system.chains[chain.name])
                 judgement = prove(limit, latencies.jitter(is_one_run), chain.reason)
                 yield limit, replace(judgement, spread=latencies.spread)
             else:
@@ -131,8 +131,8 @@ class ConstraintEvaluator:
 
     def _delay(self, constraint: DelayConstraint, limits: Sequence[SystemLimit]) -> Iterator[_Judged]:
         source, target = self.windows.event(constraint.source), self.windows.event(constraint.target)
+        found = corresponding(source, target, self.evaluation.context.dataflow)
         if constraint.matching is not Matching.REACTION:
-            found = routes([source, target], self.evaluation.context.dataflow)
             links = {link.kind for route in found for link in route.links}
             later = any(
                 stage.jobs_later is not None for route in found for group in self.evaluation.groups(route) for stage in group
@@ -141,7 +141,7 @@ class ConstraintEvaluator:
                 raise UnknownError(
                     "data between the events can be overwritten or read again, so their occurrences do not correspond one to one"
                 )
-        yield from _proved(limits, _Latencies(self.evaluation.pair(source, target), *_REACTION).limited)
+        yield from _proved(limits, _Latencies(self.evaluation.worst(found), *_REACTION).limited)
 
     def _chain_synchronization(self, constraint: ChainSynchronization, limits: Sequence[SystemLimit]) -> Iterator[_Judged]:
         found = [self.chains.get(name) for name in constraint.chains]
@@ -172,7 +172,8 @@ class ConstraintEvaluator:
         releases = known_releases(occurrence.process, self.evaluation.context.system)
         cycle = releases.period if releases is not None else None
         for name in sorted(readers):
-            latencies = _Latencies(self.evaluation.pair(written, replace(reading, process=name)), *_AGE)
+            found = routes([written, replace(reading, process=name)], self.evaluation.context.dataflow)
+            latencies = _Latencies(self.evaluation.worst(found), *_AGE)
             here = (replace(limit, object=f"{constraint.label} in {name}") for limit in limits)
             yield from _proved([_in_time(limit, cycle) for limit in here], latencies.limited)
 
