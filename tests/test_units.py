@@ -181,3 +181,18 @@ def test_very_long_texts_are_refused_at_once(text):
     with pytest.raises(ValueError, match="is not a time such as") as error:
         units.parse_time(text)
     assert len(str(error.value)) < 100
+
+
+@pytest.mark.parametrize(
+    ("share", "decimals", "rounding", "text"),
+    [
+        (Fraction(11, 10), 1, units.Rounding.NEAREST, "110.0"),
+        (Fraction(10_001, 10_000), 1, units.Rounding.NEAREST, "100.01"),
+        (Fraction(99_999, 100_000), 1, units.Rounding.UP, "99.999"),
+        (1, 1, units.Rounding.NEAREST, "100.0"),
+        (Fraction(1, 3), 3, units.Rounding.DOWN, "33.333"),
+        (Fraction(1, 3), 3, units.Rounding.UP, "33.334"),
+    ],
+)
+def test_a_percentage_is_on_its_side_of_all(share, decimals, rounding, text):
+    assert units.percent_text(share, decimals, rounding) == text

@@ -60,8 +60,8 @@ class NamedCore(Protocol):
 F = TypeVar("F", bound=Failing)
 Q = TypeVar("Q", bound=LimitedObject)
 K = TypeVar("K", bound=NamedCore)
-#: An overloaded core, or a limited quantity.
-_Key: TypeAlias = tuple[object, ...]
+#: An overloaded core, or a limited quantity: object, name, and whether its maximum is limited.
+_Key: TypeAlias = str | tuple[str, str, bool]
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,23 +71,26 @@ class Cause(Generic[F, K]):
     Attributes
     ----------
     root : what shows it first: an overloaded core, or a limit that is missed
-    consequences : number of other limits that are missed because of it
+    consequences : other limits that are missed or unknown because of it
     """
 
     root: F | K
-    consequences: int = 0
+    consequences: tuple[F, ...] = ()
 
 
 def distinct(items: Iterable[Q]) -> list[Q]:
     """One item for each quantity: a late task and the requirement on its response time are one failure."""
     found: dict[_Key, Q] = {}
     for item in items:
-        found.setdefault(_quantity(item), item)
+        found.setdefault(quantity_of(item), item)
     return list(found.values())
 
 
 def causes(
-    overloaded: Iterable[K], failing: Sequence[F], processes_of: Callable[[SystemLimit], Collection[str]]
+    overloaded: Iterable[K],
+    failing: Sequence[F],
+    unknown: Sequence[F],
+    processes_of: Callable[[SystemLimit], Collection[str]],
 ) -> tuple[Cause[F, K], ...]:
     """The failures, in order: what an overload makes endless is a consequence of it.
 
@@ -97,23 +100,24 @@ def causes(
     processes_of : the processes whose jobs decide about a limited quantity
     """
     core_of = {item.object: item.overloaded_core for item in failing if item.overloaded_core is not None}
-    by_key: dict[_Key, list[F]] = {}
-    for item in distinct(failing):
-        core = item.overloaded_core
-        if core is None and item.stated is not None and core_of:
-            core = next((core_of[name] for name in sorted(processes_of(item.stated)) if name in core_of), None)
-        by_key.setdefault(_quantity(item) if core is None else (core,), []).append(item)
-    of_cores: list[Cause[F, K]] = [Cause(core) for core in overloaded]
-    of_limits: list[Cause[F, K]] = [Cause(_root(items), len(items) - 1) for items in by_key.values()]
-    return (*of_cores, *of_limits)
+
+    def core(item: F) -> str | None:
+        if item.overloaded_core is not None or item.stated is None or not core_of:
+            return item.overloaded_core
+        return next((core_of[name] for name in sorted(processes_of(item.stated)) if name in core_of), None)
+
+    found: dict[_Key, list[F]] = {}
+    for item in sorted(distinct(failing), key=lambda item: item.overloaded_core is None):
+        found.setdefault(core(item) or quantity_of(item), []).append(item)
+    for item in distinct(unknown):
+        if (key := core(item)) is not None:
+            found[key].append(item)
+    of_cores: list[Cause[F, K]] = [Cause(each) for each in overloaded]
+    return (*of_cores, *(Cause(root, tuple(consequences)) for root, *consequences in found.values()))
 
 
-def _root(items: Sequence[F]) -> F:
-    return next((item for item in items if item.overloaded_core is not None), items[0])
-
-
-def _quantity(item: LimitedObject) -> _Key:
-    """The limited quantity; that of a process says after a comma what limits it."""
+def quantity_of(item: LimitedObject) -> _Key:
+    """What is limited; the quantity of a process says after a comma what limits it."""
     return item.object, item.quantity.partition(",")[0], item.is_upper
 
 

@@ -9,7 +9,7 @@ from fractions import Fraction
 from math import inf
 from typing import Generic, Protocol, TypeVar
 
-from amalthea_uros.judge.causes import Cause, Failing, causes, processes_of
+from amalthea_uros.judge.causes import Cause, Failing, causes, processes_of, quantity_of
 from amalthea_uros.judge.margins import Limited, share_left, tightest
 from amalthea_uros.judge.verdict import FAILURES, WORST_FIRST, Verdict
 from amalthea_uros.timing.context import TimingContext
@@ -93,6 +93,12 @@ class Summary(Generic[J, C]):
         return Schedulable.UNKNOWN if self.unknown or not self.judged else Schedulable.YES
 
     @property
+    def unexplained(self) -> tuple[J, ...]:
+        """What is unknown for another reason than a failure."""
+        consequences = {quantity_of(item) for cause in self.causes for item in cause.consequences}
+        return tuple(item for item in self.unknown if quantity_of(item) not in consequences)
+
+    @property
     def missed(self) -> int:
         """Number of verdicts that are failures, and of overloaded cores that no verdict shows."""
         return len(self.failing) + len(self.overloaded)
@@ -101,13 +107,14 @@ class Summary(Generic[J, C]):
 def summarize(cores: Iterable[C], judged: Sequence[J], context: TimingContext) -> Summary[J, C]:
     """The summary of results; those without a verdict do not count."""
     failing = tuple(item for item in judged if item.verdict in FAILURES)
+    unknown = tuple(item for item in judged if item.verdict is Verdict.UNKNOWN)
     shown = {core for item in judged if (core := item.overloaded_core) is not None}
     overloaded = tuple(core for core in cores if core.is_overloaded and core.name not in shown)
     return Summary(
         judged=sum(item.verdict is not None for item in judged),
         failing=failing,
-        unknown=tuple(item for item in judged if item.verdict is Verdict.UNKNOWN),
+        unknown=unknown,
         overloaded=overloaded,
-        causes=causes(overloaded, failing, lambda limit: processes_of(limit, context)),
+        causes=causes(overloaded, failing, unknown, lambda limit: processes_of(limit, context)),
         tightest=tightest(item for item in judged if item.verdict is Verdict.MET),
     )

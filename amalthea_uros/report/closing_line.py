@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterable
 from fractions import Fraction
 
 from amalthea_uros._internal.plural import counted
@@ -45,7 +46,7 @@ def _failures(summary: SystemSummary) -> str:
     """The first failure with the number of its consequences, and the number of the others."""
     first, *others = summary.causes
     sentence = _core_failure(first.root) if isinstance(first.root, ProcessorResult) else _failure(first.root)
-    consequences = f", with {counted(first.consequences, 'consequence')}" if first.consequences else ""
+    consequences = f", with {counted(len(first.consequences), 'consequence')}" if first.consequences else ""
     return sentence + consequences + (f"; {counted(len(others), 'other failure')}" if others else "")
 
 
@@ -94,20 +95,21 @@ def _unknown(summary: SystemSummary) -> str:
     """How much is unknown, and the most frequent cause."""
     if not summary.judged:
         return "unknown: no deadline, requirement or constraint can be judged"
-    if not summary.unknown:
+    unknown = summary.unexplained
+    if not unknown:
         return ""
-    count = f"unknown: {len(summary.unknown)} of {summary.judged}"
-    causes = _causes(summary)
+    count = f"unknown: {len(unknown)} of {summary.judged}"
+    causes = _causes(unknown)
     if not causes:
         return count
     (reason, _), *others = causes.most_common()
-    first = next(item.name for item in summary.unknown if item.reason == reason)
+    first = next(item.name for item in unknown if item.reason == reason)
     more = f", and {counted(len(others), 'other cause')}" if others else ""
     return f"{count}, because of {first!r}: {reason}{more}"
 
 
-def _causes(summary: SystemSummary) -> Counter[str]:
+def _causes(unknown: Iterable[Judged]) -> Counter[str]:
     """The reasons of unknown verdicts with their numbers; without consequences of others if there is anything else."""
-    reasons = Counter(item.reason for item in summary.unknown if item.reason)
+    reasons = Counter(item.reason for item in unknown if item.reason)
     roots = Counter({reason: number for reason, number in reasons.items() if not reason.endswith(_CONSEQUENCE)})
     return roots or reasons

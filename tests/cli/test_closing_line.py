@@ -15,6 +15,15 @@ LATE = (
 #: The activation limit is 1 by default.
 LOST = LATE.replace(", activation_limit: 2", "")
 OVERLOADED = LATE.replace("15 ms", "20 ms")
+#: With what U and V respond to, and limits of it.
+WITH_CHAINS = OVERLOADED.replace("priority: 1}", "priority: 1, writes: [b]}") + (
+    "  - {name: V, period: 25 ms, execution_time: 2 ms, priority: 0, reads: [b]}\n"
+    "chains:\n  - {name: way, path: [U, V], reaction: {max: 2 s}}\n"
+    "requirements:\n"
+    "  - {process: U, response_time: {max: 25 ms}}\n"
+    "  - {process: U, response_time: {max: 30 ms}}\n"
+    "  - {process: V, response_time: {max: 30 ms}}\n"
+)
 ADVANCED = (ROOT / "samples" / "bodas-test-advanced.yaml").read_text()
 
 
@@ -35,6 +44,18 @@ def closing(tmp_path, text, *options):
         (
             OVERLOADED,
             "Schedulable: no: U: overload: tasks at this priority or higher need 110.0 % of the core",
+            1,
+        ),
+        # V and the way are late because U is; the requirements are about the same response times.
+        (
+            WITH_CHAINS,
+            "Schedulable: no: U: overload: tasks at this priority or higher need 110.0 % of the core, with 2 consequences",
+            1,
+        ),
+        # 6 of 20 and 17.5025 of 25 ms: 0.3 + 0.7001.
+        (
+            LATE.replace("15 ms", "17502500 ns"),
+            "Schedulable: no: U: overload: tasks at this priority or higher need 100.01 % of the core",
             1,
         ),
     ],

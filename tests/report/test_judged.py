@@ -1,11 +1,15 @@
 """What a report puts first, and what it says of each limit."""
 
+from dataclasses import replace
+
 import pytest
 from support import ROOT
 
 from amalthea_uros import analyze, task, taskset
 from amalthea_uros.judge.verdict import Verdict
-from amalthea_uros.report.judged import judged_rows
+from amalthea_uros.report.judged import judged_rows, why
+from amalthea_uros.units import MICROSECOND as US
+from amalthea_uros.units import MILLISECOND as MS
 
 ADVANCED = ROOT / "samples" / "bodas-test-advanced.yaml"
 
@@ -38,6 +42,14 @@ def test_a_response_time_has_one_claim(changes):
     for row in judged_rows(analysis):
         if getattr(row.item, "quantity", "") == "response time":
             assert row.claim == claims[row.item.object]
+
+
+def test_a_value_below_a_lower_limit_falls_short_of_it():
+    found = rows({"Control_Function.execution_time": "5 us"})["Control_Function_response_time"].item
+    below = replace(found, is_upper=False, limit=20 * MS, lower=4_090 * US, upper=4_090 * US, verdict=Verdict.MISSED)
+    assert why(below) == "falls short of its limit by 15.91 ms"
+    above = replace(below, is_upper=True, limit=4 * MS)
+    assert why(above) == "exceeds its limit by 90 us"
 
 
 def test_shares_order_tasks_of_different_periods():

@@ -11,6 +11,7 @@ from fractions import Fraction
 
 from amalthea_uros.judge.evidence import ObservedValues
 from amalthea_uros.judge.limits import (
+    Stated,
     SystemLimit,
     deadline_limit,
     deadline_of,
@@ -65,7 +66,8 @@ def _judged(limit: SystemLimit, measured: _Measured, system: System) -> Measured
     series = measured.get((limit.object, limit.metric or ""))
     missing = _not_measured(limit)
     if missing or series is None:
-        reason = missing or f"the {limit.quantity} of {limit.object!r} was not measured"
+        what = f"the {limit.quantity} of {limit.object!r}" if isinstance(limit.item, Stated) else "its response time"
+        reason = missing or f"{what} was not measured"
         return MeasuredLimit.of(limit, not_observed(reason), samples=0)
     assert series.statistics is not None
     values, samples = _values(series), series.statistics.count
