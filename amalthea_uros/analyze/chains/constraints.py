@@ -105,7 +105,9 @@ class ConstraintEvaluator:
         kind = "data age" if constraint.kind is LatencyKind.AGE else "reaction"
         ends = _Latencies(chain.values, minimum, maximum)
         if constraint.maximum is not None:
-            yield _result(constraint, chain.name, kind, constraint.maximum, ends.of_maximum, chain.reason)
+            # Without a bound, what keeps the chain from being exact is the cause.
+            cause = chain.reason or (chain.why.removeprefix("bounds: ") if ends.of_maximum.upper is None else "")
+            yield _result(constraint, chain.name, kind, constraint.maximum, ends.of_maximum, cause)
         if constraint.minimum is not None:
             yield _result(constraint, chain.name, kind, constraint.minimum, ends.of_minimum, chain.reason, is_upper=False)
         if constraint.jitter is not None:
