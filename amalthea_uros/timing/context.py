@@ -313,9 +313,11 @@ class TimingContext:
                 f"the semaphore {name!r} has no priority ceiling and no inheritance: whoever waits for it is also delayed by all "
                 "processes above its lowest user"
             )
+        remote = self._find_remote_semaphores()
         for name, reason in locks.unclear():
-            self._mark_unclear(name, reason)
-        self._find_remote_semaphores()
+            # Who waits for another core is not kept waiting by priorities.
+            if name not in remote:
+                self._mark_unclear(name, reason)
 
     def _mark_unclear(self, name: str, reason: str) -> None:
         scheduled = self.scheduled[name]
@@ -323,16 +325,19 @@ class TimingContext:
         self.notes.warning("ANA003", f"the critical sections of {name!r} cannot be analysed: {reason}", scheduled.process)
         self.mark_unknown(name, reason)
 
-    def _find_remote_semaphores(self) -> None:
-        """Find processes that can wait for other cores or servers at a semaphore."""
+    def _find_remote_semaphores(self) -> frozenset[str]:
+        """The processes that can wait for other cores or servers at a semaphore; they are marked."""
+        found: set[str] = set()
         users: dict[str, list[ScheduledProcess]] = {}
         for name, uses in self.protection.items():
             for semaphore in sorted(uses.semaphores):
                 users.setdefault(semaphore, []).append(self.scheduled[name])
         for semaphore, here in users.items():
             if len({(scheduled.core, scheduled.server) for scheduled in here}) > 1:
+                found |= {scheduled.name for scheduled in here}
                 for scheduled in here:
                     self._mark_unclear(scheduled.name, f"it shares the semaphore {semaphore!r} with other cores or servers")
+        return frozenset(found)
 
 
 def _only(values: Collection[T]) -> T | None:
