@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from fractions import Fraction
-from itertools import groupby
+from itertools import chain, groupby
 from typing import NamedTuple, TypeAlias
 
 from amalthea_uros.perf.activities import Trigger
@@ -159,8 +159,8 @@ class Activations:
         if not causes:
             raise UnknownActivationError(f"no process triggers {name!r}")
         by_process = groupby(sorted(causes, key=_process_name), key=_process_name)
-        found = [each for _, group in by_process for each in self._caused_by_process(list(group), output, above)]
-        return _counted(aggregated(tuple(found)), stimulus.counter)
+        caused = (self._caused_by_process(list(group), output, above) for _, group in by_process)
+        return _counted(aggregated(tuple(chain.from_iterable(caused))), stimulus.counter)
 
     def _caused_by_process(self, causes: Sequence[Cause], output: Output, above: tuple[str, ...]) -> Iterator[EventModel]:
         """The events that the activities of a process cause: those of one path of a job, if others exclude it."""

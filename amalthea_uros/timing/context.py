@@ -317,9 +317,11 @@ class TimingContext:
                 f"the semaphore {name!r} has no priority ceiling and no inheritance: whoever waits for it is also delayed by all "
                 "processes above its lowest user"
             )
+        remote = self._find_remote_semaphores()
         for name, reason in locks.unclear():
-            self._mark_unclear(name, reason)
-        self._find_remote_semaphores()
+            # Who waits for another core is not kept waiting by priorities.
+            if name not in remote:
+                self._mark_unclear(name, reason)
 
     def _mark_unclear(self, name: str, reason: str) -> None:
         scheduled = self.scheduled[name]
@@ -327,8 +329,9 @@ class TimingContext:
         self.notes.warning("ANA003", f"the critical sections of {name!r} cannot be analysed: {reason}", scheduled.process)
         self.mark_unknown(name, reason)
 
-    def _find_remote_semaphores(self) -> None:
-        """Find processes that can wait at a semaphore for other cores or servers, or for somebody whose core is unknown."""
+    def _find_remote_semaphores(self) -> frozenset[str]:
+        """The processes that can wait at a semaphore for other cores or servers, or for somebody whose core is unknown; marked."""
+        found: set[str] = set()
         users: dict[str, list[str]] = {}
         for name, uses in self.touching.protection.items():
             for semaphore in sorted(uses.semaphores) if self.touching.cores_of(name) else ():
@@ -342,8 +345,10 @@ class TimingContext:
                 reason = f"it shares the semaphore {semaphore!r} with other cores or servers"
             else:
                 continue
+            found |= {scheduled.name for scheduled in here}
             for scheduled in here:
                 self._mark_unclear(scheduled.name, reason)
+        return frozenset(found)
 
 
 def _only(values: Collection[T]) -> T | None:

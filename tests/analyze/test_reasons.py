@@ -1,12 +1,14 @@
 """Why something is unknown: each reason names its cause, and what is known nevertheless is shown."""
 
 import pytest
+from hand_made_systems import Proc, locked
+from hand_made_systems import system as two_cores
 from test_policies import root, system, ticks
 from test_system import by_name
 
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.activities import Trigger
-from amalthea_uros.perf.os import Parent, Policy, Scheduler
+from amalthea_uros.perf.os import Parent, Policy, Scheduler, Semaphore, SemaphoreKind
 from amalthea_uros.perf.stimuli import InterProcess
 from amalthea_uros.units import MICROSECOND as US
 
@@ -70,3 +72,11 @@ class TestAlone:
         tasks = [(name, 110, [ticks(60)], {"scheduler": "root"}) for name in ("T", "U")]
         reasons = {process.reason for process in analyze_system(system([root()], tasks)).processes}
         assert all(reason.startswith("it has no priority; as the lowest") for reason in reasons)
+
+
+def test_who_waits_for_a_spinlock_of_another_core_is_not_kept_waiting_by_priorities():
+    users = [Proc(name, locked("lock", 5), 100, priority=1, scheduler=core) for name, core in (("T", "s0"), ("U", "s1"))]
+    lock = Semaphore(name="lock", kind=SemaphoreKind.SPINLOCK)
+    found = analyze_system(two_cores(*users, semaphores=(lock,)))
+    assert {each.reason for each in found.processes} == {"it shares the semaphore 'lock' with other cores or servers"}
+    assert not any("never runs" in finding.message for finding in found.findings)

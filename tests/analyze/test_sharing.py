@@ -56,6 +56,9 @@ def play(tasks, offsets, until, serves=lambda _: True, tie=1):
             case EqualPriority.ROUND_ROBIN:
                 first = next(index for index in turn if any(job[1] == index for job in level))
                 job = min(job for job in level if job[1] == first)
+            case EqualPriority.UNKNOWN:
+                # One of the orders that are possible.
+                job = min(level, key=lambda job: (tie * job[1], job[0]))
         job[2] -= 1
         if job[2] == 0:
             waiting.remove(job)

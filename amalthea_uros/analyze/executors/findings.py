@@ -9,7 +9,7 @@ from amalthea_uros.analyze.executors.results import ExecutorResult, HandleResult
 from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.perf.executors import Executor, HandleKind, LoopKind
 from amalthea_uros.timing.executors.arrivals import certain_rate
-from amalthea_uros.timing.executors.loops import least_pace, longest_sleep
+from amalthea_uros.timing.executors.loops import least_pace, longest_sleep, never_rests
 from amalthea_uros.timing.executors.readiness import keeps_back, shares_session, stores
 from amalthea_uros.timing.executors.sessions import ASSUMPTION as SESSION_ASSUMPTION
 from amalthea_uros.timing.executors.wait import greatest_wait, messages, timers
@@ -88,7 +88,9 @@ def _note_waiting(executor: Executor, others: Sequence[Executor], notes: Notes) 
         names = ", ".join(map(repr, guards))
         message = f"{names} does not wake {executor.name!r}: a trigger is seen after the wait, which lasts up to {wait}"
         notes.warning("EXE018", message, executor)
-    if stores(executor, others) and messages(executor) and not waiting.stored_data_ends_wait and greatest_wait(executor):
+    # Where something that is kept back ends each wait, no wait is long while a message is stored.
+    is_awaited = messages(executor) and greatest_wait(executor) and not never_rests(executor)
+    if is_awaited and stores(executor, others) and not waiting.stored_data_ends_wait:
         message = f"a message for {executor.name!r} that is stored already does not end its wait, which lasts up to {wait}"
         notes.warning("EXE017", message, executor)
     if keeps_back(executor) and timers(executor):

@@ -43,7 +43,7 @@ def message_stimulus_name(callback: str) -> str:
 
 def is_triggered(executor: Executor) -> bool:
     """Whether the arrival of a message begins a round."""
-    return not is_paced(executor.loop) and polls(executor) is None
+    return not is_paced(executor.loop) and not polls(executor)
 
 
 def activation(executor: Executor, callbacks: Sequence[Callback], least_round: Time, offset: Time) -> Iterator[Stimulus]:
@@ -62,7 +62,7 @@ def activation(executor: Executor, callbacks: Sequence[Callback], least_round: T
     elif loop.period is not None and is_paced(loop):
         # A round executes when its wait ends.
         yield Periodic(name=name, period=loop.period, offset=offset, jitter=Boundaries(lower=0, upper=loop.timeout))
-    elif reason is not None:
+    elif reason:
         unknown = Custom(name=name, description=f"{reason}, and the execution time of a round is not specified")
         yield _at_least(name, least_round) if least_round else unknown
     else:

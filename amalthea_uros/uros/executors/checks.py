@@ -69,15 +69,15 @@ def _check_polling(executor: Executor, section: spec.Executor, notes: Notes) -> 
     """
     loop, resolution, reason = executor.loop, executor.waiting.resolution, polls(executor)
     where = section.loop.location() if section.loop is not None else section.location()
-    if reason is not None and _has_messages(executor):
-        message = f"{executor.name!r} uses all the time that others leave it: {reason}"
+    if reason and _has_messages(executor):
+        message = f"{executor.name!r} can use all the time that others leave it: {reason}"
         timeout = (
             "Use the trigger condition 'any'"
             if loop.timeout >= resolution
             else f"Set a timeout of {time_text(resolution)} or more"
         )
         notes.warning("EXE003", message, where, f"{timeout}, or add a 'sleep'.")
-    elif reason is not None:
+    elif reason:
         message = (
             f"{executor.name!r} has timers only: the wait of the middleware returns at once, and the loop uses all the time that "
             "others leave it; with rmw_microxrcedds#305 it waits for the whole timeout instead, also if a guard condition is set"

@@ -7,9 +7,10 @@ with the timeout of the executor, whatever the period, and then sleeps until the
 from __future__ import annotations
 
 from amalthea_uros.perf.executors import Executor as LoopingExecutor
-from amalthea_uros.perf.executors import HandleKind, Loop, LoopKind, TriggerCondition, TriggerKind, Waiting
+from amalthea_uros.perf.executors import Loop, LoopKind, Waiting
 from amalthea_uros.spec import executors as spec
 from amalthea_uros.spec.os import Os
+from amalthea_uros.timing.executors.loops import waits_return_at_once
 from amalthea_uros.uros.rtos import slept
 
 
@@ -36,33 +37,6 @@ def is_paced(loop: Loop) -> bool:
     return loop.sleep > 0 or (loop.period is not None and loop.timeout <= loop.period)
 
 
-def polls(executor: LoopingExecutor) -> str | None:
-    """Why rounds follow each other at once even if nothing has happened; None if they do not."""
-    loop, waiting = executor.loop, executor.waiting
-    if is_paced(loop):
-        return None
-    if loop.timeout < waiting.resolution or loop.timeout == 0:
-        return "its timeout is cut to 0"
-    if waiting.polls_without_messages and all(handle.kind in _WITHOUT_MESSAGES for handle in executor.handles):
-        return "it waits for no message, and the middleware then returns at once"
-    if keeps_back(executor.trigger):
-        if any(handle.kind is HandleKind.TIMER and _is_kept_back(handle.name, executor) for handle in executor.handles):
-            return "a timer that is due, and kept back by the trigger condition, ends each wait at once"
-        if waiting.stored_data_ends_wait:
-            return "a message that is kept back by the trigger condition ends each wait at once"
-    return None
-
-
-_WITHOUT_MESSAGES = (HandleKind.TIMER, HandleKind.GUARD_CONDITION)
-
-
-def keeps_back(trigger: TriggerCondition) -> bool:
-    """Whether a trigger condition can be false although something is ready."""
-    return trigger.kind in (TriggerKind.ALL, TriggerKind.ONE, TriggerKind.CUSTOM)
-
-
-def _is_kept_back(timer: str, executor: LoopingExecutor) -> bool:
-    """Whether the trigger condition can be false although a timer is due."""
-    if executor.trigger.kind is TriggerKind.ALL:
-        return len(executor.handles) > 1
-    return frozenset([timer]) not in executor.trigger.sets
+def polls(executor: LoopingExecutor) -> str:
+    """Why rounds can follow each other at once even if nothing has happened; "" if they cannot."""
+    return "" if is_paced(executor.loop) else waits_return_at_once(executor)

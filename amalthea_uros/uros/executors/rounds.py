@@ -14,7 +14,8 @@ from itertools import chain, takewhile
 
 from amalthea_uros.perf.activities import Activity, Call, Chance, ProbabilitySwitch
 from amalthea_uros.perf.executors import Executor, Handle, HandleKind, TriggerKind
-from amalthea_uros.uros.executors.loops import is_paced, keeps_back
+from amalthea_uros.timing.executors.readiness import keeps_back
+from amalthea_uros.uros.executors.loops import is_paced
 
 #: What only the message of its own service, client or subscription can make ready.
 _BY_ONE_MESSAGE = frozenset(
@@ -42,7 +43,7 @@ def has_one_message_per_round(executor: Executor, is_alone: bool) -> bool:
     is_alone : whether no other thread waits or sends
     """
     waits = any(publication.waits for handle in executor.handles for publication in handle.publications)
-    return executor.waiting.messages_per_wait == 1 and is_alone and not waits and not keeps_back(executor.trigger)
+    return executor.waiting.messages_per_wait == 1 and is_alone and not waits and not keeps_back(executor)
 
 
 def round_activities(executor: Executor, *, exclusive: bool, poll: str | None) -> Activities:

@@ -245,6 +245,29 @@ def test_an_executor_that_never_rests_leaves_nothing_for_lower_priorities():
     assert found.executors[0].handles["t"].response.worst == 1 * MS
 
 
+def test_a_loop_that_waits_with_a_timeout_is_busy_while_a_timer_is_kept_back():
+    """Before the timer is due, the loop waits; then it turns until a message has come: how much of its core that takes is unknown."""
+    model = looping(
+        message("a", 500_000, 100), timer("t", 500_000, 100), trigger=combined(TriggerKind.ALL, {"a", "t"}), loop=SPIN
+    )
+    found = analyze_system(model)
+    core = found.processors[found.processes["Executor"].processor]
+    assert (core.worst, found.processes["Executor"].verdict) == (None, Verdict.UNKNOWN)
+    assert core.at_least == 0
+    assert any("kept back by the trigger condition" in finding.message for finding in found.findings)
+    assert "EXE016" in rules(model)
+    assert "EXE017" not in rules(model)
+
+
+def test_a_loop_that_waits_with_a_timeout_rests_while_only_messages_are_kept_back():
+    # A message that is stored already does not end a wait of this middleware.
+    model = looping(
+        message("a", 500_000, 100), message("b", 500_000, 100), trigger=combined(TriggerKind.ALL, {"a", "b"}), loop=SPIN
+    )
+    assert "EXE017" in rules(model)
+    assert "EXE016" not in rules(model)
+
+
 def test_an_executor_that_never_rests_is_not_schedulable_for_certain_although_it_serves_its_callbacks():
     # What the operating system itself does below it, such as to feed a watchdog, is never executed.
     found = analyze_system(looping(timer("t", 50_000, 500), loop=SPIN))
