@@ -9,7 +9,7 @@ from amalthea_uros.judge.evidence import Ends, Loss, ProcessEvidence
 from amalthea_uros.judge.limits import activation_limit, deadline_limit
 from amalthea_uros.judge.verdict import lost_jobs, prove_process
 from amalthea_uros.perf.software import Process, Task
-from amalthea_uros.timing.event_models import EventModel, Periodic
+from amalthea_uros.timing.event_models import EventModel, can_be_dense
 
 
 def worst_response(process: ProcessResult) -> Ends:
@@ -58,5 +58,5 @@ def pending(process: ProcessResult, events: EventModel) -> Ends:
     ends = worst_response(process)
     upper = None if ends.upper is None else events.eta_plus(ends.upper)
     # Other event models only bound the activations.
-    lower = events.eta_plus(ends.lower or 0) if isinstance(events, Periodic) else 1
+    lower = events.eta_plus(ends.lower or 0) if can_be_dense(events) else 1
     return Ends(lower, upper)

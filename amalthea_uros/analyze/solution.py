@@ -60,6 +60,22 @@ class Solution:
         """Whether also the critical sections of a process are known."""
         return self.is_known(name) and name not in self.context.unclear_locks
 
+    def intruder(self, core: str, above_isrs: bool) -> str | None:
+        """An unknown process that can delay all tasks of a core, or on request all ISRs, too, whatever their ranks."""
+        context = self.context
+        # The decisions about a task precede everything else.
+        uncounted = (item.name for item in context.on_core(core) if self._is_decided_unknown(item.name))
+        return context.touching.intruder(core, above_isrs) or next(uncounted, None)
+
+    def is_closed(self, core: str) -> bool:
+        """Whether nothing executes on a core but processes of known ranks, and decisions about them of a known number."""
+        return self.intruder(core, above_isrs=False) is None
+
+    def _is_decided_unknown(self, name: str) -> bool:
+        """Whether decisions about a process take an unknown time, or are of an unknown number."""
+        is_known = name in self.context.decisions and name in self.event_models
+        return not is_known and self.context.decider(name) is not None
+
     @cached_property
     def losing(self) -> frozenset[str]:
         """The tasks of which more jobs can be pending than their activation limits allow; of a solution that is complete."""

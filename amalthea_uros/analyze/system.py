@@ -26,17 +26,19 @@ from amalthea_uros.analyze.ways.evaluate import evaluate_ways
 from amalthea_uros.analyze.ways.results import Way
 from amalthea_uros.judge.limits import deadline_of
 from amalthea_uros.judge.summary import summarize
+from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.perf.events import EventChain
 from amalthea_uros.perf.network import Purpose
 from amalthea_uros.perf.software import Preemption, Task
-from amalthea_uros.perf.stimuli import RelativePeriodic
+from amalthea_uros.perf.stimuli import EventTriggered, InterProcess, RelativePeriodic
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.allocation import allocated_cores
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.deadlines import ASSUMPTION
 from amalthea_uros.timing.event_models import EventModel
-from amalthea_uros.timing.load import activation_rates
-from amalthea_uros.timing.load import loads as known_loads
+from amalthea_uros.timing.job_paths import JobDemand
+from amalthea_uros.timing.load import CoreLoad, certain_loads, suppressible
+from amalthea_uros.timing.multiframe import MultiframeDemand
 from amalthea_uros.timing.overheads import COUNTED
 from amalthea_uros.timing.phases import (
     Occurrence,
@@ -45,8 +47,9 @@ from amalthea_uros.timing.phases import (
     with_stated_phases,
 )
 from amalthea_uros.timing.preemption import preemption
-from amalthea_uros.timing.scheduling import ScheduledProcess
+from amalthea_uros.timing.scheduling import EqualPriority, ScheduledProcess
 from amalthea_uros.timing.settings import Settings
+from amalthea_uros.units import Rounding, rounded_time_text
 
 
 def analyze_system(system: System, settings: Settings | None = None) -> Analysis:
@@ -180,12 +183,24 @@ def _processes(solution: Solution, schedules: CoreSchedules, executors: Results[
     metrics = MetricEvaluator(solution, schedules)
     by_task = {executor.task: executor for executor in executors}
     for name in system.processes:
-        found = _process(name, solution, by_task.get(name))
+        found = _with_order(_process(name, solution, by_task.get(name)), solution)
         if name not in by_task:
             yield replace(found, metrics=metrics.of(found))
             continue
         known = metrics.of(found)
         yield replace(found, metrics={kind: known[kind] for kind in METRICS_OF_ROUNDS if kind in known})
+
+
+def _with_order(found: ProcessResult, solution: Solution) -> ProcessResult:
+    """The result, which says so if an order of priorities could decide what is unknown."""
+    item = solution.context.scheduled.get(found.name)
+    if item is None or item.equal_priority is not EqualPriority.UNKNOWN or found.verdict is not Verdict.UNKNOWN:
+        return found
+    why = "it has no priority" if item.priority is None else "a task of its scheduler has no priority"
+    if found.response is None or found.response.worst is None:
+        return replace(found, reason=f"{why}; {found.reason}")
+    needed = rounded_time_text(found.response.worst, Rounding.UP)
+    return replace(found, reason=f"{why}; as the lowest it needs up to {needed}")
 
 
 def _process(name: str, solution: Solution, executor: ExecutorResult | None) -> ProcessResult:
@@ -238,32 +253,36 @@ def _judged(process: ProcessResult, events: EventModel | None, context: TimingCo
 
 
 def _without_doubtful_overload(name: str, solution: Solution) -> Response | None:
-    """The response time of a process; without bound, but not overloaded for certain, if modes may exclude what overloads it."""
+    """The response time of a process; without bound, but not overloaded for certain, if what overloads it may exclude each other."""
     found, context = solution.responses.get(name), solution.context
     if found is None or not found.is_overload or name not in context.scheduled:
         return found
     item = context.scheduled[name]
-    here = [other for other in context.on_core(item.core) if solution.is_known(other.name)]
-    if all(context.demands[other.name].mean_occurring == context.demands[other.name].mean_worst for other in here):
+    here = [other for other in context.on_core(item.core) if other.rank >= item.rank and solution.is_known(other.name)]
+    each = _sum(_demand(other.name, context).mean_worst * solution.event_models[other.name].rate for other in here)
+    together = _load((other.name for other in here), item.core, solution)
+    are_suppressed = any(solution.event_models[other.name].can_be_suppressed for other in here)
+    if together.certain * context.time_base(name) == each and not are_suppressed:
         return found
-    if _certain_load((other for other in here if other.rank >= item.rank), solution) > 1:
-        return found
+    if _certain_load(here, item.core, solution) > 1:
+        return replace(found, reason=f"overload: tasks at this priority or higher need {_percent(together.worst)} of the core")
+    if together.worst <= 1:
+        return replace(found, is_overload=False, reason=f"{found.reason}, if what excludes each other is added up")
     return replace(found, is_overload=False, reason=f"{found.reason}, unless modes exclude a part of it")
+
+
+def _percent(load: Fraction) -> str:
+    return f"{100 * float(load):.1f} %"
 
 
 def _processors(solution: Solution) -> Iterator[ProcessorResult]:
     """The load of each core; unknown if the demand or activation of a process that can run on it is unknown."""
     context = solution.context
-    allowed = allocated_cores(context.system)
-    possible: dict[str, list[str]] = {}
-    for name, cores in allowed.items():
-        for core in cores:
-            possible.setdefault(core, []).append(name)
-    known = {core for core in context.system.cores if _is_load_known(core, possible.get(core, ()), solution)}
-    shares: Mapping[str, Mapping[str, Fraction]] = {}
+    known = {core for core in context.system.cores if _is_load_known(core, solution)}
+    certain: Mapping[str, Fraction] = {}
     if len(known) < len(context.system.cores):
-        rates = activation_rates(context.system, context.activations)
-        shares = known_loads(allowed, rates, context.demand_model, context.following_rounds)
+        uncertain = {*context.following_rounds, *suppressible(context.system, context.activations)}
+        certain = certain_loads(allocated_cores(context.system), context.activations, context.demand_model, uncertain)
     for core in context.system.cores:
         best, mean, worst = _loads(core, solution) if core in known else (None, None, None)
         yield ProcessorResult(
@@ -272,42 +291,61 @@ def _processors(solution: Solution) -> Iterator[ProcessorResult]:
             best=best,
             mean=mean,
             worst=worst,
-            at_least=_sum(shares.get(core, {}).values()) if worst is None else _certain_load(context.on_core(core), solution),
+            at_least=certain.get(core, Fraction(0)) if worst is None else _certain_load(context.on_core(core), core, solution),
         )
 
 
-def _is_load_known(core: str, possible: Iterable[str], solution: Solution) -> bool:
+def _loads(core: str, solution: Solution) -> tuple[Fraction, Fraction | None, Fraction]:
+    """The best, mean and worst load of a core; no mean if conditions may suppress activations."""
+    names = [item.name for item in solution.context.on_core(core)]
+    load, regular = _load(names, core, solution), _never_suppressed(names, solution)
+    if regular == names:
+        return load.best, load.mean, load.worst
+    return _load(regular, core, solution).best, None, load.worst
+
+
+def _is_load_known(core: str, solution: Solution) -> bool:
     """Whether all processes that can run on a core run nowhere else, and their demand and activations are known."""
+    return solution.is_closed(core) and all(solution.is_known(item.name) for item in solution.context.on_core(core))
+
+
+def _load(names: Iterable[str], core: str, solution: Solution) -> JobDemand:
+    """The load of a core by some of its processes."""
     context = solution.context
-    if (core, True) in context.unanalysable_cores or (core, False) in context.unanalysable_cores:
-        return False
-    here = {scheduled.name for scheduled in context.on_core(core)}
-    return here.issuperset(possible) and all(map(solution.is_known, here))
+    demands = {name: _demand(name, context) for name in names}
+    return CoreLoad(core, demands, context.activations, context.demand_model).load(_external_rates(solution))
 
 
-def _loads(core: str, solution: Solution) -> tuple[Fraction, Fraction, Fraction]:
-    """The best, mean and worst load of a core."""
-    context = solution.context
-    time_base = context.demand_model.time_base(core)
-    names = [scheduled.name for scheduled in context.on_core(core)]
-    rates = [(context.demands[name], solution.event_models[name].rate / time_base) for name in names]
-    return (
-        _sum(demand.mean_best * rate for demand, rate in rates),
-        _sum(demand.mean * rate for demand, rate in rates),
-        _sum(demand.mean_worst * rate for demand, rate in rates),
-    )
+def _demand(name: str, context: TimingContext) -> MultiframeDemand:
+    """The demand of a job of a process with what its scheduler needs to decide when it is activated."""
+    own, decision = context.demands[name], context.decisions.get(name)
+    return own if decision is None else MultiframeDemand((*own.frames, *decision.frames))
 
 
-def _certain_load(items: Iterable[ScheduledProcess], solution: Solution) -> Fraction:
-    """The worst load of processes of a core, without what modes may exclude for ever, and what rounds of executors need."""
-    context = solution.context
-    return _sum(
-        context.demands[item.name].mean_occurring
-        * solution.event_models[item.name].rate
-        / context.demand_model.time_base(item.core)
-        for item in items
-        if item.name not in context.following_rounds
-    )
+def _external_rates(solution: Solution) -> Mapping[str, Fraction]:
+    """Activations per picosecond that no process triggers, of processes whose activations are known."""
+    context, found = solution.context, {}
+    for name, events in solution.event_models.items():
+        process = context.system.processes[name]
+        stimuli = [context.system.stimuli_by_name.get(each) for each in process.stimuli]
+        is_triggered = any(isinstance(each, InterProcess | EventTriggered) for each in stimuli)
+        # The rounds of an executor are not as frequent as its stimulus.
+        found[name] = context.activations.external_rate(process) if is_triggered else events.rate
+    return found
+
+
+def _certain_load(items: Iterable[ScheduledProcess], core: str, solution: Solution) -> Fraction:
+    """The worst load of processes of a core, without what modes may exclude for ever, and what rounds of executors need.
+
+    Nor does it contain activations that conditions may suppress.
+    """
+    names = (item.name for item in items if item.name not in solution.context.following_rounds)
+    return _load(_never_suppressed(names, solution), core, solution).certain
+
+
+def _never_suppressed(names: Iterable[str], solution: Solution) -> list[str]:
+    """The processes of which no condition can suppress activations."""
+    return [name for name in names if not solution.event_models[name].can_be_suppressed]
 
 
 def _sum(values: Iterable[Fraction]) -> Fraction:

@@ -88,7 +88,10 @@ class _Search:
                 yield position.process.name
 
     def _preceding(self, scheduled: ScheduledProcess) -> Iterator[str]:
-        """The processes of the same or a higher rank on its core, and those that can block it."""
+        """The processes of the same or a higher rank on its core, or of unknown rank, and those that can block it."""
+        touching = self.context.touching
+        yield from touching.intruders(scheduled.core)
+        yield from touching.by_semaphores(scheduled.name)
         for other in self.context.on_core(scheduled.core):
             if other.name != scheduled.name and (other.rank >= scheduled.rank or not self.solution.is_analysable(other.name)):
                 yield other.name

@@ -205,6 +205,13 @@ def not_observed(reason: str) -> ObservedJudgement:
     return ObservedJudgement(ObservedVerdict.NOT_OBSERVED, reason=reason)
 
 
+def in_doubt(found: ObservedJudgement, doubt: str) -> ObservedJudgement:
+    """The same verdict; if what was observed is no behaviour of the system, not observed for this reason."""
+    if not doubt or found.verdict is ObservedVerdict.NOT_OBSERVED:
+        return found
+    return replace(found, verdict=ObservedVerdict.NOT_OBSERVED, reason=doubt)
+
+
 def observe_process(deadline: SystemLimit | None, seen: ObservedProcess) -> ObservedJudgement | None:
     """The verdict on the deadline of a process, and on activations that were lost; None if there is neither."""
     if seen.lost_activations:

@@ -1,6 +1,7 @@
 """Quantities of AMALTHEA as exact numbers in the internal units of `amalthea_uros.units`.
 
-In the other direction, a number becomes a quantity. A quantity that is not given, or whose unit is undefined, gives None.
+In the other direction, a number becomes a quantity. A quantity that is not given gives None, and one whose unit
+is undefined, unless it is 0.
 """
 
 from __future__ import annotations
@@ -72,4 +73,7 @@ def bits_per_second(rate: DataRate | None) -> int | None:
 
 def _scaled(value: int | None, unit: Unit | None, sizes: Mapping[Unit | None, int]) -> int | None:
     size = sizes.get(unit)
-    return None if size is None else (value or 0) * size
+    if size is None:
+        # 0 is the same in any unit, if it is stated.
+        return 0 if value == 0 else None
+    return (value or 0) * size

@@ -38,6 +38,14 @@ class Boundaries(Generic[N]):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Bounds(Generic[N]):
+    """Between two values that are stated, of a distribution of which a parameter is not."""
+
+    lower: N
+    upper: N
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Statistics(Generic[N]):
     """Between two values with a known mean; the shape is not known."""
 
@@ -111,7 +119,7 @@ class Histogram(Generic[N]):
 
 
 Distribution: TypeAlias = (
-    Constant[N] | Boundaries[N] | Statistics[N] | Uniform[N] | Gauss[N] | Weibull[N] | Beta[N] | Histogram[N]
+    Constant[N] | Boundaries[N] | Bounds[N] | Statistics[N] | Uniform[N] | Gauss[N] | Weibull[N] | Beta[N] | Histogram[N]
 )
 
 

@@ -75,8 +75,8 @@ class PredictionGroup:
 
     @property
     def verdict(self) -> Agreement:
-        """Whether all of them agree."""
-        return Agreement.OUTSIDE if any(row.verdict is Agreement.OUTSIDE for row in self.rows) else Agreement.WITHIN
+        """The worst one."""
+        return max((row.verdict for row in self.rows), key=_BADNESS.index)
 
     @property
     def worst(self) -> ComparisonRow:
@@ -93,7 +93,7 @@ class PredictionGroup:
     @property
     def remark(self) -> str:
         """What else is outside, and why the verdict is what it is."""
-        others = [row for row in self.rows if row.verdict is Agreement.OUTSIDE and row.statistic not in _STATISTICS]
+        others = [row for row in self.rows if row.verdict is not Agreement.WITHIN and row.statistic not in _STATISTICS]
         parts = [f"{row.statistic} {deviation_text(row)}" for row in others]
         if self.worst.reason or any(map(_depends_on_phase, self.rows)):
             parts.append(self.worst.reason or "nearest value of all phases")
@@ -118,7 +118,7 @@ def worst_of(rows: Iterable[ComparisonRow]) -> ComparisonRow:
     return max(rows, key=rank)
 
 
-_BADNESS = (Agreement.WITHIN, Agreement.OUTSIDE, Agreement.REFUTED)
+_BADNESS = (Agreement.WITHIN, Agreement.DIFFERS, Agreement.OUTSIDE, Agreement.REFUTED)
 
 
 def prediction_groups(result: Comparison) -> list[PredictionGroup]:
@@ -202,12 +202,20 @@ def _outcome(result: Comparison) -> str:
     if not result.compared:
         return "Nothing compared: no measured quantity is predicted"
     tolerance = f"{percent(result.tolerance)} of the measurement"
-    number = len(result.compared)
+    number, within = len(result.compared), [row for row in result.compared if row.verdict is Agreement.WITHIN]
     if outside:
         return f"Model does not hold: {len(outside)} of {counted(number, 'comparison')} outside {tolerance}{_largest(outside)}"
+    if not within:
+        return f"Nothing agrees: {counted(number, 'comparison')} outside {tolerance}, {_EXCUSED}"
+    differing = f"; {number - len(within)} outside, {_EXCUSED}" if number > len(within) else ""
     missing = {row.object for row in result.not_compared} - {row.object for row in result.compared}
     rest = f"; not compared: {counted(len(missing), 'object')}" if missing else ""
-    return f"Model holds: {counted(number, 'comparison')} within {tolerance}{_largest(result.compared)}{rest}{_scarce(result)}"
+    found = f"{counted(len(within), 'comparison')} within {tolerance}{_largest(within)}"
+    return f"Model holds: {found}{differing}{rest}{_scarce(result)}"
+
+
+#: What is to be said of deviations that contradict nothing.
+_EXCUSED = "which does not contradict the stated distributions"
 
 
 #: The extremes of fewer values say little.

@@ -45,7 +45,7 @@ def _quantity(rows: Sequence[ComparisonRow]) -> ComparedQuantity:
         bounds=Interval(bounds.get(Statistic.MIN), bounds.get(Statistic.MAX)) if bounds else None,
         verdict=str(worst.verdict),
         remark=_remark(worst),
-        agrees=worst.verdict is Agreement.WITHIN,
+        agrees=worst.verdict in (Agreement.WITHIN, Agreement.DIFFERS),
     )
 
 

@@ -12,10 +12,10 @@ from amalthea_uros.perf.stimuli import EventTriggered, InterProcess, Periodic
 from amalthea_uros.perf.system import System
 from amalthea_uros.report.activation_text import activation_text
 from amalthea_uros.timing.context import Placement, TimingContext
-from amalthea_uros.timing.dataflow.chains import UnfoldError, sequences, unfold
+from amalthea_uros.timing.dataflow.chains import UnfoldError, unfold
 from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.links import LinkKind, reads, writes
-from amalthea_uros.timing.dataflow.routes import routes
+from amalthea_uros.timing.dataflow.routes import routes_of_ways
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,11 +137,10 @@ class SystemFlows:
 
     def _path(self, name: str) -> ChainPath:
         try:
-            way = sequences(unfold(self.system.chains[name], self.context.system)[0])[0]
-            events = self.context.system.events_by_name
-            route = routes([events[each] for each in way], self.context.dataflow)[0]
+            ways = routes_of_ways(unfold(self.system.chains[name], self.context.system)[0], self.context.dataflow)
         except (UnfoldError, UnresolvedError) as error:
             return ChainPath(name, (), str(error))
+        route, *_ = next(iter(ways.values()))
         passed = [occurrence.process.name for occurrence in route.occurrences]
         return ChainPath(
             name, tuple(process for process, before in zip(passed, [None, *passed], strict=False) if process != before)

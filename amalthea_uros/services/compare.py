@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, TypeAlias
@@ -23,7 +23,7 @@ from amalthea_uros.services.comparison.distributions import distributions
 from amalthea_uros.services.comparison.findings import assumptions_of, findings_of, open_phases
 from amalthea_uros.services.comparison.limits import judge_limits
 from amalthea_uros.services.comparison.naming import Names, Target, targets
-from amalthea_uros.services.comparison.phases import analyses_in_phases
+from amalthea_uros.services.comparison.phases import analyses_in_phases, systems_in_phases
 from amalthea_uros.services.comparison.predictions import Missing, Predictor
 from amalthea_uros.services.comparison.results import (
     Agreement,
@@ -42,7 +42,9 @@ from amalthea_uros.services.subject import Subject, open_subject, paths_of, reus
 from amalthea_uros.services.timing_changes import described
 from amalthea_uros.services.what_if import Changes, as_changes
 from amalthea_uros.timing.overheads import processes_with_overhead
+from amalthea_uros.timing.phases import with_first_arrivals
 from amalthea_uros.timing.settings import Settings
+from amalthea_uros.timing.stated_distributions import Basis, StatedDistributions
 from amalthea_uros.trace.table import EventKind
 from amalthea_uros.units import SECOND, Time
 
@@ -226,7 +228,8 @@ def _compared(system: System, settings: Settings, measurement: Measurement, opti
         uncertainty=uncertainty or 0,
         is_reached=options.uncertainty is not None and uncertainty != 0,
     )
-    rows = (*(row for target in found for row in _rows(target, predictor, rule)), *_not_measured(system, found))
+    basis_of = _bases(system, settings)
+    rows = (*(row for target in found for row in _rows(target, predictor, rule, basis_of)), *_not_measured(system, found))
     comparison = Comparison(
         model="",
         measurement=measurement,
@@ -234,7 +237,7 @@ def _compared(system: System, settings: Settings, measurement: Measurement, opti
         uncertainty=uncertainty,
         rows=rows,
         limits=tuple(_with_doubt(limit, rule) for limit in judge_limits(system, settings, found)),
-        distributions=tuple(distributions(found, rows, runs, rule, options.overheads)),
+        distributions=tuple(distributions(found, rows, runs, rule, options.overheads, basis_of)),
         duration=None if simulation is None else simulation.duration,
         seed=None if simulation is None else simulation.seed,
         assumptions=assumptions_of(measurement, found, options.overheads, analysis, simulation),
@@ -289,7 +292,23 @@ def _simulated(system: System, settings: Settings, options: CompareOptions, meas
     return simulate_measured(system, settings, duration, options.seed)
 
 
-def _rows(target: Target, predictor: Predictor, rule: Rule) -> Iterator[ComparisonRow]:
+def _bases(system: System, settings: Settings) -> Callable[[Target], Basis]:
+    """What the distributions of what is compared follow from."""
+    are_phases_open = systems_in_phases(system, settings) is None
+    stated = StatedDistributions(with_first_arrivals(system, settings.phases), settings, are_phases_open)
+
+    def basis_of(target: Target) -> Basis:
+        match target.kind:
+            case Kind.CHAIN:
+                return stated.of_chain(target.name)
+            case Kind.RUNNABLE:
+                return stated.of_runnable(target.name, target.quantity)
+        return stated.of_process(target.name, target.quantity)
+
+    return basis_of
+
+
+def _rows(target: Target, predictor: Predictor, rule: Rule, basis_of: Callable[[Target], Basis]) -> Iterator[ComparisonRow]:
     series = target.series
     nothing = ComparisonRow(
         object=target.name,
@@ -313,7 +332,7 @@ def _rows(target: Target, predictor: Predictor, rule: Rule) -> Iterator[Comparis
         yield replace(nothing, reason=str(missing))
         return
     chosen = {statistic: predictions[statistic] for statistic in target.statistics}
-    rows = list(compared(replace(series, kind=target.kind), target.name, target.quantity, chosen, rule))
+    rows = list(compared(replace(series, kind=target.kind), target.name, target.quantity, chosen, rule, basis_of(target)))
     yield from rows or [replace(nothing, reason=LEAST if series.is_least else _UNLIKE)]
 
 

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Protocol
 
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros.judge.evidence import ObservedProcess, ObservedValues
 from amalthea_uros.judge.limits import EventConstraint, SystemLimit, deadline_limit, stated_limits, without_number
-from amalthea_uros.judge.verdict import not_observed, observe, observe_process
+from amalthea_uros.judge.verdict import in_doubt, not_observed, observe, observe_process
 from amalthea_uros.perf.constraints import LatencyConstraint, LatencyKind, Requirement
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.system import System
@@ -30,12 +30,20 @@ class ConstraintObservers(Protocol):
         """Why nothing was observed of a constraint."""
 
 
-def judge_process(process: ProcessObservation, model: Process) -> ProcessObservation:
-    """The observations of a process with the verdict on its deadline and on lost activations."""
+def judge_process(process: ProcessObservation, model: Process, doubt: str) -> ProcessObservation:
+    """The observations of a process with the verdict on its deadline and on lost activations.
+
+    Parameters
+    ----------
+    doubt : why what was observed is no behaviour of the system; "" if it is one
+    """
     limit = None if process.deadline is None else deadline_limit(model, process.deadline, process.is_implicit)
     response = replace(observed_values(process.response_time, "no job ended"), pending=process.longest_unfinished)
     found = observe_process(limit, ObservedProcess(response=response, lost_activations=process.lost_activations))
-    return process if found is None else replace(process, verdict=found.verdict, reason=found.reason)
+    if found is None:
+        return process
+    found = in_doubt(found, doubt)
+    return replace(process, verdict=found.verdict, reason=found.reason)
 
 
 def judge_requirements(
@@ -45,8 +53,14 @@ def judge_requirements(
     duration: Time,
     runnables: Results[RunnableObservation],
     observers: ConstraintObservers,
+    doubts: Mapping[str, str],
 ) -> Iterator[RequirementObservation]:
-    """The verdicts on all requirements, then on all constraints."""
+    """The verdicts on all requirements, then on all constraints.
+
+    Parameters
+    ----------
+    doubts : why what was observed is no behaviour of the system, by the names of requirements and constraints
+    """
     for item, limits in stated_limits(system):
         if isinstance(item, Requirement):
             values = _of_requirement(item, system, processes, duration, runnables)
@@ -55,7 +69,8 @@ def judge_requirements(
             quantities = [LimitedQuantity(limit, _of_latency(limit, item, chains)) for limit in limits]
         else:
             quantities = observers.quantities(item)
-        yield from (RequirementObservation.of(limit, observe(limit, values)) for limit, values in quantities)
+        doubt = doubts.get(item.name, "")
+        yield from (RequirementObservation.of(limit, in_doubt(observe(limit, values), doubt)) for limit, values in quantities)
         if not quantities and not isinstance(item, Requirement):
             reason = not_observed(observers.reason(item))
             yield from (RequirementObservation.of(limit, reason) for limit in limits or [without_number(item)])
@@ -89,6 +104,8 @@ def _of_requirement(
         return limited_values(limit, process, duration, None if model is None else activation_period(model, system))
     if runnable is not None:
         return limited_values_of_runnable(limit, runnable)
+    if requirement.process in system.processes:
+        return ObservedValues(reason="the process that it limits is not simulated")
     kind = "process" if requirement.runnable is None else "runnable"
     return ObservedValues(reason=f"the {kind} that it limits is not defined, or was left out when reading")
 

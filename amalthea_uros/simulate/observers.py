@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Protocol
 
@@ -17,6 +17,7 @@ from amalthea_uros.perf.constraints import (
     OrderConstraint,
     RepetitionConstraint,
 )
+from amalthea_uros.perf.events import Event
 from amalthea_uros.perf.system import System
 from amalthea_uros.simulate.limited_values import LimitedQuantity
 from amalthea_uros.simulate.metrics.data_ages import DataAges, LabelAges
@@ -24,13 +25,15 @@ from amalthea_uros.simulate.metrics.delays import delays
 from amalthea_uros.simulate.metrics.event_tables import EventTable, EventTables, SourceTable, in_order
 from amalthea_uros.simulate.metrics.label_values import LabelValues, Reading
 from amalthea_uros.simulate.metrics.repetitions import Repetitions
-from amalthea_uros.simulate.metrics.runnable_orders import RunnableOrder
+from amalthea_uros.simulate.metrics.runnable_orders import ExecutionOrder, RunnableOrder
 from amalthea_uros.simulate.metrics.synchronizations import AllOccurrences, SubsequentOccurrences
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.program.program import Program
-from amalthea_uros.simulate.program.watches import Source, event_names, is_of_label, is_of_order, scope
+from amalthea_uros.simulate.program.watches import Source, event_names, events_of_order, is_of_label, is_of_order, is_source
 from amalthea_uros.simulate.results import LabelObservation
 from amalthea_uros.simulate.rows import Observation
+from amalthea_uros.timing.dataflow.events import EventLocator
+from amalthea_uros.timing.runnable_order import order_scope
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -79,6 +82,7 @@ class Observers:
     _reasons: dict[int, str] = field(default_factory=dict)
     _ages: dict[int, DataAges] = field(default_factory=dict)
     _labels: dict[str, LabelAges] = field(default_factory=dict)
+    _events: EventLocator = field(init=False)
     _values: LabelValues = field(init=False)
     _of_values: SourceTable = field(init=False)
     #: Rows of the latest instant: others of the same instant can follow.
@@ -86,11 +90,12 @@ class Observers:
 
     def __post_init__(self) -> None:
         constraints, base = self.system.constraints, self.program.units
+        self._events = EventLocator(self.system)
         tables = EventTables(self.system, self.program.sources, tuple(self.program.cores))
         for constraint in constraints.constraints:
             self._observe(constraint, tables)
         for order in constraints.orders:
-            self._of_constraints[id(order)] = [self._order(order, process) for process in self._scope(order)]
+            self._observe_order(order)
         self._ages = {id(age): DataAges(age, base) for age in constraints.data_ages}
         labels = self.options.watched_labels(self.system)
         self._labels = {label: LabelAges(label, base) for label in labels}
@@ -122,16 +127,29 @@ class Observers:
                 return reading(constraint=constraint, events=len(names), base=base)
         return None
 
-    def _scope(self, order: OrderConstraint) -> Iterable[str]:
-        """The processes whose jobs call what has to be in order."""
+    def _observe_order(self, order: OrderConstraint) -> None:
+        scope = order_scope(order, self.system, self._events)
+        together = [next(self._sources(event), None) for event in events_of_order(scope)]
+        if scope.reason or None in together:
+            self._reasons[id(order)] = scope.reason or "one of the processes that call the runnables is not simulated"
+            return
         limited = {name for group in order.groups for name in group}
         calling = {source.process for source in self.program.sources if is_of_order(source) and source.name in limited}
-        return [process for process in scope(order, self.system) if process in calling]
+        found = [self._order_of_jobs(order, process) for process in scope.alone if process in calling]
+        if scope.together:
+            sources = [source for source in together if source is not None]
+            found.append(self._tables_of(ExecutionOrder(order, scope.processes, sources, self.program.units), sources))
+        self._of_constraints[id(order)] = found
 
-    def _order(self, order: OrderConstraint, process: str) -> _Observer:
+    def _sources(self, event: Event) -> Iterator[Source]:
+        return (source for source in self.program.sources if is_source(source, event))
+
+    def _order_of_jobs(self, order: OrderConstraint, process: str) -> _Observer:
         sources = [source for source in self.program.sources if is_of_order(source) and source.process == process]
-        tables = [self._table(lambda each, source=source: each == source) for source in sources]  # type: ignore[misc]
-        return _Observer(RunnableOrder(order, process, sources, self.program.units), [*tables])
+        return self._tables_of(RunnableOrder(order, process, sources, self.program.units), sources)
+
+    def _tables_of(self, metrics: Metrics, sources: Sequence[Source]) -> _Observer:
+        return _Observer(metrics, [self._table(lambda each, source=source: each == source) for source in sources])  # type: ignore[misc]
 
     # Rows and results.
 

@@ -32,6 +32,7 @@ from amalthea_uros.simulate.layout import (
 from amalthea_uros.simulate.metrics import chains, jobs
 from amalthea_uros.simulate.metrics.chains import RouteMetrics, chain_observation
 from amalthea_uros.simulate.metrics.jobs import JobMetrics
+from amalthea_uros.simulate.not_simulated import NotSimulated
 from amalthea_uros.simulate.observed_limits import judge_process, judge_requirements
 from amalthea_uros.simulate.observers import Observers
 from amalthea_uros.simulate.operations import POLLING, RUNNING
@@ -152,11 +153,15 @@ class _Run:
         system, program, notes = self.context.system, self.program, self.context.notes
         self._note_left_out()
         self.observers.finish()
-        processes = Results(judge_process(each, system.processes[each.name]) for each in self._processes())
+        left_out = NotSimulated(self.context, frozenset(program.left_out))
+        processes = Results(
+            judge_process(each, system.processes[each.name], left_out.doubt_about(each.name)) for each in self._processes()
+        )
         found = Results(self._chain(name) for name in system.chains)
         duration = self.options.duration
         runnables = Results(map(self._runnable, self.program.runnables, self.runnables))
-        requirements = Results(judge_requirements(system, processes, found, duration, runnables, self.observers))
+        doubts = left_out.doubt_about_limits()
+        requirements = Results(judge_requirements(system, processes, found, duration, runnables, self.observers, doubts))
         return Simulation(
             duration=duration,
             seed=self.options.seed,
@@ -252,11 +257,7 @@ class _Run:
         return CoreObservation(name=name, load=Fraction(int(memory[record + BUSY]) + last, self.end))
 
     def _chain(self, name: str) -> ChainObservation:
-        routes = {
-            " -> ".join(route.events): self.routes[number]
-            for number, route in enumerate(self.program.routes)
-            if route.chain == name
-        }
+        routes = [(route.text, self.routes[number]) for number, route in enumerate(self.program.routes) if route.chain == name]
         return chain_observation(name, routes, self.end, self.program.chains_left_out.get(name, ""))
 
 

@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
+from fractions import Fraction
+from itertools import groupby
 from typing import NamedTuple, TypeAlias
 
 from amalthea_uros.perf.activities import Trigger
 from amalthea_uros.perf.events import CustomEvent, Event, ModeLabelEvent, RunnableChange, RunnableEvent
 from amalthea_uros.perf.network import Purpose
 from amalthea_uros.perf.software import Process
-from amalthea_uros.perf.stimuli import Counter, EventTriggered, InterProcess
+from amalthea_uros.perf.stimuli import Counter, EventTriggered, InterProcess, Stimulus
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.counters import is_always
 from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.links import Dataflow
-from amalthea_uros.timing.event_models import Delayed, Downsampled, EventModel, Multiplied, aggregated
+from amalthea_uros.timing.dataflow.positions import ActivityPosition
+from amalthea_uros.timing.event_models import Delayed, Downsampled, EventModel, Multiplied, aggregated, thinned
 from amalthea_uros.timing.event_models.stimuli import event_model_of
+from amalthea_uros.timing.job_paths import most_in_a_job
 
 
 class UnknownActivationError(Exception):
@@ -31,20 +37,41 @@ def as_activated(_process: Process, activations: Callable[[], EventModel]) -> Ev
     return activations()
 
 
+class Effect(NamedTuple):
+    """What an activity triggers.
+
+    Attributes
+    ----------
+    share : of the times at which the activity is executed
+    """
+
+    position: ActivityPosition
+    stimulus: str
+    share: Fraction
+
+
 class Cause(NamedTuple):
     """A process that triggers a stimulus.
 
     Attributes
     ----------
-    times : how often in a job at most; None if that is unknown
+    position : of the activity that triggers it
     counter : if only every n-th time counts
-    jobs : if only every n-th job reaches it
     """
 
-    process: Process
-    times: int | None
-    counter: Counter | None
-    jobs: Counter | None
+    position: ActivityPosition
+    counter: Counter | None = None
+
+    @property
+    def process(self) -> Process:
+        """The process that triggers it."""
+        return self.position.process
+
+    @property
+    def is_each_time(self) -> bool:
+        """Whether each job that reaches the activity triggers it once, and no counter decides which jobs do."""
+        jobs = self.position.counter
+        return self.counter is None and self.position.times == 1 and jobs is not None and is_always(jobs)
 
 
 @dataclass(slots=True)
@@ -55,6 +82,8 @@ class Activations:
     dataflow: Dataflow
     _incomplete: str = ""
     _triggers: dict[str, list[Cause]] = field(default_factory=dict)
+    _effects: dict[str, list[Effect]] | None = None
+    _activated: dict[str, list[str]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if not any(isinstance(stimulus, InterProcess | EventTriggered) for stimulus in self.system.stimuli.stimuli):
@@ -68,7 +97,7 @@ class Activations:
             for position in positions:
                 if isinstance(position.activity, Trigger) and position.times != 0:
                     causes = self._triggers.setdefault(position.activity.stimulus, [])
-                    causes.append(Cause(position.process, position.times, position.activity.counter, position.counter))
+                    causes.append(Cause(position, position.activity.counter))
 
     def of(self, process: Process, output: Output = as_activated) -> EventModel:
         """The event model of the activations of a process.
@@ -113,36 +142,95 @@ class Activations:
         stimulus = self.system.stimuli_by_name.get(name)
         if stimulus is None:
             raise UnknownActivationError(f"the stimulus {name!r} is not defined in the model")
+        found = self._occurrences(stimulus, output, above)
+        return found if stimulus.condition is None else thinned(found)
+
+    def _occurrences(self, stimulus: Stimulus, output: Output, above: tuple[str, ...]) -> EventModel:
+        """The occurrences of a stimulus, as if its condition were always true."""
+        name = stimulus.name
         if not isinstance(stimulus, InterProcess | EventTriggered):
-            found = event_model_of(stimulus, self.system)
-            if found is None:
+            stated = event_model_of(stimulus, self.system)
+            if stated is None:
                 raise UnknownActivationError(f"the rate of the stimulus {name!r} is unbounded")
-            return found
+            return stated
         if self._incomplete:
             raise UnknownActivationError(f"the processes that trigger {name!r} are unknown: {self._incomplete}")
-        causes = self._triggers.get(name, []) if isinstance(stimulus, InterProcess) else self.causes(stimulus)
+        causes = self.causes(stimulus)
         if not causes:
             raise UnknownActivationError(f"no process triggers {name!r}")
-        return _counted(aggregated(tuple(self._caused_by(cause, output, above) for cause in causes)), stimulus.counter)
+        by_process = groupby(sorted(causes, key=_process_name), key=_process_name)
+        found = [each for _, group in by_process for each in self._caused_by_process(list(group), output, above)]
+        return _counted(aggregated(tuple(found)), stimulus.counter)
 
-    def causes(self, stimulus: EventTriggered) -> list[Cause]:
-        """The processes in which the events of a stimulus occur.
+    def _caused_by_process(self, causes: Sequence[Cause], output: Output, above: tuple[str, ...]) -> Iterator[EventModel]:
+        """The events that the activities of a process cause: those of one path of a job, if others exclude it."""
+        if all(cause.is_each_time for cause in causes) and (most := self.most_in_a_job(causes)) < len(causes):
+            events = self._caused_by(causes[0], output, above)
+            yield events if most == 1 else Multiplied(events, most)
+        else:
+            yield from (self._caused_by(cause, output, above) for cause in causes)
+
+    def most_in_a_job(self, causes: Sequence[Cause]) -> int:
+        """How many of some activities of a process a job can reach; each one reaches an activity once at most."""
+        numbers = sorted(cause.position.number for cause in causes)
+        positions = self.dataflow.events.positions(causes[0].process.name)
+        return most_in_a_job(positions, dict.fromkeys(numbers, 1))
+
+    def causes(self, stimulus: InterProcess | EventTriggered) -> list[Cause]:
+        """The activities that trigger a stimulus, or raise its events.
 
         Raises
         ------
         UnknownActivationError : they can occur otherwise, too, or it is unknown where.
         """
+        if isinstance(stimulus, InterProcess):
+            return self._triggers.get(stimulus.name, [])
         found: list[Cause] = []
         for name in stimulus.events:
             event = self.system.events_by_name.get(name)
             if event is None:
                 raise UnknownActivationError(f"the event {name!r} is not defined in the model")
             self._check(event)
-            causes = [Cause(p.process, p.times, None, p.counter) for p in self.dataflow.events.raising(event) if p.times != 0]
+            causes = [Cause(position) for position in self.dataflow.events.raising(event) if position.times != 0]
             if not causes and isinstance(event, CustomEvent):
                 raise UnknownActivationError(f"no activity in the model raises the event {name!r}")
             found += causes
         return found
+
+    def effects(self, process: str) -> Sequence[Effect]:
+        """What the activities of a process trigger, in order, as far as it is known."""
+        if self._effects is None:
+            self._effects = {}
+            for stimulus in self.system.stimuli.stimuli:
+                if isinstance(stimulus, InterProcess | EventTriggered):
+                    with suppress(UnknownActivationError):
+                        for cause in self.causes(stimulus):
+                            share = _share(cause.counter) * _share(stimulus.counter)
+                            self._effects.setdefault(cause.process.name, []).append(
+                                Effect(cause.position, stimulus.name, share)
+                            )
+            for found in self._effects.values():
+                found.sort(key=lambda effect: effect.position.number)
+        return self._effects.get(process, ())
+
+    def activated(self, stimulus: str) -> Sequence[str]:
+        """The processes that a stimulus activates."""
+        if not self._activated:
+            for process in self.system.processes.values():
+                for name in process.stimuli:
+                    self._activated.setdefault(name, []).append(process.name)
+        return self._activated.get(stimulus, ())
+
+    def external_rate(self, process: Process) -> Fraction:
+        """Maximum number of activations per picosecond that no process triggers, in the long run.
+
+        Raises
+        ------
+        UnknownActivationError : it is unbounded.
+        """
+        stimuli = [self.system.stimuli_by_name.get(name) for name in process.stimuli]
+        names = [each.name for each in stimuli if each is not None and not isinstance(each, InterProcess | EventTriggered)]
+        return sum((self._of_stimulus(name, as_activated, ()).rate for name in names), Fraction(0))
 
     def _check(self, event: Event) -> None:
         """Refuse events that have other causes than activities of processes."""
@@ -155,12 +243,21 @@ class Activations:
 
     def _caused_by(self, cause: Cause, output: Output, above: tuple[str, ...]) -> EventModel:
         """The events that a process causes between its start and its end."""
-        if cause.times is None:
+        times = cause.position.times
+        if times is None:
             raise UnknownActivationError(
                 f"the maximum number of times that a job of {cause.process.name!r} triggers it is unknown"
             )
-        found = _counted(output(cause.process, lambda: self._of_process(cause.process, output, above)), cause.jobs)
-        return _counted(found if cause.times == 1 else Multiplied(found, cause.times), cause.counter)
+        found = _counted(output(cause.process, lambda: self._of_process(cause.process, output, above)), cause.position.counter)
+        return _counted(found if times == 1 else Multiplied(found, times), cause.counter)
+
+
+def _process_name(cause: Cause) -> str:
+    return cause.process.name
+
+
+def _share(counter: Counter | None) -> Fraction:
+    return Fraction(1, 1 if counter is None else counter.prescaler)
 
 
 def _counted(events: EventModel, counter: Counter | None) -> EventModel:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TypeVar
@@ -14,10 +14,11 @@ from amalthea_uros.timing.activation import Activations, UnknownActivationError
 from amalthea_uros.timing.allocation import allocated_cores, effective_priority
 from amalthea_uros.timing.arrivals import arrival_assumptions, with_bounded_arrivals
 from amalthea_uros.timing.awaited import why_suspended
-from amalthea_uros.timing.critical_sections import Locks, Protection, protection_of
+from amalthea_uros.timing.critical_sections import Locks, Protection
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.timing.demand import DemandModel
 from amalthea_uros.timing.event_models import EventModel
+from amalthea_uros.timing.exclusive_jobs import TriggeredTogether, triggered_together
 from amalthea_uros.timing.executors.followers import with_followers
 from amalthea_uros.timing.executors.loops import never_rests
 from amalthea_uros.timing.limits import MAX_INPUT
@@ -32,6 +33,7 @@ from amalthea_uros.timing.server_calls import with_direct_calls
 from amalthea_uros.timing.settings import Memory, Settings
 from amalthea_uros.timing.stated_demand import states_execution_time
 from amalthea_uros.timing.stretches import KeptOff, StretchWalk, UnclearLocksError
+from amalthea_uros.timing.touching import Touching
 
 T = TypeVar("T")
 
@@ -57,7 +59,6 @@ class TimingContext:
     demands : execution demand, in the time base of the core, including scheduler decisions at the end of jobs
     decisions : demand of scheduler decisions at activations, if the model specifies it
     reasons : why the response time of a process is unknown
-    unanalysable_cores : (core, whether by an ISR) -> a process that can run there and cannot be analysed
     unclear_locks : why the critical sections of a process are unknown
     open_semaphores : those without a ceiling, or held while waiting for one without: others than the holder delay who waits
     """
@@ -70,7 +71,6 @@ class TimingContext:
     demands: dict[str, MultiframeDemand] = field(default_factory=dict)
     decisions: dict[str, MultiframeDemand] = field(default_factory=dict)
     reasons: dict[str, str] = field(default_factory=dict)
-    unanalysable_cores: dict[tuple[str, bool], str] = field(default_factory=dict)
     unclear_locks: dict[str, str] = field(default_factory=dict)
     open_semaphores: frozenset[str] = frozenset()
 
@@ -109,12 +109,22 @@ class TimingContext:
     @cached_property
     def dataflow(self) -> Dataflow:
         """The positions of activities, and the links between processes."""
-        return Dataflow(self.system)
+        return Dataflow(self.system, self.settings.communication)
 
     @cached_property
     def activations(self) -> Activations:
         """The activations of processes."""
         return Activations(self.system, self.dataflow)
+
+    @cached_property
+    def triggered_together(self) -> Sequence[TriggeredTogether]:
+        """Processes of which each job of another process triggers some, each once at most."""
+        return triggered_together(self.activations)
+
+    @cached_property
+    def touching(self) -> Touching:
+        """What processes can touch if something about them is unknown."""
+        return Touching(self.system, self.scheduled, self.dataflow)
 
     def time_base(self, process: str) -> int:
         """Time units per picosecond on the core of a process."""
@@ -225,27 +235,22 @@ class TimingContext:
                 self.scheduled[scheduled.process.name] = scheduled
             except NotSchedulableError as error:
                 self.mark_unknown(allocation.task, str(error))
-                scheduler = self.system.schedulers.get(allocation.scheduler)
-                self._exclude(allocation.cores or (scheduler.cores if scheduler else ()), False, allocation.task)
         for isr in self.system.mapping.isrs:
             try:
                 self.scheduled[isr.isr] = scheduling.isr(isr.isr, isr.controller, isr.priority)
             except NotSchedulableError as error:
                 self.mark_unknown(isr.isr, str(error))
-                controller = self.system.interrupt_controllers.get(isr.controller)
-                self._exclude(controller.cores if controller else (), True, isr.isr)
         for name in self.system.processes:
             if name not in self.scheduled:
                 self.mark_unknown(name, "it is not allocated to a scheduler")
-
-    def _exclude(self, cores: Iterable[str], is_isr: bool, name: str) -> None:
-        for core in cores:
-            self.unanalysable_cores.setdefault((core, is_isr), name)
 
     def _find_demands(self) -> None:
         model = self.demand_model
         for name, scheduled in self.scheduled.items():
             try:
+                # Its scheduler decides about it, whatever its jobs do.
+                if (scheduler := self.deciding(name, scheduled.core)) is not None:
+                    self.decisions[name] = model.of_decision(scheduler, scheduled.core)
                 executor = self.system.executor_of_task.get(name)
                 if executor is not None and (reason := never_rests(executor)):
                     raise UnknownDemandError(reason)
@@ -254,11 +259,8 @@ class TimingContext:
                 demand = model.of_process(scheduled.process, scheduled.core)
                 if not states_execution_time(scheduled.process, self.system):
                     raise UnknownDemandError("it has no execution time, and neither have the runnables that it calls")
-                scheduler = self.deciding(name, scheduled.core)
-                if scheduler is not None:
-                    decision = model.of_decision(scheduler, scheduled.core)
-                    self.decisions[name] = decision
-                    demand = MultiframeDemand((*demand.frames, *decision.frames))
+                if name in self.decisions:
+                    demand = MultiframeDemand((*demand.frames, *self.decisions[name].frames))
                 if demand.worst > MAX_INPUT:
                     raise UnknownDemandError("its execution time exceeds the supported range of times")
                 self.demands[name] = demand
@@ -274,21 +276,29 @@ class TimingContext:
             found.setdefault(allocation.task, allocation.scheduler)
         return found
 
-    def deciding(self, task: str, core: str) -> Scheduler | None:
-        """The scheduler that decides when a task is activated or ends, if its decisions take time on the core."""
+    def decider(self, task: str) -> Scheduler | None:
+        """The scheduler that decides when a task is activated or ends, if its decisions take time."""
         scheduler = self.system.schedulers.get(self._scheduler_of.get(task, ""))
-        if scheduler is None or not scheduler.overhead:
-            return None
-        if scheduler.executing_core not in (None, core):
-            message = f"the overhead of {scheduler.name!r}, which decides on another core, is ignored"
-            self.notes.warning("ANA006", message, scheduler)
-            return None
+        return scheduler if scheduler is not None and scheduler.overhead else None
+
+    def deciding(self, task: str, core: str) -> Scheduler | None:
+        """The same for a task on a core.
+
+        Raises
+        ------
+        UnknownDemandError : it decides on another core, so that the task waits for what that one executes.
+        """
+        scheduler = self.decider(task)
+        if scheduler is not None and scheduler.executing_core not in (None, core):
+            raise UnknownDemandError(
+                f"its scheduler {scheduler.name!r} decides on another core, {scheduler.executing_core!r}, which cannot be analysed"
+            )
         return scheduler
 
     @cached_property
     def protection(self) -> dict[str, Protection]:
         """What each process uses to keep others off."""
-        return {name: protection_of(scheduled.process, self.system) for name, scheduled in self.scheduled.items()}
+        return {name: self.touching.protection[name] for name in self.scheduled}
 
     def _find_locks(self) -> None:
         """Find the processes whose critical sections are unknown, and the semaphores at which others than the holder delay."""
@@ -318,15 +328,22 @@ class TimingContext:
         self.mark_unknown(name, reason)
 
     def _find_remote_semaphores(self) -> None:
-        """Find processes that can wait for other cores or servers at a semaphore."""
-        users: dict[str, list[ScheduledProcess]] = {}
-        for name, uses in self.protection.items():
-            for semaphore in sorted(uses.semaphores):
-                users.setdefault(semaphore, []).append(self.scheduled[name])
-        for semaphore, here in users.items():
-            if len({(scheduled.core, scheduled.server) for scheduled in here}) > 1:
-                for scheduled in here:
-                    self._mark_unclear(scheduled.name, f"it shares the semaphore {semaphore!r} with other cores or servers")
+        """Find processes that can wait at a semaphore for other cores or servers, or for somebody whose core is unknown."""
+        users: dict[str, list[str]] = {}
+        for name, uses in self.touching.protection.items():
+            for semaphore in sorted(uses.semaphores) if self.touching.cores_of(name) else ():
+                users.setdefault(semaphore, []).append(name)
+        for semaphore, names in users.items():
+            here = [self.scheduled[name] for name in names if name in self.scheduled]
+            unknown = next((name for name in names if name not in self.scheduled), None)
+            if unknown is not None:
+                reason = f"it shares the semaphore {semaphore!r} with {unknown!r}, which could not be analysed"
+            elif len({(scheduled.core, scheduled.server) for scheduled in here}) > 1:
+                reason = f"it shares the semaphore {semaphore!r} with other cores or servers"
+            else:
+                continue
+            for scheduled in here:
+                self._mark_unclear(scheduled.name, reason)
 
 
 def _only(values: Collection[T]) -> T | None:

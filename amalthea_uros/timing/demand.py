@@ -47,7 +47,7 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.timing.clocks import frequency_of
 from amalthea_uros.timing.counters import CallSites, UncountableError, first_effect, is_always
 from amalthea_uros.timing.counts import count_of, is_average
-from amalthea_uros.timing.dataflow.positions import MAX_CALL_DEPTH, ActivityPosition, TooComplexError, positions
+from amalthea_uros.timing.dataflow.positions import MAX_CALL_DEPTH, ActivityPosition, TooComplexError, ends_early, positions
 from amalthea_uros.timing.limits import LIMIT
 from amalthea_uros.timing.means import exact_sum, mean
 from amalthea_uros.timing.memory import MemoryAccess
@@ -106,7 +106,7 @@ class DemandModel:
         ------
         UnknownDemandError : some demand is unbounded, or the frequency of the core is unknown.
         """
-        if Terminate in self.system.activity_classes and any(map(_ends_early, self._positions(process))):
+        if Terminate in self.system.activity_classes and any(map(ends_early, self._positions(process))):
             raise UnknownDemandError("it can terminate before its last activity, which cannot be analysed")
         frames = self._frames(process.activities, core, ())
         if self.settings.memory is Memory.IMPLICIT:
@@ -385,11 +385,6 @@ class DemandModel:
             self.notes.assume("an instruction takes one tick unless the core type specifies it")
             return Fraction(1)
         raise UnknownDemandError(f"the type of the core {core!r} does not define the ticks for {need!r}")
-
-
-def _ends_early(position: ActivityPosition) -> bool:
-    """Whether a job ends at a position that others can follow."""
-    return isinstance(position.activity, Terminate) and any(index + 1 < len(part) for part, index in position.outer)
 
 
 def _summed(frames: Sequence[Frame]) -> tuple[Frame, ...]:

@@ -10,6 +10,7 @@ from math import exp, sqrt
 from amalthea_uros.perf.distributions import (
     Beta,
     Boundaries,
+    Bounds,
     Constant,
     Distribution,
     Gauss,
@@ -28,7 +29,7 @@ _POINTS = 128
 
 
 def mean(distribution: Distribution[int]) -> Fraction:
-    """The mean value; the middle of the bounds for `Boundaries`, or if a parameter is not finite."""
+    """The mean value; the middle of the bounds for `Boundaries` and `Bounds`, or if a parameter is not finite."""
     lower, upper = lowest(distribution), highest(distribution)
     try:
         found = _mean(distribution)
@@ -53,7 +54,7 @@ def _mean(distribution: Distribution[int]) -> Fraction:
             return Fraction(value)
         case Statistics(average=average) | Weibull(average=average):
             return Fraction(average)
-        case Uniform(lower=lower, upper=upper) | Boundaries(lower=lower, upper=upper):
+        case Uniform(lower=lower, upper=upper) | Boundaries(lower=lower, upper=upper) | Bounds(lower=lower, upper=upper):
             return Fraction(lower + upper, 2)
         case Beta(alpha=alpha, beta=beta, lower=lower, upper=upper):
             return lower + (upper - lower) * Fraction(alpha) / (Fraction(alpha) + Fraction(beta))

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from amalthea_uros.perf.constraints import Bound, TimeLimit, TimeMetric
+from amalthea_uros.perf.distributions import highest
 from amalthea_uros.perf.software import Process
-from amalthea_uros.perf.stimuli import Periodic
+from amalthea_uros.perf.stimuli import Burst, Periodic, RelativePeriodic, Synthetic
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.limits import LIMIT
 from amalthea_uros.units import Time
@@ -18,6 +19,18 @@ def known_releases(process: Process, system: System) -> Periodic | None:
         ):
             return stimulus
     return None
+
+
+def latest_first_release(process: Process, system: System) -> Time:
+    """The latest time of the first release of a process with a single stimulus; 0 for stimuli that do not state it."""
+    match [system.stimuli_by_name.get(name) for name in process.stimuli]:
+        case [Periodic(offset=offset, jitter=jitter)]:
+            return offset + ((highest(jitter) or 0) if jitter is not None else 0)
+        case [RelativePeriodic(offset=offset) | Burst(offset=offset)]:
+            return offset
+        case [Synthetic(offset=offset, times=times)] if times:
+            return offset + min(times)
+    return 0
 
 
 def activation_period(process: Process, system: System) -> Time | None:

@@ -18,7 +18,7 @@ from amalthea_uros.perf.os import SERVERS, Duration, Parameter, ParameterValue, 
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Periodic
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.allocation import deciding_scheduler
+from amalthea_uros.timing.allocation import deciding_scheduler, effective_priority
 from amalthea_uros.timing.notes import Notes
 from amalthea_uros.units import Time
 
@@ -62,6 +62,7 @@ class EqualPriority(StrEnum):
     FIFO = "first come, first served"
     EDF = "earliest deadline first"
     ROUND_ROBIN = "round robin"
+    UNKNOWN = "an order that is not stated"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -167,6 +168,7 @@ class Scheduling:
     limits: Mapping[str, Time] = field(default_factory=dict)
     servers: dict[str, Server] = field(default_factory=dict)
     _served: Counter[str] = field(init=False, default_factory=Counter)
+    _without_priority: dict[str, str] | None = field(init=False, default=None)
     _roots_of: defaultdict[str, list[str]] = field(init=False, default_factory=partial(defaultdict, list))
 
     def task(self, allocation: TaskAllocation) -> ScheduledProcess:
@@ -221,8 +223,9 @@ class Scheduling:
             self.notes.warning("ANA002", message, scheduler)
             raise NotSchedulableError(f"the parent of its scheduler {scheduler.name!r} schedules by {base.equal_priority}")
         if policy is None:
-            message = f"the scheduler {scheduler.name!r} has no policy; assuming fixed-priority preemptive scheduling"
+            message = f"the scheduler {scheduler.name!r} has no policy, so its tasks are not analysed"
             self.notes.warning("ANA001", message, scheduler)
+            raise NotSchedulableError(f"its scheduler {scheduler.name!r} has no policy")
         if policy in _NEEDING_PRIORITY and parameters.priority is None and self._serves_one(scheduler):
             # Nothing competes with what is alone.
             parameters = replace(parameters, priority=0)
@@ -231,9 +234,34 @@ class Scheduling:
             message = f"the policy {policy!r} of the scheduler {scheduler.name!r} cannot be analysed"
             self.notes.warning("ANA002", message, scheduler)
             raise NotSchedulableError(f"there is no analysis for the policy {policy} of its scheduler {scheduler.name!r}")
+        if policy in _NEEDING_PRIORITY and self._lacks_priorities(scheduler):
+            return replace(base, rank=(*base.rank, 0), equal_priority=EqualPriority.UNKNOWN)
         if policy == Policy.OSEK and parameters.of(scheduler, _GROUP) == _NO_GROUP:
             self.notes.assume(f"task group {_NO_GROUP} of OSEK schedulers means that a task is in no group")
         return by_policy(scheduler, parameters, base)
+
+    def _lacks_priorities(self, scheduler: Scheduler) -> bool:
+        """Whether a scheduler decides for tasks only, and some of them have no priority: then it may serve them in any order."""
+        return self.without_priority(scheduler.name) != "" and not self._serves_one(scheduler) and self._serves_tasks(scheduler)
+
+    def without_priority(self, scheduler: str) -> str:
+        """A task without a priority for which a scheduler decides; "" if there is none."""
+        if self._without_priority is None:
+            self._without_priority = {}
+            for task in self.system.mapping.tasks:
+                deciding = deciding_scheduler(task.scheduler, self.system)
+                if deciding is not None and effective_priority(task, self.system) is None:
+                    self._without_priority.setdefault(deciding.name, task.task)
+        return self._without_priority.get(scheduler, "")
+
+    def _serves_tasks(self, scheduler: Scheduler) -> bool:
+        """Whether a scheduler decides for no other scheduler that decides something itself."""
+        tasks = Counter(
+            deciding.name
+            for task in self.system.mapping.tasks
+            if (deciding := deciding_scheduler(task.scheduler, self.system)) is not None
+        )
+        return tasks[scheduler.name] == self._served[scheduler.name]
 
     def _serves_one(self, scheduler: Scheduler) -> bool:
         """Whether a scheduler decides for a single task or scheduler; groupings decide nothing."""
@@ -412,10 +440,9 @@ def _earliest_deadline_first(_scheduler: Scheduler, parameters: _Parameters, bas
 
 
 #: The policies for which what they serve needs a priority.
-_NEEDING_PRIORITY = (None, Policy.FIXED_PRIORITY_PREEMPTIVE, Policy.OSEK, Policy.PRIORITY_BASED_ROUND_ROBIN)
-#: The scheduling by each policy; without a policy, fixed priorities are assumed.
-_BY_POLICY: Mapping[str | None, Callable[[Scheduler, _Parameters, SchedulingContext], SchedulingContext]] = {
-    None: _fixed_priority,
+_NEEDING_PRIORITY = (Policy.FIXED_PRIORITY_PREEMPTIVE, Policy.OSEK, Policy.PRIORITY_BASED_ROUND_ROBIN)
+#: The scheduling by each policy.
+_BY_POLICY: Mapping[str, Callable[[Scheduler, _Parameters, SchedulingContext], SchedulingContext]] = {
     Policy.FIXED_PRIORITY_PREEMPTIVE: _fixed_priority,
     Policy.OSEK: _osek,
     Policy.PRIORITY_BASED_ROUND_ROBIN: _round_robin,

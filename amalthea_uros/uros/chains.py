@@ -250,7 +250,7 @@ class Chains:
             ends = product(*(self.dataflow.events.of(self.events[name]) for name in (first, then)))
         except UnresolvedError:
             return False
-        return any(self.dataflow.data(*pair) or self.dataflow.trigger(*(end.process.name for end in pair)) for pair in ends)
+        return any(self.dataflow.data(*pair) or self.dataflow.triggers(*(end.process.name for end in pair)) for pair in ends)
 
     def _event_at(self, name: str, moment: Moment) -> str:
         """The event of a process or runnable at a moment of its job."""

@@ -11,6 +11,7 @@ from amalthea_uros.perf.activities import Demand, Execute
 from amalthea_uros.perf.distributions import (
     Beta,
     Boundaries,
+    Bounds,
     Bucket,
     Constant,
     Distribution,
@@ -80,6 +81,8 @@ def in_ticks(times: Distribution[int], frequency: Frequency) -> Distribution[int
             )
         case Uniform(lower=lower, upper=upper):
             return Uniform(lower=lower_bound(lower), upper=upper_bound(upper))
+        case Bounds(lower=lower, upper=upper):
+            return Bounds(lower=lower_bound(lower), upper=upper_bound(upper))
         case Boundaries(lower=lower, upper=upper, sampling=sampling):
             return Boundaries(lower=lower_bound(lower), upper=upper_bound(upper), sampling=sampling)
         case Statistics(lower=lower, average=average, upper=upper):

@@ -14,7 +14,7 @@ from amalthea_uros.timing.clocks import controller_of_core
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.timing.demand import DemandModel
 from amalthea_uros.timing.executors.followers import with_followers
-from amalthea_uros.timing.load import activation_rates, loads
+from amalthea_uros.timing.load import activation_rates, certain_loads, loads, suppressible
 from amalthea_uros.timing.notes import Notes
 
 
@@ -40,12 +40,30 @@ class SystemContext:
         return controller_of_core(self.system)
 
     @cached_property
+    def activations(self) -> Activations:
+        """The activations of all processes."""
+        return Activations(self.system, self.dataflow)
+
+    @cached_property
     def rates(self) -> Mapping[str, Fraction]:
         """Maximum number of activations per picosecond of each process."""
-        return activation_rates(self.system, Activations(self.system, self.dataflow))
+        return activation_rates(self.system, self.activations)
 
     @cached_property
     def loads(self) -> Mapping[str, Mapping[str, Fraction]]:
-        """The share of each core that its processes demand in the worst case."""
-        uncertain = with_followers(self.system, self.dataflow)
-        return loads(self.cores, self.rates, DemandModel(self.system, Notes()), uncertain)
+        """The share of each core that each of its processes demands in the worst case."""
+        return loads(self.cores, self.rates, self._demand_model, self._uncertain)
+
+    @cached_property
+    def certain_loads(self) -> Mapping[str, Fraction]:
+        """The share of each core that its processes demand together in the worst case."""
+        return certain_loads(self.cores, self.activations, self._demand_model, self._uncertain)
+
+    @cached_property
+    def _demand_model(self) -> DemandModel:
+        return DemandModel(self.system, Notes())
+
+    @cached_property
+    def _uncertain(self) -> frozenset[str]:
+        """The processes that may be activated less often than their event models say."""
+        return with_followers(self.system, self.dataflow) | suppressible(self.system, self.activations)

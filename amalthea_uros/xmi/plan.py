@@ -27,7 +27,7 @@ class FeaturePlan:
     data_type : how values are written, None for references and parts
     parse : text -> value for the reader, None where the text is the value
     omitted : the value that EMF does not write because absence means the same; None if there is no such value
-    default_text : what EMF writes for an unset attribute (it has an explicit default), None if nothing
+    default_text : what is written for an unset attribute, as by EMF (it has an explicit default), None if nothing
     target : the class of references and parts
     """
 
@@ -47,7 +47,7 @@ class FeaturePlan:
         "xml_name",
     )
 
-    def __init__(self, name: str, many: bool, fact: FeatureFact, declared: Facts) -> None:
+    def __init__(self, name: str, many: bool, fact: FeatureFact, declared: Facts, class_name: str) -> None:
         self.name = name
         self.xml_name = fact.name
         self.many = many
@@ -60,13 +60,12 @@ class FeaturePlan:
         self.omitted: Any = None
         if fact.kind is Kind.ATTRIBUTE:
             self.data_type = data_type_of(declared, fact.type)
-            self.default_text = fact.default
             default = declared.default(fact)
             if default is not None:
                 value = self.data_type.parse(default)
                 if fact.default is None:
                     self.omitted = value
-                else:
+                elif not _has_to_be_stated(class_name, fact):
                     self.default_text = self.data_type.format(value)
         else:
             self.target = getattr(classes, fact.type)
@@ -75,6 +74,30 @@ class FeaturePlan:
         self.parse = _quick_parse(self.data_type) if self.data_type and not self.is_string else None
         #: Plans of the objects that this feature may contain, by `xsi:type`; filled while reading.
         self.parts: dict[str | None, ClassPlan] = {}
+
+
+#: Optional numbers that have a default, and without which an object nevertheless says nothing, or something else.
+_NUMBERS = {
+    "ArrivalCurveEntry": ("numberOfOccurrences",),
+    "CPUPercentageRequirementLimit": ("limitValue",),
+    "ChannelReceive": ("elements",),
+    "ChannelSend": ("elements",),
+    "CountRequirementLimit": ("limitValue",),
+    "DataRate": ("value",),
+    "DataSize": ("value",),
+    "MinAvgMaxStatistic": ("min", "avg", "max"),
+    "PercentageRequirementLimit": ("limitValue",),
+    "SingleValueStatistic": ("value",),
+    "Time": ("value",),
+}
+
+
+def _has_to_be_stated(class_name: str, fact: FeatureFact) -> bool:
+    """Whether the absence of a value does not mean the default: a mandatory upper bound that nobody stated is unknown, not 0.
+
+    EMF writes the default also for these, so that bounds of 0 come into being. What is left out is not stated for any reader.
+    """
+    return fact.required or fact.name in _NUMBERS.get(class_name, ())
 
 
 def _quick_parse(data_type: DataType) -> Callable[[str], Any]:
@@ -103,7 +126,7 @@ class ClassPlan:
         self.cls: type[Element] = getattr(classes, class_name)
         held = {feature.xml_name: feature for feature in features_of(self.cls).values()}
         self.features = tuple(
-            FeaturePlan(held[fact.name].name, held[fact.name].many, fact, declared)
+            FeaturePlan(held[fact.name].name, held[fact.name].many, fact, declared, class_name)
             for fact in declared.features(class_name)
             if fact.stored
         )

@@ -1,10 +1,11 @@
 """What comes from outside can come at any time: the worst phase counts, and nothing is known if there are too many of them."""
 
 import json
+from dataclasses import replace
 from fractions import Fraction
 
 import pytest
-from hand_made_systems import READ, Proc, access, chain, system, ticks
+from hand_made_systems import READ, WRITE, Proc, access, chain, system, ticks
 from support import ROOT, SHARED
 
 from amalthea_uros import Settings, analyze_system, build_model, describe, extract
@@ -14,7 +15,7 @@ from amalthea_uros.analyze.explanation import shares
 from amalthea_uros.analyze.results import Claim, Verdict
 from amalthea_uros.analyze.sensitivity import max_growth
 from amalthea_uros.perf.activities import Call
-from amalthea_uros.perf.events import ProcessChange, ProcessEvent, RunnableChange, RunnableEvent
+from amalthea_uros.perf.events import ProcessChange, ProcessEvent, RunnableChange, RunnableEvent, Segment, Sequence
 from amalthea_uros.perf.software import Label, Runnable
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.units import MICROSECOND as US
@@ -281,17 +282,21 @@ def test_what_is_assumed_of_a_chain_is_reported_also_if_only_the_phases_on_its_w
     others = [Proc(f"other {n}", (taking(f"message {n}", 7),), period=1000, priority=10 + n) for n in range(4)]
     built = system(
         Proc("taker", (taking("message", 3),), period=1000, priority=3),
-        Proc("reader", (access("read by nobody else", READ), ticks(10)), period=1000, priority=1),
+        Proc("reader", (access("data", READ), ticks(10)), period=1000, priority=1),
         *others,
-        labels=(Label(name="read by nobody else"),),
-        runnables=(Runnable(name="take", activities=(ticks(1),)),),
+        labels=(Label(name="data"),),
+        runnables=(Runnable(name="take", activities=(ticks(1), access("data", WRITE))),),
         events=(
             RunnableEvent(name="taken", runnable="take", change=RunnableChange.START, process="taker"),
             ProcessEvent(name="done", process="reader", change=ProcessChange.TERMINATE),
         ),
-        chains=(chain("gap", "taken", "done"),),
+        chains=(
+            replace(
+                chain("open", "taken", "done"), stimulus=None, items=Sequence((Segment(stimulus="taken", response="done"),))
+            ),
+        ),
     )
     assert phases.MAX_COMBINATIONS < 3 * 7**4
     analysis = analyze_system(built)
-    assert all(value.method.endswith("over all 3 phases") for value in analysis.chains["gap"].values)
-    assert "CHN002" in {finding.rule for finding in analysis.findings}
+    assert all(value.method.endswith("over all 3 phases") for value in analysis.chains["open"].values)
+    assert "CHN007" in {finding.rule for finding in analysis.findings}

@@ -119,11 +119,12 @@ def latencies(run: Recording, chain: str, steady: int) -> Mapping[str, MetricObs
     """The latencies of a chain by their names, of what occurs from a time on."""
     rows = np.array(run.observations, np.int64).reshape(-1, len(Observation))
     late = rows[rows[:, Observation.TIME] >= steady * run.program.units]
-    routes = {}
+    routes = []
     for number, route in enumerate(run.program.routes):
         if route.chain == chain:
-            routes[str(number)] = RouteMetrics(run.program.units)
-            routes[str(number)].add(_renumbered(late[late[:, Observation.ROUTE] == number]))
+            metrics = RouteMetrics(run.program.units)
+            metrics.add(_renumbered(late[late[:, Observation.ROUTE] == number]))
+            routes.append((route.text, metrics))
     found = chain_observation(chain, routes, steady, "").quantities
     return {quantity.value: observation for quantity, observation in found.items()}
 

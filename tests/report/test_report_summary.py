@@ -27,11 +27,11 @@ def test_names_are_no_markup(tmp_path):
 
 
 def test_a_summary_says_what_its_verdict_is_subject_to(tmp_path):
-    # No data flow leads from the callback to the control function: the latency is that of a connection that nobody modelled.
+    # No data flow leads from the callback to the control function: the latency is unknown.
     text = (ROOT / "samples" / "bodas-test-advanced.yaml").read_text().replace("reads: [memory_2, input]", "reads: [input]")
     (tmp_path / "gap.yaml").write_text(text)
     found = amuros.report(tmp_path / "gap.yaml").markdown
     verdict, requirements = found.index("Schedulable: "), found.index("### 4 requirements")
     assert verdict < found.index("- CHN002 warning: ") < requirements
     (row,) = [line for line in found.splitlines() if line.startswith("| factor-to-output_reaction")]
-    assert "| bound |" in row
+    assert "| unknown | ≤ 25 ms |" in row

@@ -48,8 +48,11 @@ def test_liu_and_layland_1973_theorem_7():
 
 
 def test_nothing_is_assumed_of_priorities():
-    analysis = amuros.analyze(amuros.taskset([(5, 1), (10, 1)], unit="ms"))
-    assert (analysis.summary.schedulable, analysis["T1"].reason) == ("unknown", "it has no priority")
+    # As the lowest, the first needs 1 + 1 ms, or 4 + 2 ms of 5 ms.
+    assert amuros.analyze(amuros.taskset([(5, 1), (10, 1)], unit="ms")).summary.schedulable == "yes"
+    analysis = amuros.analyze(amuros.taskset([(5, 2), (10, 4)], unit="ms"))
+    assert analysis.summary.schedulable == "unknown"
+    assert analysis["T1"].reason == "it has no priority; as the lowest it needs up to 6 ms"
 
 
 def non_preemptive(**offset):

@@ -217,7 +217,7 @@ def test_the_chain_has_the_values_of_all_its_routes():
     routes = {"fast": RouteMetrics(1), "slow": RouteMetrics(1)}
     mixed = np.concatenate([rows(PICTURE), rows(sorted(slow), route=1)])
     add_rows(mixed[np.argsort(mixed[:, 2], kind="stable")], list(routes.values()))
-    found = chain_observation("c", routes, end=30)
+    found = chain_observation("c", list(routes.items()), end=30)
     assert [route.text for route in found.routes] == ["fast", "slow"]
     assert found.observations == 10
     latency = found.quantities[Q.FIRST_TO_FIRST]

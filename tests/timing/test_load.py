@@ -52,7 +52,7 @@ FEATURES = {"small": (2.0, 0.5), "big": (1.0, 2.0)}
 
 def total(model):
     """The load of each processing unit that has any, by its name."""
-    return {core: sum(shares.values()) for core, shares in SystemContext(extract(model).system).loads.items()}
+    return {core: share for core, share in SystemContext(extract(model).system).certain_loads.items() if share}
 
 
 def assert_same_load(model, analysis):

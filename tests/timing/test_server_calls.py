@@ -194,7 +194,7 @@ def test_what_the_server_runnable_does_is_carried_on():
     end = ProcessEvent(name="end", process="last", change=ProcessChange.TERMINATE)
     chain = EventChain(name="chain", stimulus="start", response="end")
     (found,) = analyze_system(replace(built, events=Events(events=(start, end), chains=(chain,)))).chains
-    assert found.routes == ("start -[a trigger triggered]-> end",)
+    assert found.routes == ("start -[a trigger triggered]-> end", "start -[data out]-> end")
     # The client starts it at 3; the last task always ends at 12, after all of the client (10) and of the server (1).
     assert found.value(Quantity.MIN_FIRST_TO_FIRST).value <= 9 * US
     assert found.value(Quantity.MAX_REDUCED_REACTION_TIME).value >= 9 * US

@@ -13,6 +13,7 @@ from templating import ROOT
 
 from fuzzing import description_mutations, model_mutations, source_mutations
 from fuzzing.descriptions import make_description
+from fuzzing.models import make_model
 
 _DESCRIPTIONS = (".yaml", ".yml")
 _MODELS = (".amxmi",)
@@ -20,7 +21,9 @@ _MODELS = (".amxmi",)
 _SOURCES = (".c", ".cpp", ".ino")
 _OTHERS = (*_SOURCES, ".meta", ".dbc")
 #: Kinds of files, and how often each is taken; there are many more models to start from than others.
-_KINDS = ((_DESCRIPTIONS, 0.35), (_MODELS, 0.25), (_OTHERS, 0.15))
+_KINDS = ((_DESCRIPTIONS, 0.3), (_MODELS, 0.25), (_OTHERS, 0.1))
+#: Random models with limits that they break.
+_MADE_MODELS = 0.1
 #: Of the rest of the cases, which are made by chance, that of those that are not mutated.
 _UNCHANGED = 0.6
 #: In bytes; larger files take too long to tell anything more.
@@ -58,6 +61,8 @@ def make_case(number: int, seed: int, files: list[Path]) -> Case:
             path = rng.choice([path for path in files if path.suffix in suffixes])
             return Case(f"case{path.suffix}", _mutated(rng, path, path.read_bytes()))
         share -= part
+    if share < _MADE_MODELS:
+        return Case("case.amxmi", make_model(rng))
     path, content = Path("case.yaml"), make_description(rng).encode()
     return Case(path.name, content if rng.random() < _UNCHANGED else _mutated(rng, path, content))
 

@@ -33,6 +33,7 @@ from amalthea_uros.xmi.load import load
 from amalthea_uros.xmi.save import save
 from fuzzing.commands import InvariantError, require, require_visible, run
 from fuzzing.contradictions import contradictions
+from fuzzing.models import require_broken
 
 Invariant = Callable[[Path, Path], None]
 
@@ -137,6 +138,7 @@ def agreement(path: Path, _folder: Path) -> None:
     try:
         analysis = analyze_files(path).analysis
         _require_known(analysis)
+        require_broken(path, analysis)
         for mode in (Mode.SAMPLED, Mode.WORST):
             simulation = simulate_files(path, Options(duration=_SHORT, mode=mode)).simulation
             found = list(contradictions(analysis, simulation))

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from itertools import permutations
 from typing import TypeAlias
 
@@ -17,13 +18,13 @@ import numpy as np
 from amalthea_uros._internal.failures import failure
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.chains.event_windows import EventWindows, UnknownError
+from amalthea_uros.analyze.chains.runnable_orders import holds_across, holds_in_each_job
 from amalthea_uros.analyze.chains.stage_timing import UnboundedStageError
 from amalthea_uros.analyze.implausible_limits import note_implausible
 from amalthea_uros.analyze.results import ChainResult, Claim, Quantity, RequirementResult, Value
 from amalthea_uros.judge.evidence import Ends
 from amalthea_uros.judge.limits import EventConstraint, SystemLimit, limits_of, without_number
 from amalthea_uros.judge.verdict import Judgement, prove, prove_kept, unknown
-from amalthea_uros.perf.activities import Call
 from amalthea_uros.perf.constraints import (
     ChainEnd,
     ChainSynchronization,
@@ -39,11 +40,11 @@ from amalthea_uros.perf.constraints import (
 from amalthea_uros.perf.events import EventChain, LabelChange, LabelEvent
 from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.links import LinkKind
-from amalthea_uros.timing.dataflow.routes import routes
-from amalthea_uros.timing.event_models import EventModel, Periodic, is_strictly_periodic
+from amalthea_uros.timing.dataflow.routes import corresponding, routes
+from amalthea_uros.timing.event_models import EventModel, Periodic, can_be_dense, is_strictly_periodic
 from amalthea_uros.timing.jitter import jitter_of
 from amalthea_uros.timing.releases import known_releases
-from amalthea_uros.timing.runnable_order import satisfies_order
+from amalthea_uros.timing.runnable_order import order_scope
 from amalthea_uros.units import Time, time_text
 
 _REACTION = (Quantity.MIN_FIRST_TO_FIRST, Quantity.MAX_REDUCED_REACTION_TIME)
@@ -110,7 +111,7 @@ class ConstraintEvaluator:
         latencies = _Latencies(chain.values, *(_AGE if constraint.kind is LatencyKind.AGE else _REACTION))
         for limit in limits:
             if limit.is_jitter:
-                is_one_run = self._is_one_run(self.evaluation.context.system.chains[chain.name])
+                is_one_run = len(chain.routes) == 1 and self._is_one_run(self.evaluation.context.system.chains[chain.name])
                 judgement = prove(limit, latencies.jitter(is_one_run), chain.reason)
                 yield limit, replace(judgement, spread=latencies.spread)
             else:
@@ -130,13 +131,17 @@ class ConstraintEvaluator:
 
     def _delay(self, constraint: DelayConstraint, limits: Sequence[SystemLimit]) -> Iterator[_Judged]:
         source, target = self.windows.event(constraint.source), self.windows.event(constraint.target)
+        found = corresponding(source, target, self.evaluation.context.dataflow)
         if constraint.matching is not Matching.REACTION:
-            links = {link.kind for route in routes([source, target], self.evaluation.context.dataflow) for link in route.links}
-            if not links <= {LinkKind.JOB, LinkKind.TRIGGER}:
+            links = {link.kind for route in found for link in route.links}
+            later = any(
+                stage.jobs_later is not None for route in found for group in self.evaluation.groups(route) for stage in group
+            )
+            if later or not links <= {LinkKind.JOB, LinkKind.TRIGGER}:
                 raise UnknownError(
                     "data between the events can be overwritten or read again, so their occurrences do not correspond one to one"
                 )
-        yield from _proved(limits, _Latencies(self.evaluation.pair(source, target), *_REACTION).limited)
+        yield from _proved(limits, _Latencies(self.evaluation.worst(found), *_REACTION).limited)
 
     def _chain_synchronization(self, constraint: ChainSynchronization, limits: Sequence[SystemLimit]) -> Iterator[_Judged]:
         found = [self.chains.get(name) for name in constraint.chains]
@@ -167,7 +172,8 @@ class ConstraintEvaluator:
         releases = known_releases(occurrence.process, self.evaluation.context.system)
         cycle = releases.period if releases is not None else None
         for name in sorted(readers):
-            latencies = _Latencies(self.evaluation.pair(written, replace(reading, process=name)), *_AGE)
+            found = routes([written, replace(reading, process=name)], self.evaluation.context.dataflow)
+            latencies = _Latencies(self.evaluation.worst(found), *_AGE)
             here = (replace(limit, object=f"{constraint.label} in {name}") for limit in limits)
             yield from _proved([_in_time(limit, cycle) for limit in here], latencies.limited)
 
@@ -189,17 +195,15 @@ class ConstraintEvaluator:
     # Order
 
     def _order(self, constraint: OrderConstraint) -> Iterator[_Judged]:
-        wanted = [name for group in constraint.groups for name in group]
-        for process in constraint.processes or tuple(self.evaluation.context.system.processes):
-            called = [
-                position.activity.runnable
-                for position in self.evaluation.context.dataflow.events.positions(process)
-                if isinstance(position.activity, Call) and len(position.outer) == 1
-            ]
-            if not any(name in called for name in wanted):
-                continue
-            limit = without_number(constraint, process, "order of runnables")
-            yield limit, prove_kept(satisfies_order(called, constraint))
+        context = self.evaluation.context
+        scope = order_scope(constraint, context.system, context.dataflow.events)
+        if scope.reason:
+            raise UnknownError(scope.reason)
+        for process in scope.alone:
+            yield _of_order(constraint, process, partial(holds_in_each_job, process, constraint, context))
+        if scope.together:
+            holds = partial(holds_across, scope, constraint, self.windows)
+            yield _of_order(constraint, ", ".join(scope.processes), holds)
 
 
 @dataclass(frozen=True, slots=True)
@@ -251,6 +255,15 @@ class _Latencies:
 def _proved(limits: Iterable[SystemLimit], of: Callable[[SystemLimit], Ends]) -> Iterator[_Judged]:
     """The verdicts on limits by the ends of what they limit."""
     return ((limit, prove(limit, of(limit))) for limit in limits)
+
+
+def _of_order(constraint: OrderConstraint, what: str, holds: Callable[[], bool]) -> _Judged:
+    """The verdict on an order of runnables, which has no number."""
+    limit = without_number(constraint, what, "order of runnables")
+    try:
+        return limit, prove_kept(holds())
+    except UnknownError as error:
+        return limit, unknown(str(error))
 
 
 def _unknown(constraint: EventConstraint, limits: Sequence[SystemLimit], reason: str) -> Iterator[RequirementResult]:
@@ -312,7 +325,7 @@ def _in_time(limit: SystemLimit, period: Time | None) -> SystemLimit:
 def _distance(events: EventModel, count: int, is_upper: bool) -> Ends:
     """Between which ends the distance of `count` repetitions lies; event models that are not periodic only bound it."""
     distance = _longest(events, count) if is_upper else events.delta_min(count + 1)
-    if isinstance(events, Periodic):
+    if can_be_dense(events):
         return Ends(distance, distance)
     return Ends(None, distance) if is_upper else Ends(distance, None)
 

@@ -13,14 +13,14 @@ from amalthea_uros.analyze.chains.timed_stage import TimedStage
 from amalthea_uros.analyze.results import ChainResult, Claim, Quantity, Value
 from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.perf.activities import Communication
-from amalthea_uros.perf.events import Event, EventChain
+from amalthea_uros.perf.events import EventChain
 from amalthea_uros.timing.clocks import controller_of_core
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.dataflow.chains import Unfolded, UnfoldError, combined, empty_sets, sequences, unfold
-from amalthea_uros.timing.dataflow.events import UnresolvedError
-from amalthea_uros.timing.dataflow.links import GAPS, LinkKind
-from amalthea_uros.timing.dataflow.routes import Route, routes
-from amalthea_uros.timing.dataflow.stages import Read, Stage, communication_of, link_text, stages
+from amalthea_uros.timing.dataflow.chains import Unfolded, UnfoldError, combined, empty_sets, unfold
+from amalthea_uros.timing.dataflow.events import UnraisedError, UnresolvedError
+from amalthea_uros.timing.dataflow.links import LinkKind
+from amalthea_uros.timing.dataflow.routes import Route, UnlinkedError, route_text, routes_of_ways
+from amalthea_uros.timing.dataflow.stages import Read, Stage, common_communication, stages
 from amalthea_uros.timing.phases import Occurrence, unknown_phases
 
 
@@ -54,18 +54,14 @@ class ChainEvaluator:
             return ChainResult(name=chain.name, communication="", reason=reason)
 
     def _chain(self, chain: EventChain) -> ChainResult:
-        events_by_name = self.context.system.events_by_name
         try:
             unfolded, left_out = unfold(chain, self.context.system)
-            ways = {
-                events: routes([events_by_name[name] for name in events], self.context.dataflow)
-                for events in sequences(unfolded)
-            }
+            ways = routes_of_ways(unfolded, self.context.dataflow)
         except (UnfoldError, UnresolvedError) as error:
-            self.context.notes.warning("CHN001", f"the chain {chain.name!r} is not evaluated: {error}", chain)
+            self._note_unknown(chain, error)
             return ChainResult(name=chain.name, communication="", reason=str(error))
         every = [route for found in ways.values() for route in found]
-        self._note(chain, left_out, every)
+        self._note_left_out(chain, left_out)
         self._note_ends(chain, tuple(ways))
         if any(_reads_explicitly(stage) for route in every for stage in self._stages(route)):
             self.context.notes.assume("an explicit read sees what is written at the same instant")
@@ -80,7 +76,7 @@ class ChainEvaluator:
             self.context.notes.warning("CHN003", f"the chain {chain.name!r} has no finite bound: {reason}", chain)
         return ChainResult(
             name=chain.name,
-            communication=communication_of(stage for route in every for stage in self._stages(route)),
+            communication=common_communication(stage for route in every for stage in self._stages(route)),
             routes=tuple(map(route_text, every)),
             values=tightest,
             all_values=tuple(all_values),
@@ -100,16 +96,15 @@ class ChainEvaluator:
 
     def stages(self, chain: EventChain) -> list[Stage]:
         """The stages of all ways through a chain; nothing if it cannot be evaluated."""
-        events_by_name = self.context.system.events_by_name
+        return [stage for route in self.routes(chain) for stage in self._stages(route)]
+
+    def routes(self, chain: EventChain) -> list[Route]:
+        """The routes of all ways through a chain; nothing if it cannot be evaluated."""
         try:
-            return [
-                stage
-                for events in sequences(unfold(chain, self.context.system)[0])
-                for route in routes([events_by_name[name] for name in events], self.context.dataflow)
-                for stage in self._stages(route)
-            ]
+            ways = routes_of_ways(unfold(chain, self.context.system)[0], self.context.dataflow)
         except (UnfoldError, UnresolvedError):
             return []
+        return [route for found in ways.values() for route in found]
 
     def _evaluated(self, ways: Mapping[tuple[str, ...], Sequence[Route]]) -> _Evaluated:
         """The values of each way through a chain, and the reasons."""
@@ -117,24 +112,23 @@ class ChainEvaluator:
         for events, found_routes in ways.items():
             try:
                 methods = [self.latencies(route) for route in found_routes]
+                values = [list(method.values()) for method in methods]
             except UnboundedStageError as error:
                 found.reason = str(error)
                 found.values[events] = []
                 continue
-            values = [list(method.values()) for method in methods]
             found.values[events] = _worst_of(values)
-            found.why = found.why or methods[0].why(values[0])
+            found.why = found.why or _why([method.why(own) for method, own in zip(methods, values, strict=True)])
             found.why_unbounded = found.why_unbounded or next((m.why_unbounded for m in methods if m.why_unbounded), "")
         return found
 
-    def pair(self, first: Event, then: Event) -> tuple[Value, ...]:
-        """The tightest values from one event to another, which need not be part of a chain.
+    def worst(self, found: Iterable[Route]) -> tuple[Value, ...]:
+        """The tightest values over routes from one event to another, which need not be part of a chain.
 
         Raises
         ------
-        UnresolvedError, UnboundedStageError : there are no values.
+        UnboundedStageError : there are no values.
         """
-        found = routes([first, then], self.context.dataflow)
         return _tightest(_worst_of([list(self.latencies(route).values()) for route in found]))
 
     def _note_ends(self, chain: EventChain, ways: Sequence[tuple[str, ...]]) -> None:
@@ -149,28 +143,26 @@ class ChainEvaluator:
             message = f"the event set {name!r} of the chain {chain.name!r} is empty and is skipped"
             notes.warning("CHN008", message, chain)
 
-    def _note(self, chain: EventChain, left_out: Iterable[str], found: Sequence[Route]) -> None:
-        """Report what had to be assumed about a chain."""
+    def _note_unknown(self, chain: EventChain, error: UnfoldError | UnresolvedError) -> None:
+        """Report why a chain is not evaluated."""
         notes = self.context.notes
+        match error:
+            case UnlinkedError(gaps=gaps):
+                for first, then in gaps:
+                    message = f"in the chain {chain.name!r} no data flow or trigger connects {first!r} to {then!r}; it is not evaluated"
+                    notes.warning("CHN002", message, chain)
+            case UnraisedError():
+                notes.warning("CHN004", f"the chain {chain.name!r} is not evaluated: {error}", chain)
+            case _:
+                notes.warning("CHN001", f"the chain {chain.name!r} is not evaluated: {error}", chain)
+
+    def _note_left_out(self, chain: EventChain, left_out: Iterable[str]) -> None:
+        """Report events at which parts of a chain start or end, but not the chain."""
         for event in left_out:
             message = (
                 f"the chain {chain.name!r} does not start or end with {event!r}, but a part of it does; {event!r} is ignored"
             )
-            notes.warning("CHN005", message, chain)
-        guesses = self.context.dataflow.events.guesses
-        for event, guess in guesses.items():
-            message = f"no activity in the model raises the event {event!r}; it is assumed to occur {guess}"
-            notes.warning("CHN004", message, self.context.system.events_by_name[event])
-        # They are reported now; each chain would report those of all chains before it again.
-        guesses.clear()
-        for route in found:
-            for link, first, then in zip(route.links, route.events, route.events[1:], strict=False):
-                if link.kind in GAPS:
-                    message = (
-                        f"in the chain {chain.name!r} no data flow or trigger connects {first!r} to {then!r}; "
-                        "it is evaluated as if a variable connected them"
-                    )
-                    notes.warning("CHN002", message, chain)
+            self.context.notes.warning("CHN005", message, chain)
 
     def _stages(self, route: Route) -> list[Stage]:
         return stages(route, self.context.settings.communication)
@@ -191,18 +183,28 @@ class ChainEvaluator:
                 raise UnboundedStageError(
                     f"the message {link.names[0]!r} leaves the system and comes back, and nobody stated how long that takes"
                 )
+            if link.kind is LinkKind.DATA:
+                self._require_known_writers(link.names)
         parts: list[list[TimedStage]] = []
         before = None
         for group, follower in _with_followers(self.groups(route)):
-            controller = self._controller(group[0])
+            controller = self.controller(group[0].process.name)
             if controller != before or not parts:
                 parts.append([])
             parts[-1].append(self.timing.group(group, follower))
             before = controller
         return RouteLatencies(parts, self.timing.unit, is_certain=route.is_timed, budget=self.budget)
 
-    def _controller(self, stage: Stage) -> str:
-        scheduled = self.context.scheduled.get(stage.process.name)
+    def _require_known_writers(self, labels: Iterable[str]) -> None:
+        """Refuse data that an unknown process writes, too: what a job reads can be of that one; raises as `latencies`."""
+        for label in labels:
+            for name in self.context.touching.writers(label):
+                if name in self.solution.reasons:
+                    raise UnboundedStageError(f"{name!r}, which could not be analysed, writes {label!r}")
+
+    def controller(self, process: str) -> str:
+        """The controller of a process; "" if it is unknown."""
+        scheduled = self.context.scheduled.get(process)
         return self.controllers.get(scheduled.core, "") if scheduled is not None else ""
 
 
@@ -239,25 +241,35 @@ def _with_followers(groups: Sequence[Sequence[Stage]]) -> list[tuple[Sequence[St
     return list(zip(groups, [*followers, None], strict=True))
 
 
-def route_text(route: Route) -> str:
-    """The events of a route and the links between them."""
-    parts = [route.events[0]]
-    for link, event in zip(route.links, route.events[1:], strict=True):
-        parts.append(f"-[{link_text(link)}]-> {event}")
-    return " ".join(parts)
+def _why(found: Sequence[str]) -> str:
+    """Why values over several routes are exact or only bounds: as soon as one of the routes has only bounds, because of that."""
+    return next((why for why in found if why.startswith("bounds")), found[0])
 
 
 def _worst_of(found: Sequence[Sequence[Value]]) -> list[Value]:
-    """The worst value of each method over the routes of one sequence of events."""
+    """The worst values over the routes of one sequence of events: of each method that all of them have, and of the tightest ones."""
     if len(found) == 1:
         return list(found[0])
     result = []
     for value in found[0]:
         same = [_same(value, others) for others in found]
-        if None not in same and not value.quantity.is_mean:
-            worst = max if value.quantity.is_upper else min
-            result.append(worst((each for each in same if each is not None), key=lambda each: each.value or 0))
+        if None not in same:
+            result += _worst([each for each in same if each is not None])
+    tightest = [{value.quantity: value for value in _tightest(values)} for values in found]
+    for quantity in tightest[0]:
+        if all(quantity in own for own in tightest):
+            # The methods of the routes can differ.
+            result += [value for value in _worst([own[quantity] for own in tightest]) if value not in result]
     return result
+
+
+def _worst(values: Sequence[Value]) -> list[Value]:
+    """The worst of some values of a quantity; there is no mean if they differ."""
+    if values[0].quantity.is_mean:
+        return [values[0]] if all(value == values[0] for value in values) else []
+    worst = (max if values[0].quantity.is_upper else min)(value.value or 0 for value in values)
+    here = [value for value in values if value.value == worst]
+    return [next((value for value in here if value.claim is Claim.EXACT), here[0])]
 
 
 def _same(value: Value, others: Iterable[Value]) -> Value | None:

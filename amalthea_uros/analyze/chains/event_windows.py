@@ -76,7 +76,7 @@ class EventWindows:
     def spread(self, events: Sequence[str]) -> Ends:
         """The maximum time between corresponding occurrences of events of processes with the same period: between which ends."""
         windows = []
-        periods = set()
+        periods, missing = set(), set()
         for name in events:
             occurrence = self.occurrence(name)
             releases = known_releases(occurrence.process, self.evaluation.context.system)
@@ -85,10 +85,13 @@ class EventWindows:
             periods.add(releases.period)
             early, late = self.of(occurrence)
             offset = releases.offset % releases.period
+            missing.add(releases.offset // releases.period)
             windows.append((offset + early, offset + late))
         if not windows:
             raise UnknownError("it has no events")
         if len(periods) > 1:
             raise UnknownError("its events have different periods, so their occurrences do not correspond")
+        if len(missing) > 1:
+            raise UnknownError("some of its events occur for the first time in a later period than others")
         apart = max(early for early, _ in windows) - min(late for _, late in windows)
         return Ends(max(0, apart), max(late for _, late in windows) - min(early for early, _ in windows))

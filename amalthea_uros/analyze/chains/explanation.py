@@ -12,7 +12,7 @@ import numpy as np
 
 from amalthea_uros.analyze.chains import job_chains
 from amalthea_uros.analyze.chains.bounds import terms
-from amalthea_uros.analyze.chains.evaluator import ChainEvaluator, route_text
+from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.chains.executions import Execution
 from amalthea_uros.analyze.chains.hop_causes import Cause, CauseKind, HopReasons, cause
 from amalthea_uros.analyze.chains.job_chains import JobBudget, backward, forward
@@ -26,9 +26,7 @@ from amalthea_uros.analyze.ways.results import Way
 from amalthea_uros.perf.constraints import LatencyConstraint
 from amalthea_uros.perf.events import EventChain
 from amalthea_uros.timing.counters import ALWAYS
-from amalthea_uros.timing.dataflow.chains import UnfoldError, sequences, unfold
-from amalthea_uros.timing.dataflow.events import UnresolvedError
-from amalthea_uros.timing.dataflow.routes import Route, routes
+from amalthea_uros.timing.dataflow.routes import Route, route_text
 from amalthea_uros.timing.dataflow.stages import Stage
 from amalthea_uros.timing.phases import unknown_phases
 from amalthea_uros.timing.releases import known_releases
@@ -143,7 +141,7 @@ def _explained(analysis: Analysis, name: str, quantity: Quantity) -> ChainExplan
         return ChainExplanation(chain=result, quantity=quantity, reason=reason)
     context = analysis.solution.context
     for evaluator in _evaluators(context.system.chains[name], analysis):
-        for route in _routes(context.system.chains[name], evaluator):
+        for route in evaluator.routes(context.system.chains[name]):
             found = _RouteExplanation(evaluator, route, quantity, value).hops()
             if found is not None:
                 hops, overwritten = found
@@ -162,16 +160,6 @@ def _evaluators(chain: EventChain, analysis: Analysis) -> Iterator[ChainEvaluato
         if phases := Phases.of(solution, occurrences):
             yield from (ChainEvaluator(each) for _, each in phases.solutions(phases.cases.of_chain(chain)))
     yield evaluation
-
-
-def _routes(chain: EventChain, evaluator: ChainEvaluator) -> list[Route]:
-    context = evaluator.context
-    try:
-        ways = sequences(unfold(chain, context.system)[0])
-        events = context.system.events_by_name
-        return [route for way in ways for route in routes([events[name] for name in way], context.dataflow)]
-    except (UnfoldError, UnresolvedError):
-        return []
 
 
 @dataclass(frozen=True, slots=True)
@@ -386,9 +374,10 @@ def _worst_path(part: Sequence[TimedStage], quantity: Quantity) -> _Path | None:
     chain = [each.pessimistic for each in bounds]
     if len(bounds) < len(part):
         return None
-    found = JobBudget().build(chain, max(each.steady_state_start for each in bounds))
-    if found is None:
+    built = JobBudget().build(chain, max(each.steady_state_start for each in bounds))
+    if built is None:
         return None
+    found = built.from_start(is_exact=True)
     until = int(max(found.ends.max(), found.next_writes.max())) + 2 * reach(chain)
     times = [task.extended(until) for task in chain]
     if quantity in _REACTIONS:

@@ -9,7 +9,7 @@ analysis of asynchronized distributed cause-effect chains", ACM Transactions on 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from itertools import pairwise
 from math import lcm
 from typing import TYPE_CHECKING
@@ -77,8 +77,8 @@ class Inputs:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class JobChains:
-    """The job chains that start at the jobs of the first task, and those that end at the jobs of the last one, in one cycle.
+class Latencies:
+    """The job chains that start at jobs of the first task, and those that end at jobs of the last one.
 
     Attributes
     ----------
@@ -88,7 +88,6 @@ class JobChains:
     starts : reads at which backward chains start
     writes : of the jobs at which they end
     next_writes : of the jobs after those
-    inputs : jobs whose data reach the end
     """
 
     reads: Numbers
@@ -97,18 +96,11 @@ class JobChains:
     starts: Numbers
     writes: Numbers
     next_writes: Numbers
-    inputs: Inputs
 
     @property
     def reaction_time(self) -> Time:
         """Maximum reaction time: from an event just after the previous read to the first output caused by it."""
         return int((self.ends - self.previous_reads).max())
-
-    @property
-    def mean_reaction_time(self) -> float:
-        """The mean over events that are uniformly distributed in time."""
-        waits = (self.reads - self.previous_reads).astype(np.float64)
-        return float(((self.ends - self.reads + waits / 2) * waits).sum() / waits.sum())
 
     @property
     def first_to_first(self) -> Numbers:
@@ -124,6 +116,42 @@ class JobChains:
     def last_to_last(self) -> Numbers:
         """From the read to each output that is based on it; the maximum is the maximum reduced data age."""
         return self.writes - self.starts
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class JobChains(Latencies):
+    """The job chains in one cycle.
+
+    Attributes
+    ----------
+    inputs : jobs whose data reach the end
+    before : those before the cycle: until all tasks have been released, jobs can wait for longer for each other
+    possible : outputs before the cycle that use what was there at the start of the system, but, if the times of reads and writes
+        are only bounds, may use the output of the first job or of a later one
+    """
+
+    inputs: Inputs
+    before: Latencies
+    possible: Latencies
+
+    @property
+    def mean_reaction_time(self) -> float:
+        """The mean over events that are uniformly distributed in time."""
+        waits = (self.reads - self.previous_reads).astype(np.float64)
+        return float(((self.ends - self.reads + waits / 2) * waits).sum() / waits.sum())
+
+    def from_start(self, is_exact: bool) -> Latencies:
+        """Those of the cycle and of all jobs before, from the start of the system on.
+
+        Parameters
+        ----------
+        is_exact : whether jobs read and write at these times, which are no bounds
+        """
+        every = [self.before, self] if is_exact else [self.before, self.possible, self]
+        return Latencies(**{name: np.concatenate([getattr(each, name) for each in every]) for name in _TIMES})
+
+
+_TIMES = tuple(each.name for each in fields(Latencies))
 
 
 def job_count(chain: Sequence[ReadWriteTimes], steady_state_start: Time) -> int:
@@ -154,14 +182,37 @@ def build_job_chains(chain: Sequence[ReadWriteTimes], steady_state_start: Time) 
     first, last = whole[0], whole[-1]
     begin = _jobs_in(first, start, start + cycle)
     end = _jobs_in(last, start, start + cycle)
+    first_jobs, last_jobs = (np.arange(np.searchsorted(task.releases, start), dtype=np.int64) for task in (first, last))
+    based = _based_on_a_job(whole, last_jobs)
+    own = _latencies(whole, begin, end)
     return JobChains(
+        **{name: getattr(own, name) for name in _TIMES},
+        inputs=_inputs(whole, start, cycle, length),
+        before=_latencies(whole, first_jobs, based),
+        possible=_possible(whole, np.setdiff1d(last_jobs, based, assume_unique=True)),
+    )
+
+
+def _latencies(chain: Sequence[ReadWriteTimes], begin: Numbers, end: Numbers) -> Latencies:
+    """The job chains that start at jobs of the first task, and those that end at jobs of the last one."""
+    first, last = chain[0], chain[-1]
+    return Latencies(
         reads=first.reads[begin],
-        previous_reads=first.reads[begin - 1],
-        ends=last.writes[forward(whole, begin)],
-        starts=first.reads[backward(whole, end)],
+        # No job reads before the first one.
+        previous_reads=first.reads[np.maximum(begin - 1, 0)],
+        ends=last.writes[forward(chain, begin)],
+        starts=first.reads[backward(chain, end)],
         writes=last.writes[end],
         next_writes=last.writes[end + 1],
-        inputs=_inputs(whole, start, cycle, length),
+    )
+
+
+def _possible(chain: Sequence[ReadWriteTimes], end: Numbers) -> Latencies:
+    """Jobs of the last task as if they used the output of the first job."""
+    nothing, last = np.arange(0, dtype=np.int64), chain[-1]
+    starts = np.full(len(end), chain[0].reads[0])
+    return replace(
+        _latencies(chain, nothing, nothing), starts=starts, writes=last.writes[end], next_writes=last.writes[end + 1]
     )
 
 
@@ -201,8 +252,15 @@ def forward(chain: Sequence[ReadWriteTimes], jobs: Numbers) -> Numbers:
     return jobs
 
 
+def _based_on_a_job(chain: Sequence[ReadWriteTimes], jobs: Numbers) -> Numbers:
+    """Those jobs of the last task that use the output of a job of the first one, not what was there at the start of the system."""
+    for count in range(2, len(chain) + 1):
+        jobs = jobs[backward(chain[-count:], jobs) >= 0]
+    return jobs
+
+
 def backward(chain: Sequence[ReadWriteTimes], jobs: Numbers) -> Numbers:
-    """The jobs of the first task whose outputs jobs of the last task use."""
+    """The jobs of the first task whose outputs jobs of the last task use; -1 for what was there at the start of the system."""
     for writer, task in zip(chain[-2::-1], chain[:0:-1], strict=True):
         if writer.jobs_later is not None:
             found = np.searchsorted(writer.releases, task.releases[jobs], side="left" if writer.jobs_later else "right")

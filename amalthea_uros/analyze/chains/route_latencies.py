@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from amalthea_uros.analyze.chains import job_chains
 from amalthea_uros.analyze.chains.bounds import becker, bi, davare, duerr, hamann, kloda
 from amalthea_uros.analyze.chains.bounds.chain_task import ChainTask
-from amalthea_uros.analyze.chains.stage_timing import in_picoseconds
+from amalthea_uros.analyze.chains.stage_timing import UnboundedStageError, in_picoseconds
 from amalthea_uros.analyze.chains.timed_stage import TimedStage
 from amalthea_uros.analyze.results import Claim, Quantity, Value
 from amalthea_uros.units import Time
@@ -23,6 +23,13 @@ if TYPE_CHECKING:
 EXACT = "job chains over the hyperperiod"
 BOUNDED = "job chains with earliest reads and latest writes"
 SUMMED = "sum over controllers whose clocks are not synchronized"
+
+
+#: A minimum and the maximum of the same times.
+_RANGES = (
+    (Quantity.MIN_FIRST_TO_FIRST, Quantity.MAX_REDUCED_REACTION_TIME),
+    (Quantity.MIN_LAST_TO_LAST, Quantity.MAX_REDUCED_DATA_AGE),
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,13 +72,27 @@ class RouteLatencies:
         return next((timed.why_irregular for part in self.parts for timed in part if timed.why_irregular), "")
 
     def values(self) -> Iterator[Value]:
-        """The values of all methods."""
+        """The values of all methods.
+
+        Raises
+        ------
+        UnboundedStageError : a maximum is negative or below a minimum, so that a response can come before its stimulus.
+        """
+        found = list(self._values())
+        for minimum, maximum in _RANGES:
+            lowest = max((value.value or 0 for value in found if value.quantity is minimum), default=0)
+            highest = min((value.value or 0 for value in found if value.quantity is maximum), default=lowest)
+            if not 0 <= lowest <= highest:
+                raise UnboundedStageError("a response of the chain can come before its stimulus, which is not evaluated")
+        yield from found
+
+    def _values(self) -> Iterator[Value]:
         yield from self._of_job_chains()
         tasks = [timed.task for part in self.parts for timed in part]
         yield from self._of_periods(tasks)
         if all(timed.is_logical for part in self.parts for timed in part):
-            time = hamann.reaction_time(tasks)
-            yield from self._reactions(time, tasks[0], "two periods for each step", hamann.SOURCE)
+            time = hamann.reaction_time(tasks) + _wait_at_start(tasks)
+            yield from self._reactions(time, tasks, "two periods for each step", hamann.SOURCE)
         if len(self.parts) == 1:
             yield from self._of_releases(tasks)
 
@@ -93,18 +114,20 @@ class RouteLatencies:
             whole = round(exactly) if quantity.is_mean else in_picoseconds(exactly, 1, quantity.is_upper)
             return Value(quantity=quantity, value=whole, claim=claim, method=method, source=job_chains.SOURCE)
 
-        yield value(Quantity.MAX_REACTION_TIME, chains.reaction_time)
-        yield value(Quantity.MAX_REDUCED_REACTION_TIME, int(chains.first_to_first.max()))
-        yield value(Quantity.MAX_DATA_AGE, chains.data_age)
-        yield value(Quantity.MAX_REDUCED_DATA_AGE, int(chains.last_to_last.max()))
+        # Maxima and minima are those of all jobs from the start of the system on, means those of the jobs that repeat.
+        every = chains.from_start(is_exact)
+        yield value(Quantity.MAX_REACTION_TIME, every.reaction_time)
+        yield value(Quantity.MAX_REDUCED_REACTION_TIME, int(every.first_to_first.max()))
+        yield value(Quantity.MAX_DATA_AGE, every.data_age)
+        yield value(Quantity.MAX_REDUCED_DATA_AGE, int(every.last_to_last.max()))
         if not is_exact:
             yield from self._minima(value)
             return
         yield value(Quantity.MAX_FIRST_TO_LAST, int(chains.inputs.first_to_last.max()))
         yield value(Quantity.MAX_LAST_TO_FIRST, int(chains.inputs.last_to_first.max()))
         yield value(Quantity.MIN_LAST_TO_FIRST, int(chains.inputs.last_to_first.min()))
-        yield value(Quantity.MIN_FIRST_TO_FIRST, int(chains.first_to_first.min()))
-        yield value(Quantity.MIN_LAST_TO_LAST, int(chains.last_to_last.min()))
+        yield value(Quantity.MIN_FIRST_TO_FIRST, int(every.first_to_first.min()))
+        yield value(Quantity.MIN_LAST_TO_LAST, int(every.last_to_last.min()))
         yield value(Quantity.MEAN_REACTION_TIME, chains.mean_reaction_time)
         yield value(Quantity.MEAN_FIRST_TO_FIRST, float(chains.first_to_first.mean()))
         yield value(Quantity.MEAN_LAST_TO_LAST, float(chains.last_to_last.mean()))
@@ -114,9 +137,10 @@ class RouteLatencies:
         chains = self._job_chains(self.parts[0], pessimistic=False)
         if chains is None:
             return
+        every = chains.from_start(is_exact=True)
         for quantity, times in (
-            (Quantity.MIN_FIRST_TO_FIRST, chains.first_to_first),
-            (Quantity.MIN_LAST_TO_LAST, chains.last_to_last),
+            (Quantity.MIN_FIRST_TO_FIRST, every.first_to_first),
+            (Quantity.MIN_LAST_TO_LAST, every.last_to_last),
         ):
             # With a long time between reading and writing, no job of the cycle has to pass anything on.
             if times.size:
@@ -131,12 +155,13 @@ class RouteLatencies:
 
     def _summed(self, found: Sequence[JobChains]) -> Iterator[Value]:
         """The sum over controllers without a common clock (theorem 5.8 of RTAS 2021)."""
-        first, *others = found
-        *before, last = found
+        every = [each.from_start(is_exact=False) for each in found]
+        first, *others = every
+        *before, last = every
         sums = {
-            Quantity.MAX_REACTION_TIME: sum(each.reaction_time for each in found),
+            Quantity.MAX_REACTION_TIME: sum(each.reaction_time for each in every),
             Quantity.MAX_REDUCED_REACTION_TIME: int(first.first_to_first.max()) + sum(e.reaction_time for e in others),
-            Quantity.MAX_DATA_AGE: sum(each.data_age for each in found),
+            Quantity.MAX_DATA_AGE: sum(each.data_age for each in every),
             Quantity.MAX_REDUCED_DATA_AGE: sum(each.data_age for each in before) + int(last.last_to_last.max()),
         }
         for quantity, time in sums.items():
@@ -148,8 +173,9 @@ class RouteLatencies:
         whole = in_picoseconds(time, self.unit, quantity.is_upper)
         return Value(quantity=quantity, value=whole, claim=Claim.BOUND, method=method, source=source)
 
-    def _reactions(self, time: Time, first: ChainTask, method: str, source: str) -> Iterator[Value]:
+    def _reactions(self, time: Time, tasks: Sequence[ChainTask], method: str, source: str) -> Iterator[Value]:
         """A bound of the reaction time, and the bounds of data age and reduced reaction time that follow from it."""
+        first = tasks[0]
         yield self._bound(Quantity.MAX_REACTION_TIME, time, method, source)
         yield self._bound(
             Quantity.MAX_DATA_AGE, time, f"{method}; data age as reaction time", f"{source}; Günzel and others 2023"
@@ -161,17 +187,18 @@ class RouteLatencies:
     def _of_periods(self, tasks: Sequence[ChainTask]) -> Iterator[Value]:
         """Bounds that need only maximum times between activations, and response times."""
         first, *others = tasks
+        at_start = _wait_at_start(tasks)
         method = "sum of periods and response times"
         if all(task.is_regular for task in tasks):
-            yield from self._reactions(davare.reaction_time(tasks), first, method, davare.SOURCE)
+            yield from self._reactions(davare.reaction_time(tasks) + at_start, tasks, method, davare.SOURCE)
         elif all(task.is_regular for task in others) and self.parts[0][0].is_certain:
-            time = davare.reaction_time(tasks) - first.period
+            time = davare.reaction_time(tasks) + at_start - first.period
             yield self._bound(Quantity.MAX_REDUCED_REACTION_TIME, time, f"{method}, without the first period", davare.SOURCE)
         if not all(task.is_regular for task in tasks[:-1]):
             return
         if all(task.response <= task.period for task in tasks if task.is_regular):
             if tasks[-1].is_regular:
-                yield from self._reactions(duerr.reaction_time(tasks), first, "sporadic chains", duerr.SOURCE)
+                yield from self._reactions(duerr.reaction_time(tasks) + at_start, tasks, "sporadic chains", duerr.SOURCE)
             time = duerr.reduced_data_age(tasks)
             yield self._bound(Quantity.MAX_REDUCED_DATA_AGE, time, "sporadic chains", duerr.SOURCE)
 
@@ -181,10 +208,20 @@ class RouteLatencies:
             return
         reaction = kloda.reaction_time(tasks)
         if reaction is not None:
-            yield from self._reactions(reaction, tasks[0], "next releases", kloda.SOURCE)
+            yield from self._reactions(reaction + _not_released(tasks), tasks, "next releases", kloda.SOURCE)
         age = becker.reduced_data_age(tasks)
         if age is not None:
             yield self._bound(Quantity.MAX_REDUCED_DATA_AGE, age, "reachable jobs", becker.SOURCE)
         if len({task.offset for task in tasks}) == 1:
             age = bi.reduced_data_age(tasks)
             yield self._bound(Quantity.MAX_REDUCED_DATA_AGE, age, "grid of releases", bi.SOURCE)
+
+
+def _wait_at_start(tasks: Sequence[ChainTask]) -> Time:
+    """How much longer than its period data can wait for each task of a chain, because its first job comes late."""
+    return sum(max(0, task.first_release - task.period) for task in tasks[1:])
+
+
+def _not_released(tasks: Sequence[ChainTask]) -> Time:
+    """The time of the whole periods before their first jobs in which the tasks of a chain would have been released otherwise."""
+    return sum(task.first_release // task.period * task.period for task in tasks[1:])

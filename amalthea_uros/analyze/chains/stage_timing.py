@@ -40,7 +40,7 @@ from amalthea_uros.timing.dataflow.stages import SAME_JOB, Boundary, Fire, Pass,
 from amalthea_uros.timing.demand import MAX_TIME_BASE
 from amalthea_uros.timing.limits import LIMIT
 from amalthea_uros.timing.multiframe import MultiframeDemand
-from amalthea_uros.timing.releases import known_releases
+from amalthea_uros.timing.releases import known_releases, latest_first_release
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
@@ -191,11 +191,20 @@ class StageTiming:
                 return f"it is unknown which jobs of {stage.process.name!r} take part"
             if any(can_be_skipped(position, system, modes) for position in stage.positions):
                 return f"jobs of {stage.process.name!r} can end without the access or event of the chain"
+        for stage in stages[1:]:
+            if self._has_condition(stage.process):
+                return f"a trigger of {stage.process.name!r} has no effect if the condition of its stimulus is false"
         return ""
+
+    def _has_condition(self, process: Process) -> bool:
+        stimuli = self.context.system.stimuli_by_name
+        return any(stimuli[name].condition is not None for name in process.stimuli if name in stimuli)
 
     def _why_irregular(self, process: Process) -> str:
         """Why there is no maximum time between two jobs of a process; "" if there is one."""
         events = self.solution.event_models.get(process.name)
+        if events is not None and events.can_be_suppressed:
+            return f"{process.name!r} is activated only if the condition of a stimulus is true"
         if events is None or events.max_interarrival is None:
             return f"the maximum time between two activations of {process.name!r} is unknown"
         return ""
@@ -209,8 +218,14 @@ class StageTiming:
             is_regular=is_regular,
             response=response,
             offset=offset,
+            first_release=self._first_release(base.process, counter),
             preempts_reader=preempts_reader,
         )
+
+    def _first_release(self, process: Process, counter: Counter) -> Time:
+        """The latest time at which the first job that takes part is released."""
+        before = first_effect(counter) - 1 if counter.is_phase_known else max_distance(counter)
+        return latest_first_release(process, self.context.system) * self.unit + before * self._max_interarrival(process)
 
     def _max_interarrival(self, process: Process) -> Time:
         """The maximum time between two activations; 0 if there is none."""

@@ -58,10 +58,9 @@ class Window:
         blocking = Blocking.of(processes, solution)
         level = blocking.level(scheduled)
         above = [item for item in processes if item.rank >= level.rank and item.name != task]
-        obstacle = context.unanalysable_cores.get((scheduled.core, True)) or context.unanalysable_cores.get(
-            (scheduled.core, False)
+        unknown = solution.intruder(scheduled.core, above_isrs=False) or next(
+            (item.name for item in above if not solution.is_analysable(item.name)), ""
         )
-        unknown = obstacle or next((item.name for item in above if not solution.is_analysable(item.name)), "")
         if unknown:
             raise NoWindowError(f"{unknown!r}, which could not be analysed, can preempt it")
         if blocking.unknown and (keeping := blocking.obstacle(scheduled)):

@@ -168,6 +168,8 @@ class Blocking:
         if len(together) < 2:
             return False
         match item.equal_priority:
+            case EqualPriority.UNKNOWN:
+                return True
             case EqualPriority.ROUND_ROBIN:
                 # A task that cannot be preempted keeps the core for longer than its slice.
                 return rank < item.rank or any(map(self.keeps_off_others, together))

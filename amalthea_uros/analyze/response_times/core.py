@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
 
-from amalthea_uros.analyze.response_times import priority_levels, schedule
+from amalthea_uros.analyze.response_times import busy_period, priority_levels, schedule, unknown_order
 from amalthea_uros.analyze.response_times.blocked_window import BlockedWindow
 from amalthea_uros.analyze.response_times.blocking import Blocking
 from amalthea_uros.analyze.response_times.supply import FULL, Budget, Supply
@@ -48,7 +48,7 @@ class _CoreAnalysis:
         here = self.context.served(self.core, server)
         usable = self._analysable(here)
         processes = [item for item in usable if isinstance(item, ScheduledProcess)]
-        is_complete = len(processes) == len(here) and supply is FULL
+        is_complete = len(processes) == len(here) and supply is FULL and self.solution.is_closed(self.core)
         found = self.exact(processes) if is_complete else None
         if found is None:
             found = self.bounds(usable, [item for item in here if isinstance(item, ScheduledProcess)], supply)
@@ -61,13 +61,11 @@ class _CoreAnalysis:
     def _analysable(self, here: Sequence[ScheduledProcess | Server]) -> list[ScheduledProcess | Server]:
         """The items that depend on no unknown process of the same or a higher rank; the others are marked unknown."""
         found: list[ScheduledProcess | Server] = []
-        unanalysable = self.context.unanalysable_cores
-        unknown: str | None = None
+        unknown = self.solution.intruder(self.core, above_isrs=True)
         for (is_isr, _), group in groupby(here, key=lambda item: (_is_isr(item), item.rank)):
             level = list(group)
-            unknown = unknown or unanalysable.get((self.core, True))
             if not is_isr:
-                unknown = unknown or unanalysable.get((self.core, False))
+                unknown = unknown or self.solution.intruder(self.core, above_isrs=False)
             unknown = unknown or next((item.name for item in level if not self._is_known(item)), None)
             if unknown is None:
                 found += level
@@ -173,15 +171,38 @@ class _CoreAnalysis:
         if tasks:
             notes.assume("if not all releases on a core are known, all tasks can be released together at the worst moment")
             notes.assume("best cases on such cores hold once all tasks have been released")
+        if any(item.equal_priority is EqualPriority.UNKNOWN for item in usable):
+            notes.assume(unknown_order.ASSUMPTION)
         decisions = self._decisions(len(ranks)) if supply is FULL else []
         found = priority_levels.response_times([*tasks, *decisions], [*waits, *[0] * len(decisions)], supply)
         for index, item in enumerate(usable):
             if isinstance(item, ScheduledProcess):
                 window = BlockedWindow(notes, self.time_base, blocking, usable, [*tasks, *decisions], waits[index], supply)
                 found[index] = window.response(index, item, found[index])
+        for index, item in enumerate(usable):
+            if found[index].worst is None and isinstance(item, ScheduledProcess):
+                rank = blocking.level(item).rank
+                level = [task for task, other in zip(tasks, usable, strict=False) if other.rank >= rank]
+                merged = self._with_longest_paths([*level, *decisions])
+                if len(merged) < len(level) + len(decisions):
+                    found[index] = busy_period.response_time(tasks[index], merged, waits[index], supply, found[index])
         # The methods are exact for independent activations; offsets can make the worst case impossible.
         bounds = [replace(response, claim=Claim.BOUND) for response in found[: len(usable)]]
         return [self._without_rounds(item, response) for item, response in zip(usable, bounds, strict=True)]
+
+    def _with_longest_paths(self, tasks: Sequence[Task]) -> list[Task]:
+        """The tasks, and for those that exclude each other one that takes as long as the longest path of the job that triggers them."""
+        found = {task.name: task for task in tasks}
+        for together in self.context.triggered_together:
+            demands = {name: found[name].demand.worst for name in together.numbers if name in found}
+            if len(demands) < 2:
+                continue
+            longest = together.longest(demands, self.context.activations, self.context.settings.modes)
+            if longest < sum(demands.values()):
+                members = [found.pop(name) for name in demands]
+                demand = MultiframeDemand.constant(longest, best=0)
+                found[members[0].name] = replace(members[0], demand=demand)
+        return list(found.values())
 
     def _without_rounds(self, item: ScheduledProcess | Server, response: Response) -> Response:
         """A response time; an overload is not certain if rounds of executors are counted that need not be as long and as dense."""
@@ -232,7 +253,7 @@ def periodic_tasks(core: str, solution: Solution) -> list[schedule.PeriodicTask]
     processes = [item for item in here if isinstance(item, ScheduledProcess)]
     if len(processes) < len(here) or not all(solution.is_analysable(item.name) for item in processes):
         return []
-    if (core, True) in context.unanalysable_cores or (core, False) in context.unanalysable_cores:
+    if not solution.is_closed(core):
         return []
     return _CoreAnalysis(solution, core).released(processes)
 

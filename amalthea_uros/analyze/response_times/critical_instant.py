@@ -57,7 +57,7 @@ def _is_plain(here: Sequence[ScheduledProcess], solution: Solution) -> bool:
     """Whether all processes of a core are known, of distinct ranks, and all preemptive with ceilings, or all not preemptive."""
     context = solution.context
     core = here[0].core
-    if any((core, is_isr) in context.unanalysable_cores for is_isr in (False, True)) or context.open_semaphores:
+    if not solution.is_closed(core) or context.open_semaphores:
         return False
     return (
         all(solution.is_analysable(item.name) and item.equal_priority is EqualPriority.FIFO for item in here)

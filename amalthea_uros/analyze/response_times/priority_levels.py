@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
 from typing import Protocol
 
-from amalthea_uros.analyze.response_times import edf, fifo, fixed_priority, round_robin
+from amalthea_uros.analyze.response_times import edf, fifo, fixed_priority, round_robin, unknown_order
 from amalthea_uros.analyze.response_times.busy_window import Interference
 from amalthea_uros.analyze.response_times.supply import FULL, Supply
 from amalthea_uros.analyze.response_times.task import Task
@@ -34,6 +34,7 @@ METHODS: Mapping[EqualPriority, EqualPriorityMethod] = {
     EqualPriority.FIFO: fifo.response_time,
     EqualPriority.EDF: edf.response_time,
     EqualPriority.ROUND_ROBIN: round_robin.response_time,
+    EqualPriority.UNKNOWN: unknown_order.response_time,
 }
 
 

@@ -10,7 +10,7 @@ from amalthea_uros.perf.events import RunnableChange, RunnableEvent
 from amalthea_uros.perf.network import Transmission
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.dataflow.events import EventOccurrence
-from amalthea_uros.timing.dataflow.links import Link, LinkKind
+from amalthea_uros.timing.dataflow.links import LinkKind
 from amalthea_uros.timing.dataflow.positions import ActivityPosition
 
 
@@ -29,7 +29,13 @@ class Connections:
         """
         if isinstance(then, Passage) and self.activates(first, then.processes[0]):
             return Entry.TRIGGER
-        found = {self._data(one, other, first, then) for one in self._ends(first, -1) for other in self._ends(then, 0)}
+        found = {
+            link.kind
+            for one in self._ends(first, -1)
+            for other in self._ends(then, 0)
+            for link in self.context.dataflow.data(one, other)
+            if self._is_within(link.write, first) and self._is_within(link.read, then)
+        }
         if LinkKind.DATA in found:
             return Entry.DATA
         if LinkKind.TOPIC in found:
@@ -41,19 +47,12 @@ class Connections:
     def is_activated_after(self, transmission: Transmission, process: str) -> bool:
         """Whether the last process that a message passes activates another one."""
         last = transmission.processes[-1:]
-        return any(self.context.dataflow.trigger(each, process) is not None for each in last)
+        return any(self.context.dataflow.triggers(each, process) for each in last)
 
     def activates(self, first: Callback | Passage, process: str) -> bool:
         """Whether a callback, or the last process of a passage, activates another process."""
         source = first.executor.task if isinstance(first, Callback) else first.processes[-1]
-        link = self.context.dataflow.trigger(source, process)
-        return link is not None and self._is_within(link.write, first)
-
-    def _data(self, one: EventOccurrence, other: EventOccurrence, first: Station, then: Station) -> LinkKind | None:
-        link: Link | None = self.context.dataflow.data(one, other)
-        if link is None or not (self._is_within(link.write, first) and self._is_within(link.read, then)):
-            return None
-        return link.kind
+        return any(self._is_within(link.write, first) for link in self.context.dataflow.triggers(source, process))
 
     def _ends(self, station: Callback | Passage, index: int) -> list[EventOccurrence]:
         """Where the last or the first event of a station occurs."""

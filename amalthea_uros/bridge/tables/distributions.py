@@ -2,11 +2,33 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from amalthea_uros.bridge.codecs import PLAIN, TIME, Codec, same_names
+from amalthea_uros.bridge.context import Extracting
 from amalthea_uros.bridge.entries import Entry, Field, Table, all_parts, part
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.perf import distributions as perf
+
+
+class _Distributions(Table):
+    """What misses a parameter still has its bounds, if both are stated."""
+
+    def extract(self, element: Element, context: Extracting) -> Any:
+        """The distribution; None, with a finding, if not even its bounds are stated."""
+        entry = self.by_amalthea_class.get(type(element))
+        found = None if entry is None else entry.complete(element, context)
+        if found is not None or entry is None or entry.model_class in (perf.Constant, perf.Histogram):
+            return found if found is not None else super().extract(element, context)
+        bounds = self.by_model_class[perf.Bounds]
+        values = {column.name: _given(column, element, context) for column in bounds.columns}
+        return super().extract(element, context) if None in values.values() else perf.Bounds(**values)
+
+
+def _given(column: Field, element: Element, context: Extracting) -> Any:
+    value = getattr(element, column.feature)
+    return None if value is None else column.codec.extract(value, context, element)
 
 
 def _table(prefix: str, number: Codec, mean: Codec) -> Table:
@@ -26,7 +48,9 @@ def _table(prefix: str, number: Codec, mean: Codec) -> Table:
     average = Field("average", "average", mean)
     sampling = Field("sampling", "sampling_type", same_names(perf.Sampling, am.SamplingType))
     bucket = Table(Entry(perf.Bucket, amalthea_class("HistogramEntry"), lower, upper, Field("occurrences", "occurrences")))
-    return Table(
+    return _Distributions(
+        # Before the class that it is written as, which has a parameter more.
+        Entry(perf.Bounds, amalthea_class("GaussDistribution"), lower, upper),
         Entry(perf.Constant, amalthea_class("Constant"), Field("value", "value", number)),
         Entry(perf.Boundaries, amalthea_class("Boundaries"), lower, upper, sampling),
         Entry(perf.Statistics, amalthea_class("Statistics"), lower, average, upper),

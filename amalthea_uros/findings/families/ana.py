@@ -10,7 +10,7 @@ KINDS = (
         id="ANA001",
         title="scheduler without a policy",
         severity=Severity.WARNING,
-        rationale="Fixed-priority preemptive scheduling is assumed.",
+        rationale="The scheduling order is unknown, so the response times of its tasks, and of what they can delay, are unknown.",
         remedy="Reference a scheduler definition with a policy, e.g. FixedPriorityPreemptive.",
     ),
     FindingKind(
@@ -58,9 +58,7 @@ KINDS = (
         id="ANA006",
         title="overhead that is ignored",
         severity=Severity.WARNING,
-        rationale=(
-            "The execution time of this operating system service, or of a scheduler on another core, is not included in the results."
-        ),
+        rationale=("The execution time of this operating system service is not included in the results."),
         remedy="Add the overhead to the execution times of the processes that use the service.",
     ),
     FindingKind(

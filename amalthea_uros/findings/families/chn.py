@@ -32,7 +32,7 @@ KINDS = (
         id="CHN002",
         title="no data flow or trigger between two events of a chain",
         severity=Severity.WARNING,
-        rationale="The chain is evaluated as if a variable connected the events, so its latencies may not be those of the system.",
+        rationale="The chain is not evaluated: nobody stated how its events are connected, so its latencies are unknown.",
         remedy="Model the access or trigger that connects them, or remove the segment from the chain.",
     ),
     FindingKind(
@@ -46,7 +46,7 @@ KINDS = (
         id="CHN004",
         title="event that no activity raises",
         severity=Severity.WARNING,
-        rationale="The message says where the event is assumed to occur.",
+        rationale="Nobody stated when the event occurs, so the chains with it are not evaluated.",
         remedy="Model the activity that raises the event, e.g. a label access.",
     ),
     FindingKind(

@@ -199,7 +199,7 @@ def _is_separable(problem: Problem) -> bool:
     return len(context.scheduled) == len(system.processes) and all(
         is_preemptive(item)
         and item.server is None
-        and item.equal_priority is not EqualPriority.ROUND_ROBIN
+        and item.equal_priority not in (EqualPriority.ROUND_ROBIN, EqualPriority.UNKNOWN)
         and context.protection[item.name] == Protection()
         for item in context.scheduled.values()
     )

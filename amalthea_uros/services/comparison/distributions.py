@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -19,6 +19,7 @@ from amalthea_uros.services.comparison.results import (
     Statistic,
 )
 from amalthea_uros.services.comparison.simulated import Run
+from amalthea_uros.timing.stated_distributions import Basis
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
@@ -27,7 +28,12 @@ if TYPE_CHECKING:
 
 
 def distributions(
-    found: Sequence[Target], rows: Sequence[ComparisonRow], runs: Sequence[Run], rule: Rule, overheads: Mapping[str, Time]
+    found: Sequence[Target],
+    rows: Sequence[ComparisonRow],
+    runs: Sequence[Run],
+    rule: Rule,
+    overheads: Mapping[str, Time],
+    basis_of: Callable[[Target], Basis],
 ) -> Iterator[DistributionRow]:
     """The distances of all quantities of which both have the values; of several phases, the nearest one or all together."""
     simulated = _simulated_values(runs)
@@ -41,7 +47,9 @@ def distributions(
             continue
         added = overhead_of(target.name, target.quantity, overheads)
         between = min((distance(values, other + added) for other in others), key=_farness)
-        is_hidden = (target.name, target.quantity) in agreeing and _differs(between, rule, target.series)
+        is_hidden = (
+            (target.name, target.quantity) in agreeing and _differs(between, rule, target.series) and not basis_of(target).open
+        )
         yield DistributionRow(
             object=target.name, kind=target.kind, quantity=target.quantity, distance=between, is_hidden=is_hidden
         )

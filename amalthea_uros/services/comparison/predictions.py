@@ -14,6 +14,7 @@ from typing import NamedTuple
 from amalthea_uros.analyze.metrics import merged
 from amalthea_uros.analyze.results import Analysis, ChainResult, Claim, Metric, Quantity
 from amalthea_uros.measure.series import Kind
+from amalthea_uros.measure.statistics import Statistics
 from amalthea_uros.services.comparison.agreement import Prediction, measured_values
 from amalthea_uros.services.comparison.results import PredictionClaim, Statistic
 from amalthea_uros.services.comparison.simulated import Run
@@ -111,7 +112,8 @@ class Predictor:
         method = f"simulation of {time_text(first.duration)}, seed {first.seed}{phases}"
         for statistic in found[0] if found else ():
             each = [values[statistic] for values in found if statistic in values]
-            yield statistic, Prediction(value=min(each), high=max(each), claim=PredictionClaim.SIMULATED, method=method)
+            claim, count = PredictionClaim.SIMULATED, _count(self.runs[0], kind, name, quantity)
+            yield statistic, Prediction(value=min(each), high=max(each), claim=claim, method=method, count=count)
 
     # Both.
 
@@ -187,14 +189,26 @@ def _of_chain(chain: ChainResult, quantity: str) -> Iterator[tuple[Statistic, Pr
 
 def _values(run: Run, kind: Kind, name: str, quantity: str) -> dict[Statistic, Fraction]:
     """What a run has of a quantity: of all of it, and what only its trace shows."""
-    series = (each for each in run.values.series if (each.kind, each.name, each.quantity) == (kind, name, quantity))
-    statistics = next((each.statistics for each in series), None)
+    statistics = _statistics(run, kind, name, quantity)
     values = {} if statistics is None else dict(measured_values(statistics))
     found = _observed(run.simulation, kind, name, quantity)
     if found is not None:
         values |= {Statistic.MIN: found.min, Statistic.MEAN: found.mean, Statistic.MAX: found.max}
         values[Statistic.JITTER] = found.jitter
     return values
+
+
+def _statistics(run: Run, kind: Kind, name: str, quantity: str) -> Statistics | None:
+    """What was measured in the trace of a run."""
+    series = (each for each in run.values.series if (each.kind, each.name, each.quantity) == (kind, name, quantity))
+    return next((each.statistics for each in series), None)
+
+
+def _count(run: Run, kind: Kind, name: str, quantity: str) -> int | None:
+    """How many values a run has of a quantity."""
+    statistics = _statistics(run, kind, name, quantity)
+    found = _observed(run.simulation, kind, name, quantity)
+    return found.count if found is not None else None if statistics is None else statistics.count
 
 
 def overhead_of(name: str, quantity: str, overheads: Mapping[str, Time]) -> Time:

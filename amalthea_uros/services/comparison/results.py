@@ -20,10 +20,12 @@ from amalthea_uros.units import Time
 class Agreement(StrEnum):
     """Whether a prediction agrees with a measured value.
 
-    `REFUTED`: a value was measured that the model excludes, whatever the tolerance.
+    `DIFFERS`: it deviates by more than the tolerance, but what the model states does not exclude it. `REFUTED`: a value was measured
+    that the model excludes, whatever the tolerance.
     """
 
     WITHIN = "within"
+    DIFFERS = "differs"
     OUTSIDE = "outside"
     REFUTED = "refuted"
     NOT_MEASURED = "not measured"
@@ -231,12 +233,12 @@ class Comparison(Shown):
 
     @property
     def holds(self) -> bool:
-        """Whether something was compared, and all of it agrees."""
-        return bool(self.compared) and all(row.verdict is Agreement.WITHIN for row in self.compared)
+        """Whether something agrees, and nothing contradicts what the model states."""
+        return self.count(Agreement.WITHIN) > 0 and not self.count(Agreement.OUTSIDE) and not self.count(Agreement.REFUTED)
 
     @property
     def is_failed(self) -> bool:
-        """Whether the model does not hold, nothing was compared, or a limit was measured as missed."""
+        """Whether the model does not hold, nothing agrees, or a limit was measured as missed."""
         return not self.holds or bool(self.missed)
 
     @property
@@ -249,4 +251,4 @@ class Comparison(Shown):
         return tuple(row for row in self.rows if (row.object, row.quantity) == (name, quantity))
 
 
-_COMPARED = (Agreement.WITHIN, Agreement.OUTSIDE, Agreement.REFUTED)
+_COMPARED = (Agreement.WITHIN, Agreement.DIFFERS, Agreement.OUTSIDE, Agreement.REFUTED)

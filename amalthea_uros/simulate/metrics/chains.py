@@ -73,22 +73,22 @@ def add_rows(rows: Numbers, routes: Sequence[RouteMetrics]) -> None:
         routes[number].add(rows[rows[:, Observation.ROUTE] == number])
 
 
-def chain_observation(name: str, routes: Mapping[str, RouteMetrics], end: int, reason: str = "") -> ChainObservation:
+def chain_observation(name: str, routes: Sequence[tuple[str, RouteMetrics]], end: int, reason: str = "") -> ChainObservation:
     """What was observed of a chain up to the end of a run.
 
     Parameters
     ----------
-    routes : by the texts that describe them; the values of all of them together are those of the chain
+    routes : with the texts that describe them, which need not differ; the values of all of them together are those of the chain
     end : in time units
     """
     merged: dict[ChainQuantity, Distributions] = {}
-    for route in routes.values():
+    for _, route in routes:
         merged = merged or {quantity: Distributions(size=1, base=route.base, with_histograms=(0,)) for quantity in MEASURED}
         route.merge_into(merged)
     return ChainObservation(
         name=name,
         quantities=_quantities(merged),
-        routes=tuple(route.observation(text, end) for text, route in routes.items()),
+        routes=tuple(route.observation(text, end) for text, route in routes),
         reason=reason,
     )
 

@@ -31,11 +31,11 @@ from amalthea_uros.simulate.program.hooks import Hooks, Operation
 from amalthea_uros.simulate.program.obstacles import NotSimulatedError
 from amalthea_uros.simulate.program.resources import Resources
 from amalthea_uros.timing.crossing import crosses
-from amalthea_uros.timing.dataflow.chains import UnfoldError, sequences, unfold
+from amalthea_uros.timing.dataflow.chains import UnfoldError, unfold
 from amalthea_uros.timing.dataflow.events import JobPhase, UnresolvedError
 from amalthea_uros.timing.dataflow.links import LinkKind
 from amalthea_uros.timing.dataflow.positions import ActivityPosition
-from amalthea_uros.timing.dataflow.routes import Route, routes
+from amalthea_uros.timing.dataflow.routes import Route, route_text, routes_of_ways
 from amalthea_uros.timing.dataflow.stages import At, Fire, Pass, Read, Stage, Write, stages
 from amalthea_uros.trace.table import EntityKind
 
@@ -52,11 +52,11 @@ class FollowedRoute:
 
     Attributes
     ----------
-    events : the way, of all ways through the chain
+    text : the events of the way, of all ways through the chain; with the links between them if these are not the only ones
     """
 
     chain: str
-    events: tuple[str, ...]
+    text: str
 
 
 @dataclass(slots=True)
@@ -87,32 +87,32 @@ class ChainCompiler:
             )
             return
         try:
-            found = [(events, route) for events, every in self._ways(chain).items() for route in every]
-            for _, route in found:
+            context = self.resources.context
+            ways = routes_of_ways(unfold(chain, context.system)[0], context.dataflow)
+            for route in (route for found in ways.values() for route in found):
                 self._check(route)
-            for events, route in found:
-                self._route(chain, events, route)
+            for events, found in ways.items():
+                for route in found:
+                    self._route(chain, " -> ".join(events) if len(found) == 1 else route_text(route), route)
         except (UnfoldError, UnresolvedError, NotSimulatedError) as error:
             self.left_out[chain.name] = str(error)
-
-    def _ways(self, chain: EventChain) -> dict[tuple[str, ...], list[Route]]:
-        context = self.resources.context
-        unfolded, _ = unfold(chain, context.system)
-        events = context.system.events_by_name
-        return {way: routes([events[name] for name in way], context.dataflow) for way in sequences(unfolded)}
 
     def _check(self, route: Route) -> None:
         for link, (first, then) in zip(route.links, pairwise(route.events), strict=True):
             if link.kind in _NOT_FOLLOWED:
                 raise NotSimulatedError(f"from {first!r} to {then!r} it follows {link.kind}, which is not followed")
+            for label in link.names if link.kind is LinkKind.DATA else ():
+                for name in self.resources.context.touching.writers(label):
+                    if name not in self.processes:
+                        raise NotSimulatedError(f"{name!r}, which is not simulated, writes {label!r}")
         for occurrence in route.occurrences:
             if occurrence.process.name not in self.processes:
                 raise NotSimulatedError(f"it passes {occurrence.process.name!r}, which is not simulated")
 
-    def _route(self, chain: EventChain, events: tuple[str, ...], found: Route) -> None:
+    def _route(self, chain: EventChain, text: str, found: Route) -> None:
         image = self.resources.image
         route = image.record(ROUTE_SIZE, {ROUTE_NUMBER: len(self.routes)})
-        self.routes.append(FollowedRoute(chain.name, events))
+        self.routes.append(FollowedRoute(chain.name, text))
         entity = self.resources.entities.number(EntityKind.CHAIN, chain.name)
         parts = stages(found, self.resources.context.settings.communication)
         records: list[int] = []
@@ -151,7 +151,7 @@ class ChainCompiler:
                 position = None if is_captured else where
                 has_snapshot = communication is Communication.IMPLICIT
             case Pass():
-                position = stage.positions[0]
+                position = stage.positions[0] if stage.positions else None
         is_first = isinstance(stage.enter, At)
         hooks.start.append((ENTER, record, int(position is None and not is_first)))
         if is_captured:
@@ -181,14 +181,14 @@ class ChainCompiler:
                 self._publish(stage.process, record, hooks)
             case Write(communication=Communication.EXPLICIT, position=ActivityPosition() as position):
                 hooks.after.setdefault(position.number, []).append((PUT, record, 0))
-            case Write() | Fire(position=None):
+            case Pass() if stage.positions:
+                hooks.after.setdefault(stage.positions[-1].number, []).append((PUT, record, 0))
+            case Write() | Fire(position=None) | Pass():
                 hooks.end.append((LEAVE, record, 0))
             case Fire(position=ActivityPosition() as position, is_before=is_before):
                 # Before the operation that fires: a trigger fires at its own operation, an event when its activity ends.
                 side = hooks.before if is_before or not _raises_event(position) else hooks.after
                 side.setdefault(position.number, []).append((PUT, record, 0))
-            case Pass():
-                hooks.after.setdefault(stage.positions[-1].number, []).append((PUT, record, 0))
             case At(communication=Communication.LET):
                 self._publish(stage.process, record, hooks)
             case At(occurrence=occurrence):

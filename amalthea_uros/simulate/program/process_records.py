@@ -55,6 +55,7 @@ from amalthea_uros.simulate.program.parts import Parts
 from amalthea_uros.simulate.program.resources import Resources
 from amalthea_uros.simulate.program.scheduling import Dispatched
 from amalthea_uros.timing.critical_sections import protection_of
+from amalthea_uros.timing.notes import UnknownDemandError
 from amalthea_uros.timing.preemption import preemption
 from amalthea_uros.timing.scheduling import EqualPriority
 from amalthea_uros.timing.stated_demand import states_execution_time
@@ -100,7 +101,10 @@ class ProcessRecords:
         if not states_execution_time(process, context.system):
             raise NotSimulatedError("it has no execution time, and neither have the runnables that it calls")
         core = item.cores[0]
-        scheduler = context.deciding(item.name, core)
+        try:
+            scheduler = context.deciding(item.name, core)
+        except UnknownDemandError as error:
+            raise NotSimulatedError(str(error)) from None
         hooks = chains.hooks.get(item.name, Hooks())
         code = process_code(self.parts, process, core, hooks, scheduler, in_group=scheduled.group is not None)
         captures, captures_end = self.image.items(chains.captures.get(item.name, ()))

@@ -78,6 +78,10 @@ class Dispatching:
             raise NotSimulatedError(self.context.reasons.get(name, "it is not allocated to a scheduler"))
         else:
             found = self._on_several_cores(allocation)
+        if found.scheduled.equal_priority is EqualPriority.UNKNOWN:
+            raise NotSimulatedError(
+                "it has no priority" if found.scheduled.priority is None else "a task of its scheduler has no priority"
+            )
         server = self.servers.get(found.scheduled.server or "")
         while server is not None:
             _check_server(server)

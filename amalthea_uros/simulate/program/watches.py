@@ -13,7 +13,6 @@ from amalthea_uros.perf.constraints import (
     Constraint,
     DelayConstraint,
     EventSynchronization,
-    OrderConstraint,
     RepetitionConstraint,
 )
 from amalthea_uros.perf.events import (
@@ -31,6 +30,8 @@ from amalthea_uros.perf.events import (
     StimulusEvent,
 )
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.dataflow.events import EventLocator
+from amalthea_uros.timing.runnable_order import OrderScope, order_scope
 from amalthea_uros.trace.table import EventKind
 
 #: The kinds of transitions of a process.
@@ -132,18 +133,22 @@ def watched(system: System, labels: Iterable[str]) -> Watched:
     """What the constraints and requirements of a system refer to, and some labels."""
     constraints = system.constraints
     names = [name for constraint in constraints.constraints for name in event_names(constraint, system)]
+    events = EventLocator(system)
+    scopes = [order_scope(order, system, events) for order in constraints.orders]
     measured = (requirement.runnable for requirement in constraints.requirements)
     return Watched(
-        events=tuple(simple_events(names, system)),
-        ordered=frozenset(process for order in constraints.orders for process in scope(order, system)),
+        events=(*simple_events(names, system), *(event for each in scopes for event in events_of_order(each))),
+        ordered=frozenset(process for each in scopes for process in each.alone),
         labels=frozenset((*labels, *(age.label for age in constraints.data_ages))),
         runnables=tuple(dict.fromkeys(name for name in measured if name is not None)),
     )
 
 
-def scope(order: OrderConstraint, system: System) -> tuple[str, ...]:
-    """The processes for which a constraint of an order holds."""
-    return order.processes or tuple(system.processes)
+def events_of_order(scope: OrderScope) -> Iterator[RunnableEvent]:
+    """What is observed of runnables that several processes call in an order: their starts and ends."""
+    for name, call in scope.together.items():
+        for change in (RunnableChange.START, RunnableChange.TERMINATE):
+            yield RunnableEvent(name=name, runnable=name, change=change, process=call.process.name)
 
 
 def event_names(constraint: Constraint, system: System) -> list[str]:

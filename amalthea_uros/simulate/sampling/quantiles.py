@@ -10,6 +10,7 @@ import numpy as np
 from amalthea_uros.perf.distributions import (
     Beta,
     Boundaries,
+    Bounds,
     Constant,
     Distribution,
     Gauss,
@@ -39,6 +40,9 @@ _LEAST_PARAMETER, _GREATEST_PARAMETER = 1e-6, 1e6
 GREATEST = 2**62
 
 
+NO_PARAMETERS = "of a distribution only the bounds are stated; the modes worst and best need no more"
+
+
 def variate(distribution: Distribution[int]) -> Variate:
     """The distribution as it is sampled.
 
@@ -50,6 +54,8 @@ def variate(distribution: Distribution[int]) -> Variate:
     match distribution:
         case Constant(value):
             return Equal(value, value)
+        case Bounds():
+            raise UnknownValueError(NO_PARAMETERS)
         case Histogram():
             return _measured(distribution)
         case Gauss(mean=mean, deviation=deviation, lower=lower, upper=upper):

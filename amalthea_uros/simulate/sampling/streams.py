@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from amalthea_uros.perf.distributions import Distribution, Gauss, highest, lowest
+from amalthea_uros.perf.distributions import Bounds, Distribution, Gauss, highest, lowest
 from amalthea_uros.simulate.options import Mode
 from amalthea_uros.simulate.sampling.fixed_point import scaled
-from amalthea_uros.simulate.sampling.quantiles import GREATEST, check, variate
+from amalthea_uros.simulate.sampling.quantiles import GREATEST, NO_PARAMETERS, check, variate
 from amalthea_uros.simulate.sampling.random_source import RandomSource
 from amalthea_uros.simulate.sampling.variate import UnknownValueError, Variate
 from amalthea_uros.timing.means import mean
@@ -231,6 +231,8 @@ def permutations(source: RandomSource) -> Stream:
 def _value(distribution: Distribution[int], mode: Mode) -> int | Fraction:
     """The value that a mode always takes."""
     if mode is Mode.AVERAGE:
+        if isinstance(distribution, Bounds):
+            raise UnknownValueError(NO_PARAMETERS)
         return mean(distribution)
     found = highest(distribution) if mode is Mode.WORST else lowest(distribution)
     if found is None:

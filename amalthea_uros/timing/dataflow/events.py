@@ -51,6 +51,10 @@ class UnresolvedError(Exception):
     """An event cannot be located in a process; the text says why."""
 
 
+class UnraisedError(UnresolvedError):
+    """No activity of the model raises an event, so that it is unknown when it occurs."""
+
+
 class JobPhase(Enum):
     """A phase of a job, in order."""
 
@@ -87,15 +91,9 @@ class EventOccurrence:
 
 @dataclass(slots=True)
 class EventLocator:
-    """Finds events in the processes of a system.
-
-    Attributes
-    ----------
-    guesses : event -> where it is assumed to occur, because no activity of the model raises it
-    """
+    """Finds events in the processes of a system."""
 
     system: System
-    guesses: dict[str, str] = field(default_factory=dict)
     sites: CallSites = field(init=False)
     #: The text says why there are none.
     _positions: dict[str, list[ActivityPosition] | str] = field(default_factory=dict)
@@ -175,9 +173,9 @@ class EventLocator:
         ------
         UnresolvedError : it does not occur in a process, or cannot be analysed.
         """
-        found = list(self._occurrences(event)) or self._guess(event)
+        found = list(self._occurrences(event))
         if not found:
-            raise UnresolvedError(f"no activity in the model raises the event {event.name!r}")
+            raise UnraisedError(f"no activity in the model raises the event {event.name!r}")
         return found
 
     def _occurrences(self, event: Event) -> Iterable[EventOccurrence]:
@@ -198,25 +196,6 @@ class EventLocator:
             case CustomEvent() | LabelEvent() | ModeLabelEvent() | ChannelEvent() | SemaphoreEvent():
                 return [EventOccurrence(p.process, JobPhase.AFTER, p) for p in self.raising(event)]
         raise UnresolvedError(f"the kind of the event {event.name!r} cannot be analysed")
-
-    def _guess(self, event: Event) -> list[EventOccurrence]:
-        """Where an access is assumed if the model contains only its event."""
-        if not isinstance(event, LabelEvent | ModeLabelEvent | ChannelEvent | SemaphoreEvent):
-            return []
-        is_read = event.change in (LabelChange.READ, ModeChange.READ, ChannelChange.RECEIVE, SemaphoreChange.LOCK)
-        side = "at the start" if is_read else "at the end"
-        calls = []
-        if event.runnable is not None:
-            calls = self.raising(RunnableEvent(name=event.name, runnable=event.runnable, process=event.process))
-        if calls:
-            self.guesses[event.name] = f"{side} of {event.runnable!r}"
-            when = JobPhase.BEFORE if is_read else JobPhase.AFTER
-            return [EventOccurrence(position.process, when, position) for position in calls]
-        if event.process is not None and event.runnable is None:
-            self.guesses[event.name] = f"{side} of {event.process!r}"
-            when = JobPhase.START if is_read else JobPhase.END
-            return [EventOccurrence(process, when) for process in self._processes(event.process)]
-        return []
 
     def _processes(self, name: str | None) -> list[Process]:
         if name is None:

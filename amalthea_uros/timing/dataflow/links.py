@@ -5,7 +5,7 @@ Chains, paths and rules all use these links.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Hashable, Iterable, Iterator
 from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import NamedTuple
@@ -13,6 +13,7 @@ from typing import NamedTuple
 from amalthea_uros.perf.activities import (
     AccessKind,
     Call,
+    Communication,
     LabelAccess,
     ModeAccess,
     ModeOperation,
@@ -52,7 +53,7 @@ class LinkKind(StrEnum):
     NOTHING = "nothing"
 
 
-#: Without a link, a chain is evaluated as if there were a variable.
+#: Where nothing takes the effect on.
 GAPS = (LinkKind.NOTHING, LinkKind.NEXT_JOB)
 #: Links for which the time of the effect in the jobs is unknown, or the time that a message takes.
 UNTIMED = (*GAPS, LinkKind.OS_EVENT, LinkKind.SERVER_CALL, LinkKind.TOPIC)
@@ -95,9 +96,15 @@ class DirectLink(NamedTuple):
 
 @dataclass(slots=True)
 class Dataflow:
-    """The positions of activities in jobs, and the links between jobs; results are cached."""
+    """The positions of activities in jobs, and the links between jobs; results are cached.
+
+    Attributes
+    ----------
+    communication : overrides that of the accesses to labels; None: as modelled, implicit by default
+    """
 
     system: System
+    communication: Communication | None = None
     events: EventLocator = field(init=False)
     _named: dict[tuple[str, NamesOf], _Accesses] = field(default_factory=dict)
     _fired: dict[str, list[Firing]] | None = None
@@ -107,45 +114,83 @@ class Dataflow:
         self.system = with_direct_calls(self.system)
         self.events = EventLocator(self.system)
 
-    def between(self, first: EventOccurrence, then: EventOccurrence) -> Link:
-        """The link from one event to another."""
+    def links(self, first: EventOccurrence, then: EventOccurrence) -> tuple[Link, ...]:
+        """All links that can take the effect from one event to another: nobody states which of them is meant."""
         if first.process.name == then.process.name:
             if first.order <= then.order:
-                return self._returning(first, then) or Link(LinkKind.JOB)
-            return self.data(first, then) or Link(LinkKind.NEXT_JOB)
-        is_activation = then.when is JobPhase.ACTIVATION and first.when is JobPhase.ACTIVATION
+                return self._returning(first, then) or (Link(LinkKind.JOB),)
+            return self.data(first, then)
+        if stated := self._between_accesses(first, then):
+            return stated
+        is_activation = then.when is JobPhase.ACTIVATION
         # An activation cannot cause another activation: only a job can trigger.
-        trigger = None if is_activation else self.trigger(first.process.name, then.process.name)
-        return trigger or self.data(first, then) or self._synchronisation(first, then) or Link(LinkKind.NOTHING)
+        can_trigger = not (is_activation and first.when is JobPhase.ACTIVATION)
+        triggers = self.triggers(first.process.name, then.process.name) if can_trigger else ()
+        if is_activation and triggers:
+            return triggers
+        return (*triggers, *self.data(first, then), *self._synchronisation(first, then))
 
-    def trigger(self, first: str, then: str) -> Link | None:
-        """How a process activates another one; None if it does not."""
-        found = next((firing for firing in self.firings(first) if firing.stimulus in self._stimuli(then)), None)
-        if found is None:
-            return None
-        return Link(LinkKind.TRIGGER, (found.stimulus,), found.position, is_before=found.is_before)
+    def gap(self, first: EventOccurrence, then: EventOccurrence) -> Link:
+        """What stands for a link between two events if there is none: a later job takes notice of the first event."""
+        return Link(LinkKind.NEXT_JOB if first.process.name == then.process.name else LinkKind.NOTHING)
 
-    def data(self, first: EventOccurrence, then: EventOccurrence) -> Link | None:
-        """The data written at one event and read at the other one; None if there are none."""
-        return self._shared(self._accesses(first, writes), self._accesses(then, reads))
+    def triggers(self, first: str, then: str) -> tuple[Link, ...]:
+        """How a process activates another one."""
+        return tuple(
+            Link(LinkKind.TRIGGER, (firing.stimulus,), firing.position, is_before=firing.is_before)
+            for firing in self.firings(first)
+            if firing.stimulus in self._stimuli(then)
+        )
 
-    def _returning(self, first: EventOccurrence, then: EventOccurrence) -> Link | None:
-        """The topic of a message that a job sends to a later job of its own process."""
+    def data(self, first: EventOccurrence, then: EventOccurrence) -> tuple[Link, ...]:
+        """The data written at one event and read at the other one."""
+        return self._shared(first, self._accesses(first, writes), then, self._accesses(then, reads))
+
+    def _returning(self, first: EventOccurrence, then: EventOccurrence) -> tuple[Link, ...]:
+        """The topics of messages that a job sends to a later job of its own process."""
         if first.position is None or then.position is None:
-            return None
-        link = self._shared(self._own_accesses(first, writes), self._own_accesses(then, reads))
-        return link if link is not None and link.kind is LinkKind.TOPIC else None
+            return ()
+        links = self._shared(first, self._own_accesses(first, writes), then, self._own_accesses(then, reads))
+        return tuple(link for link in links if link.kind is LinkKind.TOPIC)
 
-    def _shared(self, written: _Accesses, read: _Accesses) -> Link | None:
-        """The data that are both written and read; topics only if there are no others, because they take longest."""
-        shared = tuple(name for name in written if name in read)
-        inside = tuple(name for name in shared if not self.is_topic(name))
-        names = inside or shared
-        if not names:
-            return None
+    def _between_accesses(self, first: EventOccurrence, then: EventOccurrence) -> tuple[Link, ...]:
+        """The data if both events are accesses to the same: so it is stated that they are meant."""
+        if first.position is None or then.position is None or _has_inner(first.position) or _has_inner(then.position):
+            return ()
+        return self._shared(first, _grouped([first.position], writes), then, _grouped([then.position], reads))
+
+    def _shared(self, first: EventOccurrence, written: _Accesses, then: EventOccurrence, read: _Accesses) -> tuple[Link, ...]:
+        """Links for the data that are both written and read; topics only if there are no others, because they take longest.
+
+        Data that are visible at the same times are one link.
+        """
+        shared = [name for name in written if name in read]
+        inside = [name for name in shared if not self.is_topic(name)]
         kind = LinkKind.DATA if inside else LinkKind.TOPIC
-        # The last write counts, and the first read after which the data are there.
-        return Link(kind, names, written[names[0]][-1], read[names[0]][0])
+        names: dict[tuple[Hashable, ...], list[str]] = {}
+        for name in inside or shared:
+            # The last write counts, and the first read after which the data are there.
+            write, access = written[name][-1], read[name][0]
+            if write.process.name == access.process.name:
+                alike: tuple[Hashable, ...] = (write.number, access.number)
+            else:
+                alike = (self._visible(write, first), self._visible(access, then))
+            names.setdefault(alike, []).append(name)
+        return tuple(Link(kind, tuple(own), written[own[0]][-1], read[own[0]][0]) for own in names.values())
+
+    def _visible(self, position: ActivityPosition, occurrence: EventOccurrence) -> Hashable:
+        """The same for all accesses of jobs that an event precedes, or that it follows, by which data are visible at the same times."""
+        if communication_of(position, self.communication) is Communication.EXPLICIT:
+            return position.number
+        own = occurrence.position
+        is_later = own is not None and position.number > own.number
+        times = position.activity.times if isinstance(position.activity, LabelAccess) else None
+        return (
+            *((id(activities), index) for activities, index in position.outer[:-1]),
+            id(position.outer[-1][0]),
+            times,
+            is_later,
+        )
 
     def is_topic(self, name: str) -> bool:
         """Whether a name is a channel whose messages leave the system."""
@@ -219,14 +264,14 @@ class Dataflow:
         stimuli = (s for s in self.system.stimuli.stimuli if isinstance(s, EventTriggered))
         return [(stimulus.name, events[name]) for stimulus in stimuli for name in stimulus.events if name in events]
 
-    def _synchronisation(self, first: EventOccurrence, then: EventOccurrence) -> Link | None:
+    def _synchronisation(self, first: EventOccurrence, then: EventOccurrence) -> tuple[Link, ...]:
         """The synchronisation of two processes by OS events, or by calls of server runnables and their results."""
+        found = []
         for kind, source, target in _SYNCHRONISATION:
             written, read = self.by_name(first.process.name, source), self.by_name(then.process.name, target)
-            names = tuple(name for name in written if name in read)
-            if names:
-                return Link(kind, names)
-        return None
+            if names := tuple(name for name in written if name in read):
+                found.append(Link(kind, names))
+        return tuple(found)
 
     def _accesses(self, occurrence: EventOccurrence, names_of: NamesOf) -> _Accesses:
         """The data written or read at an event, or else anywhere in its process."""
@@ -237,10 +282,39 @@ class Dataflow:
         position = occurrence.position
         if position is None:
             return {}
-        if own := names_of(position):
-            return {name: [position] for name in own}
+        if not _has_inner(position) and names_of(position):
+            return _grouped([position], names_of)
         runnable = position.activity.runnable if isinstance(position.activity, Call) else position.runnable
-        return _grouped((p for p in self.events.positions(occurrence.process.name) if p.runnable == runnable), names_of)
+        return _grouped(
+            (
+                each
+                for each in self.events.positions(occurrence.process.name)
+                # The condition of a call is part of it.
+                if each.runnable == runnable or each.number == position.number
+            ),
+            names_of,
+        )
+
+
+def _has_inner(position: ActivityPosition) -> bool:
+    return isinstance(position.activity, Call)
+
+
+def communication_of(position: ActivityPosition | None, communication: Communication | None) -> Communication:
+    """When what is written at a position becomes visible, or what is read there is fetched.
+
+    Only labels can be copied at the start and the end of a job: modes and messages are written and read in place.
+
+    Parameters
+    ----------
+    communication : overrides that of accesses to labels
+    """
+    match position.activity if position is not None else None:
+        case LabelAccess(communication=stated):
+            return communication or stated or Communication.IMPLICIT
+        case None | SenderReceiverAccess():
+            return communication or Communication.IMPLICIT
+    return Communication.EXPLICIT
 
 
 def writes(position: ActivityPosition) -> tuple[str, ...]:

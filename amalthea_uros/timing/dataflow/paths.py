@@ -131,8 +131,9 @@ def _connected(first: Event, rest: tuple[Event, ...], dataflow: Dataflow) -> tup
     job_end = _end(process, None, is_start=False)
     if len(rest) == 1 and dataflow.events.of(rest[0])[0].process.name == process:
         return ()
-    passed_on = (dataflow.data(one, then) for one, then in product(dataflow.events.of(first), dataflow.events.of(job_end)))
-    return (job_end, *rest) if any(link is not None and link.kind is LinkKind.DATA for link in passed_on) else ()
+    ends = product(dataflow.events.of(first), dataflow.events.of(job_end))
+    passed_on = (link for one, then in ends for link in dataflow.data(one, then))
+    return (job_end, *rest) if any(link.kind is LinkKind.DATA for link in passed_on) else ()
 
 
 def _ways(graph: nx.DiGraph, first: str, last: str) -> Iterator[list[str]]:

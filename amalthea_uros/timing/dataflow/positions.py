@@ -14,6 +14,7 @@ from amalthea_uros.perf.activities import (
     LabelAccess,
     Loop,
     Switch,
+    Terminate,
     inner_activities,
 )
 from amalthea_uros.perf.conditions import Condition
@@ -81,6 +82,11 @@ def positions(process: Process, system: System, sites: CallSites) -> list[Activi
     walk = _Walk(process, system, sites)
     walk.through(process.activities, _Branch())
     return [position for position in walk.found if position is not None]
+
+
+def ends_early(position: ActivityPosition) -> bool:
+    """Whether a job ends at a position that others can follow."""
+    return isinstance(position.activity, Terminate) and any(index + 1 < len(part) for part, index in position.outer)
 
 
 @dataclass(frozen=True, slots=True)

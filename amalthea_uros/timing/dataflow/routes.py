@@ -1,7 +1,8 @@
 """Routes of a chain: the occurrences of its events that are linked to each other.
 
 Each event is located in the processes; if several occurrences are possible, those that are linked are selected. The names of segments
-are irrelevant: links are labels that one process writes and another one reads, triggers and OS events.
+are irrelevant: links are labels that one process writes and another one reads, triggers and OS events. If several links can take the
+effect from one event to the next, each of them is on a route of its own, because nobody states which one is meant.
 """
 
 from __future__ import annotations
@@ -12,11 +13,26 @@ from itertools import pairwise, product
 from math import prod
 
 from amalthea_uros.perf.events import Event
+from amalthea_uros.timing.dataflow.chains import MAX_ROUTES, Unfolded, sequences
 from amalthea_uros.timing.dataflow.events import EventOccurrence, UnresolvedError
-from amalthea_uros.timing.dataflow.links import GAPS, UNTIMED, Dataflow, Link
+from amalthea_uros.timing.dataflow.links import GAPS, UNTIMED, Dataflow, Link, LinkKind
 
 #: More combinations of occurrences of the events of one sequence are not tried.
 MAX_CANDIDATES = 10_000
+
+
+class UnlinkedError(UnresolvedError):
+    """Nothing takes the effect from an event of a chain to the next one.
+
+    Attributes
+    ----------
+    gaps : the names of both events, for each place at which that is so
+    """
+
+    def __init__(self, gaps: Sequence[tuple[str, str]]) -> None:
+        first, then = gaps[0]
+        super().__init__(f"no data flow or trigger connects {first!r} to {then!r}")
+        self.gaps = tuple(gaps)
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,9 +44,9 @@ class Route:
     links: tuple[Link, ...]
 
     @property
-    def gaps(self) -> int:
-        """Number of events that are not linked to the next one."""
-        return sum(link.kind in GAPS for link in self.links)
+    def gaps(self) -> tuple[tuple[str, str], ...]:
+        """The events that are not linked to the next one, with that."""
+        return tuple(pair for pair, link in zip(pairwise(self.events), self.links, strict=True) if link.kind in GAPS)
 
     @property
     def is_timed(self) -> bool:
@@ -41,25 +57,91 @@ class Route:
 def is_linked(first: Event, then: Event, dataflow: Dataflow) -> bool:
     """Whether something takes the effect from one event to another; so it is if nobody knows where they occur."""
     try:
-        return routes([first, then], dataflow)[0].gaps == 0
+        routes([first, then], dataflow)
+    except UnlinkedError:
+        return False
     except UnresolvedError:
         return True
+    return True
 
 
 def routes(events: Sequence[Event], dataflow: Dataflow) -> list[Route]:
-    """The possible routes of a sequence of events, reduced to those with the fewest gaps.
+    """The possible routes of a sequence of events.
 
     Raises
     ------
-    UnresolvedError : an event cannot be located.
+    UnresolvedError : an event cannot be located, nothing links it to the next one, or there are too many routes.
     """
+    found = _least_gaps(events, dataflow)
+    gaps = dict.fromkeys(gap for route in found for gap in route.gaps)
+    if gaps:
+        raise UnlinkedError(list(gaps))
+    return found
+
+
+def routes_of_ways(unfolded: Unfolded, dataflow: Dataflow) -> dict[tuple[str, ...], list[Route]]:
+    """The possible routes of all ways through a chain, by their events.
+
+    Raises
+    ------
+    UnresolvedError : an event cannot be located, nothing links it to the next one, or there are too many routes.
+    """
+    events = dataflow.system.events_by_name
+    found: dict[tuple[str, ...], list[Route]] = {}
+    gaps: list[tuple[str, str]] = []
+    for way in sequences(unfolded):
+        try:
+            found[way] = routes([events[name] for name in way], dataflow)
+        except UnlinkedError as error:
+            gaps += error.gaps
+    if gaps:
+        raise UnlinkedError(list(dict.fromkeys(gaps)))
+    return found
+
+
+def corresponding(first: Event, then: Event, dataflow: Dataflow) -> list[Route]:
+    """The routes from occurrences of an event to those of another one that belong to them, even if nothing links them.
+
+    If a job passes both, or one triggers the other, these belong together, whatever data they share as well.
+
+    Raises
+    ------
+    UnresolvedError : an event cannot be located, or there are too many routes.
+    """
+    found = _least_gaps([first, then], dataflow)
+    one_to_one = [route for route in found if route.links[0].kind in (LinkKind.JOB, LinkKind.TRIGGER)]
+    return one_to_one or found
+
+
+def _least_gaps(events: Sequence[Event], dataflow: Dataflow) -> list[Route]:
+    """The routes with the fewest events that are not linked to the next one."""
     choices = [dataflow.events.of(event) for event in events]
     if prod(map(len, choices)) > MAX_CANDIDATES:
         raise UnresolvedError("its events occur in too many processes; set the process of each event")
+    found = _occurrences_with_least_gaps(choices, dataflow)
+    # Occurrences alone can be more.
+    if sum(prod(map(len, links)) for _, links in found) > max(MAX_ROUTES, len(found)):
+        raise UnresolvedError(f"it has more than {MAX_ROUTES} routes, as several links can take the effect on")
     names = tuple(event.name for event in events)
-    found = [
-        Route(names, occurrences, tuple(dataflow.between(first, then) for first, then in pairwise(occurrences)))
-        for occurrences in product(*choices)
-    ]
-    fewest = min(route.gaps for route in found)
-    return [route for route in found if route.gaps == fewest]
+    return [Route(names, occurrences, links) for occurrences, alternatives in found for links in product(*alternatives)]
+
+
+def _occurrences_with_least_gaps(
+    choices: Sequence[Sequence[EventOccurrence]], dataflow: Dataflow
+) -> list[tuple[tuple[EventOccurrence, ...], list[tuple[Link, ...]]]]:
+    """Occurrences of each event, and all links from each of them to the next one, or the gap there."""
+    found = []
+    for occurrences in product(*choices):
+        links = [dataflow.links(first, then) or (dataflow.gap(first, then),) for first, then in pairwise(occurrences)]
+        found.append((sum(alternatives[0].kind in GAPS for alternatives in links), occurrences, links))
+    fewest = min(gaps for gaps, _, _ in found)
+    return [(occurrences, links) for gaps, occurrences, links in found if gaps == fewest]
+
+
+def route_text(route: Route) -> str:
+    """The events of a route and the links between them."""
+    parts = [route.events[0]]
+    for link, event in zip(route.links, route.events[1:], strict=True):
+        carried = f"{link.kind} {', '.join(link.names)}".strip()
+        parts.append(f"-[{carried}]-> {event}")
+    return " ".join(parts)

@@ -10,12 +10,12 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
-from amalthea_uros.perf.activities import Communication, Group, LabelAccess
+from amalthea_uros.perf.activities import Communication, Group
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.timing.counters import ALWAYS
-from amalthea_uros.timing.dataflow.events import EventOccurrence
-from amalthea_uros.timing.dataflow.links import Link, LinkKind
+from amalthea_uros.timing.dataflow.events import EventOccurrence, JobPhase
+from amalthea_uros.timing.dataflow.links import Link, LinkKind, communication_of
 from amalthea_uros.timing.dataflow.positions import ActivityPosition
 from amalthea_uros.timing.dataflow.routes import Route
 
@@ -113,10 +113,14 @@ def stages(route: Route, communication: Communication | None) -> list[Stage]:
             passed.append(then.position)
             continue
         is_trigger = link.kind is LinkKind.TRIGGER
-        write, read = (_communication(position, communication) for position in (link.write, link.read))
+        write, read = (communication_of(position, communication) for position in (link.write, link.read))
         leave = Fire(link.write, link.is_before) if is_trigger else Write(write, link.write)
         is_same = before.process.name == then.process.name and not is_trigger
         later = _jobs_later(link, write, read) if is_same else None
+        if _has_left_before(enter, leave):
+            # What the job has sent before the event does not come from it: the next job sends.
+            found.append(Stage(before.process, enter, Pass(), jobs_later=NEXT_JOB))
+            enter = Pass()
         found += _within(
             Stage(before.process, enter, leave, is_triggered=is_triggered, jobs_later=later), [*passed, link.write]
         )
@@ -124,6 +128,16 @@ def stages(route: Route, communication: Communication | None) -> list[Stage]:
         enter = Read(read, link.read)
     last = route.occurrences[-1]
     return found + _within(Stage(last.process, enter, At(last, how, is_end=True), is_triggered=is_triggered), passed)
+
+
+def _has_left_before(enter: Boundary, leave: Boundary) -> bool:
+    """Whether a stage begins with the end of a job that leaves it before its end."""
+    if not isinstance(enter, At) or enter.communication is Communication.LET or enter.occurrence.when is not JobPhase.END:
+        return False
+    match leave:
+        case Fire(position=ActivityPosition()) | Write(communication=Communication.EXPLICIT, position=ActivityPosition()):
+            return True
+    return False
 
 
 def _within(stage: Stage, passed: Sequence[ActivityPosition | None]) -> list[Stage]:
@@ -184,21 +198,10 @@ def _is_order_certain(first: ActivityPosition, then: ActivityPosition) -> bool:
     return True
 
 
-def _communication(position: ActivityPosition | None, communication: Communication | None) -> Communication:
-    access = position.activity if position is not None else None
-    stated = access.communication if isinstance(access, LabelAccess) else None
-    return communication or stated or Communication.IMPLICIT
-
-
-def communication_of(found: Iterable[Stage]) -> str:
+def common_communication(found: Iterable[Stage]) -> str:
     """How stages communicate, in one word."""
     boundaries = [boundary for stage in found for boundary in (stage.enter, stage.leave)]
     stated = {boundary.communication for boundary in boundaries if isinstance(boundary, Read | Write)}
     ends = {boundary.communication for boundary in boundaries if isinstance(boundary, At)}
     kinds = stated or ends
     return str(next(iter(kinds))).lower() if len(kinds) == 1 else "mixed"
-
-
-def link_text(link: Link) -> str:
-    """A link in words."""
-    return f"{link.kind} {', '.join(link.names)}".strip()

@@ -5,18 +5,28 @@ from amalthea_uros.timing.event_models.aggregated import (
     Downsampled,
     Multiplied,
     Rescaled,
+    Thinned,
     aggregated,
     rescaled,
+    thinned,
 )
 from amalthea_uros.timing.event_models.base import NEVER, EventModel
 from amalthea_uros.timing.event_models.burst import Pattern
 from amalthea_uros.timing.event_models.curve import Curve
 from amalthea_uros.timing.event_models.output import Delayed, OutputEventModel
-from amalthea_uros.timing.event_models.periodic import Periodic, Single, Sporadic, is_strictly_periodic
+from amalthea_uros.timing.event_models.periodic import (
+    Conditional,
+    Periodic,
+    Single,
+    Sporadic,
+    can_be_dense,
+    is_strictly_periodic,
+)
 
 __all__ = [
     "NEVER",
     "AggregatedEventModel",
+    "Conditional",
     "Curve",
     "Delayed",
     "Downsampled",
@@ -28,7 +38,10 @@ __all__ = [
     "Rescaled",
     "Single",
     "Sporadic",
+    "Thinned",
     "aggregated",
+    "can_be_dense",
     "is_strictly_periodic",
     "rescaled",
+    "thinned",
 ]

@@ -7,7 +7,7 @@ from fractions import Fraction
 from functools import cached_property
 
 from amalthea_uros.timing.event_models.base import NEVER, EventModel
-from amalthea_uros.timing.event_models.periodic import Periodic, Sporadic
+from amalthea_uros.timing.event_models.periodic import Conditional, Periodic, Sporadic
 from amalthea_uros.units import Time
 
 
@@ -51,6 +51,11 @@ class AggregatedEventModel(EventModel):
         """See `EventModel`."""
         return sum((source.rate for source in self.sources), Fraction(0))
 
+    @property
+    def can_be_suppressed(self) -> bool:
+        """See `EventModel`."""
+        return any(source.can_be_suppressed for source in self.sources)
+
 
 def aggregated(sources: tuple[EventModel, ...]) -> EventModel:
     """The events of all sources; the same model for a single source."""
@@ -73,6 +78,11 @@ class Multiplied(EventModel):
         """See `EventModel`."""
         return self.events.rate * self.factor
 
+    @property
+    def can_be_suppressed(self) -> bool:
+        """See `EventModel`."""
+        return self.events.can_be_suppressed
+
 
 @dataclass(frozen=True)
 class Downsampled(EventModel):
@@ -89,6 +99,11 @@ class Downsampled(EventModel):
     def rate(self) -> Fraction:
         """See `EventModel`."""
         return self.events.rate / self.prescaler
+
+    @property
+    def can_be_suppressed(self) -> bool:
+        """See `EventModel`."""
+        return self.events.can_be_suppressed
 
 
 @dataclass(frozen=True)
@@ -111,11 +126,49 @@ class Rescaled(EventModel):
         """See `EventModel`."""
         return self.events.rate / self.factor
 
+    @property
+    def can_be_suppressed(self) -> bool:
+        """See `EventModel`."""
+        return self.events.can_be_suppressed
+
 
 def rescaled(events: EventModel, factor: int) -> EventModel:
     """Events in a unit of time that is smaller by a factor."""
     match events:
         case Periodic(period, jitter, distance):
-            kind = Sporadic if isinstance(events, Sporadic) else Periodic
+            kinds = (Conditional, Sporadic, Periodic)
+            kind = next(kind for kind in kinds if isinstance(events, kind))
             return kind(period * factor, jitter * factor, distance * factor)
     return Rescaled(events, factor)
+
+
+@dataclass(frozen=True)
+class Thinned(EventModel):
+    """Those events of another model for which a condition is true."""
+
+    events: EventModel
+
+    def delta_min(self, count: int) -> Time:
+        """See `EventModel`."""
+        return self.events.delta_min(count)
+
+    def eta_plus(self, window: Time) -> int:
+        """See `EventModel`."""
+        return self.events.eta_plus(window)
+
+    @property
+    def rate(self) -> Fraction:
+        """See `EventModel`."""
+        return self.events.rate
+
+    @property
+    def can_be_suppressed(self) -> bool:
+        """See `EventModel`."""
+        return True
+
+
+def thinned(events: EventModel) -> EventModel:
+    """Events that occur only if a condition is true: none of them is certain, and there is no maximum time between two."""
+    if isinstance(events, Periodic):
+        return Conditional(events.period, events.jitter, events.min_interarrival)
+    return Thinned(events)

@@ -32,6 +32,11 @@ class EventModel(ABC):
         """Maximum time between two consecutive events; None if it is unbounded or unknown."""
         return None
 
+    @property
+    def can_be_suppressed(self) -> bool:
+        """Whether any of the events may not occur, so that their density is bounded from above only."""
+        return False
+
     def eta_plus(self, window: Time) -> int:
         """Maximum number of events in a window of that length (eta+)."""
         if window <= 0:

@@ -18,10 +18,12 @@ class Pattern(EventModel):
     Attributes
     ----------
     times : ascending, within the period
+    longest_at_start : the maximum time between two events while some of the list do not occur yet
     """
 
     period: Time
     times: tuple[Time, ...]
+    longest_at_start: Time = 0
 
     def delta_min(self, count: int) -> Time:
         """See `EventModel`."""
@@ -53,4 +55,4 @@ class Pattern(EventModel):
     def max_interarrival(self) -> Time:
         """See `EventModel`."""
         ends = (*self.times[1:], self.times[0] + self.period)
-        return max(end - start for start, end in zip(self.times, ends, strict=True))
+        return max(self.longest_at_start, *(end - start for start, end in zip(self.times, ends, strict=True)))

@@ -32,6 +32,11 @@ class Delayed(EventModel):
         """See `EventModel`."""
         return self.events.rate
 
+    @property
+    def can_be_suppressed(self) -> bool:
+        """See `EventModel`."""
+        return self.events.can_be_suppressed
+
 
 @dataclass(frozen=True)
 class OutputEventModel(EventModel):
@@ -81,3 +86,8 @@ class OutputEventModel(EventModel):
     def rate(self) -> Fraction:
         """See `EventModel`."""
         return self.events.rate
+
+    @property
+    def can_be_suppressed(self) -> bool:
+        """See `EventModel`."""
+        return self.events.can_be_suppressed

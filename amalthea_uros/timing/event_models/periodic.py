@@ -56,9 +56,24 @@ class Sporadic(Periodic):
         return self.longest
 
 
+@dataclass(frozen=True)
+class Conditional(Sporadic):
+    """Periodic or sporadic events, each of which occurs only if a condition is true."""
+
+    @property
+    def can_be_suppressed(self) -> bool:
+        """See `EventModel`."""
+        return True
+
+
 def is_strictly_periodic(model: EventModel) -> bool:
     """Whether an event occurs in every period, with or without jitter."""
     return isinstance(model, Periodic) and not isinstance(model, Sporadic)
+
+
+def can_be_dense(model: EventModel) -> bool:
+    """Whether the minimum distances are known to occur, not only bounds."""
+    return isinstance(model, Periodic) and not model.can_be_suppressed
 
 
 @dataclass(frozen=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from itertools import pairwise
 
 from amalthea_uros.perf import stimuli as perf
 from amalthea_uros.perf.distributions import highest, lowest
@@ -12,7 +13,7 @@ from amalthea_uros.timing.event_models.burst import Pattern
 from amalthea_uros.timing.event_models.curve import Curve
 from amalthea_uros.timing.event_models.periodic import Periodic, Single, Sporadic
 from amalthea_uros.timing.limits import LIMIT
-from amalthea_uros.units import SECOND, Frequency
+from amalthea_uros.units import SECOND, Frequency, Time
 
 #: Stimuli with more occurrences are not analysed.
 MAX_OCCURRENCES = 10_000
@@ -54,7 +55,7 @@ def _event_model_of(stimulus: perf.Stimulus, system: System) -> EventModel | Non
             return Periodic(shortest) if shortest == longest else Sporadic(shortest, longest=longest)
         case perf.Synthetic(period=period, times=times) if period > 0 and times:
             # Times beyond the period coincide with those of later periods.
-            return Pattern(period, tuple(sorted(time % period for time in times)))
+            return Pattern(period, tuple(sorted(time % period for time in times)), _longest_at_start(period, times))
         case perf.Burst(period=period, length=length, distance=distance, count=count) if period > 0:
             # Whether an occurrence at exactly the end of the burst is clipped is not stated; counting it is safe.
             occurrences = min(count, max(length, 0) // distance + 1) if distance > 0 else count
@@ -75,6 +76,21 @@ def _event_model_of(stimulus: perf.Stimulus, system: System) -> EventModel | Non
             shortest = int(Fraction(recurrence) * SECOND / frequency) if frequency else 0
             return Sporadic(shortest) if shortest else None
     return None
+
+
+def _longest_at_start(period: Time, times: tuple[Time, ...]) -> Time:
+    """The maximum distance of events until times beyond the period have occurred for the first time; 0 if there are none.
+
+    From then on, one period has them all.
+    """
+    if max(times) < period:
+        return 0
+    # The first event of each time; after the last of them, everything repeats.
+    until = max(times)
+    if until // period * len(times) > MAX_OCCURRENCES:
+        return until
+    found = sorted({time + shift for time in times for shift in range(0, until - time + 1, period)})
+    return max((then - first for first, then in pairwise(found)), default=0)
 
 
 def _max_frequency(clock: perf.Clock | None) -> Frequency | None:

@@ -107,7 +107,7 @@ def test_decimals_are_divided_exactly(tmp_path):
 
 
 @pytest.mark.parametrize(("target", "official"), [("0.9.5", False), ("3.3.0", False), ("3.3.0", True)])
-def test_an_upper_bound_that_is_not_stated_is_unknown_beyond_the_official_conversions(tmp_path, target, official):
+def test_an_upper_bound_that_is_not_stated_is_left_open(tmp_path, target, official):
     """Execution times of 0 would be a result, where the older model has a gap."""
     uniform = """<value xsi:type="am:NeedDeviation"><deviation><lowerBound xsi:type="am:LongObject" value="6"/>
         <distribution xsi:type="am:UniformDistribution"/></deviation></value>"""
@@ -119,13 +119,12 @@ def test_an_upper_bound_that_is_not_stated_is_unknown_beyond_the_official_conver
     content = f'<swModel><runnables name="R">{need}</runnables></swModel>{hardware}{rate}'
     models, notes = migrated(written(tmp_path, "0.9.2", content), target, official)
     found = [node for tree in models.trees for node in tree.root.walk() if "lowerBound" in node.attributes]
-    is_known = target == "0.9.5" or official
     assert [(node.get("lowerBound"), node.get("upperBound")) for node in found] == [
-        ("6", "0" * is_known),
-        *[("3", "0" * is_known)] * (1 if official else 2),
-        ("0.0", "0.0" * is_known),
+        ("6", "0" * official),
+        *[("3", "0" * official)] * (1 if official else 2),
+        ("0.0", "0.0" * official),
     ]
-    assert len(of_kind(notes, Kind.TO_CHECK)) == (0 if is_known else 4)
+    assert len(of_kind(notes, Kind.TO_CHECK)) == (0 if official else 3)
 
 
 def test_execution_times_without_upper_bound_are_no_execution_times(tmp_path):

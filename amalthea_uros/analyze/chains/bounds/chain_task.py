@@ -28,6 +28,7 @@ class ChainTask:
     period : maximum time between two releases, if there is one (`is_regular`)
     response : worst-case response time
     offset : of the first release; None if releases are unknown
+    first_release : the latest time of it, also if later ones are unknown
     preempts_reader : whether its jobs preempt those of the next task on the same core
     """
 
@@ -36,6 +37,7 @@ class ChainTask:
     response: Time
     is_regular: bool = True
     offset: Time | None = 0
+    first_release: Time = 0
     preempts_reader: bool = False
 
 

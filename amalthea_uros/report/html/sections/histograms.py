@@ -74,9 +74,10 @@ def _chains(content: ReportContent) -> Iterator[_Distribution]:
 
 def _processes(content: ReportContent) -> Iterator[_Distribution]:
     assert content.simulation is not None
-    simulated = content.simulation.simulation.processes
+    # Without those that are not simulated.
+    simulated = {each.name: each for each in content.simulation.simulation.processes}
     names = [row.item.name if isinstance(row.item, ProcessResult) else row.item.object for row in judged_rows(content.analysis)]
-    found = [simulated[name] for name in dict.fromkeys(names) if name in content.system.processes]
+    found = [simulated[name] for name in dict.fromkeys(names) if name in simulated]
     for each in [each for each in found if each.response_time is not None][:_MOST_PROCESSES]:
         assert each.response_time is not None
         response = content.analysis.processes[each.name].response

@@ -14,10 +14,9 @@ from amalthea_uros.validate.wording import joined
 
 
 def _check(context: SystemContext) -> Iterator[Problem]:
-    for core, shares in context.loads.items():
-        total = sum(shares.values())
+    for core, total in context.certain_loads.items():
         if total > 1:
-            largest = sorted(shares.items(), key=lambda item: item[1], reverse=True)
+            largest = sorted(context.loads.get(core, {}).items(), key=lambda item: item[1], reverse=True)
             parts = joined(f"{_percent(share)} by {process!r}" for process, share in largest)
             yield Problem(
                 context.system.cores[core], f"overload: the worst-case load of {core!r} is {_percent(total)}: {parts}"

@@ -22,7 +22,7 @@ RULE = ModelRule(
     severity=Severity.WARNING,
     target=TaskScheduler,
     check=_check,
-    rationale="The scheduling order is unknown; preemptive fixed priorities are assumed.",
+    rationale="The scheduling order is unknown, so response times are unknown.",
     remedy="Refer to a scheduler definition, such as FixedPriorityPreemptive.",
     fails="""
 <osModel>

@@ -46,7 +46,7 @@ _STEP_LIMITS = ("maxIncreasePerStep", "maxDecreasePerStep")
 def change(models: ModelSet, notes: Notes, official: bool) -> None:
     """Change the content of the files of AMALTHEA 0.9.2."""
     found = by_class(models, (*_DEVIATIONS, *_LATENCIES, "ExecutionNeed"))
-    values = Values(models, notes, official)
+    values = Values(notes, official)
     ticks = Ticks(models, values, notes, official)
     ticks.convert_needs(found["ExecutionNeed"])
     ticks.convert_overheads(models.nodes("osOverheads"))
@@ -56,7 +56,7 @@ def change(models: ModelSet, notes: Notes, official: bool) -> None:
     for name in _LATENCIES:
         for node in found[name]:
             _convert_latency(node, values, notes)
-    sensible = Values(models, notes, official=False)
+    sensible = Values(notes, official=False)
     for name, place in _DEVIATIONS.items():
         for node in found[name]:
             _convert_deviations(node, place, sensible if name in _FAILING else values, notes)

@@ -207,8 +207,6 @@ class Ticks:
                 entry.refer("key", definition)
                 ticks = entry.add("value", default.type, like=default)
                 ticks.attributes = dict(default.attributes)
-                if default in self.values.unbounded:
-                    self.values.postpone_unbounded(ticks)
                 self.divide(ticks, rate)
 
     def divide(self, ticks: Node, rate: Fraction) -> None:
@@ -256,7 +254,7 @@ class Ticks:
     def convert_overhead(self, part: Node) -> None:
         """The part stays, and gets its number as the default. Without a class the official converter fails."""
         stated = self.values.number(part, "default", part)
-        if stated and stated.type == "DiscreteValueConstant":
+        if self.official and stated and stated.type == "DiscreteValueConstant":
             stated.attributes.setdefault("value", "0")
         part.type = ""
         part.attributes.pop("value", None)

@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-from functools import partial
 from typing import NamedTuple
 
-from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node
-from amalthea_uros.xmi.migrate.notes import Kind, Notes
-from amalthea_uros.xmi.migrate.postponed import Postponed
-from amalthea_uros.xmi.migrate.steps.later import BEYOND_CONVERTERS
+from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.steps.properties import add_property
 from amalthea_uros.xmi.migrate.steps.v0_9_parts import keep_comments
 
@@ -23,7 +19,7 @@ DEVIATIONS = {"NeedDeviation": "deviation", "InstructionsDeviation": "deviation"
 
 _LOST = "a deviation without a distribution that has a successor is lost"
 
-_UNBOUNDED = "the upper bound is mandatory, but was not stated: it is left open, instead of 0 as up to 0.9.5"
+_UNBOUNDED = "the upper bound is mandatory, but was not stated: it is left open"
 
 
 class _Form(NamedTuple):
@@ -51,16 +47,10 @@ _WEIBULL_PARAMETERS = ("kappa", "lambda")
 
 
 class Values:
-    """Converts constants and deviations.
+    """Converts constants and deviations."""
 
-    Attributes
-    ----------
-    unbounded : numbers of which the older model states no upper bound, and that have the bound 0 for now
-    """
-
-    def __init__(self, models: ModelSet, notes: Notes, official: bool) -> None:
-        self.models, self.notes, self.official = models, notes, official
-        self.unbounded: set[Node] = set()
+    def __init__(self, notes: Notes, official: bool) -> None:
+        self.notes, self.official = notes, official
 
     def number(self, node: Node, tag: str, owner: Node) -> Node | None:
         """A need, a number of instructions or a latency in the newer form, as a new part without container; None if nothing is left.
@@ -103,9 +93,10 @@ class Values:
         return True
 
     def default_bounds(self, node: Node, kind: str, form: _Form) -> None:
-        """A missing bound of a number is 0, which is also the default of the newer version.
+        """A missing lower bound of a number is 0: nothing of them is negative. A missing upper bound is left open.
 
-        The official converter also makes bounds of 0 where a Gauss distribution is not cut off, and times without a default.
+        With 0, something that may take any time, or occur any number of times, would be taken for something that never does. The
+        official converter makes bounds of 0 of both, also where a Gauss distribution is not cut off, and of times.
         """
         if not self.official and (kind == TIME or form.suffix == "GaussDistribution"):
             return
@@ -117,22 +108,12 @@ class Values:
                 bound.attributes["value"] = "0"
             elif name in node.attributes:
                 continue
+            elif name == _UPPER and not self.official:
+                self.notes.to_check(node, _UNBOUNDED, attribute=name)
+                continue
             else:
                 node.attributes[name] = _ZEROS[kind]
-                if name == _UPPER and not self.official:
-                    self.postpone_unbounded(node)
             self.notes.defaulted(node, "a bound that is not stated is 0", name, name)
-
-    def postpone_unbounded(self, node: Node) -> None:
-        """Leave the upper bound open as soon as the content goes beyond what the official converter makes of it.
-
-        With 0, something that may take any time, or occur any number of times, would be taken for something that never does.
-        """
-        self.unbounded.add(node)
-        drop = partial(node.drop, _UPPER)
-        self.models.postponed.append(
-            Postponed(BEYOND_CONVERTERS, drop, Kind.TO_CHECK, node, _UNBOUNDED, attribute=_UPPER, is_kept=True)
-        )
 
 
 def _drop_statistics(node: Node, notes: Notes) -> None:

@@ -1,0 +1,60 @@
+"""Chains that start at the end of a job which has triggered, or written, before: the next job is the first one that responds."""
+
+from dataclasses import replace
+
+import pytest
+from test_chain_systems import END, at, evaluate, read, system, ticks
+
+from amalthea_uros import analyze_system
+from amalthea_uros.perf.activities import AccessKind, Communication, LabelAccess, Trigger
+from amalthea_uros.perf.constraints import Constraints, DelayConstraint, Matching
+from amalthea_uros.perf.stimuli import InterProcess
+from amalthea_uros.simulate.options import Options
+from amalthea_uros.simulate.system import simulate_system
+from amalthea_uros.timing.chain_quantity import ChainQuantity
+from amalthea_uros.units import MICROSECOND as US
+from amalthea_uros.units import MILLISECOND as MS
+
+
+def triggering(cores=("core",), *, constraints=()):
+    """R, the higher priority, for 2 at the start of each W, which executes 10 every 100."""
+    tasks = [
+        ("R", None, [ticks(2)], cores[0]),
+        ("W", 100, [Trigger(stimulus="R"), ticks(10)], cores[-1]),
+    ]
+    built = system(tasks, (at("W", END), at("R", END)), stimuli=(InterProcess(name="R"),), cores=cores)
+    return replace(built, constraints=Constraints(constraints=constraints))
+
+
+@pytest.mark.parametrize(
+    ("cores", "least"),
+    # W ends at 12 and R at 102; on two cores W ends at 10.
+    [(("core",), 90), (("core", "other"), 92)],
+)
+def test_the_next_job_responds_to_the_end_of_a_job_that_has_triggered(cores, least):
+    _, values, _, _ = evaluate(triggering(cores))
+    assert 0 < values["min_first_to_first"] <= least <= values["max_reduced_reaction_time"] <= 100
+
+
+def test_the_simulation_agrees_with_the_analysis():
+    built = triggering()
+    (chain,) = simulate_system(built, Options(duration=10 * MS)).chains
+    reaction = chain.quantities[ChainQuantity.REDUCED_REACTION_TIME]
+    assert reaction.min == reaction.max == 90 * US
+    _, values, _, _ = evaluate(built)
+    assert values["min_first_to_first"] <= 90 <= values["max_reduced_reaction_time"]
+
+
+@pytest.mark.parametrize(("matching", "verdict"), [(Matching.REACTION, "missed"), (Matching.ONE_TO_ONE, "unknown")])
+def test_a_delay_from_such_an_end(matching, verdict):
+    delay = DelayConstraint(name="D", source="W terminate", target="R terminate", upper=50 * US, matching=matching)
+    built = triggering(constraints=(delay,))
+    assert [str(found.verdict) for found in analyze_system(built).requirements] == [verdict]
+
+
+def test_what_was_written_before_the_end_does_not_come_from_it():
+    written = LabelAccess(label="L", kind=AccessKind.WRITE, communication=Communication.EXPLICIT)
+    # W writes at 0 and ends at 10; the reader of 5 reads that from 0 + 50 at the latest, but what follows the end of W from 100 on.
+    tasks = [("W", 100, [written, ticks(10)]), ("R", 50, [read("L"), ticks(5)])]
+    _, values, _, _ = evaluate(system(tasks, (at("W", END), at("R", END))))
+    assert values["max_reduced_reaction_time"] >= 105 - 10

@@ -1,0 +1,142 @@
+"""Tasks without priorities: bounds that hold for any order, compared with all orders one by one.
+
+All tasks run at 1 MHz, so that a tick takes 1 us.
+"""
+
+from itertools import permutations
+
+import pytest
+from effort import examples
+from hypothesis import given
+from hypothesis import strategies as st
+from support import SHARED
+from test_system import system, ticks
+
+import amalthea_uros as amuros
+from amalthea_uros.analyze.results import Claim
+from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.perf.mapping import TaskAllocation
+from amalthea_uros.perf.os import Policy
+from amalthea_uros.perf.software import Preemption, Task
+from amalthea_uros.perf.stimuli import Periodic
+from amalthea_uros.units import MICROSECOND as US
+
+NO_PRIORITY = SHARED / "vectors" / "verdicts" / "no-priority.amxmi"
+
+
+def analysed(tasks, priorities, offsets=None):
+    """Tasks of (period, demand, whether they can be preempted), by the names T0, T1 and so on."""
+    names = [f"T{index}" for index in range(len(tasks))]
+    offsets = offsets or [0] * len(tasks)
+    return analyze_system(
+        system(
+            ["core"],
+            [
+                Periodic(name=f"every {name}", period=period * US, offset=offset * US)
+                for name, (period, _, _), offset in zip(names, tasks, offsets, strict=True)
+            ],
+            [
+                Task(
+                    name=name,
+                    stimuli=(f"every {name}",),
+                    activities=(ticks(demand),),
+                    preemption=Preemption.PREEMPTIVE if is_preemptive else Preemption.NON_PREEMPTIVE,
+                    activation_limit=100,
+                )
+                for name, (_, demand, is_preemptive) in zip(names, tasks, strict=True)
+            ],
+            [
+                TaskAllocation(task=name, scheduler="core", priority=priority)
+                for name, priority in zip(names, priorities, strict=True)
+            ],
+            frequency=10**6,
+        )
+    )
+
+
+def worst(analysis):
+    return [None if each.response is None else each.response.worst for each in analysis.processes]
+
+
+def test_each_task_can_be_the_lowest():
+    # 33.34 ms / 100 and 22.23 ms / 100, at most one of each until both have ended.
+    analysis = amuros.analyze(amuros.load(NO_PRIORITY))
+    assert [(each.response.worst // 100_000, each.verdict) for each in analysis.processes] == [(5557, "met"), (5557, "met")]
+    assert [each.response.best // 100_000 for each in analysis.processes] == [3334, 2223]
+    assert {each.response.claim for each in analysis.processes} == {Claim.BOUND}
+    assert any("any order of priorities" in sentence for sentence in analysis.assumptions)
+
+
+def test_an_order_that_matters_is_left_open():
+    # 6 us of 8 us, and 3 us of 20 us: as the lowest, the first needs 6 + 3, the second 3 + 2 * 6, and so on.
+    first, second = analysed([(8, 6, True), (20, 3, True)], [None, None]).processes
+    assert (first.verdict, first.reason) == ("unknown", "it has no priority; as the lowest it needs up to 9 us")
+    assert (second.verdict, second.response.worst) == ("met", 15 * US)
+
+
+def test_an_overload_is_of_no_certain_task():
+    found = analysed([(10, 6, True), (10, 6, True)], [None, None]).processes
+    assert [each.verdict for each in found] == ["unknown", "unknown"]
+    assert found["T0"].reason.startswith("it has no priority; as the lowest, it has no bound")
+
+
+def test_a_task_longer_than_its_period_misses_it_in_any_order():
+    assert analysed([(100, 101, True), (1000, 1, True)], [None, None]).processes["T0"].verdict != "met"
+
+
+def test_a_known_priority_beside_an_unknown_one():
+    # Whether the other one is above or below is not known.
+    assert worst(analysed([(10, 2, True), (20, 5, True)], [5, None])) == [7 * US, 7 * US]
+
+
+def test_nothing_is_simulated_in_an_order_that_is_not_stated():
+    result = amuros.simulate(amuros.load(NO_PRIORITY), duration="100 ms")
+    assert [finding.message for finding in result.findings if finding.rule == "SIM001"] == [
+        "'A' is not simulated: it has no priority",
+        "'B' is not simulated: it has no priority",
+    ]
+
+
+@pytest.mark.parametrize("policy", [Policy.EARLIEST_DEADLINE_FIRST])
+def test_a_policy_without_priorities_needs_none(policy):
+    pairs = amuros.taskset([(5, 1), (10, 1)], unit="ms", policy="EDF")
+    assert amuros.analyze(pairs).summary.schedulable == "yes"
+
+
+TASKS = st.lists(
+    st.tuples(st.sampled_from([4, 5, 6, 8, 10, 12]), st.integers(1, 3), st.booleans()), min_size=2, max_size=3
+).filter(lambda tasks: sum(demand / period for period, demand, _ in tasks) <= 1)
+
+
+@examples(60)
+@given(TASKS, st.data())
+def test_no_order_exceeds_the_bound(tasks, data):
+    offsets = [data.draw(st.integers(0, period - 1)) for period, _, _ in tasks]
+    bounds = worst(analysed(tasks, [None] * len(tasks), offsets))
+    for order in permutations(range(len(tasks))):
+        for found, bound in zip(played(tasks, order, offsets), bounds, strict=True):
+            assert bound is None or found * US <= bound
+        for found, bound in zip(analysed(tasks, order, offsets).processes, bounds, strict=True):
+            # Bounds of a known order need not be tight.
+            assert bound is None or found.response.claim is not Claim.EXACT or found.response.worst <= bound
+
+
+def played(tasks, priorities, offsets):
+    """The longest response times of two hyperperiods, tick by tick; the highest priority is served first."""
+    pending, current, longest = [[] for _ in tasks], None, [0] * len(tasks)
+    for now in range(2 * 120 + max(offsets)):
+        for index, (period, demand, _) in enumerate(tasks):
+            if now >= offsets[index] and (now - offsets[index]) % period == 0:
+                pending[index].append([now, demand])
+        if current is None or tasks[current][2]:
+            ready = [index for index, jobs in enumerate(pending) if jobs]
+            # One that cannot be preempted goes on once it has started.
+            current = max(ready, key=lambda index: priorities[index], default=None)
+        if current is not None:
+            job = pending[current][0]
+            job[1] -= 1
+            if not job[1]:
+                longest[current] = max(longest[current], now + 1 - job[0])
+                pending[current].pop(0)
+                current = None
+    return longest

@@ -1,0 +1,199 @@
+"""Event chains of a model, and their latencies in a play, after Guenzel, Chen, Ueter, Chen (ECRTS 2023).
+
+A stimulus is answered by the first response at or after it that is based on it or on a newer one. A stimulus without a response up to
+the end of the play has waited at least until then.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_left, bisect_right
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise, product
+from xml.etree import ElementTree
+
+from opponent.models.player import Job, Player
+from opponent.models.reading import Played, kind_of, reference
+from opponent.models.variants import items_of
+
+#: A process and what happens to its job: activate, start, terminate.
+Event = tuple[str, str]
+#: Jobs and the times at which they do something.
+Times = list[tuple[int, int]]
+
+
+@dataclass(frozen=True, slots=True)
+class Chain:
+    """A chain of processes from an event to another one; between two of them is one of several links, a label or a trigger ("")."""
+
+    name: str
+    stimulus: str
+    response: str
+    processes: tuple[str, ...]
+    links: tuple[tuple[str, ...], ...]
+
+
+def events_of(root: ElementTree.Element) -> dict[str, Event]:
+    """The events of starts, ends and activations of processes."""
+    return {
+        e.get("name", ""): (reference(e.get("entity")), e.get("eventType", ""))
+        for e in root.iter("events")
+        if kind_of(e) == "ProcessEvent" and e.get("eventType") in ("activate", "start", "terminate")
+    }
+
+
+def chains_of(text: str | bytes, played: Played) -> Iterator[Chain]:
+    """The chains of which every step is understood."""
+    root = ElementTree.fromstring(text)
+    events = events_of(root)
+    for chain in root.iter("eventChains"):
+        parts = [part for item in chain.findall("items") for part in item.findall("eventChain")]
+        if len(parts) != len(chain.findall("items")) or chain.get("itemType") == "parallel":
+            continue
+        names = [chain.get("stimulus"), *(part.get("response") for part in parts), *([] if parts else [chain.get("response")])]
+        steps = [events.get(reference(name)) for name in names]
+        if not all(steps):
+            continue
+        processes = [steps[0][0]]  # type: ignore[index]
+        processes += [b[0] for a, b in pairwise(steps) if a[0] != b[0]]  # type: ignore[index]
+        links = tuple(tuple(_links(played, *pair)) for pair in pairwise(processes))
+        if links and all(links):
+            yield Chain(chain.get("name", ""), steps[0][1], steps[-1][1], tuple(processes), links)  # type: ignore[index]
+
+
+def _links(played: Played, source: str, target: str) -> Iterator[str]:
+    """What leads from a process to another one; nothing if it is not clear."""
+    accesses = {process.name: _accesses(played, process.name) for process in played.processes}
+    for name in sorted(
+        {n for kind, n in accesses[source] if kind == "write"} & {n for kind, n in accesses[target] if kind == "read"}
+    ):
+        writers = [process for process, found in accesses.items() if ("write", name) in found]
+        if writers == [source]:
+            yield name
+    stimuli = {item[1] for item in _items(played, source) if item[0] == "trigger"}
+    events = {item[1] for item in _items(played, source) if item[0] == "event"}
+    stimuli |= {stimulus for event in events for stimulus in played.listeners.get(event, ())}
+    of_target = next(process.stimuli for process in played.processes if process.name == target)
+    if stimuli & set(of_target):
+        yield ""
+
+
+def _items(played: Played, process: str) -> Iterator[tuple[object, ...]]:
+    """All items that a process can reach."""
+    bodies = [next(p.body for p in played.processes if p.name == process)]
+    known: set[str] = set()
+    while bodies:
+        alone = Played(
+            **{f: getattr(played, f) for f in played.__slots__} | {"processes": (), "runnables": {"": (bodies.pop(), ())}}
+        )
+        for item in items_of(alone):
+            yield item
+            if item[0] == "call" and item[1] not in known:
+                known.add(item[1])
+                bodies.append(played.runnables[item[1]][0])
+
+
+def _accesses(played: Played, process: str) -> set[tuple[str, str]]:
+    return {(str(item[0]), str(item[1])) for item in _items(played, process) if item[0] in ("read", "write")}
+
+
+def readings(chain: Chain) -> Iterator[tuple[str, ...]]:
+    """One link for each step."""
+    yield from product(*chain.links)
+
+
+def latencies(played: Played, play: Player, chain: Chain, links: tuple[str, ...], until: int) -> Iterator[tuple[str, int]]:
+    """All values of each quantity, over one link a step; none if it is not clear which data a job is based on."""
+    index = {process.name: number for number, process in enumerate(played.processes)}
+    stages = [play.jobs[index[name]] for name in chain.processes]
+    hops = [
+        _Hop.of(*pair, link, index[name]) for pair, link, name in zip(pairwise(stages), links, chain.processes, strict=False)
+    ]
+    if not all(hop.is_clear for hop in hops):
+        return
+    stimuli = [time for job in stages[0] if (time := _time(job, chain.stimulus)) is not None]
+    responses = [time for job in stages[-1] if (time := _time(job, chain.response)) is not None]
+    # Of a job that has not ended, it is not known yet what it reads.
+    known = min([until, *(time for job in stages[-1] if job.end is None and (time := _time(job, chain.response)) is not None)])
+    yield from _forward(hops, stimuli, responses, known)
+    yield from _backward(hops, stimuli, responses)
+
+
+def _forward(hops: list[_Hop], stimuli: list[int], responses: list[int], until: int) -> Iterator[tuple[str, int]]:
+    for number, stimulus in enumerate(stimuli):
+        reached: int | None = number
+        for hop in hops:
+            reached = None if reached is None else hop.after(reached)
+        while reached is not None and reached < len(responses) and responses[reached] < stimulus:
+            reached += 1
+        is_answered = reached is not None and reached < len(responses)
+        end = responses[reached] if is_answered and reached is not None else until
+        if not is_answered and stimulus >= until:
+            return
+        yield "max_reduced_reaction_time", end - stimulus
+        if number:
+            yield "max_reaction_time", end - stimuli[number - 1]
+        if is_answered:
+            yield "min_first_to_first", end - stimulus
+
+
+def _backward(hops: list[_Hop], stimuli: list[int], responses: list[int]) -> Iterator[tuple[str, int]]:
+    for number, response in enumerate(responses):
+        source: int | None = number
+        for hop in reversed(hops):
+            source = None if source is None else hop.before(source)
+        while source is not None and source >= 0 and (source >= len(stimuli) or stimuli[source] > response):
+            source -= 1
+        if source is None or source < 0:
+            continue
+        yield "max_reduced_data_age", response - stimuli[source]
+        yield "min_last_to_last", response - stimuli[source]
+        if number + 1 < len(responses):
+            yield "max_data_age", responses[number + 1] - stimuli[source]
+
+
+@dataclass(slots=True)
+class _Hop:
+    """From jobs that write to jobs that read, or from jobs that trigger to those that they activate."""
+
+    writes: Times
+    reads: Times
+    is_trigger: bool
+    is_clear: bool
+
+    @classmethod
+    def of(cls, source: list[Job], target: list[Job], label: str, index: int) -> _Hop:
+        if not label:
+            caused = [(job.cause[1], job.number) for job in target if job.cause is not None and job.cause[0] == index]
+            return cls(caused, [], True, len(caused) == len(target))
+        writes = [(times[-1], job.number) for job in source if (times := job.accesses.get(("write", label)))]
+        reads = [(times[0], job.number) for job in target if (times := job.accesses.get(("read", label)))]
+        single = all(
+            len(times) == 1 for job in (*source, *target) for access, times in job.accesses.items() if access[1] == label
+        )
+        ended = sum(job.end is not None for job in target)
+        return cls(writes, reads, False, single and len(reads) >= ended)
+
+    def after(self, number: int) -> int | None:
+        """The first job that is based on a job or a later one."""
+        if self.is_trigger:
+            return next((target for source, target in self.writes if source >= number), None)
+        write = next((time for time, job in self.writes if job >= number), None)
+        if write is None:
+            return None
+        found = bisect_left(self.reads, (write, -1))
+        return self.reads[found][1] if found < len(self.reads) else None
+
+    def before(self, number: int) -> int | None:
+        """The latest job that a job is based on."""
+        if self.is_trigger:
+            return next((source for source, target in self.writes if target == number), None)
+        read = next((time for time, job in self.reads if job == number), None)
+        if read is None:
+            return None
+        found = bisect_right(self.writes, (read, 10**9)) - 1
+        return self.writes[found][1] if found >= 0 else None
+
+
+def _time(job: Job, event: str) -> int | None:
+    return {"activate": job.activated, "start": job.start, "terminate": job.end}[event]

@@ -1,0 +1,379 @@
+"""An independent player of models: what can occur does occur, event by event from time 0, in integer picoseconds.
+
+It knows nothing of the product. Choices are made by `Choices`; how a model is to be read, by a `Variant`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from heapq import heappop, heappush
+from typing import Any
+
+from opponent.models.arrivals import occurrences
+from opponent.models.comparisons import is_true
+from opponent.models.reading import Body, Item, Played, Process, UnplayableError
+from opponent.models.variants import Choices, Variant
+
+NEVER = 10**18
+_MOST_STEPS = 200_000
+
+
+@dataclass(slots=True, eq=False)
+class Job:
+    """A job of a process; times are None as long as they have not come."""
+
+    process: int
+    number: int
+    core: str
+    activated: int
+    rank: tuple[int, int]
+    deadline: int
+    stack: list[list[Any]]
+    slice_left: int
+    cause: tuple[int, int] | None = None
+    remaining: int = 0
+    executed: int = 0
+    masks: int = 0
+    start: int | None = None
+    end: int | None = None
+    accesses: dict[tuple[str, str], list[int]] = field(default_factory=dict)
+    copies: list[str] = field(default_factory=list)
+
+    def has_more(self) -> bool:
+        """Whether anything is left in its text."""
+        return any(index < len(body) for body, index, _ in self.stack)
+
+    def next_item(self) -> Item | None:
+        """Take the next item; groups that are left end."""
+        while self.stack:
+            top = self.stack[-1]
+            if top[1] < len(top[0]):
+                top[1] += 1
+                return tuple(top[0][top[1] - 1])
+            self.masks -= top[2]
+            self.stack.pop()
+        return None
+
+    def enter(self, body: Body, masks: int = 0) -> None:
+        """Continue inside a body."""
+        self.masks += masks
+        self.stack.append([body, 0, masks])
+
+
+class Player:
+    """Plays a model once."""
+
+    def __init__(self, played: Played, variant: Variant, choices: Choices, until: int) -> None:
+        self.played, self.variant, self.choices = played, variant, choices
+        self.processes, self.now, self.rank = played.processes, 0, 0
+        self.modes = dict(played.modes)
+        self.fills = {name: fill for name, (fill, _) in played.channels.items()}
+        self.counts: dict[object, int] = {}
+        self.queues: list[list[Job]] = [[] for _ in self.processes]
+        self.jobs: list[list[Job]] = [[] for _ in self.processes]
+        self.lost = [0] * len(self.processes)
+        self.running: dict[str, Job | None] = dict.fromkeys(played.cores)
+        self.deciding = dict.fromkeys(played.cores, 0)
+        self.budgets = {name: server.capacity for name, server in played.servers.items()}
+        self.activated_by = {
+            name: [i for i, process in enumerate(self.processes) if name in process.stimuli] for name in played.stimuli
+        }
+        self.timeline: list[tuple[int, int, int, str]] = []
+        for order, stimulus in enumerate(played.stimuli.values()):
+            place = -order if variant.last_first else order
+            for time in occurrences(stimulus, choices, until):
+                heappush(self.timeline, (time, 1, place, stimulus.name))
+        for name, server in played.servers.items():
+            for time in range(server.period, until, server.period):
+                heappush(self.timeline, (time, 0 if variant.polls_early else 2, 0, name))
+
+    def play(self, until: int) -> Player:
+        """Play up to a time."""
+        for _ in range(_MOST_STEPS):
+            self._end_finished()
+            if not self.variant.ends_late:
+                self._continue_ended()
+            self._requeue(at_once=not self.variant.requeue_late)
+            self._arrive()
+            self._requeue(at_once=True)
+            self._settle()
+            step = self._step()
+            if self.now + step > until:
+                return self
+            self._pass(step)
+        raise UnplayableError("too many steps")
+
+    # Activations.
+
+    def _arrive(self) -> None:
+        while self.timeline and self.timeline[0][0] <= self.now:
+            _, kind, _, name = heappop(self.timeline)
+            if kind == 1:
+                self.fire(name, None)
+            else:
+                self._replenish(name)
+
+    def _replenish(self, name: str) -> None:
+        server = self.played.servers[name]
+        is_idle = not any(self.queues[i] for i, process in enumerate(self.processes) if process.server == name)
+        self.budgets[name] = 0 if "Polling" in server.policy and is_idle else server.capacity
+
+    def fire(self, name: str, cause: tuple[int, int] | None) -> None:
+        """An occurrence of a stimulus: condition, modes, activations."""
+        stimulus = self.played.stimuli[name]
+        if not is_true(stimulus.condition, self.modes, self.fills) or not self._counts(name, stimulus.counter):
+            return
+        self.modes.update(stimulus.sets)
+        processes = self.activated_by[name]
+        for index in reversed(processes) if self.variant.last_first else processes:
+            self._activate(index, cause)
+
+    def _counts(self, key: object, counter: tuple[int, int] | None) -> bool:
+        if counter is None:
+            return True
+        self.counts[key] = number = self.counts.get(key, 0) + 1
+        return number >= max(counter[1], 1) and (number - counter[1]) % counter[0] == 0
+
+    def _activate(self, index: int, cause: tuple[int, int] | None) -> None:
+        process = self.processes[index]
+        if len(self.queues[index]) >= process.limit:
+            self.lost[index] += 1
+            return
+        self.rank += 1
+        is_sliced = self._is_sliced(process)
+        body = process.body
+        if process.is_isr:
+            before, after = (
+                self.played.overhead.get(f"isrCategory2Overhead/{when}ExecutionOverhead", 0) for when in ("pre", "post")
+            )
+            body = (("raw", before), *body, ("raw", after))
+        elif process.core in self.played.decisions:
+            self.deciding[process.core] += self.played.decisions[process.core]
+            body = body if self.variant.decides_outside else (*body, ("raw", self.played.decisions[process.core]))
+        order = -index if self.variant.last_first else index
+        job = Job(
+            process=index,
+            number=len(self.jobs[index]),
+            core=process.core,
+            activated=self.now,
+            rank=(self.now, self.rank if is_sliced else order),
+            deadline=self.now + (process.deadline or NEVER),
+            stack=[[body, 0, 0]],
+            slice_left=process.slice if is_sliced and process.slice else NEVER,
+            cause=cause,
+        )
+        self.queues[index].append(job)
+        self.jobs[index].append(job)
+
+    def _is_sliced(self, process: Process) -> bool:
+        return not process.is_isr and "RoundRobin" in self.played.policies[process.core]
+
+    # Who runs.
+
+    def _urgency(self, job: Job) -> tuple[Any, ...]:
+        """The least one goes first."""
+        process = self.processes[job.process]
+        policy = self.played.policies.get(process.core, "")
+        if process.server is not None:
+            return (-self.played.servers[process.server].priority, -process.priority, job.rank)
+        if policy.startswith("EarliestDeadline"):
+            return (job.deadline, 0, job.rank)
+        if policy.startswith("DeadlineMonotonic"):
+            return (process.deadline, 0, job.rank)
+        return (-process.priority, 0, job.rank)
+
+    def _pick(self, core: str) -> Job | None:
+        """The job that has the core."""
+        ready = [queue[0] for queue in self.queues if queue and queue[0].core == core]
+        masking = [job for job in ready if job.masks]
+        isrs = [job for job in ready if self.processes[job.process].is_isr]
+        if masking and not (self.variant.unmasked and isrs):
+            return masking[0]
+        if isrs:
+            if self.deciding[core] and not self.variant.decides_below:
+                return None
+            started = [job for job in isrs if job.start is not None]
+            return started[0] if started and self.variant.serial_isrs else min(isrs, key=lambda j: (-self._priority(j), j.rank))
+        if self.deciding[core]:
+            return None
+        ready = [job for job in ready if self._has_budget(job)]
+        keeping = [job for job in ready if job.start is not None and self.processes[job.process].mode == "non_preemptive"]
+        return min(keeping or ready, key=self._urgency, default=None)
+
+    def _priority(self, job: Job) -> int:
+        return self.processes[job.process].priority
+
+    def _has_budget(self, job: Job) -> bool:
+        server = self.processes[job.process].server
+        return server is None or self.budgets[server] > 0
+
+    def _settle(self) -> None:
+        """Do what takes no time, until every core executes something or is idle."""
+        cores = list(self.played.cores)
+        order = cores[::-1] if self.variant.last_first else cores
+        is_settled = False
+        while not is_settled:
+            is_settled = True
+            for core in order:
+                while (job := self._take(core)) is not None and not job.remaining:
+                    self._act(job)
+                    is_settled = False
+        for name, server in self.played.servers.items():
+            if "Polling" in server.policy and not any(
+                self.queues[i] for i, process in enumerate(self.processes) if process.server == name
+            ):
+                self.budgets[name] = 0
+
+    def _take(self, core: str) -> Job | None:
+        job, before = self._pick(core), self.running[core]
+        if before is not None and before is not job and before.end is None and self.variant.fresh_slice:
+            before.slice_left = self.processes[before.process].slice or NEVER
+        self.running[core] = job
+        if job is not None and job.start is None:
+            job.start = self.now
+        return job
+
+    def _requeue(self, *, at_once: bool) -> None:
+        """Those that used up their slices go to the ends of their queues, with new ones."""
+        for job in self.running.values():
+            if at_once and job is not None and job.end is None and job.slice_left == 0:
+                self.rank += 1
+                job.rank, job.slice_left = (self.now, self.rank), self.processes[job.process].slice or NEVER
+
+    # What jobs do.
+
+    def _end_finished(self) -> None:
+        """Who has nothing left to do ends, whatever else happens now."""
+        for job in self.running.values():
+            if job is not None and job.end is None and not job.remaining and not job.has_more():
+                self._end(job)
+
+    def _continue_ended(self) -> None:
+        """Do what follows executions that end now."""
+        for core, job in self.running.items():
+            while job is not None and job.end is None and not job.remaining and self._pick(core) is job:
+                self._act(job)
+
+    def _act(self, job: Job) -> None:
+        item = job.next_item()
+        if item is None:
+            self._end(job)
+            return
+        getattr(self, f"_do_{item[0]}")(job, *item[1:])
+        if not job.remaining and not job.has_more():
+            self._end(job)
+
+    def _end(self, job: Job) -> None:
+        job.end = self.now
+        for label in dict.fromkeys(job.copies):
+            job.accesses.setdefault(("write", label), []).append(self.now)
+        self.queues[job.process].remove(job)
+        process = self.processes[job.process]
+        if self.variant.decides_outside and not process.is_isr:
+            self.deciding[process.core] += self.played.decisions.get(process.core, 0)
+
+    def _do_raw(self, job: Job, time: int) -> None:
+        job.remaining = time
+
+    def _do_execute(self, job: Job, times: dict[str, tuple[int, int, int]]) -> None:
+        least, most, tick = times[job.core]
+        job.remaining = self.choices.between(least, most) * tick
+
+    def _do_call(self, job: Job, runnable: str, counter: tuple[int, int] | None, key: int) -> None:
+        body, condition = self.played.runnables[runnable]
+        if is_true(condition, self.modes, self.fills) and self._counts(key, counter):
+            job.enter(body)
+
+    def _do_group(self, job: Job, body: Body, is_ordered: bool, is_interruptible: bool) -> None:
+        inner = list(body)
+        if not is_ordered:
+            self.choices.rng.shuffle(inner)
+        job.enter(tuple(inner), 0 if is_interruptible else 1)
+
+    def _do_switch(self, job: Job, entries: tuple[tuple[Any, Body], ...], default: Body) -> None:
+        job.enter(next((body for condition, body in entries if is_true(condition, self.modes, self.fills)), default))
+
+    def _do_chance(self, job: Job, entries: tuple[tuple[float, Body], ...]) -> None:
+        job.enter(self.choices.rng.choices([body for _, body in entries], [weight for weight, _ in entries])[0])
+
+    def _do_read(self, job: Job, label: str, implementation: str) -> None:
+        time = job.start if implementation == "implicit" and job.start is not None else self.now
+        job.accesses.setdefault(("read", label), []).append(time)
+
+    def _do_write(self, job: Job, label: str, implementation: str) -> None:
+        if implementation == "implicit":
+            job.copies.append(label)
+        else:
+            job.accesses.setdefault(("write", label), []).append(self.now)
+
+    def _do_mode(self, job: Job, label: str, access: str, value: int) -> None:
+        job.accesses.setdefault(("read" if access == "read" else "write", label), []).append(self.now)
+        if access == "set":
+            self.modes[label] = value
+        elif access in ("increment", "decrement"):
+            self.modes[label] += value if access == "increment" else -value
+
+    def _do_send(self, job: Job, channel: str, elements: int) -> None:
+        job.accesses.setdefault(("write", channel), []).append(self.now)
+        self.fills[channel] = min(self.fills[channel] + elements, self.played.channels[channel][1])
+
+    def _do_receive(self, job: Job, channel: str, taken: int) -> None:
+        job.accesses.setdefault(("read", channel), []).append(self.now)
+        self.fills[channel] = max(self.fills[channel] - taken, 0)
+
+    def _do_trigger(self, job: Job, stimulus: str, counter: tuple[int, int] | None, key: int) -> None:
+        if not self._counts(key, counter):
+            return
+        overhead = self.played.overhead.get("apiOverhead/apiActivateTask", 0)
+        if overhead and not self.variant.fires_first:
+            job.enter((("raw", overhead), ("fire", stimulus)))
+            return
+        job.remaining = overhead
+        self._do_fire(job, stimulus)
+
+    def _do_fire(self, job: Job, stimulus: str) -> None:
+        self.fire(stimulus, (job.process, job.number))
+
+    def _do_event(self, job: Job, event: str) -> None:
+        listeners = self.played.listeners.get(event, ())
+        for stimulus in reversed(listeners) if self.variant.last_first else listeners:
+            self._do_fire(job, stimulus)
+
+    def _do_point(self, _job: Job) -> None:
+        """Others go first only where the task is cooperative."""
+
+    def _do_migrate(self, job: Job, core: str) -> None:
+        job.core = core
+
+    # Time.
+
+    def _step(self) -> int:
+        """The time to the next instant at which something can change."""
+        steps = [self.timeline[0][0] - self.now] if self.timeline else [NEVER]
+        for core, job in self.running.items():
+            if job is not None:
+                steps += [job.remaining, job.slice_left]
+                server = self.processes[job.process].server
+                steps += [self.budgets[server]] if server else []
+            elif self.deciding[core]:
+                steps.append(self.deciding[core])
+        return min(steps)
+
+    def _pass(self, step: int) -> None:
+        self.now += step
+        for core, job in self.running.items():
+            if job is None:
+                self.deciding[core] = max(0, self.deciding[core] - step)
+                continue
+            job.remaining -= step
+            job.executed += step
+            if job.slice_left != NEVER:
+                job.slice_left -= step
+            server = self.processes[job.process].server
+            if server:
+                self.budgets[server] -= step
+
+
+def play(played: Played, variant: Variant, choices: Choices, until: int) -> Player:
+    """A play up to a time; what has not ended by then has no end."""
+    return Player(played, variant, choices, until).play(until)

@@ -1,0 +1,140 @@
+"""The player of models plays small ones as they can be computed by hand."""
+
+import pytest
+from opponent.models.facts import Facts, facts_of
+from opponent.models.limits import limits_of, with_limits
+from opponent.models.reading import UnplayableError, read
+from opponent.models.writing import Parts, item, parameter, scheduler, stimulus, ticks, time
+
+PERIODIC = time("recurrence", 20) + time("offset", 0)
+
+
+def task(
+    parts: Parts, name: str, priority: int, body: str, stimuli: str = "", kind: str = "Periodic", where: str = "Sc0"
+) -> None:
+    parts.tasks.append(
+        f'<tasks name="{name}" stimuli="s{name}?type={kind}Stimulus" preemption="preemptive" multipleTaskActivationLimit="9">'
+        f"<activityGraph>{body}</activityGraph></tasks>"
+    )
+    parts.stimuli.append(stimulus(kind, f"s{name}", "", stimuli or PERIODIC))
+    given = parameter("priority", priority)
+    parts.allocations.append(f'<taskAllocation task="{name}" scheduler="{where}">{given}</taskAllocation>')
+
+
+@pytest.fixture
+def parts() -> Parts:
+    found = Parts(cores={"c0": "1.0"}, schedulers=[scheduler("Sc0", "FixedPriorityPreemptive")])
+    found.allocations.append('<schedulerAllocation scheduler="Sc0" responsibility="c0"/>')
+    return found
+
+
+def responses(facts: Facts, process: str) -> tuple[int, int]:
+    key = ("process", process, "response_time")
+    return facts.least[key] // 10**6, facts.greatest[key] // 10**6
+
+
+def played(parts: Parts, delays=()) -> Facts:
+    return facts_of(parts.text(), delays, until=200 * 10**6)
+
+
+def test_the_most_urgent_one_goes_first(parts):
+    task(parts, "low", 1, ticks(5, 5))
+    task(parts, "high", 2, ticks(3, 3), time("recurrence", 10) + time("offset", 7))
+    # low 0..5, or from 20: high comes at 7, 17, 27, so it never delays low
+    facts = played(parts, [(("high", "terminate"), ("low", "start"))])
+    assert (responses(facts, "low"), responses(facts, "high")) == ((5, 5), (3, 3))
+    # high ends at 10 and 20, low starts at 20
+    key = ("delay", "high terminate", "low start")
+    assert (facts.least[key], facts.greatest[key]) == (0, 10 * 10**6)
+
+
+def test_a_condition_stops_activations(parts):
+    parts.data += ['<modes xsi:type="am:NumericMode" name="n"/>', '<modeLabels name="M" mode="n" initialValue="0"/>']
+    guard = '<setModeValueList><entries label="M" value="1"/></setModeValueList><executionCondition>'
+    guard += '<entries xsi:type="am:ModeValueCondition" label="M" value="1" relation="NOT_EQUAL"/></executionCondition>'
+    task(parts, "once", 1, ticks(1, 1), guard + PERIODIC)
+    facts = played(parts)
+    assert ("process", "once", "start_to_start") not in facts.greatest
+    assert responses(facts, "once") == (1, 1)
+
+
+def test_a_trigger_before_the_end(parts):
+    task(parts, "W", 1, item("InterProcessTrigger", 'stimulus="sR"') + ticks(10, 10))
+    task(parts, "R", 2, ticks(2, 2), " ", "InterProcess")
+    facts = played(parts, [(("W", "terminate"), ("R", "terminate"))])
+    # W triggers at once, R 0..2, W 2..12; the next end of R is at 22
+    assert (responses(facts, "W"), responses(facts, "R")) == ((12, 12), (2, 2))
+    assert facts.least[("delay", "W terminate", "R terminate")] == 10 * 10**6
+
+
+def test_a_budget(parts):
+    server = "".join(parameter(name, value) for name, value in {"priority": 9, "capacity": 2, "period": 5}.items())
+    parts.schedulers.append(
+        scheduler("V0", "DeferrableServer", f'<parentAssociation parent="Sc0">{server}</parentAssociation>')
+    )
+    task(parts, "served", 1, ticks(5, 5), where="V0")
+    # 2 units at 0, 2 at 5, 1 at 10
+    assert responses(played(parts), "served") == (11, 11)
+
+
+def test_decisions_take_time(parts):
+    cost = '<computationItems xsi:type="am:Ticks"><default xsi:type="am:DiscreteValueConstant" value="1"/></computationItems>'
+    parts.schedulers[:] = [scheduler("Sc0", "FixedPriorityPreemptive", cost)]
+    task(parts, "T", 1, ticks(5, 5))
+    # one before, and one at the end, which may be no part of the job
+    assert played(parts).spread[("process", "T", "response_time")] == (6 * 10**6, 7 * 10**6)
+
+
+def test_a_task_goes_on_on_another_core(parts):
+    parts.cores["c1"] = "2.0"
+    parts.schedulers.append(scheduler("Sc1", "FixedPriorityPreemptive"))
+    parts.allocations.insert(0, '<schedulerAllocation scheduler="Sc1" responsibility="c1"/>')
+    task(parts, "here", 1, ticks(4, 4))
+    task(parts, "there", 1, ticks(4, 4) + item("EnforcedMigration", 'resourceOwner="Sc0"') + ticks(1, 1), where="Sc1")
+    # there: 2 on its own core; here 0..4, then 1 on the slower core, or before it, if what is declared last goes first
+    facts = played(parts)
+    assert facts.spread[("process", "there", "response_time")] in ((3 * 10**6, 5 * 10**6), (5 * 10**6, 5 * 10**6))
+
+
+def test_bursts_and_times(parts):
+    burst = stimulus(
+        "PeriodicBurst", "sB", 'occurrenceCount="3"', PERIODIC + time("burstLength", 5) + time("occurrenceMinDistance", 2)
+    )
+    task(parts, "B", 2, ticks(1, 1), " ", "PeriodicBurst")
+    parts.stimuli[-1] = burst
+    task(parts, "S", 1, ticks(1, 1), PERIODIC + time("occurrenceTimes", 0) + time("occurrenceTimes", 13), "PeriodicSynthetic")
+    facts = played(parts)
+    assert facts.greatest[("process", "B", "activate_to_activate")] == 16 * 10**6
+    assert facts.least[("process", "B", "activate_to_activate")] == 2 * 10**6
+    assert facts.greatest[("process", "S", "activate_to_activate")] == 13 * 10**6
+    assert responses(facts, "S") == (1, 2)
+
+
+def test_latencies_of_a_chain(parts):
+    parts.data.append('<labels name="L"/>')
+    task(parts, "W", 2, ticks(1, 1) + item("LabelAccess", 'data="L" access="write" implementation="explicit"'))
+    read_label = item("LabelAccess", 'data="L" access="read" implementation="explicit"')
+    task(parts, "R", 1, read_label + ticks(1, 1), time("recurrence", 10) + time("offset", 0))
+    for name, change, process in (("begin", "start", "W"), ("end", "terminate", "R")):
+        parts.events.append(f'<events xsi:type="am:ProcessEvent" name="{name}" eventType="{change}" entity="{process}"/>')
+    parts.chains.append('<eventChains name="chain" stimulus="begin" response="end"/>')
+    facts = played(parts)
+    found = {key[2]: value // 10**6 for key, value in (*facts.greatest.items(), *facts.least.items()) if key[0] == "chain"}
+    # W 0..1, R 1..2 and 10..11: answered after 2, used until 11, replaced at 22
+    assert (facts.greatest[("chain", "chain", "max_reaction_time")], found["min_first_to_first"]) == (22 * 10**6, 2)
+    assert facts.greatest[("chain", "chain", "max_data_age")] == 22 * 10**6
+    assert facts.greatest[("chain", "chain", "max_reduced_data_age")] == 11 * 10**6
+
+
+def test_limits_lie_one_unit_inside(parts):
+    task(parts, "T", 1, ticks(2, 5))
+    facts = played(parts)
+    limits = {limit.name: limit.limit // 10**6 for limit in limits_of(facts)}
+    assert (limits["T response_time up"], limits["T response_time low"]) == (4, 3)
+    assert 'metric="ResponseTime"' in with_limits(parts.text(), facts, list(limits_of(facts)))
+
+
+def test_what_is_not_understood_is_refused(parts):
+    task(parts, "T", 1, item("WaitEvent"))
+    with pytest.raises(UnplayableError):
+        read(parts.text())
