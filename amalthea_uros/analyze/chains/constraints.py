@@ -115,7 +115,11 @@ class ConstraintEvaluator:
                 judgement = prove(limit, latencies.jitter(is_one_run), chain.reason)
                 yield limit, replace(judgement, spread=latencies.spread)
             else:
-                yield limit, prove(limit, latencies.limited(limit), chain.reason)
+                ends = latencies.limited(limit)
+                # Without a bound, what keeps the chain from being exact is the cause.
+                is_unbounded = limit.is_upper and ends.upper is None
+                cause = chain.reason or (chain.why.removeprefix("bounds: ") if is_unbounded else "")
+                yield limit, prove(limit, ends, cause)
 
     def _is_one_run(self, chain: EventChain) -> bool:
         """Whether jobs that a chain passes can only run in one way: with known phases, and best cases that are the worst ones."""

@@ -45,6 +45,8 @@ def verdicts(built, *constraints, requirements=()):
 def test_data_of_a_writer_that_may_not_come_grow_old(stimulus):
     age = LatencyConstraint(name="age", chain="chain", kind=LatencyKind.AGE, maximum=LONG)
     assert verdicts(writer_and_reader(stimulus), age) == {"unknown"}
+    (found,) = analyze_system(replace(writer_and_reader(stimulus), constraints=Constraints(constraints=(age,)))).requirements
+    assert found.reason == "'W' is activated only if the condition of a stimulus is true"
     assert verdicts(writer_and_reader(replace(stimulus, condition=None)), age) == {"met"}
 
 
