@@ -16,7 +16,7 @@ def test_the_suffix_says_the_format(tmp_path):
     assert run.returncode == 0, run.stderr
     starts = [file.read_text().lstrip()[:12] for file in files]
     assert [start.split()[0] for start in starts] == ["<!DOCTYPE", "##", "flowchart", "digraph"]
-    assert run.stderr.splitlines()[-1] == "Schedulable: yes; tightest: Control_Function, 971 us of 1 ms left"
+    assert run.stderr.splitlines()[-1] == "Schedulable: yes; tightest: factor-to-output_reaction, 4.971 ms of 25 ms left"
 
 
 def test_standard_output_has_the_format_that_is_asked_for():
