@@ -130,7 +130,7 @@ def prediction_groups(result: Comparison) -> list[PredictionGroup]:
     distances: dict[tuple[str, Kind | None, str], DistributionRow]
     distances = {(row.object, row.kind, row.quantity): row for row in result.distributions}
     found = [PredictionGroup(tuple(rows), distances.get(key)) for key, rows in groups.items()]
-    return [group for group in found if group.verdict is not Agreement.WITHIN or _is_shown(result, group.rows[0])]
+    return [group for group in found if group.verdict is Agreement.OUTSIDE or _is_shown(result, group.rows[0])]
 
 
 def bound_tests(result: Comparison) -> list[BoundTest]:
@@ -164,7 +164,9 @@ def hidden(result: Comparison) -> str:
     shown = [*(row for each in prediction_groups(result) for row in each.rows)]
     shown += [row for each in bound_tests(result) for row in each.rows]
     rest = len(result.compared) - len(shown)
-    return f"{counted(rest, 'other comparison')} within; --all shows them" if rest else ""
+    differing = result.count(Agreement.DIFFERS) - sum(row.verdict is Agreement.DIFFERS for row in shown)
+    some = f", or {_EXCUSED} ({differing})" if differing else ""
+    return f"{counted(rest, 'other comparison')} within{some}; --all shows them" if rest else ""
 
 
 def _is_shown(result: Comparison, row: ComparisonRow) -> bool:
@@ -208,14 +210,15 @@ def _outcome(result: Comparison) -> str:
     if not within:
         return f"Nothing agrees: {counted(number, 'comparison')} outside {tolerance}, {_EXCUSED}"
     differing = f"; {number - len(within)} outside, {_EXCUSED}" if number > len(within) else ""
+    near = [row for row in within if _size(row) <= result.tolerance]
     missing = {row.object for row in result.not_compared} - {row.object for row in result.compared}
     rest = f"; not compared: {counted(len(missing), 'object')}" if missing else ""
-    found = f"{counted(len(within), 'comparison')} within {tolerance}{_largest(within)}"
+    found = f"{counted(len(within), 'comparison')} within {tolerance}{_largest(near)}"
     return f"Model holds: {found}{differing}{rest}{_scarce(result)}"
 
 
 #: What is to be said of deviations that contradict nothing.
-_EXCUSED = "which does not contradict the stated distributions"
+_EXCUSED = "without contradicting what the model states"
 
 
 #: The extremes of fewer values say little.

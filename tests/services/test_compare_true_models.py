@@ -89,7 +89,7 @@ def drawn(item, shape):
 
 def compared(model, log_of, tmp_path, shape, seed=5, duration="2 s", **options):
     """A model compared with a log of a system with another distribution."""
-    trace = tmp_path / "run.btf"
+    trace = tmp_path / "run.csv"
     simulate(drawn(system_of(log_of), shape), duration, seed=seed, trace_paths=[trace])
     return compare(model, trace, **options)
 
@@ -110,6 +110,7 @@ def test_a_log_from_within_the_stated_ranges_does_not_contradict_them(model, sha
     assert contradictions(found) == []
     assert found.holds
     assert any(row.verdict == "differs" for row in found.rows)
+    assert {row.kind for row in found.compared} == {"process", "runnable", "chain"}
 
 
 @pytest.mark.parametrize("shape", SHAPES)
