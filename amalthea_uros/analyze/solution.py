@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 from amalthea_uros.analyze.results import Response
 from amalthea_uros.perf.software import Task
+from amalthea_uros.perf.stimuli import EventTriggered, InterProcess
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.event_models import EventModel
 from amalthea_uros.timing.scheduling import Rank, ScheduledProcess
@@ -88,6 +90,18 @@ class Solution:
             ):
                 found.append(name)
         return frozenset(found)
+
+    @cached_property
+    def external_rates(self) -> Mapping[str, Fraction]:
+        """Activations per picosecond that no process triggers, of a solution that is complete."""
+        context, found = self.context, {}
+        for name, events in self.event_models.items():
+            process = context.system.processes[name]
+            stimuli = [context.system.stimuli_by_name.get(each) for each in process.stimuli]
+            is_triggered = any(isinstance(each, InterProcess | EventTriggered) for each in stimuli)
+            # The rounds of an executor are not as frequent as its stimulus.
+            found[name] = context.activations.external_rate(process) if is_triggered else events.rate
+        return found
 
     def depends_on_losses(self, name: str) -> bool:
         """Whether a process, or one of at least its rank on its core, may lose activations: then jobs are missing in the schedule."""

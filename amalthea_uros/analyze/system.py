@@ -30,7 +30,7 @@ from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.perf.events import EventChain
 from amalthea_uros.perf.network import Purpose
 from amalthea_uros.perf.software import Preemption, Task
-from amalthea_uros.perf.stimuli import EventTriggered, InterProcess, RelativePeriodic
+from amalthea_uros.perf.stimuli import RelativePeriodic
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.allocation import allocated_cores
 from amalthea_uros.timing.context import TimingContext
@@ -313,25 +313,13 @@ def _load(names: Iterable[str], core: str, solution: Solution) -> JobDemand:
     """The load of a core by some of its processes."""
     context = solution.context
     demands = {name: _demand(name, context) for name in names}
-    return CoreLoad(core, demands, context.activations, context.demand_model).load(_external_rates(solution))
+    return CoreLoad(core, demands, context.activations, context.demand_model).load(solution.external_rates)
 
 
 def _demand(name: str, context: TimingContext) -> MultiframeDemand:
     """The demand of a job of a process with what its scheduler needs to decide when it is activated."""
     own, decision = context.demands[name], context.decisions.get(name)
     return own if decision is None else MultiframeDemand((*own.frames, *decision.frames))
-
-
-def _external_rates(solution: Solution) -> Mapping[str, Fraction]:
-    """Activations per picosecond that no process triggers, of processes whose activations are known."""
-    context, found = solution.context, {}
-    for name, events in solution.event_models.items():
-        process = context.system.processes[name]
-        stimuli = [context.system.stimuli_by_name.get(each) for each in process.stimuli]
-        is_triggered = any(isinstance(each, InterProcess | EventTriggered) for each in stimuli)
-        # The rounds of an executor are not as frequent as its stimulus.
-        found[name] = context.activations.external_rate(process) if is_triggered else events.rate
-    return found
 
 
 def _certain_load(items: Iterable[ScheduledProcess], core: str, solution: Solution) -> Fraction:

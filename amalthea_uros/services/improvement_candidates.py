@@ -78,8 +78,8 @@ def _by_share(explanation: ChainExplanation, analysis: Analysis) -> list[str]:
     for hop in explanation.hops:
         shares[hop.process] = shares.get(hop.process, 0) + hop.wait + hop.run
     system = analysis.solution.context.system
-    for stage in ChainEvaluator(analysis.solution).stages(system.chains[explanation.chain.name]):
-        shares.setdefault(stage.process.name, 0)
+    for process in ChainEvaluator(analysis.solution).processes(system.chains[explanation.chain.name]):
+        shares.setdefault(process, 0)
     return sorted(shares, key=lambda name: -shares[name])
 
 

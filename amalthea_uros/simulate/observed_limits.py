@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from types import MappingProxyType
 from typing import Protocol
 
 from amalthea_uros._internal.by_name import Results
@@ -30,7 +31,7 @@ class ConstraintObservers(Protocol):
         """Why nothing was observed of a constraint."""
 
 
-def judge_process(process: ProcessObservation, model: Process, doubt: str) -> ProcessObservation:
+def judge_process(process: ProcessObservation, model: Process, doubt: str = "") -> ProcessObservation:
     """The observations of a process with the verdict on its deadline and on lost activations.
 
     Parameters
@@ -53,7 +54,7 @@ def judge_requirements(
     duration: Time,
     runnables: Results[RunnableObservation],
     observers: ConstraintObservers,
-    doubts: Mapping[str, str],
+    doubts: Mapping[str, str] = MappingProxyType({}),
 ) -> Iterator[RequirementObservation]:
     """The verdicts on all requirements, then on all constraints.
 

@@ -83,6 +83,7 @@ class Activations:
     _incomplete: str = ""
     _triggers: dict[str, list[Cause]] = field(default_factory=dict)
     _effects: dict[str, list[Effect]] | None = None
+    _triggering: dict[str, dict[str, None]] = field(default_factory=dict)
     _activated: dict[str, list[str]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -205,6 +206,7 @@ class Activations:
                 if isinstance(stimulus, InterProcess | EventTriggered):
                     with suppress(UnknownActivationError):
                         for cause in self.causes(stimulus):
+                            self._triggering.setdefault(stimulus.name, {})[cause.process.name] = None
                             share = _share(cause.counter) * _share(stimulus.counter)
                             self._effects.setdefault(cause.process.name, []).append(
                                 Effect(cause.position, stimulus.name, share)
@@ -212,6 +214,12 @@ class Activations:
             for found in self._effects.values():
                 found.sort(key=lambda effect: effect.position.number)
         return self._effects.get(process, ())
+
+    def triggering(self, process: str) -> Iterator[str]:
+        """The processes whose activities activate a process, as far as it is known."""
+        self.effects(process)
+        for stimulus in self.system.processes[process].stimuli:
+            yield from self._triggering.get(stimulus, ())
 
     def activated(self, stimulus: str) -> Sequence[str]:
         """The processes that a stimulus activates."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -58,8 +58,19 @@ class CoreLoad:
         ----------
         rates : activations per picosecond of each process that no process triggers
         """
-        per_time = total(self.of_job(name).every(rate) for name, rate in rates.items() if rate)
+        per_time = total(self.of_job(name).every(rates[name]) for name in self._causing() if rates.get(name))
         return per_time.every(Fraction(1, self.demand_model.time_base(self.core)))
+
+    def _causing(self) -> Iterable[str]:
+        """The processes that count, and those that trigger them, others in between included."""
+        found = dict.fromkeys(self.demands)
+        pending = list(found)
+        while pending:
+            for name in self.activations.triggering(pending.pop()):
+                if name not in found:
+                    found[name] = None
+                    pending.append(name)
+        return found
 
     def of_job(self, process: str) -> JobDemand:
         """The demand of a job of a process, with all that it triggers."""

@@ -258,7 +258,7 @@ def test_a_value_that_is_none_of_its_type_stays_once(tmp_path):
     )
     path.write_text(MODEL.format(stimulus.format('value="soon"')))
     amuros.save(amuros.load(path), canonical=True)
-    assert '<recurrence value="soon" unit="ms"/>' in path.read_text()
+    assert path.read_text().count('value="soon"') == 1
     # What is set then takes its place.
     model = amuros.load(path)
     model[PeriodicStimulus, "S"].recurrence.value = 5

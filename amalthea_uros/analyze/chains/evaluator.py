@@ -16,7 +16,7 @@ from amalthea_uros.perf.activities import Communication
 from amalthea_uros.perf.events import EventChain
 from amalthea_uros.timing.clocks import controller_of_core
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.dataflow.chains import Unfolded, UnfoldError, combined, empty_sets, unfold
+from amalthea_uros.timing.dataflow.chains import Unfolded, UnfoldError, combined, empty_sets, sequences, unfold
 from amalthea_uros.timing.dataflow.events import UnraisedError, UnresolvedError
 from amalthea_uros.timing.dataflow.links import LinkKind
 from amalthea_uros.timing.dataflow.routes import Route, UnlinkedError, route_text, routes_of_ways
@@ -105,6 +105,16 @@ class ChainEvaluator:
         except (UnfoldError, UnresolvedError):
             return []
         return [route for found in ways.values() for route in found]
+
+    def processes(self, chain: EventChain) -> list[str]:
+        """The processes in which the events of a chain occur, in its order; nothing if these cannot be located."""
+        system, events = self.context.system, self.context.dataflow.events
+        try:
+            ways = sequences(unfold(chain, system)[0])
+            found = (each.process.name for way in ways for name in way for each in events.of(system.events_by_name[name]))
+            return list(dict.fromkeys(found))
+        except (UnfoldError, UnresolvedError):
+            return []
 
     def _evaluated(self, ways: Mapping[tuple[str, ...], Sequence[Route]]) -> _Evaluated:
         """The values of each way through a chain, and the reasons."""
