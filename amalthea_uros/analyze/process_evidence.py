@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from amalthea_uros.analyze.results import Claim, ProcessResult
-from amalthea_uros.judge.evidence import Ends, Loss, ProcessEvidence
+from amalthea_uros.judge.evidence import Ends, ProcessEvidence, ProvedLoss
 from amalthea_uros.judge.limits import activation_limit, deadline_limit
 from amalthea_uros.judge.verdict import lost_jobs, prove_process
 from amalthea_uros.perf.software import Process, Task
@@ -49,7 +49,7 @@ def evidence_of(
         return ProcessEvidence(overload=process.reason) if is_certain else ProcessEvidence(gap=process.reason)
     loss = lost_jobs(activation_limit(model), pending(process, events)) if isinstance(model, Task) else None
     if loss is not None and may_be_less:
-        loss = Loss(loss.reason, is_certain=False)
+        loss = ProvedLoss(loss.reason, is_certain=False)
     return ProcessEvidence(response=worst_response(process), loss=loss)
 
 

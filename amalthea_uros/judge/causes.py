@@ -65,7 +65,7 @@ _Key: TypeAlias = str | tuple[str, str, bool]
 
 
 @dataclass(frozen=True, slots=True)
-class Cause(Generic[F, K]):
+class FailureCause(Generic[F, K]):
     """A failure.
 
     Attributes
@@ -91,7 +91,7 @@ def causes(
     failing: Sequence[F],
     unknown: Sequence[F],
     processes_of: Callable[[SystemLimit], Collection[str]],
-) -> tuple[Cause[F, K], ...]:
+) -> tuple[FailureCause[F, K], ...]:
     """The failures, in order: what an overload makes endless is a consequence of it.
 
     Parameters
@@ -112,8 +112,8 @@ def causes(
     for item in distinct(unknown):
         if (key := core(item)) is not None:
             found[key].append(item)
-    of_cores: list[Cause[F, K]] = [Cause(each) for each in overloaded]
-    return (*of_cores, *(Cause(root, tuple(consequences)) for root, *consequences in found.values()))
+    of_cores: list[FailureCause[F, K]] = [FailureCause(each) for each in overloaded]
+    return (*of_cores, *(FailureCause(root, tuple(consequences)) for root, *consequences in found.values()))
 
 
 def quantity_of(item: LimitedObject) -> _Key:

@@ -34,7 +34,7 @@ class Ends:
 
 
 @dataclass(frozen=True, slots=True)
-class Loss:
+class ProvedLoss:
     """Activations or messages that are lost for certain, or may be."""
 
     reason: str
@@ -56,7 +56,7 @@ class ProcessEvidence:
 
     response: Ends = Ends()
     overload: str | None = None
-    loss: Loss | None = None
+    loss: ProvedLoss | None = None
     gap: str | None = None
     is_served: bool = False
 

@@ -9,7 +9,7 @@ from fractions import Fraction
 from math import inf
 from typing import Generic, Protocol, TypeVar
 
-from amalthea_uros.judge.causes import Cause, Failing, causes, processes_of, quantity_of
+from amalthea_uros.judge.causes import Failing, FailureCause, causes, processes_of, quantity_of
 from amalthea_uros.judge.margins import Limited, share_left, tightest
 from amalthea_uros.judge.verdict import FAILURES, WORST_FIRST, Verdict
 from amalthea_uros.timing.context import TimingContext
@@ -82,7 +82,7 @@ class Summary(Generic[J, C]):
     failing: tuple[J, ...]
     unknown: tuple[J, ...]
     overloaded: tuple[C, ...]
-    causes: tuple[Cause[J, C], ...]
+    causes: tuple[FailureCause[J, C], ...]
     tightest: J | None
 
     @property

@@ -11,7 +11,7 @@ from enum import StrEnum
 from fractions import Fraction
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.judge.evidence import Ends, Loss, ObservedProcess, ObservedValues, ProcessEvidence
+from amalthea_uros.judge.evidence import Ends, ObservedProcess, ObservedValues, ProcessEvidence, ProvedLoss
 from amalthea_uros.judge.limits import SystemLimit
 from amalthea_uros.units import Time, number_text, time_text
 
@@ -132,13 +132,13 @@ def prove_process(deadline: SystemLimit | None, evidence: ProcessEvidence) -> Ju
     return Judgement(Verdict.MET) if found is None and evidence.is_served else found
 
 
-def lost_jobs(limit: SystemLimit, pending: Ends) -> Loss | None:
+def lost_jobs(limit: SystemLimit, pending: Ends) -> ProvedLoss | None:
     """The activations that are lost if more jobs are pending than a task allows; None if that is impossible."""
     found = prove(limit, pending)
     if found.verdict is Verdict.MET:
         return None
     jobs = limit.limit if pending.upper is None else pending.upper
-    return Loss(
+    return ProvedLoss(
         f"{jobs} jobs can be pending, and the activation limit is {limit.limit}", is_certain=found.verdict is Verdict.MISSED
     )
 

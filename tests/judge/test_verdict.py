@@ -6,7 +6,7 @@ from fractions import Fraction
 import pytest
 from support import ROOT
 
-from amalthea_uros.judge.evidence import Ends, Loss, ObservedProcess, ObservedValues, ProcessEvidence
+from amalthea_uros.judge.evidence import Ends, ObservedProcess, ObservedValues, ProcessEvidence, ProvedLoss
 from amalthea_uros.judge.limits import SystemLimit, deadline_limit, limits_of
 from amalthea_uros.judge.verdict import observe, observe_process, prove, prove_process
 from amalthea_uros.perf.constraints import LatencyConstraint, Requirement, TimeLimit, TimeMetric
@@ -94,10 +94,10 @@ DEADLINE = deadline_limit(TASK, 10)
         ({"response": Ends(5, 11)}, "unknown", None),
         # What is certainly wrong comes before what is unknown, and that before the deadline.
         ({"overload": "too much", "gap": "?"}, "unbounded", "overload"),
-        ({"loss": Loss("lost", is_certain=True), "gap": "?"}, "missed", "lost"),
+        ({"loss": ProvedLoss("lost", is_certain=True), "gap": "?"}, "missed", "lost"),
         ({"response": Ends(5, 10), "gap": "?"}, "unknown", None),
-        ({"response": Ends(5, 10), "loss": Loss("perhaps", is_certain=False)}, "unknown", None),
-        ({"response": Ends.exactly(11), "loss": Loss("perhaps", is_certain=False)}, "missed", "missed"),
+        ({"response": Ends(5, 10), "loss": ProvedLoss("perhaps", is_certain=False)}, "unknown", None),
+        ({"response": Ends.exactly(11), "loss": ProvedLoss("perhaps", is_certain=False)}, "missed", "missed"),
     ],
 )
 def test_a_process(evidence, verdict, failure):
@@ -107,7 +107,7 @@ def test_a_process(evidence, verdict, failure):
 
 def test_a_process_without_a_deadline():
     assert prove_process(None, ProcessEvidence(response=Ends(5, 10))) is None
-    assert prove_process(None, ProcessEvidence(loss=Loss("perhaps", is_certain=False))).verdict == "unknown"
+    assert prove_process(None, ProcessEvidence(loss=ProvedLoss("perhaps", is_certain=False))).verdict == "unknown"
     # If all its callbacks are called in time, there is something that is met.
     assert prove_process(None, ProcessEvidence(is_served=True)).verdict == "met"
 

@@ -9,7 +9,7 @@ from amalthea_uros.analyze.executors.results import ExecutorResult, HandleResult
 from amalthea_uros.analyze.executors.window import METHOD
 from amalthea_uros.analyze.process_evidence import judged, worst_response
 from amalthea_uros.analyze.results import CallbackResult, Claim, JobMetric, Metric, ProcessResult, Response
-from amalthea_uros.judge.evidence import Loss, ProcessEvidence
+from amalthea_uros.judge.evidence import ProcessEvidence, ProvedLoss
 from amalthea_uros.perf.software import Process
 from amalthea_uros.units import Time
 
@@ -94,13 +94,13 @@ def of_rounds(
     return judged(found, model, evidence)
 
 
-def _loss(executor: ExecutorResult) -> Loss | None:
+def _loss(executor: ExecutorResult) -> ProvedLoss | None:
     """What callbacks lose for certain, or may lose; values that newer ones replace are not lost."""
     lost = [
         (handle.name, handle.lost) for handle in executor.handles if handle.lost is not None and not handle.lost.is_replaced
     ]
     for name, loss in sorted(lost, key=lambda pair: not pair[1].is_certain):
-        return Loss(f"{name!r} {'loses' if loss.is_certain else 'can lose'} {loss.what}", loss.is_certain)
+        return ProvedLoss(f"{name!r} {'loses' if loss.is_certain else 'can lose'} {loss.what}", loss.is_certain)
     return None
 
 

@@ -44,7 +44,7 @@ class Prediction:
         return self.value if self.high is None else min(max(measured, self.value), self.high)
 
 
-class Ends(NamedTuple):
+class MeasuredEnds(NamedTuple):
     """Between which ends a measured value really is."""
 
     lower: Fraction
@@ -66,7 +66,7 @@ class Rule:
     uncertainty: Time
     is_reached: bool = False
 
-    def is_possible(self, predicted: Fraction, ends: Ends) -> bool:
+    def is_possible(self, predicted: Fraction, ends: MeasuredEnds) -> bool:
         """Whether a measured value may really be a predicted one."""
         if self.is_reached:
             return ends.lower <= predicted <= ends.upper
@@ -128,7 +128,7 @@ def compared(
 LEAST = "without the number of the stimulus, only the least possible latencies are measured"
 
 
-def _certain(series: Series, statistic: Statistic, value: Fraction, rule: Rule) -> Ends:
+def _certain(series: Series, statistic: Statistic, value: Fraction, rule: Rule) -> MeasuredEnds:
     """What is certain of a measured value; of a jitter, both of its ends can be wrong.
 
     With a baseline, its mean was subtracted; the share of a single value is anything within the baseline's values.
@@ -136,11 +136,11 @@ def _certain(series: Series, statistic: Statistic, value: Fraction, rule: Rule) 
     wrong = Fraction(rule.uncertainty) * (2 if statistic is Statistic.JITTER else 1)
     baseline = series.baseline
     if baseline is None or statistic is Statistic.MEAN:
-        return Ends(value - wrong, value + wrong)
+        return MeasuredEnds(value - wrong, value + wrong)
     below, above = baseline.max - baseline.mean, baseline.mean - baseline.min
     if statistic is Statistic.JITTER:
         below = above = below + above
-    return Ends(value - wrong - below, value + wrong + above)
+    return MeasuredEnds(value - wrong - below, value + wrong + above)
 
 
 def _is_comparable(series: Series, statistic: Statistic, prediction: Prediction) -> bool:
@@ -148,7 +148,9 @@ def _is_comparable(series: Series, statistic: Statistic, prediction: Prediction)
     return not series.is_least or (statistic is Statistic.MAX and is_bound(prediction.claim, statistic))
 
 
-def _judged(statistic: Statistic, measured: Fraction, ends: Ends, prediction: Prediction, rule: Rule) -> tuple[Agreement, str]:
+def _judged(
+    statistic: Statistic, measured: Fraction, ends: MeasuredEnds, prediction: Prediction, rule: Rule
+) -> tuple[Agreement, str]:
     """The verdict, with its reason."""
     predicted = prediction.nearest(measured)
     is_uncertain = rule.is_possible(predicted, ends)
