@@ -196,5 +196,7 @@ def test_what_the_server_runnable_does_is_carried_on():
     (found,) = analyze_system(replace(built, events=Events(events=(start, end), chains=(chain,)))).chains
     assert found.routes == ("start -[a trigger triggered]-> end", "start -[data out]-> end")
     # The client starts it at 3; the last task always ends at 12, after all of the client (10) and of the server (1).
-    assert found.value(Quantity.MIN_FIRST_TO_FIRST).value <= 9 * US
-    assert found.value(Quantity.MAX_REDUCED_REACTION_TIME).value >= 9 * US
+    # The data have no bound, since nobody states how long the last task is not triggered at most; what is claimed includes 9.
+    claimed = {value.quantity: value.value for value in found.values}
+    assert claimed.get(Quantity.MIN_FIRST_TO_FIRST, 0) <= 9 * US <= claimed.get(Quantity.MAX_REDUCED_REACTION_TIME, 9 * US)
+    assert claimed[Quantity.MAX_REDUCED_DATA_AGE] >= 9 * US

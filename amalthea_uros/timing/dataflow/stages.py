@@ -118,8 +118,9 @@ def stages(route: Route, communication: Communication | None) -> list[Stage]:
         is_same = before.process.name == then.process.name and not is_trigger
         later = _jobs_later(link, write, read) if is_same else None
         if _has_left_before(enter, leave):
-            # What the job has sent before the event does not come from it: the next job sends.
-            found.append(Stage(before.process, enter, Pass(), jobs_later=NEXT_JOB))
+            # What the job has sent before the event does not come from it: the next job sends. Data may be meant as those of the job
+            # that ends, however, so that no minimum relies on the next job.
+            found.append(Stage(before.process, enter, Pass(), jobs_later=NEXT_JOB if is_trigger else SAME_OR_NEXT_JOB))
             enter = Pass()
         found += _within(
             Stage(before.process, enter, leave, is_triggered=is_triggered, jobs_later=later), [*passed, link.write]
