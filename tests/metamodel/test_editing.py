@@ -65,12 +65,13 @@ def test_execution_times_are_rounded_to_the_safe_side():
     assert (ticks.lower_bound, ticks.upper_bound) == (1, 3)
 
 
-def test_without_a_priority_the_response_time_is_unknown():
+def test_without_priorities_bounds_hold_for_any_order():
     model = amuros.Model.new()
     model.add_core("Core_0", frequency="1 MHz")
     for name in "AB":
         model.add_task(name, period="1 ms", wcet="1 us")
-    assert amuros.analyze(model).summary.schedulable == "unknown"
+    # Whichever is the lower one waits for the other.
+    assert [process.response.worst for process in amuros.analyze(model).processes] == [2_000_000, 2_000_000]
 
 
 def test_it_works_on_models_of_others():

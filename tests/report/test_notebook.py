@@ -50,7 +50,7 @@ def test_a_chain_has_a_row_for_each_latency(analysis):
 
 
 def test_a_chain_without_values_has_a_row_with_the_reason():
-    system = amuros.taskset([(5, 1), (10, 1)], unit="ms", chains={"c": ["T1", "T2"]})
+    system = amuros.taskset([(5, 6), (10, 1)], unit="ms", chains={"c": ["T1", "T2"]})
     (row,) = amuros.analyze(system).chains.to_records()
     assert (row["name"], row["value_ps"]) == ("c", None)
     assert row["reason"]
