@@ -28,6 +28,8 @@ RUNS = {
         ("analyze", "arduino.yaml", "--explain", "Control_Callback"),
         ("analyze", "rclc-in-executor.yaml", "--explain", "rclc_executor"),
         ("analyze", "drive-and-lift.yaml", "--explain", "valve-to-log"),
+        ("analyze", "two-controllers-lift.yaml", "--explain", "goal-to-valve"),
+        ("analyze", ADVANCED, "--set", "Message_Factor.period=10ms"),
         ("analyze", "unknown.amxmi", "--set", "Control_Function.execution_time=500us"),
         ("analyze", "no-times.amxmi", "--set", "Control_Function.execution_time=500us"),
         ("analyze", "way.yaml"),

@@ -49,7 +49,7 @@ def test_the_worst_case_of_the_thesis(thesis):
     assert wait == pytest.approx((x(0.025), x(19.016)), abs=0.02)
     wait, _run = bars(picture, "Control_Function")
     assert wait == pytest.approx((x(19.018), x(20.025)), abs=0.02)
-    assert {"20.029 ms", "job 12, waits 18.991 ms, runs 2 us", "job 222, waits 1.007 ms, runs 4 us"} <= set(contents(picture))
+    assert {"20.029 ms", "job 2, waits 18.991 ms, runs 2 us", "job 22, waits 1.007 ms, runs 4 us"} <= set(contents(picture))
 
 
 def test_short_runs_are_seen(thesis):
@@ -74,7 +74,8 @@ def test_a_limit_is_drawn_where_it_is(thesis):
 def test_data_that_get_old_until_they_are_overwritten_have_a_box():
     # The next output comes 1.013 ms later: 40.029 ms are the hops and this.
     picture = draw_hops(explanation("bodas-test-advanced.yaml", "factor-to-output", Quantity.MAX_DATA_AGE))
-    assert {"40.029 ms", "output is overwritten after 1.013 ms"} <= set(contents(picture))
+    assert "40.029 ms" in contents(picture)
+    assert any(text.startswith("output is overwri") and text.endswith("after 1.013 ms") for text in contents(picture))
 
 
 @pytest.mark.parametrize("chain", ["speed-to-torque", "wheel-to-torque", "height-to-log", "wheels-to-odometry"])
