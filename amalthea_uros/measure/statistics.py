@@ -30,7 +30,7 @@ class Statistics:
     Attributes
     ----------
     count : number of values, at least 1
-    variance : mean squared deviation from the mean, in square picoseconds; None if it is not known
+    variance : mean squared deviation from the mean (divided by n), in square picoseconds; None if it is not known
     percentiles : share of the values -> least value that so many do not exceed; only where there are more than 1 / (1 - share) values
     """
 

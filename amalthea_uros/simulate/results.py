@@ -68,7 +68,7 @@ class MetricObservation:
     Attributes
     ----------
     count : number of values, at least 1
-    std : standard deviation, in floating point
+    std : standard deviation of these values (divided by n, not n - 1), in floating point
     at_min, at_max : the first occurrences of minimum and maximum
     histogram : None for times of which none is kept
     """
