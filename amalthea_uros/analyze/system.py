@@ -49,6 +49,7 @@ from amalthea_uros.timing.phases import (
 from amalthea_uros.timing.preemption import preemption
 from amalthea_uros.timing.scheduling import EqualPriority, ScheduledProcess
 from amalthea_uros.timing.settings import Settings
+from amalthea_uros.timing.stated_demand import states_mean
 from amalthea_uros.units import Rounding, rounded_time_text
 
 
@@ -221,7 +222,7 @@ def _process(name: str, solution: Solution, executor: ExecutorResult | None) -> 
         priority=placement.priority,
         preemption=str(preemption(scheduled) if scheduled else getattr(process, "preemption", Preemption.PREEMPTIVE)),
         bcet=demand.best // time_base if demand else None,
-        acet=demand.mean / time_base if demand else None,
+        acet=demand.mean / time_base if demand and states_mean(process, context.system) else None,
         wcet=-(-demand.worst // time_base) if demand else None,
         least_wcet=demand.least_worst // time_base if demand else None,
         response=response,
@@ -296,12 +297,15 @@ def _processors(solution: Solution) -> Iterator[ProcessorResult]:
 
 
 def _loads(core: str, solution: Solution) -> tuple[Fraction, Fraction | None, Fraction]:
-    """The best, mean and worst load of a core; no mean if conditions may suppress activations."""
-    names = [item.name for item in solution.context.on_core(core)]
+    """The best, mean and worst load of a core; no mean if conditions may suppress activations, or execution times have none."""
+    context = solution.context
+    here = context.on_core(core)
+    names = [item.name for item in here]
     load, regular = _load(names, core, solution), _never_suppressed(names, solution)
-    if regular == names:
-        return load.best, load.mean, load.worst
-    return _load(regular, core, solution).best, None, load.worst
+    if regular != names:
+        return _load(regular, core, solution).best, None, load.worst
+    has_mean = all(states_mean(item.process, context.system) for item in here)
+    return load.best, load.mean if has_mean else None, load.worst
 
 
 def _is_load_known(core: str, solution: Solution) -> bool:

@@ -389,6 +389,10 @@ class Scheduling:
         if len(controller.cores) != 1:
             cores = f"several cores can execute it: {', '.join(controller.cores)}"
             raise NotSchedulableError(cores if controller.cores else f"{controller_name!r} is not responsible for a core")
+        if controller.overhead:
+            raise NotSchedulableError(
+                f"{controller_name!r} executes work of its own at each interrupt, which cannot be analysed"
+            )
         rank = (1, priority or 0)
         return ScheduledProcess(process=process, core=controller.cores[0], is_isr=True, priority=priority, rank=rank)
 

@@ -42,7 +42,7 @@ def loads(analysis: Analysis, core: str) -> tuple[Fraction | None, ...]:
 
 def has_range(analysis: Analysis) -> bool:
     task = analysis["A"]
-    return (task.bcet, task.wcet) == (10**9, 2 * 10**9)
+    return (task.bcet, task.acet, task.wcet) == (10**9, None, 2 * 10**9)
 
 
 def none_missed(simulation: Simulation) -> bool:
