@@ -319,3 +319,13 @@ class TestSimulation:
     def test_nothing_else(self):
         moving = Proc("U", (Migrate(scheduler="s0"), ticks(1)), 50, priority=1)
         assert self.verdicts(moving, task("T", 5, 50, 1, scheduler="s1")) == {"T": "observed_ok"}
+
+
+def test_the_work_of_an_interrupt_controller_leaves_its_core_unknown():
+    """Nobody analyses what the controller executes at each interrupt, so that neither the routine nor what it delays is known."""
+    found = built(Proc("I", (ticks(2),), 50, priority=1, is_isr=True), task("T", 5, 50, 9))
+    (operating_system,) = found.os.systems
+    controllers = tuple(replace(each, overhead=(ticks(1),)) for each in operating_system.interrupt_controllers)
+    working = replace(found, os=replace(found.os, systems=(replace(operating_system, interrupt_controllers=controllers),)))
+    assert [worst(analyze_system(found), name) for name in "IT"] == [2, 7]
+    assert [worst(analyze_system(working), name) for name in "IT"] == [None, None]
