@@ -57,7 +57,7 @@ class RandomModel:
     hides: int | None = None
 
     def told(self) -> tuple[str, frozenset[str]]:
-        """What is told of the model, and what is in it."""
+        """What the model states, and what is in it."""
         if self.hides is None:
             return self.text, self.features
         text, name = erased(self.text, Random(self.hides))
