@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -78,13 +78,27 @@ class RouteLatencies:
         ------
         UnboundedStageError : a maximum is negative or below a minimum, so that a response can come before its stimulus.
         """
-        found = list(self._values())
+        found = self._for_all_stimuli(list(self._values()))
         for minimum, maximum in _RANGES:
             lowest = max((value.value or 0 for value in found if value.quantity is minimum), default=0)
             highest = min((value.value or 0 for value in found if value.quantity is maximum), default=lowest)
             if not 0 <= lowest <= highest:
                 raise UnboundedStageError("a response of the chain can come before its stimulus, which is not evaluated")
         yield from found
+
+    def _for_all_stimuli(self, found: Sequence[Value]) -> list[Value]:
+        """The values, also for stimuli of which a counter of a trigger lets none have an effect: the next ones are answered first."""
+        wait = self.parts[0][0].stimulus_wait
+        if wait == 0:
+            return list(found)
+        kept = [
+            value for value in found if not value.quantity.is_mean and value.quantity is not Quantity.MAX_REDUCED_REACTION_TIME
+        ]
+        if wait is None:
+            return kept
+        longer = in_picoseconds(wait, self.unit, is_upper=True)
+        reduced = [value for value in found if value.quantity is Quantity.MAX_REDUCED_REACTION_TIME]
+        return [*kept, *(replace(value, value=(value.value or 0) + longer, claim=Claim.BOUND) for value in reduced)]
 
     def _values(self) -> Iterator[Value]:
         yield from self._of_job_chains()

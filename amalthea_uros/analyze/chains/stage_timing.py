@@ -82,6 +82,19 @@ class StageTiming:
         ------
         UnboundedStageError : a response time in it is unbounded or unknown.
         """
+        return replace(self._group(stages, follower), stimulus_wait=self._stimulus_wait(stages))
+
+    def _stimulus_wait(self, stages: Sequence[Stage]) -> Time | None:
+        """The maximum time from a job that triggers to the next one of which the counters of stimuli let the trigger have an effect."""
+        if all(is_always(self._counter_of(name)) for stage in stages[1:] for name in stage.process.stimuli):
+            return 0
+        counter = self._counter(stages)
+        if self._why_irregular(stages[0].process):
+            return None
+        jobs = max(max_distance(counter), first_effect(counter)) - 1
+        return jobs * self._max_interarrival(stages[0].process)
+
+    def _group(self, stages: Sequence[Stage], follower: Stage | None) -> TimedStage:
         base, triggered = stages[0], stages[1:]
         for stage in triggered:
             if is_logical(stage.leave):

@@ -69,6 +69,8 @@ class TimedStage:
     reason : why they are unknown
     why_irregular : why there is no maximum time between two jobs that take part; "" if there is one
     is_certain : whether it is known which jobs take part
+    stimulus_wait : how long a job that takes part comes at most after one that begins the chain, but of which no trigger has an
+        effect; None if there is no maximum
     """
 
     task: ChainTask
@@ -76,6 +78,7 @@ class TimedStage:
     reason: str = ""
     why_irregular: str = ""
     is_certain: bool = True
+    stimulus_wait: Time | None = 0
 
     @property
     def is_exact(self) -> bool:
