@@ -57,13 +57,14 @@ def _iterate(solution: Solution, diverging: set[str]) -> set[str]:
     on_cores: dict[str, _CoreRound] = {}
     work = 0
     for number in range(MAX_ROUNDS):
-        previous = responses
+        previous, known_reasons = responses, len(solution.reasons)
         solution.event_models = _event_models(solution, diverging, previous)
         responses = {}
         for core in solution.context.system.cores:
             on_cores[core] = _round_on(core, solution, on_cores.get(core))
             responses |= on_cores[core].responses
-        if responses == previous:
+        # What became unknown in this round makes unknown what it activates.
+        if responses == previous and len(solution.reasons) == known_reasons:
             solution.responses = responses
             return set()
         work += sum(response.jobs for response in responses.values())

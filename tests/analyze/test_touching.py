@@ -329,3 +329,16 @@ def test_the_work_of_an_interrupt_controller_leaves_its_core_unknown():
     working = replace(found, os=replace(found.os, systems=(replace(operating_system, interrupt_controllers=controllers),)))
     assert [worst(analyze_system(found), name) for name in "IT"] == [2, 7]
     assert [worst(analyze_system(working), name) for name in "IT"] == [None, None]
+
+
+def test_what_an_unknown_process_activates_is_activated_at_unknown_times():
+    """U, which has no allocation, can delay T, so that the distances of what the end of T activates are not those of T."""
+    chained = (
+        Proc("T", (ticks(5), Trigger(stimulus="by T")), 50, priority=9),
+        Proc("R", (ticks(1),), stimuli=("by T",), priority=2),
+    )
+    found = built(*chained, task("U", 3, 100, 1), triggers=("by T",))
+    kept = tuple(each for each in found.mapping.tasks if each.task != "U")
+    unallocated = replace(found, mapping=replace(found.mapping, tasks=kept))
+    assert analyze_system(found).processes["R"].min_interarrival == 50 * US
+    assert analyze_system(unallocated).processes["R"].min_interarrival is None
