@@ -98,7 +98,7 @@ def _of_requirement(
     process = next((each for each in processes if each.name == requirement.process), None)
     runnable = next((each for each in runnables if each.name == requirement.runnable), None)
     if _is_of_loop(requirement, system):
-        reason = "it is part of an executor that loops, whose rounds are not played; analyze the model"
+        reason = "it is part of an executor that loops, whose rounds are not simulated; analyze the model"
         return ObservedValues(reason=reason)
     if process is not None:
         model = system.processes.get(process.name)
