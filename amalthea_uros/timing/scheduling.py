@@ -160,7 +160,7 @@ class Scheduling:
 
     Attributes
     ----------
-    limits : response-time limits of requirements, which replace missing deadlines
+    limits : response-time limits of requirements, the deadlines to judge by where none is stated
     """
 
     system: System
@@ -188,12 +188,9 @@ class Scheduling:
         if process is None or scheduler is None:
             raise NotSchedulableError(f"the scheduler {allocation.scheduler!r} is not defined, or was left out when reading")
         deadline = self.limits.get(process.name) if allocation.deadline is None else allocation.deadline
-        parameters = _Parameters("it", allocation.priority, deadline, self._period(process), allocation.parameters)
+        # A limit is what is wished for; the scheduler knows only the deadline that the allocation states.
+        parameters = _Parameters("it", allocation.priority, allocation.deadline, self._period(process), allocation.parameters)
         found = self._under(scheduler, parameters, ())
-        if allocation.deadline is None and deadline is not None and scheduler.policy in _BY_DEADLINE:
-            self.notes.assume(
-                f"{process.name!r} has no deadline for its scheduler, which takes its response-time limit instead"
-            )
         return ScheduledProcess(
             process=process,
             server=found.server,
@@ -447,8 +444,6 @@ def _earliest_deadline_first(_scheduler: Scheduler, parameters: _Parameters, bas
     return replace(base, equal_priority=EqualPriority.EDF, deadline=parameters.required(parameters.deadline, "deadline"))
 
 
-#: The policies that serve by deadlines.
-_BY_DEADLINE = (Policy.DEADLINE_MONOTONIC, Policy.EARLIEST_DEADLINE_FIRST)
 #: The policies for which what they serve needs a priority.
 _NEEDING_PRIORITY = (Policy.FIXED_PRIORITY_PREEMPTIVE, Policy.OSEK, Policy.PRIORITY_BASED_ROUND_ROBIN)
 #: The scheduling by each policy.
