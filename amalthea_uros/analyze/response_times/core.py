@@ -79,15 +79,16 @@ class _CoreAnalysis:
     def _is_blocked_for_unknown_time(
         self, item: ScheduledProcess | Server, blocking: Blocking, servers: Sequence[Server]
     ) -> bool:
-        """Whether a process of lower priority can block an item for an unknown time; the item is marked unknown then."""
+        """Whether a process can block or delay an item for an unknown time; the item is marked unknown then."""
         obstacle = blocking.obstacle(item) if isinstance(item, ScheduledProcess) and blocking.unknown else ""
         if obstacle:
             self._mark_unknown(item, f"{obstacle!r}, which could not be analysed, can block it")
         for server in servers:
-            if not obstacle and server.rank < item.rank and (obstacle := self._not_preempted_in(server)):
-                # Whether the end of a budget interrupts it is not standardised.
+            if not obstacle and server is not item and (obstacle := self._not_preempted_in(server)):
+                # Whether the end of a budget interrupts it is not standardised: it may go on, before what is above and what is below.
+                how = "can block it" if server.rank < item.rank else "can delay it for longer than the budget"
                 self._mark_unknown(
-                    item, f"{obstacle!r} in the server {server.name!r} cannot be preempted everywhere, and can block it"
+                    item, f"{obstacle!r} in the server {server.name!r} cannot be preempted everywhere, and {how}"
                 )
         return bool(obstacle)
 
