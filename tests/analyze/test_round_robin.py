@@ -10,8 +10,10 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from amalthea_uros.analyze.response_times import priority_levels
+from amalthea_uros.analyze.response_times.busy_window import Interference
+from amalthea_uros.analyze.response_times.round_robin import response_time
 from amalthea_uros.analyze.response_times.task import Task
-from amalthea_uros.timing.event_models import Periodic
+from amalthea_uros.timing.event_models import AggregatedEventModel, Periodic
 from amalthea_uros.timing.multiframe import MultiframeDemand
 from amalthea_uros.timing.scheduling import EqualPriority
 
@@ -145,3 +147,12 @@ def test_a_slice_limits_what_an_overloaded_core_does_to_a_short_task():
 def test_the_player_itself(reading):
     # 2 of A, 3 of B, the last one of A.
     assert Player([Row(100, 3, 2), Row(100, 3, 3)], reading).play(100) == [6, 5]
+
+
+@pytest.mark.parametrize(("limit", "worst"), [(2, 3 + 3 + 1), (1, 3 + 1)])
+def test_each_waiting_job_may_have_a_slice_of_its_own(limit, worst):
+    """Two jobs of the other task wait, each of 3 in a slice of 3, if its activation limit allows two; then comes the job of 1."""
+    twice = AggregatedEventModel((Periodic(100), Periodic(100)))
+    other = Task(name="other", events=twice, demand=MultiframeDemand.constant(3), slice=3, activation_limit=limit)
+    task = Task(name="task", events=Periodic(100), demand=MultiframeDemand.constant(1), slice=1)
+    assert response_time(task, [other], Interference.of([])).worst == worst

@@ -231,6 +231,7 @@ class _CoreAnalysis:
             equal_priority=item.equal_priority,
             deadline=(item.deadline or 0) * self.time_base if item.equal_priority is EqualPriority.EDF else 0,
             slice=item.slice * self.time_base,
+            activation_limit=getattr(item.process, "activation_limit", 1) if isinstance(item, ScheduledProcess) else 1,
         )
 
     def _decisions(self, priority: int) -> list[Task]:

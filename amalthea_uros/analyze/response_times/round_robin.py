@@ -3,8 +3,9 @@
 After R. Racu, L. Li, R. Henia, A. Hamann and R. Ernst, "Improved response time analysis of tasks scheduled under preemptive
 round-robin", CODES+ISSS 2007: before each slice of a task, every other task of its priority gets at most one slice, and in total
 no more than its demand. Three things are taken into account beyond that. A job need not go on in the slice of the job before it. The
-others can have jobs pending when the task is activated, so that their demand is that of the busy window of all of them. And it is not
-standardised whether a slice that was preempted starts anew, so that each preemption may prolong a slice of another task.
+others can have jobs pending when the task is activated, so that their demand is that of the busy window of all of them; each of these
+jobs, as many as the activation limit allows, may wait for a slice of its own, since it is not standardised whether jobs or tasks take
+turns. Neither is it whether a slice that was preempted starts anew, so that each preemption may prolong a slice of another task.
 """
 
 from __future__ import annotations
@@ -63,6 +64,7 @@ class _Window:
     Attributes
     ----------
     demands : the demand of each other task in the busy window of all of them; None: that does not end
+    pending : the maximum number of jobs of each other task that can wait at the same time
     """
 
     task: Task
@@ -70,6 +72,7 @@ class _Window:
     higher: Interference
     blocking: Time
     demands: Sequence[Time] | None
+    pending: Sequence[int]
 
     @classmethod
     def of(cls, task: Task, others: Sequence[Task], higher: Interference, blocking: Time) -> _Window:
@@ -78,8 +81,12 @@ class _Window:
         length = None
         if not together.overloads_with(task):
             length = Interference.of([*higher.tasks, *others, task], higher.supply).window(blocking, 1)
-        demands = None if length is None else [other.demand.max_demand(other.events.eta_plus(length)) for other in others]
-        return cls(task, others, higher, blocking, demands)
+        pending = [other.activation_limit for other in others]
+        if length is None:
+            return cls(task, others, higher, blocking, None, pending)
+        jobs = [other.events.eta_plus(length) for other in others]
+        demands = [other.demand.max_demand(number) for other, number in zip(others, jobs, strict=True)]
+        return cls(task, others, higher, blocking, demands, list(map(min, pending, jobs)))
 
     @property
     def is_bounded(self) -> bool:
@@ -88,9 +95,11 @@ class _Window:
             return True
         if self.higher.supply is not FULL:
             return False
-        task, slices = self.task, [other.slice for other in self.others]
+        task = self.task
+        slices = [jobs * other.slice for other, jobs in zip(self.others, self.pending, strict=True)]
         per_job = task.demand.mean_worst + (task.demand.mean_worst + task.slice - 1) / task.slice * sum(slices)
-        above = sum((demand_rate(other) + other.events.rate * max(slices) for other in self.higher.tasks), Fraction(0))
+        longest = max(other.slice for other in self.others)
+        above = sum((demand_rate(other) + other.events.rate * longest for other in self.higher.tasks), Fraction(0))
         return task.events.rate * per_job + above < 1
 
     def end(self, job: int, start: Time) -> Time:
@@ -115,7 +124,7 @@ class _Window:
         if self.higher.supply is not FULL:
             # The end of a budget interrupts a slice, too.
             return everything
-        most = [slices * other.slice for other in self.others]
+        most = [slices * jobs * other.slice for other, jobs in zip(self.others, self.pending, strict=True)]
         if self.demands is not None:
             most = list(map(min, most, self.demands))
         prolonged = self._preemptions(window) * max(other.slice for other in self.others)

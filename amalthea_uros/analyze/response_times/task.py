@@ -21,6 +21,7 @@ class Task:
     equal_priority : how tasks of the same priority are served; equal for all of them
     deadline : relative to the activation; used by EDF
     slice : length of a time slice; used by round robin
+    activation_limit : the number of jobs that can wait at most; further activations are lost
     """
 
     name: str
@@ -30,3 +31,4 @@ class Task:
     equal_priority: EqualPriority = EqualPriority.FIFO
     deadline: Time = 0
     slice: Time = 0
+    activation_limit: int = 1
