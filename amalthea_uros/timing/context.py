@@ -277,8 +277,11 @@ class TimingContext:
         return found
 
     def decider(self, task: str) -> Scheduler | None:
-        """The scheduler that decides when a task is activated or ends, if its decisions take time."""
-        scheduler = self.system.schedulers.get(self._scheduler_of.get(task, ""))
+        """The scheduler that decides when a task is activated or ends, if its decisions take time: its own one, or one above that."""
+        scheduler, above = self.system.schedulers.get(self._scheduler_of.get(task, "")), set[str]()
+        while scheduler is not None and not scheduler.overhead and scheduler.name not in above:
+            above.add(scheduler.name)
+            scheduler = self.system.schedulers.get("" if scheduler.parent is None else scheduler.parent.scheduler)
         return scheduler if scheduler is not None and scheduler.overhead else None
 
     def deciding(self, task: str, core: str) -> Scheduler | None:
@@ -286,9 +289,14 @@ class TimingContext:
 
         Raises
         ------
-        UnknownDemandError : it decides on another core, so that the task waits for what that one executes.
+        UnknownDemandError : it decides on another core, so that the task waits for what that one executes, or also about other
+            schedulers, so that nobody states when.
         """
         scheduler = self.decider(task)
+        if scheduler is not None and scheduler.name != self._scheduler_of.get(task):
+            raise UnknownDemandError(
+                f"{scheduler.name!r}, above its scheduler, needs time to decide, and nobody states when it does"
+            )
         if scheduler is not None and scheduler.executing_core not in (None, core):
             raise UnknownDemandError(
                 f"its scheduler {scheduler.name!r} decides on another core, {scheduler.executing_core!r}, which cannot be analysed"

@@ -230,6 +230,17 @@ class TestSchedulersBelowEachOther:
         delays = "'inside' in the server 'server' cannot be preempted everywhere, and can delay it for longer than the budget"
         assert found["below"] == delays
 
+    def test_decisions_above_a_server(self):
+        tasks = [
+            ("inside", 100, [ticks(3)], {"scheduler": "server", "priority": 1}),
+            ("below", 100, [ticks(5)], {"scheduler": "root", "priority": 1}),
+        ]
+        built = system([root(overhead=(ticks(1),)), under("server", Policy.POLLING_SERVER, 5, capacity=2, period=10)], tasks)
+        # Whether the root also decides when jobs in the server come and end, and when a budget ends, is not stated.
+        found = worst(built)
+        assert found["inside"] == "'root', above its scheduler, needs time to decide, and nobody states when it does"
+        assert isinstance(found["below"], str)
+
 
 class TestCosts:
     ONE = (("T", 100, [ticks(5)], {"scheduler": "root", "priority": 1}),)
