@@ -18,6 +18,8 @@ from typing import TypeAlias
 from amalthea_uros.perf.activities import (
     Activity,
     Call,
+    Execute,
+    ExecutionNeed,
     Group,
     Loop,
     ProbabilitySwitch,
@@ -343,3 +345,25 @@ def executed(activities: Sequence[Activity], system: System) -> Iterable[Activit
             if isinstance(activity, Call) and activity.runnable in system.runnables and activity.runnable not in seen:
                 seen.add(activity.runnable)
                 pending.append(system.runnables[activity.runnable].activities)
+
+
+def ends_with_execution(activities: Sequence[Activity], system: System, depth: int = 0) -> bool:
+    """Whether the last that a job does certainly takes time, so that nothing is left once its demand is served."""
+    if not activities or depth > MAX_CALL_DEPTH:
+        return False
+    inner: list[Sequence[Activity]]
+    match activities[-1]:
+        case Execute() | ExecutionNeed():
+            return True
+        case Call(runnable=name, counter=None, times=None) if name in system.runnables:
+            runnable = system.runnables[name]
+            inner = [runnable.activities if runnable.condition is None else ()]
+        case Group(ordered=True, activities=of_group):
+            inner = [of_group]
+        case Switch(cases=cases, default=default):
+            inner = [*(case.activities for case in cases), default or ()]
+        case ProbabilitySwitch(branches=branches):
+            inner = [branch.activities for branch in branches]
+        case _:
+            return False
+    return all(ends_with_execution(each, system, depth + 1) for each in inner)

@@ -209,6 +209,16 @@ class TestSchedulersBelowEachOther:
         built = system([root(), under("server", policy, 5, capacity=2, period=10)], tasks)
         assert worst(built) == {"inside": inside, "below": below}
 
+    @pytest.mark.parametrize(("ends_with_access", "longest"), [(False, 22), (True, 30)])
+    def test_an_access_at_the_end_of_a_budget_can_wait_for_the_next_one(self, ends_with_access, longest):
+        # 10 of waiting after the polling, 2, 8 of waiting, 2: the budget ends just when the demand is served, before the access.
+        body = [ticks(4), *([LabelAccess(label="L", kind=AccessKind.READ)] if ends_with_access else [])]
+        tasks = [("inside", 100, body, {"scheduler": "server", "priority": 1})]
+        built = system(
+            [root(), under("server", Policy.POLLING_SERVER, 5, capacity=2, period=10)], tasks, labels=[Label(name="L")]
+        )
+        assert worst(built)["inside"] == longest
+
     def test_a_server_that_does_not_get_its_budget(self):
         tasks = [
             ("inside", 100, [ticks(3)], {"scheduler": "server", "priority": 1}),

@@ -12,7 +12,6 @@ from amalthea_uros.analyze.chains.stage_timing import StageTiming, UnboundedStag
 from amalthea_uros.analyze.chains.timed_stage import TimedStage
 from amalthea_uros.analyze.results import ChainResult, Claim, Quantity, Value
 from amalthea_uros.analyze.solution import Solution
-from amalthea_uros.perf.activities import Communication
 from amalthea_uros.perf.events import EventChain
 from amalthea_uros.timing.clocks import controller_of_core
 from amalthea_uros.timing.context import TimingContext
@@ -20,7 +19,7 @@ from amalthea_uros.timing.dataflow.chains import Unfolded, UnfoldError, combined
 from amalthea_uros.timing.dataflow.events import UnraisedError, UnresolvedError
 from amalthea_uros.timing.dataflow.links import LinkKind
 from amalthea_uros.timing.dataflow.routes import Route, UnlinkedError, route_text, routes_of_ways
-from amalthea_uros.timing.dataflow.stages import Read, Stage, common_communication, stages
+from amalthea_uros.timing.dataflow.stages import Stage, common_communication, stages
 from amalthea_uros.timing.phases import Occurrence, unknown_phases
 
 
@@ -63,8 +62,6 @@ class ChainEvaluator:
         every = [route for found in ways.values() for route in found]
         self._note_left_out(chain, left_out)
         self._note_ends(chain, tuple(ways))
-        if any(_reads_explicitly(stage) for route in every for stage in self._stages(route)):
-            self.context.notes.assume("an explicit read sees what is written at the same instant")
         found = self._evaluated(ways)
         if self.budget.is_exceeded:
             self.context.notes.assume(f"{TOO_MANY_JOBS}; the chains without them have bounds of other methods")
@@ -177,9 +174,9 @@ class ChainEvaluator:
     def _stages(self, route: Route) -> list[Stage]:
         return stages(route, self.context.settings.communication)
 
-    def groups(self, route: Route) -> list[list[Stage]]:
+    def groups(self, route: Route) -> list[Sequence[Stage]]:
         """The stages of a route, each together with those that it triggers."""
-        return _groups(self._stages(route))
+        return self.timing.after_ends(_groups(self._stages(route)))
 
     def latencies(self, route: Route) -> RouteLatencies:
         """The latencies of a route.
@@ -334,7 +331,3 @@ def _best(values: Sequence[Value], quantity: Quantity) -> Value:
         return value.value or 0
 
     return min(values, key=time) if quantity.is_upper else max(values, key=time)
-
-
-def _reads_explicitly(stage: Stage) -> bool:
-    return isinstance(stage.enter, Read) and stage.enter.communication is Communication.EXPLICIT

@@ -150,7 +150,18 @@ class JobChains(Latencies):
         every = [self.before, self] if is_exact else [self.before, self.possible, self]
         return Latencies(**{name: np.concatenate([getattr(each, name) for each in every]) for name in _TIMES})
 
+    def has_times_of(self, other: JobChains) -> bool:
+        """Whether all times are those of other job chains."""
+        pairs = ((self, other), (self.before, other.before), (self.possible, other.possible), (self.inputs, other.inputs))
+        return all(
+            np.array_equal(getattr(mine, each.name), getattr(others, each.name))
+            for mine, others in pairs
+            for each in fields(mine)
+            if each.name not in _PARTS
+        )
 
+
+_PARTS = ("inputs", "before", "possible")
 _TIMES = tuple(each.name for each in fields(Latencies))
 
 
@@ -244,8 +255,8 @@ def forward(chain: Sequence[ReadWriteTimes], jobs: Numbers) -> Numbers:
             # Jobs of one process run in order.
             jobs = np.searchsorted(reader.releases, task.releases[jobs], side="right" if task.jobs_later else "left")
             continue
-        # A read sees the data written up to that time.
-        found = np.searchsorted(reader.reads, task.writes[jobs], side="left")
+        # A read sees the data written up to that time, or before it.
+        found = np.searchsorted(reader.reads, task.writes[jobs], side="left" if task.is_visible_at_once else "right")
         if task.preempts_reader:
             found = np.minimum(found, np.searchsorted(reader.reads, task.releases[jobs], side="left"))
         jobs = found
@@ -265,7 +276,7 @@ def backward(chain: Sequence[ReadWriteTimes], jobs: Numbers) -> Numbers:
         if writer.jobs_later is not None:
             found = np.searchsorted(writer.releases, task.releases[jobs], side="left" if writer.jobs_later else "right")
         else:
-            found = np.searchsorted(writer.writes, task.reads[jobs], side="right")
+            found = np.searchsorted(writer.writes, task.reads[jobs], side="right" if writer.is_visible_at_once else "left")
             if writer.preempts_reader:
                 found = np.maximum(found, np.searchsorted(writer.releases, task.reads[jobs], side="right"))
         jobs = found - 1

@@ -27,6 +27,7 @@ class ReadWriteTimes:
     writes : when its output becomes visible, or a bound of that
     cycle : time after which the last jobs repeat
     until : the end of the time that is covered
+    is_visible_at_once : whether what is written is seen by a read at the same instant
     preempts_reader : whether its jobs preempt those of the next task on the same core, so that these cannot read in between
     jobs_later : if the next task of the chain is a later part of the same process: 0 if a job already uses its own output, 1 if
         only the jobs after it do; None for another process, which uses what was written when it reads
@@ -37,6 +38,7 @@ class ReadWriteTimes:
     writes: Numbers
     cycle: Time
     until: Time
+    is_visible_at_once: bool = True
     preempts_reader: bool = False
     jobs_later: int | None = None
 

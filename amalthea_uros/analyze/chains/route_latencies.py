@@ -64,6 +64,8 @@ class RouteLatencies:
         varying = next((timed.task.name for timed in everything if not timed.is_exact), None)
         if varying is not None:
             return f"bounds: the read and write times of {varying!r} can vary"
+        if not any(value.claim is Claim.EXACT for value in values):
+            return "bounds: a job reads at the instant at which another one writes, and their order is not specified"
         return "exact: all release times are known, and execution times are constant or have no effect"
 
     @property
@@ -107,7 +109,7 @@ class RouteLatencies:
         if all(timed.is_logical for part in self.parts for timed in part):
             time = hamann.reaction_time(tasks) + _wait_at_start(tasks)
             yield from self._reactions(time, tasks, "two periods for each step", hamann.SOURCE)
-        if len(self.parts) == 1:
+        if len(self.parts) == 1 and all(timed.is_visible_at_once for timed in self.parts[0]):
             yield from self._of_releases(tasks)
 
     # By job chains
@@ -120,7 +122,7 @@ class RouteLatencies:
             yield from self._summed([each for each in found if each is not None])
 
     def _of_single_clock(self, chains: JobChains) -> Iterator[Value]:
-        is_exact = self.is_certain and all(timed.is_exact for timed in self.parts[0])
+        is_exact = self._is_exact(chains)
         claim, method = (Claim.EXACT, EXACT) if is_exact else (Claim.BOUND, BOUNDED)
 
         def value(quantity: Quantity, time: Time | float) -> Value:
@@ -145,6 +147,16 @@ class RouteLatencies:
         yield value(Quantity.MEAN_REACTION_TIME, chains.mean_reaction_time)
         yield value(Quantity.MEAN_FIRST_TO_FIRST, float(chains.first_to_first.mean()))
         yield value(Quantity.MEAN_LAST_TO_LAST, float(chains.last_to_last.mean()))
+
+    def _is_exact(self, chains: JobChains) -> bool:
+        """Whether jobs read and write at these times, and no order of two accesses at one instant changes anything."""
+        part = self.parts[0]
+        if not self.is_certain or not all(timed.is_exact for timed in part):
+            return False
+        if all(timed.is_visible_at_once for timed in part):
+            return True
+        others = self._job_chains(part, pessimistic=False)
+        return others is not None and chains.has_times_of(others)
 
     def _minima(self, value: _Make) -> Iterator[Value]:
         """Lower bounds by latest reads and earliest writes."""

@@ -36,7 +36,7 @@ from amalthea_uros.timing.counters import ALWAYS, composed, first_effect, is_alw
 from amalthea_uros.timing.dataflow.events import JobPhase
 from amalthea_uros.timing.dataflow.positions import ActivityPosition
 from amalthea_uros.timing.dataflow.skipping import can_be_skipped
-from amalthea_uros.timing.dataflow.stages import SAME_JOB, Boundary, Fire, Pass, Read, Stage
+from amalthea_uros.timing.dataflow.stages import NEXT_JOB, SAME_JOB, At, Boundary, Fire, Pass, Read, Stage
 from amalthea_uros.timing.demand import MAX_TIME_BASE
 from amalthea_uros.timing.limits import LIMIT
 from amalthea_uros.timing.multiframe import MultiframeDemand
@@ -84,6 +84,36 @@ class StageTiming:
         """
         return replace(self._group(stages, follower), stimulus_wait=self._stimulus_wait(stages))
 
+    def after_ends(self, groups: Sequence[Sequence[Stage]]) -> list[Sequence[Stage]]:
+        """The groups of stages of a route; if it begins at the end of a job, with the job that certainly answers.
+
+        What the job has triggered itself may have responded before that; then only the next job answers.
+        """
+        match groups:
+            case [[Stage(enter=At(), leave=Pass()) as ending], [Stage(leave=Fire()) as base, *triggered]]:
+                if self._responds_before_end(base, triggered):
+                    return [[replace(ending, jobs_later=NEXT_JOB)], *groups[1:]]
+        return list(groups)
+
+    def _responds_before_end(self, base: Stage, triggered: Sequence[Stage]) -> bool:
+        """Whether what a job triggers has certainly responded before the end of the job."""
+        left = self._left_after(base)
+        if left == 0:
+            return False
+        # A job that is kept from its core goes on only after the response.
+        keep = all(self._takes_core(stage, base) for stage in triggered)
+        return keep or sum(self._windows(stage).latest(stage.leave) for stage in triggered) < left
+
+    def _left_after(self, base: Stage) -> Time:
+        """The minimum demand of a job after it has triggered the next stage."""
+        process, model = base.process, self.context.demand_model
+        scheduled = self.context.scheduled.get(process.name)
+        if scheduled is None or not isinstance(base.leave, Fire) or base.leave.position is None:
+            return 0
+        before = model.of_position(base.leave.position, scheduled.core, including=True)
+        everything = model.of_activities(process, process.activities, scheduled.core)
+        return (everything.best - before.best) * self.unit // model.time_base(scheduled.core)
+
     def _stimulus_wait(self, stages: Sequence[Stage]) -> Time | None:
         """The maximum time from a job that triggers to the next one of which the counters of stimuli let the trigger have an effect."""
         if all(is_always(self._counter_of(name)) for stage in stages[1:] for name in stage.process.stimuli):
@@ -105,6 +135,7 @@ class StageTiming:
         min_delay = sum(self._windows(stage).earliest(stage.leave) for stage in triggered)
         counter = self._counter(stages)
         preempts_reader = self._preempts_reader(base, follower) and not triggered
+        is_visible_at_once = self._is_visible_at_once(stages[-1], follower)
         why_uncertain = self._why_uncertain(stages)
         why_irregular = why_uncertain or self._why_irregular(stages[0].process)
         releases = known_releases(base.process, self.context.system)
@@ -129,11 +160,12 @@ class StageTiming:
         later = stages[-1].jobs_later
         found = (
             read_write
-            if later is None and not (max_delay or min_delay or preempts_reader)
+            if later is None and is_visible_at_once and not (max_delay or min_delay or preempts_reader)
             else replace(
                 read_write,
                 pessimistic=replace(
                     _later(read_write.pessimistic, max_delay),
+                    is_visible_at_once=is_visible_at_once,
                     preempts_reader=preempts_reader,
                     jobs_later=later.most if later is not None else None,
                 ),
@@ -266,15 +298,29 @@ class StageTiming:
         """Whether the jobs of a stage preempt those of the next one, so that these cannot read before they have written."""
         if follower is None or isinstance(base.leave, Fire) or is_logical(base.leave) or is_logical(follower.enter):
             return False
-        first, then = self.context.scheduled.get(base.process.name), self.context.scheduled.get(follower.process.name)
         if base.process.name == follower.process.name:
             return False  # a job cannot read its own future output
+        # A reader that reads later than at its start may read just when the writer is released.
+        is_at_start = isinstance(follower.enter, Read) and follower.enter.communication is Communication.IMPLICIT
+        return is_at_start and self._takes_core(base, follower)
+
+    def _takes_core(self, one: Stage, other: Stage) -> bool:
+        """Whether the process of a stage, as long as it is ready, keeps that of another one from executing."""
+        first, then = self.context.scheduled.get(one.process.name), self.context.scheduled.get(other.process.name)
         if first is None or then is None or first.core != then.core or first.server or then.server or first.rank <= then.rank:
             return False
-        if self._blocking_on(first.core).level(first).rank <= then.rank:
-            return False  # while something below keeps the writer off, or the writer waits for it, the reader can start
-        # A reader that reads later than at its start may read just when the writer is released.
-        return isinstance(follower.enter, Read) and follower.enter.communication is Communication.IMPLICIT
+        # While something below keeps the first one off, or it waits for that, the other one can start.
+        return self._blocking_on(first.core).level(first).rank > then.rank
+
+    def _is_visible_at_once(self, writer: Stage, reader: Stage | None) -> bool:
+        """Whether a read at the instant of a write certainly comes after it.
+
+        Nobody states in which order two accesses inside of jobs occur at one instant, unless the writer has kept the reader off
+        since its release. The end of a job comes before the start of another one.
+        """
+        if reader is None or writer.jobs_later is not None or not any(map(is_inside, (writer.leave, reader.enter))):
+            return True
+        return self._takes_core(writer, reader) and self._windows(writer).earliest(writer.leave) > 0
 
     def _blocking_on(self, core: str) -> Blocking:
         if core not in self._blocking:

@@ -86,6 +86,11 @@ class TimedStage:
         return self.read_write is not None and self.read_write.is_exact
 
     @property
+    def is_visible_at_once(self) -> bool:
+        """Whether what jobs write is certainly seen by a read at the same instant."""
+        return self.read_write is None or self.read_write.pessimistic.is_visible_at_once
+
+    @property
     def is_logical(self) -> bool:
         """Whether read and write times depend only on releases and periods."""
         return self.read_write is not None and self.read_write.is_logical

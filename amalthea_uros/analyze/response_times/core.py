@@ -21,6 +21,7 @@ from amalthea_uros.timing.multiframe import MultiframeDemand
 from amalthea_uros.timing.preemption import is_preemptive, preemption
 from amalthea_uros.timing.releases import known_releases
 from amalthea_uros.timing.scheduling import EqualPriority, Rank, ScheduledProcess, Server
+from amalthea_uros.timing.stretches import ends_with_execution
 
 
 def responses_on(core: str, solution: Solution) -> dict[str, Response]:
@@ -123,9 +124,24 @@ class _CoreAnalysis:
             return {}
         # Worst case: a job is activated just after the budget was used up as early as possible, or just after the server polled.
         used = 0 if server.scheduler.policy == Policy.POLLING_SERVER else budget
-        supply = Budget(budget=budget, period=period, wait=period - used + response.worst - budget)
+        supply = Budget(
+            budget=budget,
+            period=period,
+            wait=period - used + response.worst - budget,
+            is_needed_at_end=not self._end_with_execution(server),
+        )
         self.context.notes.assume("a server can get its budget at any time within its period")
         return self.responses(server.name, supply)
+
+    def _end_with_execution(self, server: Server) -> bool:
+        """Whether the jobs in the budget of a server have nothing left to do once their demand is served."""
+        system = self.context.system
+        return all(
+            self._end_with_execution(item)
+            if isinstance(item, Server)
+            else ends_with_execution(system.processes[item.name].activities, system)
+            for item in self.context.served(self.core, server.name)
+        )
 
     def exact(self, here: Sequence[ScheduledProcess]) -> list[Response] | None:
         """The exact response times by the schedule, if all releases are known and there is no blocking."""

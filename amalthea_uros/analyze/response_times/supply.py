@@ -36,11 +36,14 @@ class Budget:
     Attributes
     ----------
     wait : maximum time without supply before the first budget
+    is_needed_at_end : whether jobs can have accesses left once their demand is served: these take no time, but where a budget ends
+        just then, they wait for the next one
     """
 
     budget: Time
     period: Time
     wait: Time
+    is_needed_at_end: bool = False
 
     @property
     def rate(self) -> Fraction:
@@ -51,7 +54,7 @@ class Budget:
         """See `Full`; each further budget that is needed adds a gap."""
         if demand <= 0:
             return 0
-        gaps = -(-demand // self.budget) - 1
+        gaps = demand // self.budget if self.is_needed_at_end else -(-demand // self.budget) - 1
         return self.wait + gaps * (self.period - self.budget) + demand
 
 

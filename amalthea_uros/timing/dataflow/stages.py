@@ -10,7 +10,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
-from amalthea_uros.perf.activities import Communication, Execute, Group
+from amalthea_uros.perf.activities import Communication, Group
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.timing.counters import ALWAYS
@@ -118,10 +118,9 @@ def stages(route: Route, communication: Communication | None) -> list[Stage]:
         is_same = before.process.name == then.process.name and not is_trigger
         later = _jobs_later(link, write, read) if is_same else None
         if _has_left_before(enter, leave):
-            # What the job has sent before the event does not come from it: the next job sends. Data may be meant as those of the job
-            # that ends, however, and a trigger after the last execution may coincide with the end, so that no minimum relies on it.
-            is_later = is_trigger and _executes_after(link.write)
-            found.append(Stage(before.process, enter, Pass(), jobs_later=NEXT_JOB if is_later else SAME_OR_NEXT_JOB))
+            # What the job has sent before the event does not come from it: the next job sends. The effect of what it has sent may be
+            # meant nevertheless if that comes after the event, so that no minimum relies on the next job.
+            found.append(Stage(before.process, enter, Pass(), jobs_later=SAME_OR_NEXT_JOB))
             enter = Pass()
         found += _within(
             Stage(before.process, enter, leave, is_triggered=is_triggered, jobs_later=later), [*passed, link.write]
@@ -140,12 +139,6 @@ def _has_left_before(enter: Boundary, leave: Boundary) -> bool:
         case Fire(position=ActivityPosition()) | Write(communication=Communication.EXPLICIT, position=ActivityPosition()):
             return True
     return False
-
-
-def _executes_after(position: ActivityPosition | None) -> bool:
-    """Whether a job certainly executes something between a position and its end, apart from what it calls."""
-    levels = () if position is None else position.outer
-    return any(isinstance(each, Execute) for activities, index in levels for each in activities[index + 1 :])
 
 
 def _within(stage: Stage, passed: Sequence[ActivityPosition | None]) -> list[Stage]:

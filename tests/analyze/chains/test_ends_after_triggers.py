@@ -58,3 +58,11 @@ def test_what_was_written_before_the_end_does_not_come_from_it():
     tasks = [("W", 100, [written, ticks(10)]), ("R", 50, [read("L"), ticks(5)])]
     _, values, _, _ = evaluate(system(tasks, (at("W", END), at("R", END))))
     assert values["max_reduced_reaction_time"] >= 105 - 10
+
+
+def test_what_responds_after_the_end_may_be_meant_as_its_response():
+    # R, of lower priority, executes from the end of W at 10 to 12, and after that of the next W from 110 to 112.
+    tasks = [("W", 100, [Trigger(stimulus="R"), ticks(10)], "core"), ("R", None, [ticks(2)], "core")]
+    built = system(tasks, (at("W", END), at("R", END)), stimuli=(InterProcess(name="R"),))
+    _, values, _, _ = evaluate(built)
+    assert values["min_first_to_first"] <= 2 < 102 <= values["max_reduced_reaction_time"]

@@ -44,14 +44,16 @@ class Job:
         return any(index < len(body) for body, index, _ in self.stack)
 
     def next_item(self) -> Item | None:
-        """Take the next item; groups that are left end."""
+        """Take the next item; that a non-interruptible group is left is one, since others can run then."""
         while self.stack:
             top = self.stack[-1]
             if top[1] < len(top[0]):
                 top[1] += 1
                 return tuple(top[0][top[1] - 1])
-            self.masks -= top[2]
             self.stack.pop()
+            if top[2]:
+                self.masks -= top[2]
+                return ("left",)
         return None
 
     def enter(self, body: Body, masks: int = 0) -> None:
@@ -271,6 +273,9 @@ class Player:
         process = self.processes[job.process]
         if self.variant.decides_outside and not process.is_isr:
             self.deciding[process.core] += self.played.decisions.get(process.core, 0)
+
+    def _do_left(self, job: Job) -> None:
+        """A group that was not interruptible ends."""
 
     def _do_raw(self, job: Job, time: int) -> None:
         job.remaining = time
