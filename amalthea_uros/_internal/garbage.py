@@ -6,6 +6,9 @@ import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+#: With fewer objects, nothing is collected here; these take some hundred megabytes.
+FEW_OBJECTS = 2_000_000
+
 
 @contextmanager
 def paused_garbage_collection() -> Iterator[None]:
@@ -15,9 +18,29 @@ def paused_garbage_collection() -> Iterator[None]:
     try:
         yield
         if was_enabled and not gc.get_freeze_count():
-            # Moves the new objects to the oldest generation, unscanned; else the first collection would go through them all.
-            gc.freeze()
-            gc.unfreeze()
+            _keep()
     finally:
         if was_enabled:
             gc.enable()
+
+
+class _Collected:
+    """How many objects were left by the last collection here."""
+
+    objects = 0
+
+
+def _keep() -> None:
+    """Move all new objects to the oldest generation, unscanned; else the first collection would go through them all.
+
+    Python does not count objects that get there in this way, so that it would never collect them. This is done here once they have
+    doubled, which keeps the effort proportional to the number of objects made.
+    """
+    gc.freeze()
+    objects = gc.get_freeze_count()
+    gc.unfreeze()
+    if objects > max(FEW_OBJECTS, 2 * _Collected.objects):
+        gc.collect()
+        gc.freeze()
+        _Collected.objects = gc.get_freeze_count()
+        gc.unfreeze()
