@@ -6,8 +6,8 @@ import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-#: With fewer objects, nothing is collected here; these take some hundred megabytes.
-FEW_OBJECTS = 2_000_000
+#: With fewer objects, nothing is collected here; these take less than a gigabyte.
+FEW_OBJECTS = 1_000_000
 
 
 @contextmanager

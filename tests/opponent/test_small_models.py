@@ -58,7 +58,7 @@ EXPECTED = {
     ),
     "overhead-of-unknown": Expected(verdicts={"T": {MISSED, UNKNOWN}}),
     "mode-beside-data": Expected(verdicts={"reaction": {MISSED}}),
-    "start-up": Expected(verdicts={"delay": {MISSED, UNKNOWN}}),
+    "start-up": Expected(verdicts={"delay": {MISSED}}),
     # A executes 1 ms of 10, and 5 ms follow, whatever the branch is.
     "exclusive-triggers": Expected(
         holds=lambda a: loads(a, "C0") == (Fraction(6, 10),) * 3 and all(p.wcrt is not None for p in a.processes),

@@ -17,6 +17,7 @@ import numpy as np
 
 from amalthea_uros._internal.failures import failure
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
+from amalthea_uros.analyze.chains.event_delays import delays
 from amalthea_uros.analyze.chains.event_windows import EventWindows, UnknownError
 from amalthea_uros.analyze.chains.runnable_orders import holds_across, holds_in_each_job
 from amalthea_uros.analyze.chains.stage_timing import UnboundedStageError
@@ -135,6 +136,10 @@ class ConstraintEvaluator:
 
     def _delay(self, constraint: DelayConstraint, limits: Sequence[SystemLimit]) -> Iterator[_Judged]:
         source, target = self.windows.event(constraint.source), self.windows.event(constraint.target)
+        exact = self._exact_delays(constraint) if constraint.matching is Matching.REACTION else None
+        if exact is not None:
+            yield from _proved(limits, lambda limit: Ends.exactly(exact[1] if limit.is_upper else exact[0]))
+            return
         found = corresponding(source, target, self.evaluation.context.dataflow)
         if constraint.matching is not Matching.REACTION:
             links = {link.kind for route in found for link in route.links}
@@ -145,7 +150,28 @@ class ConstraintEvaluator:
                 raise UnknownError(
                     "data between the events can be overwritten or read again, so their occurrences do not correspond one to one"
                 )
-        yield from _proved(limits, _Latencies(self.evaluation.worst(found), *_REACTION).limited)
+        latencies = _Latencies(self.evaluation.worst(found), *_REACTION)
+        if constraint.lower is not None and (latencies.of_minimum.lower or 0) < constraint.lower:
+            # A target below the lower limit is ignored, and how much later the next one comes is unknown.
+            latest = Ends(latencies.of_maximum.lower, None)
+            yield from _proved(limits, lambda limit: latest if limit.is_upper else latencies.of_minimum)
+            return
+        yield from _proved(limits, latencies.limited)
+
+    def _exact_delays(self, constraint: DelayConstraint) -> tuple[Time, Time] | None:
+        """The least and the greatest delay; None unless the times of both events are known exactly."""
+        timing, windows = self.evaluation.timing, self.windows
+        try:
+            ends = [windows.occurrence(windows.event(name).name) for name in (constraint.source, constraint.target)]
+            times = [timing.exact_times(end) for end in ends]
+        except (UnknownError, UnresolvedError, UnboundedStageError):
+            return None
+        if len({self.evaluation.controller(end.process.name) for end in ends}) > 1:
+            return None  # the clocks are not synchronized
+        source, target = times
+        if source is None or target is None:
+            return None
+        return delays(source, target, (constraint.lower or 0) * timing.unit, timing.unit)
 
     def _chain_synchronization(self, constraint: ChainSynchronization, limits: Sequence[SystemLimit]) -> Iterator[_Judged]:
         found = [self.chains.get(name) for name in constraint.chains]

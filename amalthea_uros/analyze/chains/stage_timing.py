@@ -33,7 +33,7 @@ from amalthea_uros.perf.stimuli import Counter, EventTriggered, InterProcess, Pe
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.counters import ALWAYS, composed, first_effect, is_always, max_distance
-from amalthea_uros.timing.dataflow.events import JobPhase
+from amalthea_uros.timing.dataflow.events import EventOccurrence, JobPhase
 from amalthea_uros.timing.dataflow.positions import ActivityPosition
 from amalthea_uros.timing.dataflow.skipping import can_be_skipped
 from amalthea_uros.timing.dataflow.stages import NEXT_JOB, SAME_JOB, At, Boundary, Fire, Pass, Read, Stage
@@ -83,6 +83,18 @@ class StageTiming:
         UnboundedStageError : a response time in it is unbounded or unknown.
         """
         return replace(self._group(stages, follower), stimulus_wait=self._stimulus_wait(stages))
+
+    def exact_times(self, occurrence: EventOccurrence) -> ReadWriteBounds | None:
+        """The times of an event in all jobs, at which a stage from it to itself reads; None unless they are known exactly.
+
+        Raises
+        ------
+        UnboundedStageError : a response time is unbounded or unknown.
+        """
+        begin, end = (At(occurrence, Communication.IMPLICIT, is_end=is_end) for is_end in (False, True))
+        positions = () if occurrence.position is None else (occurrence.position,)
+        found = self.group([Stage(occurrence.process, begin, end, positions)], None).read_write
+        return found if found is not None and found.is_exact else None
 
     def after_ends(self, groups: Sequence[Sequence[Stage]]) -> list[Sequence[Stage]]:
         """The groups of stages of a route; if it begins at the end of a job, with the job that certainly answers.
