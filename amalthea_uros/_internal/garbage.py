@@ -6,8 +6,8 @@ import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-#: With fewer objects, nothing is collected here; these take less than a gigabyte.
-FEW_OBJECTS = 1_000_000
+#: As long as fewer objects have been made since the last collection, nothing is collected here.
+FEW_OBJECTS = 300_000
 
 
 @contextmanager
@@ -33,14 +33,19 @@ class _Collected:
 def _keep() -> None:
     """Move all new objects to the oldest generation, unscanned; else the first collection would go through them all.
 
-    Python does not count objects that get there in this way, so that it would never collect them. This is done here once they have
-    doubled, which keeps the effort proportional to the number of objects made.
+    Python does not count objects that get there in this way, so that it would never collect them. Here they are collected as Python
+    does it: once a quarter has been added, but later where the process has asked for rare collections.
     """
+    objects = _moved()
+    few = max(FEW_OBJECTS, 20 * gc.get_threshold()[0], _Collected.objects // 4)
+    if objects > _Collected.objects + few:
+        gc.collect()
+        _Collected.objects = _moved()
+
+
+def _moved() -> int:
+    """Move all objects to the oldest generation; returns their number."""
     gc.freeze()
     objects = gc.get_freeze_count()
     gc.unfreeze()
-    if objects > max(FEW_OBJECTS, 2 * _Collected.objects):
-        gc.collect()
-        gc.freeze()
-        _Collected.objects = gc.get_freeze_count()
-        gc.unfreeze()
+    return objects

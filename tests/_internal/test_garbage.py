@@ -16,32 +16,37 @@ class Knot:
         self.itself = self
 
 
-def made():
+def made(count):
+    """A reference to the first one of some objects that nothing else refers to."""
     with paused_garbage_collection():
-        return ref(Knot())
+        return ref(next(Knot() for _ in range(count)))
 
 
 @pytest.fixture
 def few_objects(monkeypatch):
+    threshold = gc.get_threshold()
+    gc.set_threshold(10)
     gc.collect()
-    monkeypatch.setattr(garbage, "FEW_OBJECTS", len(gc.get_objects()) + 1000)
-    monkeypatch.setattr(garbage._Collected, "objects", 0)
+    monkeypatch.setattr(garbage, "FEW_OBJECTS", 1000)
+    monkeypatch.setattr(garbage._Collected, "objects", len(gc.get_objects()))
+    yield
+    gc.set_threshold(*threshold)
 
 
 @pytest.mark.usefixtures("few_objects")
 def test_garbage_is_collected_once_there_is_much_of_it():
-    kept = made()
-    others = [made() for _ in range(2000)]
-    assert kept() is None
-    assert sum(each() is not None for each in others) < len(others)
+    first = made(1)
+    made(len(gc.get_objects()))
+    assert first() is None
 
 
 @pytest.mark.usefixtures("few_objects")
-def test_what_is_in_use_is_not_scanned_again_until_it_has_doubled():
+def test_what_is_in_use_is_scanned_again_only_once_there_is_a_quarter_more():
+    before = garbage._Collected.objects
     with paused_garbage_collection():
-        many = [[] for _ in range(3000)]
+        many = [[] for _ in range(before)]
     left = garbage._Collected.objects
-    assert left > len(many)
+    assert left > 1.5 * before
     with paused_garbage_collection():
-        many += [[] for _ in range(3000)]
+        many += [[] for _ in range(before // 4)]
     assert garbage._Collected.objects == left
