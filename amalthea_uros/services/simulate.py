@@ -92,8 +92,7 @@ class SimulationResult(Brief, Shown):
     @property
     def is_failed(self) -> bool:
         """Whether a limit was observed as missed, an activation was lost, or not everything was simulated."""
-        simulation = self.simulation
-        return bool(simulation.missed or simulation.lost_activations or simulation.errors)
+        return bool(self.simulation.missed or self.simulation.errors)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
