@@ -1,6 +1,9 @@
 """All commands that judge limits judge the same ones, and none says that a limit is met where another one does not."""
 
+import json
+
 import pytest
+from command import amuros
 from support import SHARED
 
 from amalthea_uros.services.analyze import analyze_files
@@ -24,3 +27,29 @@ def test_analysis_and_simulation_judge_the_same_limits(path):
     assert sorted((each.name, each.quantity) for each in simulation.judged) == sorted(
         (each.name, each.quantity) for each in judged
     )
+
+
+def last_line(*arguments):
+    run = amuros(*arguments)
+    return (run.stdout or run.stderr).rstrip().splitlines()[-1], run.returncode
+
+
+@pytest.mark.parametrize(
+    ("model", "found", "code"),
+    [
+        # Nothing is executed; nothing was missed, but neither was anything kept.
+        ("no-priority", "not everything was simulated in 2: nothing was executed; 'A' is not simulated: it has no priority", 1),
+        ("zero-with-unit", "no deadline, requirement or constraint to judge", 0),
+        ("order-across-tasks", "nothing missed", 0),
+        ("trigger-before-end", "limits missed or activations lost in 2 (reaction.reaction)", 1),
+    ],
+)
+def test_many_runs_praise_nothing_that_was_not_observed(model, found, code):
+    path = FOLDER / f"{model}.amxmi"
+    if not path.exists():
+        pytest.skip("the file is not at hand")
+    command = ("simulate", path, "--duration", "2ms", "--runs", "2", "--jobs", "1")
+    line, returned = last_line(*command)
+    assert line.startswith(f"Observed in 2 runs of 2 ms each: {found}")
+    assert returned == code
+    assert json.loads(amuros(*command, "--output", "json").stdout)["summary"]["text"] == line
