@@ -40,6 +40,8 @@ if TYPE_CHECKING:
     #: Opens what events are written to, when the entities of the trace are known.
     OpenSink: TypeAlias = Callable[[Sequence[Entity]], TraceSink]
 
+#: What can be observed of a limit in a run.
+KEPT, MISSED, NOT_OBSERVED = ObservedVerdict.OK, ObservedVerdict.MISSED, ObservedVerdict.NOT_OBSERVED
 #: The end of the columns with verdicts in a row of a table.
 _VERDICT = ".verdict"
 #: The column with what was not simulated.
@@ -143,17 +145,17 @@ class CampaignResult(Brief, Shown):
     @property
     def missed(self) -> tuple[Outcome, ...]:
         """The runs in which a limit was observed as missed, or an activation was lost."""
-        return tuple(outcome for outcome in self.outcomes if judged_in(outcome.record, ObservedVerdict.MISSED))
+        return tuple(outcome for outcome in self.outcomes if judged_in(outcome.record, MISSED))
 
     @property
     def not_observed(self) -> tuple[Outcome, ...]:
         """The runs in which a limit was neither observed as kept nor as missed."""
-        return tuple(outcome for outcome in self.outcomes if judged_in(outcome.record, ObservedVerdict.NOT_OBSERVED))
+        return tuple(outcome for outcome in self.outcomes if judged_in(outcome.record, NOT_OBSERVED))
 
     @property
     def is_anything_kept(self) -> bool:
         """Whether a limit was observed as kept in a run."""
-        return any(judged_in(outcome.record, ObservedVerdict.OK) for outcome in self.outcomes)
+        return any(judged_in(outcome.record, KEPT) for outcome in self.outcomes)
 
 
 def judged_in(record: Record, verdict: ObservedVerdict) -> list[str]:

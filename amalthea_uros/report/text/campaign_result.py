@@ -6,13 +6,11 @@ from collections import Counter
 from collections.abc import Iterator
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.judge.verdict import ObservedVerdict
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.services.campaign.run import Outcome
-from amalthea_uros.services.simulate import CampaignResult, judged_in
+from amalthea_uros.services.simulate import KEPT, MISSED, NOT_OBSERVED, CampaignResult, judged_in
 from amalthea_uros.units import time_text
 
-OK, MISSED, NOT_OBSERVED = ObservedVerdict.OK, ObservedVerdict.MISSED, ObservedVerdict.NOT_OBSERVED
 #: More runs are for a table in a file.
 _SHOWN = 50
 
@@ -42,7 +40,7 @@ def _observed(outcome: Outcome) -> str:
     if outcome.error:
         return f"failed: {outcome.error}"
     lost = outcome.record.get("lost_activations")
-    missed, unseen, kept = (judged_in(outcome.record, verdict) for verdict in (MISSED, NOT_OBSERVED, OK))
+    missed, unseen, kept = (judged_in(outcome.record, verdict) for verdict in (MISSED, NOT_OBSERVED, KEPT))
     texts = [str(errors)] if (errors := outcome.record.get("errors")) else []
     texts += [f"missed: {', '.join(missed)}"] if missed else ["nothing missed"] if kept else []
     texts += [f"lost: {counted(lost, 'activation')}"] if isinstance(lost, int) and lost else []
