@@ -1,11 +1,13 @@
 """All commands that judge limits judge the same ones, and none says that a limit is met where another one does not."""
 
 import json
+from contextvars import copy_context
 
 import pytest
-from command import amuros
+from click.testing import CliRunner
 from support import SHARED
 
+from amalthea_uros.cli.main import cli
 from amalthea_uros.services.analyze import analyze_files
 from amalthea_uros.services.simulate import simulate_files
 from amalthea_uros.simulate.options import Options
@@ -29,9 +31,14 @@ def test_analysis_and_simulation_judge_the_same_limits(path):
     )
 
 
+def amuros(*arguments):
+    """Run a command within this process: it loads nothing again."""
+    return copy_context().run(CliRunner().invoke, cli, list(map(str, arguments)))
+
+
 def last_line(*arguments):
     run = amuros(*arguments)
-    return (run.stdout or run.stderr).rstrip().splitlines()[-1], run.returncode
+    return (run.stdout or run.stderr).rstrip().splitlines()[-1], run.exit_code
 
 
 @pytest.mark.parametrize(
@@ -53,3 +60,81 @@ def test_many_runs_praise_nothing_that_was_not_observed(model, found, code):
     assert line.startswith(f"Observed in 2 runs of 2 ms each: {found}")
     assert returned == code
     assert json.loads(amuros(*command, "--output", "json").stdout)["summary"]["text"] == line
+
+
+HEAD = "amuros: 1\nname: app\nhardware: {platform: single-core, frequency: 100 MHz}\n"
+HIGH = "  - {name: H, period: 20 ms, execution_time: 6 ms, priority: 2}\n"
+LOW = "  - {name: U, period: 25 ms, execution_time: 15 ms, priority: 1, activation_limit: 2WITH}\n"
+#: The verdict on each system, and why: late, loses activations, overloaded; a lower limit that is met or missed.
+APPS = {
+    "yes": HEAD + "tasks:\n" + HIGH + LOW.replace("WITH", ", deadline: 30 ms"),
+    "no": HEAD + "tasks:\n" + HIGH + LOW.replace("WITH", ""),
+    "no, twice stated": HEAD
+    + "tasks:\n"
+    + HIGH
+    + LOW.replace("WITH", "")
+    + "requirements:\n  - {process: U, response_time: {max: 20 ms}}\n  - {process: U, response_time: {max: 26 ms}}\n",
+    "no, lost": HEAD + "tasks:\n" + HIGH + LOW.replace("activation_limit: 2WITH", "deadline: 40 ms"),
+    "no, overload": HEAD + "tasks:\n" + HIGH + LOW.replace("WITH", "").replace("15 ms", "20 ms"),
+    "unknown": HEAD
+    + "isrs:\n  - {name: I, sporadic: {min: 20 ms, max: 1 s}, execution_time: 6 ms, priority: 1}\n"
+    + "tasks:\n"
+    + LOW.replace("WITH", ", deadline: 20 ms"),
+    "yes, at least": HEAD + "tasks:\n" + HIGH + "requirements:\n  - {process: H, response_time: {min: 5 ms}}\n",
+    "no, at least": HEAD + "tasks:\n" + HIGH + "requirements:\n  - {process: H, response_time: {min: 7 ms}}\n",
+}
+#: The exit code of each verdict with each value of --fail-on.
+CODES = {
+    "yes": {"missed": 0, "unknown": 0, "never": 0},
+    "no": {"missed": 1, "unknown": 1, "never": 0},
+    "unknown": {"missed": 0, "unknown": 1, "never": 0},
+}
+
+
+@pytest.fixture
+def app(request, tmp_path):
+    path = tmp_path / "app.yaml"
+    path.write_text(APPS[request.param])
+    return path, request.param.partition(",")[0]
+
+
+all_apps = pytest.mark.parametrize("app", APPS, indirect=True)
+
+
+@all_apps
+def test_all_commands_that_prove_agree(app, tmp_path):
+    path, verdict = app
+    line, code = last_line("analyze", path)
+    assert (line.startswith(f"Schedulable: {verdict}"), code) == (True, CODES[verdict]["missed"])
+    for fail_on, expected in CODES[verdict].items():
+        assert last_line("analyze", path, "-q", "--fail-on", fail_on) == (line, expected)
+    for command in (
+        ("report", path, "-o", tmp_path / "r.html", "--no-simulation"),
+        ("report", path, "-o", tmp_path / "r.md", "--no-simulation", "-q"),
+    ):
+        assert last_line(*command) == (line, code)
+    explained = amuros("analyze", path, "--explain", "H" if verdict != "unknown" else "U")
+    assert (explained.exit_code, line in explained.stderr) == (code, verdict != "yes")
+    summary = json.loads(amuros("analyze", path, "--output", "json").stdout)["summary"]
+    assert (summary["text"], summary["schedulable"]) == (line, verdict)
+    assert (summary["failures"] > 0, summary["unknown"] > 0) == (verdict == "no", verdict == "unknown")
+    # The only variant is the system as it is.
+    key = "U.priority=1" if "name: U" in path.read_text() else "H.priority=2"
+    swept = last_line("sweep", path, "--sweep", key, "-q")
+    count = {"yes": "yes in 1 of 1 variant", "no": "yes in 0 of 1 variant, no in 1"}.get(
+        verdict, "yes in 0 of 1 variant, unknown in 1"
+    )
+    assert swept == (f"Schedulable: {count}", code)
+    present = json.loads(amuros("optimize", path, "--designs", "1", "--output", "json").stdout)["present"]
+    assert present["feasible"] == verdict
+
+
+@all_apps
+def test_a_simulation_contradicts_no_proof(app):
+    path, verdict = app
+    command = ("simulate", path, "--duration", "200ms", "--mode", "worst")
+    line, code = last_line(*command, "-q")
+    assert code == {"yes": 0, "no": 1}.get(verdict, code)
+    summary = json.loads(amuros(*command, "--output", "json").stdout)["summary"]
+    assert (summary["text"], summary["failures"] > 0) == (line, code == 1)
+    assert last_line(*command, "--runs", "2", "--jobs", "1", "-q")[1] == code
