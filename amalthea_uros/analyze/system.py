@@ -50,7 +50,7 @@ from amalthea_uros.timing.preemption import preemption
 from amalthea_uros.timing.scheduling import EqualPriority, ScheduledProcess
 from amalthea_uros.timing.settings import Settings
 from amalthea_uros.timing.stated_demand import states_mean
-from amalthea_uros.units import Rounding, rounded_time_text
+from amalthea_uros.units import Rounding, percent_text, rounded_time_text
 
 
 def analyze_system(system: System, settings: Settings | None = None) -> Analysis:
@@ -266,14 +266,12 @@ def _without_doubtful_overload(name: str, solution: Solution) -> Response | None
     if together.certain * context.time_base(name) == each and not are_suppressed:
         return found
     if _certain_load(here, item.core, solution) > 1:
-        return replace(found, reason=f"overload: tasks at this priority or higher need {_percent(together.worst)} of the core")
+        return replace(
+            found, reason=f"overload: tasks at this priority or higher need {percent_text(together.worst, 1)} % of the core"
+        )
     if together.worst <= 1:
         return replace(found, is_overload=False, reason=f"{found.reason}, if what excludes each other is added up")
     return replace(found, is_overload=False, reason=f"{found.reason}, unless modes exclude a part of it")
-
-
-def _percent(load: Fraction) -> str:
-    return f"{100 * float(load):.1f} %"
 
 
 def _processors(solution: Solution) -> Iterator[ProcessorResult]:

@@ -107,8 +107,6 @@ def _build_rate(value: int | None, _context: Building) -> am.DataRate | None:
     return am.DataRate(value=value // magnitudes.RATES[unit], unit=unit)
 
 
-#: A divisor; a value below 1 has no meaning and is replaced by 1.
-DIVISOR = Codec(lambda value, _: value, lambda value, _context, _element: None if value is None else max(1, value))
 TIME = Codec(lambda value, _: build_time(value), lambda value, _context, _element: picoseconds(value))
 FREQUENCY = Codec(_build_frequency, lambda value, _context, _element: hertz(value))
 SIZE = Codec(_build_size, lambda value, _context, _element: bits(value))

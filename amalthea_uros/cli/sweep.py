@@ -28,7 +28,6 @@ from amalthea_uros.cli.output import (
 from amalthea_uros.cli.parsed import Parsed
 from amalthea_uros.cli.settings_options import Assignment, analysis_options, set_option
 from amalthea_uros.cli.workers_options import workers_options
-from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.services.campaign.run import Outcome
 from amalthea_uros.services.campaign.tables import table_format, write_table
 from amalthea_uros.services.sweep import SweepResult, sweep_files
@@ -150,5 +149,4 @@ def _draw(result: SweepResult, pictures: tuple[tuple[str, Path], ...]) -> None:
 def _code(result: SweepResult, fail_on: str) -> int:
     if not result.is_complete:
         return INTERRUPTED
-    verdicts = {Schedulable(str(outcome.record["schedulable"])) for outcome in result.outcomes if not outcome.error}
-    return 1 if result.failed or verdicts & {*FAILING[fail_on]} else 0
+    return 1 if result.failed or any(map(result.with_verdict, FAILING[fail_on])) else 0

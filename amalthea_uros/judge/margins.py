@@ -46,8 +46,8 @@ def share_left(item: Limited) -> Fraction | float | None:
     value, limit = Fraction(item.value), Fraction(item.limit)
     margin = limit - value if item.is_upper else value - limit
     scale = max(abs(value), abs(limit))
-    if not item.is_upper and limit <= 0 <= margin:
-        # No time falls below zero.
+    if not item.is_upper and limit == 0 <= margin:
+        # No time falls below zero; a difference of times can, and has a negative limit then.
         return inf
     return margin / scale if scale else Fraction(0)
 

@@ -6,9 +6,11 @@ proof: the verdict is *observed as kept*, never *met*. That it was missed is one
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from fractions import Fraction
+from typing import TypeVar
 
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.judge.evidence import Ends, ObservedProcess, ObservedValues, ProcessEvidence, ProvedLoss
@@ -40,6 +42,8 @@ class Failure(StrEnum):
     LOST = "lost"
     OVERLOAD = "overload"
 
+
+N = TypeVar("N", bound=int | Fraction)
 
 FAILURES = (Verdict.MISSED, Verdict.UNBOUNDED)
 #: The verdict on several cases, or what is shown first.
@@ -97,12 +101,26 @@ def prove(limit: SystemLimit, ends: Ends, reason: str = "") -> Judgement:
     if cause := _contradiction(limit, ends):
         return unknown(cause)
     safe = ends.safe(limit.is_upper)
-    if safe is not None and not ends.is_infinite and _holds(safe, limit):
-        return Judgement(Verdict.MET, ends=ends)
     other = ends.safe(not limit.is_upper)
-    if (limit.is_upper and ends.is_infinite) or (other is not None and not _holds(other, limit)):
+    found = decide(None if ends.is_infinite else safe, other, lambda value: _holds(value, limit))
+    if found is Verdict.MET:
+        return Judgement(found, ends=ends)
+    if found is Verdict.MISSED or (limit.is_upper and ends.is_infinite):
         return Judgement(Verdict.MISSED, reason if safe is None else "", ends=ends)
     return Judgement(Verdict.UNKNOWN, (reason if safe is None else "") or _undecided(limit, ends), ends=ends)
+
+
+def decide(safe: N | None, other: N | None, holds: Callable[[N], bool]) -> Verdict:
+    """The verdict by the ends between which a value lies: met or missed only if both agree.
+
+    Parameters
+    ----------
+    safe : the end that is decisive for the limit to be met: the upper one for an upper limit
+    holds : whether a value keeps the limit
+    """
+    if safe is not None and holds(safe):
+        return Verdict.MET
+    return Verdict.MISSED if other is not None and not holds(other) else Verdict.UNKNOWN
 
 
 def prove_kept(is_kept: bool) -> Judgement:

@@ -43,7 +43,7 @@ class Statistics:
 
     @property
     def std(self) -> float | None:
-        """The standard deviation."""
+        """The standard deviation, divided by n, not n - 1."""
         return None if self.variance is None else sqrt(self.variance)
 
     @property

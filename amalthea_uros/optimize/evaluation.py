@@ -9,6 +9,7 @@ from fractions import Fraction
 from amalthea_uros.analyze.results import Analysis, Claim, Judged, Quantity
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.optimize.candidate import Candidate
 from amalthea_uros.optimize.designs import Designs
 from amalthea_uros.optimize.goals import Scale, constraints_of, value_of
@@ -20,6 +21,7 @@ from amalthea_uros.perf.system import System
 
 #: No less than the reduced reaction time.
 _AT_LEAST_REACTION = (Quantity.MAX_REDUCED_REACTION_TIME, Quantity.MAX_REACTION_TIME, FROM_ARRIVAL)
+_OF_MODEL = {Schedulable.YES: Feasibility.YES, Schedulable.NO: Feasibility.NO, Schedulable.UNKNOWN: Feasibility.UNKNOWN}
 #: A share is exceeded by so many picoseconds per second.
 _SECOND = 10**12
 
@@ -95,13 +97,10 @@ class DesignEvaluator:
 
 def feasibility(analysis: Analysis, ranges: Mapping[Limit, Range]) -> Feasibility:
     """Whether everything that the model and the limits demand is met; unknown if nothing is demanded."""
-    summary = analysis.summary
-    verdicts = [limit.verdict(found) for limit, found in ranges.items()]
-    if summary.missed or Feasibility.NO in verdicts:
-        return Feasibility.NO
-    if summary.unknown or Feasibility.UNKNOWN in verdicts or not (summary.judged or verdicts):
-        return Feasibility.UNKNOWN
-    return Feasibility.YES
+    summary, verdicts = analysis.summary, [limit.verdict(found) for limit, found in ranges.items()]
+    if summary.judged or summary.missed or not verdicts:
+        verdicts.append(_OF_MODEL[summary.schedulable])
+    return next((verdict for verdict in (Feasibility.NO, Feasibility.UNKNOWN) if verdict in verdicts), Feasibility.YES)
 
 
 def _violations(analysis: Analysis, ranges: Mapping[Limit, Range]) -> Iterator[tuple[str, int | None]]:

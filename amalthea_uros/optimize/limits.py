@@ -9,6 +9,7 @@ from fractions import Fraction
 from amalthea_uros.analyze.results import Analysis
 from amalthea_uros.changes.change import split_target
 from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.judge.verdict import Verdict, decide
 from amalthea_uros.optimize.problem import Feasibility
 from amalthea_uros.optimize.quantities import Amount, Dimension, Figures, Range, check_quantity, dimension
 from amalthea_uros.perf.system import System
@@ -16,6 +17,7 @@ from amalthea_uros.units import parse_time
 
 FORM, EXAMPLE = "OBJECT.QUANTITY<=VALUE", "factor-to-output.max_reduced_reaction_time<=11ms"
 
+_FEASIBLE = {Verdict.MET: Feasibility.YES, Verdict.MISSED: Feasibility.NO, Verdict.UNKNOWN: Feasibility.UNKNOWN}
 _LIMIT = re.compile(r"(?P<target>.+?)\s*(?P<sign><=|<)\s*(?P<value>[^<>=]+)", re.DOTALL)
 _PERCENT = re.compile(r"(\d+(?:\.\d+)?)\s*%", re.ASCII)
 
@@ -48,11 +50,7 @@ class Limit:
 
     def verdict(self, found: Range) -> Feasibility:
         """Whether it holds for certain."""
-        if found.upper is not None and self._allows(found.upper):
-            return Feasibility.YES
-        if found.lower is not None and not self._allows(found.lower):
-            return Feasibility.NO
-        return Feasibility.UNKNOWN
+        return _FEASIBLE[decide(found.upper, found.lower, self._allows)]
 
     def _allows(self, value: Amount) -> bool:
         return value < self.maximum if self.is_below else value <= self.maximum

@@ -32,7 +32,7 @@ class Counter:
 
     Attributes
     ----------
-    prescaler : the n
+    prescaler : the n; below 1 it has no meaning
     offset : number of the first effective time, counted from 1; below 1 only its remainder modulo the prescaler counts
     source : the message or timer that the counter represents; counters of a process with the same source take effect together
     is_phase_known : whether the offset is stated; otherwise any time can be the first effective one, and without a source, one time

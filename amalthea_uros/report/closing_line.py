@@ -60,7 +60,7 @@ def _failure(item: Judged) -> str:
         return _violation(item)
     if item.failure is Failure.OVERLOAD:
         return f"{item.name}: {item.reason}"
-    if item.failure is Failure.LOST and item.deadline is None:
+    if item.failure is Failure.LOST and (item.margin is None or item.margin >= 0):
         return f"{item.name} loses activations: {item.reason}"
     kind = "period" if item.is_implicit else "deadline"
     ends = worst_response(item)

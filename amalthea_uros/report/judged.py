@@ -9,6 +9,7 @@ from math import inf
 from typing import TypeAlias
 
 from amalthea_uros.analyze.results import Analysis, ChainResult, Claim, Judged, ProcessResult, Quantity, RequirementResult
+from amalthea_uros.judge.causes import quantity_of
 from amalthea_uros.judge.summary import urgency
 from amalthea_uros.judge.verdict import FAILURES, WORST_FIRST, Verdict
 from amalthea_uros.timing.jitter import jitter_name
@@ -46,11 +47,12 @@ def judged_rows(analysis: Analysis) -> list[JudgedRow]:
 
     A deadline that is also stated as a requirement is shown once, unless its process fails in another way: by lost activations.
     """
-    stated = {(each.object, each.limit): each.verdict for each in analysis.requirements if each.quantity == "response time"}
+    stated = {(quantity_of(each), each.limit): each.verdict for each in analysis.requirements}
     processes = (
         each
         for each in analysis.processes
-        if each.verdict is not None and (each.is_implicit or _is_worse(each.verdict, stated.get((each.name, each.deadline))))
+        if each.verdict is not None
+        and (each.is_implicit or _is_worse(each.verdict, stated.get((quantity_of(each), each.limit))))
     )
     items: list[Judged] = [*processes, *analysis.requirements]
     claims = _claims(analysis)

@@ -80,7 +80,8 @@ def closing_line(result: Optimization) -> str:
 def _why_open(result: Optimization) -> str:
     """Why the search proves nothing."""
     search = result.search
-    unknown = f"it is unknown whether {counted(search.undecided, 'design')} meet all limits" if search.undecided else ""
+    meet = "meets" if search.undecided == 1 else "meet"
+    unknown = f"it is unknown whether {counted(search.undecided, 'design')} {meet} all limits" if search.undecided else ""
     return "; ".join(filter(None, (search.ended, unknown))) or "not all designs were judged"
 
 

@@ -12,7 +12,8 @@ from amalthea_uros.changes.apply import Difference
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.judge.causes import distinct
 from amalthea_uros.report.closing_line import left_text
-from amalthea_uros.simulate.results import Judged, RequirementObservation, Simulation
+from amalthea_uros.simulate.not_simulated import NOT_SIMULATED
+from amalthea_uros.simulate.results import IDLE, Judged, RequirementObservation, Simulation
 from amalthea_uros.units import SECOND, Time, number_text, time_text
 
 _MINUTE = 60 * SECOND
@@ -74,9 +75,10 @@ def value_text(requirement: RequirementObservation, value: Fraction | None) -> s
 
 
 def _incomplete(simulation: Simulation) -> str:
-    """The first thing that was not simulated, and the number of the others."""
-    errors = simulation.errors
-    return errors[0] + (f"; {counted(len(errors) - 1, 'other error')}" if errors[1:] else "") if errors else ""
+    """The first thing that was not simulated, and the number of the others; whether nothing at all was."""
+    idle, errors = [each for each in simulation.errors if each == IDLE], [each for each in simulation.errors if each != IDLE]
+    others = [counted(len(errors) - 1, "other error")] if errors[1:] else []
+    return "; ".join([": ".join([*idle, *errors[:1]]), *others])
 
 
 def _missed(simulation: Simulation) -> str:
@@ -114,4 +116,7 @@ def _not_observed(simulation: Simulation) -> str:
     missing = simulation.not_observed
     if not missing:
         return ""
-    return f"not observed: {len(missing)} of {len(simulation.judged)}, because of {missing[0].name!r}: {missing[0].reason}"
+    count, told = f"not observed: {len(missing)} of {len(simulation.judged)}", {each.name for each in simulation.left_out}
+    # What is not simulated is said already, and what follows from it.
+    others = [each for each in missing if each.name not in told and not each.reason.endswith(NOT_SIMULATED)]
+    return f"{count}, because of {others[0].name!r}: {others[0].reason}" if others else count

@@ -34,7 +34,7 @@ def cells(impact: Impact) -> list[tuple[str, ...]]:
 def unchanged_text(impact: Impact) -> str:
     """How many figures are not in the table."""
     if not impact.rows:
-        return f"nothing changed: {counted(impact.unchanged, 'figure')} compared"
+        return "nothing changed" + (f": {counted(impact.unchanged, 'figure')} compared" if impact.unchanged else "")
     verb = "is" if impact.unchanged == 1 else "are"
     return f"{counted(impact.unchanged, 'other figure')} {verb} unchanged"
 

@@ -17,6 +17,7 @@ from amalthea_uros.changes.sweep import Sweep
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.findings.suppression import unsuppressed
+from amalthea_uros.judge.verdict import ObservedVerdict
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.perf.system import System
 from amalthea_uros.services.campaign.run import Outcome, Record, Run, plan_runs
@@ -39,10 +40,12 @@ if TYPE_CHECKING:
     #: Opens what events are written to, when the entities of the trace are known.
     OpenSink: TypeAlias = Callable[[Sequence[Entity]], TraceSink]
 
-#: The end of the columns with verdicts in a row of a table, and the verdict that is a failure.
-_VERDICT, _MISSED = ".verdict", "observed_missed"
-#: The columns with the number of lost activations, and with what was not simulated.
-_LOST, _ERRORS = "lost_activations", "errors"
+#: What can be observed of a limit in a run.
+KEPT, MISSED, NOT_OBSERVED = ObservedVerdict.OK, ObservedVerdict.MISSED, ObservedVerdict.NOT_OBSERVED
+#: The end of the columns with verdicts in a row of a table.
+_VERDICT = ".verdict"
+#: The column with what was not simulated.
+_ERRORS = "errors"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -92,8 +95,7 @@ class SimulationResult(Brief, Shown):
     @property
     def is_failed(self) -> bool:
         """Whether a limit was observed as missed, an activation was lost, or not everything was simulated."""
-        simulation = self.simulation
-        return bool(simulation.missed or simulation.lost_activations or simulation.errors)
+        return bool(self.simulation.missed or self.simulation.errors)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -143,12 +145,22 @@ class CampaignResult(Brief, Shown):
     @property
     def missed(self) -> tuple[Outcome, ...]:
         """The runs in which a limit was observed as missed, or an activation was lost."""
-        return tuple(outcome for outcome in self.outcomes if missed_in(outcome.record) or outcome.record.get(_LOST))
+        return tuple(outcome for outcome in self.outcomes if judged_in(outcome.record, MISSED))
+
+    @property
+    def not_observed(self) -> tuple[Outcome, ...]:
+        """The runs in which a limit was neither observed as kept nor as missed."""
+        return tuple(outcome for outcome in self.outcomes if judged_in(outcome.record, NOT_OBSERVED))
+
+    @property
+    def is_anything_kept(self) -> bool:
+        """Whether a limit was observed as kept in a run."""
+        return any(judged_in(outcome.record, KEPT) for outcome in self.outcomes)
 
 
-def missed_in(record: Record) -> list[str]:
-    """What was observed as missed, by the columns with verdicts."""
-    return [name.removesuffix(_VERDICT) for name, value in record.items() if name.endswith(_VERDICT) and value == _MISSED]
+def judged_in(record: Record, verdict: ObservedVerdict) -> list[str]:
+    """What has a verdict in a run, by the columns with verdicts; lost activations are one that was missed."""
+    return [name.removesuffix(_VERDICT) for name, value in record.items() if name.endswith(_VERDICT) and value == verdict]
 
 
 @dataclass(frozen=True, slots=True)

@@ -59,7 +59,11 @@ class SweepResult(Shown):
     @property
     def schedulable(self) -> tuple[Outcome, ...]:
         """The variants in which everything is met for certain."""
-        return tuple(outcome for outcome in self.outcomes if outcome.record.get(SCHEDULABLE) == Schedulable.YES)
+        return self.with_verdict(Schedulable.YES)
+
+    def with_verdict(self, verdict: Schedulable) -> tuple[Outcome, ...]:
+        """The variants with a verdict on the whole system."""
+        return tuple(outcome for outcome in self.outcomes if outcome.record.get(SCHEDULABLE) == verdict)
 
     @property
     def failed(self) -> tuple[Outcome, ...]:

@@ -16,6 +16,9 @@ from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.links import reads, writes
 from amalthea_uros.timing.dataflow.positions import ActivityPosition
 
+#: The end of the reasons for what follows from a process that is not simulated.
+NOT_SIMULATED = "is not simulated"
+
 
 @dataclass(frozen=True)
 class NotSimulated:
@@ -99,4 +102,4 @@ class NotSimulated:
 
 
 def _reason(origin: str) -> str:
-    return f"depends on {origin!r}, which is not simulated"
+    return f"depends on {origin!r}, which {NOT_SIMULATED}"

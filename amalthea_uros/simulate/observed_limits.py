@@ -15,6 +15,7 @@ from amalthea_uros.perf.constraints import LatencyConstraint, LatencyKind, Requi
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.system import System
 from amalthea_uros.simulate.limited_values import LimitedQuantity, limited_values, limited_values_of_runnable, observed_values
+from amalthea_uros.simulate.not_simulated import NOT_SIMULATED
 from amalthea_uros.simulate.results import ChainObservation, ProcessObservation, RequirementObservation, RunnableObservation
 from amalthea_uros.timing.chain_quantity import ChainQuantity
 from amalthea_uros.timing.releases import activation_period
@@ -31,13 +32,21 @@ class ConstraintObservers(Protocol):
         """Why nothing was observed of a constraint."""
 
 
-def judge_process(process: ProcessObservation, model: Process, doubt: str = "") -> ProcessObservation:
+#: Why nothing is observed of an executor that loops, and of its callbacks.
+LOOPING = "it is an executor that loops, whose rounds are not simulated; analyze the model"
+_OF_LOOP = LOOPING.replace("is an", "is part of an")
+
+
+def judge_process(process: ProcessObservation, model: Process, doubt: str = "", left_out: str = "") -> ProcessObservation:
     """The observations of a process with the verdict on its deadline and on lost activations.
 
     Parameters
     ----------
     doubt : why what was observed is no behaviour of the system; "" if it is one
+    left_out : why it is not simulated as it is, so that nothing was observed, with a deadline or without; "" if it is
     """
+    if left_out:
+        return replace(process, verdict=not_observed(left_out).verdict, reason=left_out)
     limit = None if process.deadline is None else deadline_limit(model, process.deadline, process.is_implicit)
     response = replace(observed_values(process.response_time, "no job ended"), pending=process.longest_unfinished)
     found = observe_process(limit, ObservedProcess(response=response, lost_activations=process.lost_activations))
@@ -98,15 +107,14 @@ def _of_requirement(
     process = next((each for each in processes if each.name == requirement.process), None)
     runnable = next((each for each in runnables if each.name == requirement.runnable), None)
     if _is_of_loop(requirement, system):
-        reason = "it is part of an executor that loops, whose rounds are not simulated; analyze the model"
-        return ObservedValues(reason=reason)
+        return ObservedValues(reason=_OF_LOOP)
     if process is not None:
         model = system.processes.get(process.name)
         return limited_values(limit, process, duration, None if model is None else activation_period(model, system))
     if runnable is not None:
         return limited_values_of_runnable(limit, runnable)
     if requirement.process in system.processes:
-        return ObservedValues(reason="the process that it limits is not simulated")
+        return ObservedValues(reason=f"the process that it limits {NOT_SIMULATED}")
     kind = "process" if requirement.runnable is None else "runnable"
     return ObservedValues(reason=f"the {kind} that it limits is not defined, or was left out when reading")
 

@@ -363,6 +363,8 @@ class RequirementObservation(Shown):
 
 
 Judged: TypeAlias = ProcessObservation | RequirementObservation
+#: The error of a run in which no process executed anything.
+IDLE = "nothing was executed"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -372,6 +374,7 @@ class Simulation(Shown):
     Attributes
     ----------
     duration : model time
+    left_out : the processes that are not simulated, each with the reason
     runnables : those that requirements limit
     labels : those that were asked for
     assumptions : on which the run is based
@@ -384,6 +387,7 @@ class Simulation(Shown):
     mode: Mode
     cores: Results[CoreObservation]
     processes: Results[ProcessObservation]
+    left_out: Results[ProcessObservation] = field(default_factory=Results)
     chains: Results[ChainObservation] = field(default_factory=Results)
     runnables: Results[RunnableObservation] = field(default_factory=Results)
     labels: Results[LabelObservation] = field(default_factory=Results)
@@ -417,12 +421,13 @@ class Simulation(Shown):
         """What makes the observations incomplete: processes that were left out, a run that ended early or in which nothing happened."""
         found = tuple(finding.message for finding in self.findings if finding.severity is Severity.ERROR)
         is_idle = not any(process.jobs or process.unfinished for process in self.processes)
-        return ("nothing was executed", *found) if is_idle else found
+        return (IDLE, *found) if is_idle else found
 
     @property
     def judged(self) -> tuple[Judged, ...]:
         """The processes, requirements and constraints with a verdict."""
-        return (*(process for process in self.processes if process.verdict is not None), *self.requirements)
+        processes = (each for each in (*self.processes, *self.left_out) if each.verdict is not None)
+        return (*processes, *self.requirements)
 
     @property
     def missed(self) -> tuple[Judged, ...]:
@@ -468,6 +473,7 @@ class Simulation(Shown):
             yield f"{process.name}.load", float(process.load)
             yield f"{process.name}.lost_activations", process.lost_activations
             yield f"{process.name}.verdict", process.verdict
+        yield from ((f"{process.name}.verdict", process.verdict) for process in self.left_out)
         for label in self.labels:
             yield f"{label.name}.reads", label.reads
             yield f"{label.name}.writes", label.writes

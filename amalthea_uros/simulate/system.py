@@ -12,7 +12,7 @@ import numpy as np
 
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.judge.limits import deadline_of
+from amalthea_uros.judge.limits import Deadline, deadline_of
 from amalthea_uros.perf.software import Isr
 from amalthea_uros.perf.system import System
 from amalthea_uros.simulate.layout import (
@@ -33,7 +33,7 @@ from amalthea_uros.simulate.metrics import chains, jobs
 from amalthea_uros.simulate.metrics.chains import RouteMetrics, chain_observation
 from amalthea_uros.simulate.metrics.jobs import JobMetrics
 from amalthea_uros.simulate.not_simulated import NotSimulated
-from amalthea_uros.simulate.observed_limits import judge_process, judge_requirements
+from amalthea_uros.simulate.observed_limits import LOOPING, judge_process, judge_requirements
 from amalthea_uros.simulate.observers import Observers
 from amalthea_uros.simulate.operations import POLLING, RUNNING
 from amalthea_uros.simulate.options import Options
@@ -43,6 +43,7 @@ from amalthea_uros.simulate.program.program import Program
 from amalthea_uros.simulate.results import (
     ChainObservation,
     CoreObservation,
+    CountObservation,
     ProcessObservation,
     RunnableObservation,
     Simulation,
@@ -155,7 +156,13 @@ class _Run:
         self.observers.finish()
         left_out = NotSimulated(self.context, frozenset(program.left_out))
         processes = Results(
-            judge_process(each, system.processes[each.name], left_out.doubt_about(each.name)) for each in self._processes()
+            judge_process(
+                each,
+                system.processes[each.name],
+                left_out.doubt_about(each.name),
+                LOOPING if each.name in system.executor_of_task else "",
+            )
+            for each in self._processes()
         )
         found = Results(self._chain(name) for name in system.chains)
         duration = self.options.duration
@@ -168,6 +175,7 @@ class _Run:
             mode=self.options.mode,
             cores=Results(self._core(name, record) for name, record in program.cores.items()),
             processes=processes,
+            left_out=Results(self._left_out(name, reason) for name, reason in program.left_out.items()),
             chains=found,
             runnables=runnables,
             labels=Results(self.observers.labels()),
@@ -208,12 +216,34 @@ class _Run:
         for name, found in zip(self.program.processes, self.jobs, strict=True):
             yield self._process(name, found)
 
-    def _process(self, name: str, found: JobMetrics) -> ProcessObservation:
-        memory, record = self.player.memory, self.program.records[name]
+    def _deadline(self, name: str) -> Deadline | None:
         # The rounds of an executor that loops follow each other as they do not in a simulation: no verdict on them is right.
         deadline = None if name in self.context.system.executor_of_task else deadline_of(name, self.context)
         if deadline is not None and deadline.is_implicit:
             self.context.notes.assume(ASSUMPTION)
+        return deadline
+
+    def _left_out(self, name: str, reason: str) -> ProcessObservation:
+        """A process that is not simulated."""
+        process, deadline, placement = self.context.system.processes[name], self._deadline(name), self.context.placement(name)
+        none = CountObservation(total=0, min=0, max=0)
+        seen = ProcessObservation(
+            name=name,
+            is_isr=isinstance(process, Isr),
+            core=placement.core,
+            priority=placement.priority,
+            jobs=0,
+            load=Fraction(0),
+            metrics={},
+            preemptions=none,
+            migrations=none,
+            deadline=None if deadline is None else deadline.value,
+            is_implicit=deadline is not None and deadline.is_implicit,
+        )
+        return judge_process(seen, process, left_out=reason)
+
+    def _process(self, name: str, found: JobMetrics) -> ProcessObservation:
+        memory, record, deadline = self.player.memory, self.program.records[name], self._deadline(name)
         pending = self.player.pending(name)
         used = found.total(JobMetric.RUNNING_TIME) + found.total(JobMetric.POLLING_TIME) + self._used_by_last_job(record)
         placement = self.context.placement(name)

@@ -15,6 +15,7 @@ from amalthea_uros.perf.network import Purpose
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Counter, EventTriggered, InterProcess, Stimulus
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.counter_flaws import CounterFlaws
 from amalthea_uros.timing.counters import is_always
 from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.links import Dataflow
@@ -80,6 +81,7 @@ class Activations:
 
     system: System
     dataflow: Dataflow
+    flaws: CounterFlaws = field(init=False)
     _incomplete: str = ""
     _triggers: dict[str, list[Cause]] = field(default_factory=dict)
     _effects: dict[str, list[Effect]] | None = None
@@ -87,6 +89,7 @@ class Activations:
     _activated: dict[str, list[str]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        self.flaws = CounterFlaws(self.system)
         if not any(isinstance(stimulus, InterProcess | EventTriggered) for stimulus in self.system.stimuli.stimuli):
             return
         for name in self.system.processes:
@@ -159,6 +162,8 @@ class Activations:
         causes = self.causes(stimulus)
         if not causes:
             raise UnknownActivationError(f"no process triggers {name!r}")
+        if flaw := self.flaws.of_stimulus(name):
+            raise UnknownActivationError(flaw)
         by_process = groupby(sorted(causes, key=_process_name), key=_process_name)
         caused = (self._caused_by_process(list(group), output, above) for _, group in by_process)
         return _counted(aggregated(tuple(chain.from_iterable(caused))), stimulus.counter)
@@ -207,6 +212,8 @@ class Activations:
                     with suppress(UnknownActivationError):
                         for cause in self.causes(stimulus):
                             self._triggering.setdefault(stimulus.name, {})[cause.process.name] = None
+                            if self.flaws.of_stimulus(stimulus.name):
+                                continue
                             share = _share(cause.counter) * _share(stimulus.counter)
                             self._effects.setdefault(cause.process.name, []).append(
                                 Effect(cause.position, stimulus.name, share)

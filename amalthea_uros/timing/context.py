@@ -14,7 +14,7 @@ from amalthea_uros.timing.activation import Activations, UnknownActivationError
 from amalthea_uros.timing.allocation import allocated_cores, effective_priority
 from amalthea_uros.timing.arrivals import arrival_assumptions, with_bounded_arrivals
 from amalthea_uros.timing.awaited import why_suspended
-from amalthea_uros.timing.critical_sections import Locks, Protection
+from amalthea_uros.timing.critical_sections import Locks, Protection, spinlocks_of
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.timing.demand import DemandModel
 from amalthea_uros.timing.event_models import EventModel
@@ -344,13 +344,15 @@ class TimingContext:
         for name, uses in self.touching.protection.items():
             for semaphore in sorted(uses.semaphores) if self.touching.cores_of(name) else ():
                 users.setdefault(semaphore, []).append(name)
+        spinlocks = spinlocks_of(self.system)
         for semaphore, names in users.items():
+            shared = f"it shares the {'spinlock' if semaphore in spinlocks else 'semaphore'} {semaphore!r} with"
             here = [self.scheduled[name] for name in names if name in self.scheduled]
             unknown = next((name for name in names if name not in self.scheduled), None)
             if unknown is not None:
-                reason = f"it shares the semaphore {semaphore!r} with {unknown!r}, which could not be analysed"
+                reason = f"{shared} {unknown!r}, which could not be analysed"
             elif len({(scheduled.core, scheduled.server) for scheduled in here}) > 1:
-                reason = f"it shares the semaphore {semaphore!r} with other cores or servers"
+                reason = f"{shared} other cores or servers"
             else:
                 continue
             found |= {scheduled.name for scheduled in here}

@@ -133,6 +133,8 @@ class CallSites:
         """
         if is_always(inner) and call.counter is None:
             return ALWAYS
+        if call.counter is not None and call.counter.prescaler < 1:
+            raise UncountableError
         here = self._of_calls.get(id(call), [])
         if len(here) != 1 or not here[0].is_certain:
             raise UncountableError

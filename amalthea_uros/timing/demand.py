@@ -45,6 +45,7 @@ from amalthea_uros.perf.software import Isr, Process, Runnable
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.clocks import frequency_of
+from amalthea_uros.timing.counter_flaws import CounterFlaws
 from amalthea_uros.timing.counters import CallSites, UncountableError, first_effect, is_always
 from amalthea_uros.timing.counts import count_of, is_average
 from amalthea_uros.timing.dataflow.positions import MAX_CALL_DEPTH, ActivityPosition, TooComplexError, ends_early, positions
@@ -73,6 +74,7 @@ class DemandModel:
     memory: MemoryAccess = field(init=False)
     overheads: Overheads = field(init=False)
     sites: CallSites = field(init=False)
+    flaws: CounterFlaws = field(init=False)
     _servers: Mapping[str, tuple[str, ...]] | None = None
     _time_bases: dict[str, int] = field(default_factory=dict)
     _times_of_ticks: dict[tuple[str, Fraction], int | Fraction] = field(default_factory=dict)
@@ -84,6 +86,7 @@ class DemandModel:
         self.memory = MemoryAccess(self.system, self.notes, self.frequency)
         self.overheads = Overheads(self.system)
         self.sites = CallSites(self.system)
+        self.flaws = CounterFlaws(self.system)
 
     def time_base(self, core: str) -> int:
         """Time units per picosecond on a core; 1 if they would be too small, and then demand is rounded outwards."""
@@ -106,6 +109,8 @@ class DemandModel:
         ------
         UnknownDemandError : some demand is unbounded, or the frequency of the core is unknown.
         """
+        if flaw := self.flaws.of_process(process):
+            raise UnknownDemandError(flaw)
         if Terminate in self.system.activity_classes and any(map(ends_early, self._positions(process))):
             raise UnknownDemandError("it can terminate before its last activity, which cannot be analysed")
         frames = self._frames(process.activities, core, ())

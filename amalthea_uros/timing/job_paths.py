@@ -176,6 +176,8 @@ def _called(
 
 def _counted(found: JobDemand, position: ActivityPosition, counter: Counter, reached: Counter | None) -> JobDemand:
     """The demand of a call that takes effect every n-th time only."""
+    if counter.prescaler < 1:
+        return found.times(0, 1, 1, 0)
     share = Fraction(1, counter.prescaler)
     if position.counter is not None and reached is not None:
         share = Fraction(reached.prescaler, position.counter.prescaler)

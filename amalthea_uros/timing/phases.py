@@ -175,7 +175,7 @@ def counters(system: System) -> Iterator[tuple[str, Counter]]:
 def own_counters(process: Process) -> Iterator[Counter]:
     """The counters in the jobs of a process."""
     for activity in walk(process.activities):
-        if isinstance(activity, Call | Trigger) and activity.counter is not None:
+        if isinstance(activity, Call | Trigger) and activity.counter is not None and activity.counter.prescaler >= 1:
             yield activity.counter
 
 
@@ -187,7 +187,7 @@ def with_counters(system: System, change: Callable[[Process, Counter], Counter])
 
     def with_counter(process: Process, activity: Activity) -> Activity:
         match activity:
-            case Call(counter=Counter() as counter) | Trigger(counter=Counter() as counter):
+            case Call(counter=Counter() as counter) | Trigger(counter=Counter() as counter) if counter.prescaler >= 1:
                 return replace(activity, counter=change(process, counter))
         return activity
 

@@ -44,6 +44,16 @@ def percent(analysis):
     return tuple(None if load is None else 100 * load for load in (core.best, core.mean, core.worst, core.at_least))
 
 
+def test_an_overload_of_a_little_is_not_shown_as_a_full_core():
+    # 10 us and one of 9,991 us in each 10 ms.
+    stimuli = [InterProcess(name=f"trigger {name}") for name in "BC"]
+    activities = [ticks(10), by_chance([trigger("B")], [trigger("C")])]
+    triggered = [(name, None, [ticks(9_991)]) for name in "BC"]
+    analysis = analyze_system(one_core(("A", 10_000, activities), *triggered, stimuli=stimuli))
+    reasons = {process.name: process.reason for process in analysis.processes if process.reason}
+    assert reasons["C"] == "overload: tasks at this priority or higher need 100.01 % of the core"
+
+
 def test_one_of_two_triggers_by_chance():
     analysis = analysis_of(SHARED / "vectors" / "verdicts" / "exclusive-triggers.amxmi")
     assert percent(analysis) == (60, 60, 60, 60)

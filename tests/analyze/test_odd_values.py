@@ -61,8 +61,9 @@ HUGE = "99999999999999999999"
     ("values", "worst"),
     [
         ({}, 3),
-        # What divides is 1 at least.
-        ({"prescaler": "0"}, 3),
+        # What every zeroth time means is not known.
+        ({"prescaler": "0"}, None),
+        ({"prescaler": "-2"}, None),
         # What a negative time means is not known, nor which of two bounds in the wrong order is right.
         ({"ticks": CONSTANT.format("-3")}, None),
         ({"ticks": STATISTICS.format("-1")}, None),

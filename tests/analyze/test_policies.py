@@ -40,6 +40,7 @@ from amalthea_uros.perf.os import Duration, OperatingSystem, Os, Overhead, Param
 from amalthea_uros.perf.software import Channel, Isr, IsrCategory, Label, Runnable, Software, Task
 from amalthea_uros.perf.stimuli import EventTriggered, Periodic, RelativePeriodic, Stimuli
 from amalthea_uros.perf.system import System
+from amalthea_uros.report.closing_line import closing_line
 from amalthea_uros.timing.settings import Memory, Settings
 from amalthea_uros.units import MICROSECOND as US
 
@@ -234,11 +235,15 @@ class TestSchedulersBelowEachOther:
             ("above", 20, [ticks(9)], {"scheduler": "root", "priority": 9}),
             ("below", 100, [ticks(1)], {"scheduler": "root", "priority": 1}),
         ]
-        found = worst(system([root(), under("server", Policy.POLLING_SERVER, 5, capacity=2, period=10)], tasks))
+        model = system([root(), under("server", Policy.POLLING_SERVER, 5, capacity=2, period=10)], tasks)
+        found = worst(model)
         # It may go on beyond its budget, which nobody states; then it delays what is below as well.
-        assert found["above"] == "'inside' in the server 'server' cannot be preempted everywhere, and can block it"
-        delays = "'inside' in the server 'server' cannot be preempted everywhere, and can delay it for longer than the budget"
-        assert found["below"] == delays
+        cause = "'inside' in the server 'server' cannot be preempted everywhere, and may go on beyond its budget"
+        assert (found["above"], found["below"]) == (cause, cause)
+        analysis = analyze_system(model)
+        # One cause, which is told once, and no finding of each task.
+        assert closing_line(analysis.summary).endswith(f"because of 'above': {cause}")
+        assert not any(cause in finding.message for finding in analysis.findings)
 
     def test_decisions_above_a_server(self):
         tasks = [

@@ -78,5 +78,5 @@ def test_who_waits_for_a_spinlock_of_another_core_is_not_kept_waiting_by_priorit
     users = [Proc(name, locked("lock", 5), 100, priority=1, scheduler=core) for name, core in (("T", "s0"), ("U", "s1"))]
     lock = Semaphore(name="lock", kind=SemaphoreKind.SPINLOCK)
     found = analyze_system(two_cores(*users, semaphores=(lock,)))
-    assert {each.reason for each in found.processes} == {"it shares the semaphore 'lock' with other cores or servers"}
+    assert {each.reason for each in found.processes} == {"it shares the spinlock 'lock' with other cores or servers"}
     assert not any("never runs" in finding.message for finding in found.findings)

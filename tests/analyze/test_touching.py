@@ -255,7 +255,8 @@ class TestOtherProcesses:
         semaphores = (Semaphore(name="lock", kind=kind, ceiling=True),)
         analysis = analysed(*processes, schedulers=schedulers, semaphores=semaphores)
         assert worst(analysis, "T") is None
-        assert analysis.processes["T"].reason == "it shares the semaphore 'lock' with 'U', which could not be analysed"
+        lock = "semaphore" if kind is None else "spinlock"
+        assert analysis.processes["T"].reason == f"it shares the {lock} 'lock' with 'U', which could not be analysed"
         # With a ceiling, T can keep off whoever is above it, but only those up to the ceiling, which is its own priority.
         assert worst(analysis, "above") == 3
 

@@ -42,6 +42,11 @@ def closing(tmp_path, text, *options):
         (LATE, "Schedulable: no: U responds after 27 ms, period 25 ms", 1),
         (LOST, "Schedulable: no: U responds after 27 ms, period 25 ms, and loses activations", 1),
         (
+            LOST.replace("priority: 1", "priority: 1, deadline: 40 ms"),
+            "Schedulable: no: U loses activations: 2 jobs can be pending, and the activation limit is 1",
+            1,
+        ),
+        (
             OVERLOADED,
             "Schedulable: no: U: overload: tasks at this priority or higher need 110.0 % of the core",
             1,

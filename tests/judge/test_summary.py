@@ -40,6 +40,9 @@ class Core:
         # A jitter of at most nothing has nothing left; a time of at least nothing cannot be missed.
         (0, 0, True, 0),
         (0, 0, False, inf),
+        # A difference of times of at least -20.
+        (-15, -20, False, Fraction(1, 4)),
+        (-25, -20, False, Fraction(-1, 5)),
         # A lateness.
         (-971, 0, True, 1),
         (None, 20, True, None),

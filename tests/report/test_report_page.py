@@ -6,11 +6,13 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
+from hand_made_systems import Proc, system, ticks
 from lxml import html
 from support import ROOT, analysis_of
 
 from amalthea_uros import am, load, report, save
 from amalthea_uros.analyze.results import Quantity
+from amalthea_uros.perf.activities import Migrate
 from amalthea_uros.report.closing_line import closing_line
 from amalthea_uros.report.html.blocks import table
 from amalthea_uros.report.latencies import value_text
@@ -194,6 +196,14 @@ def test_what_fails_and_what_is_unknown_comes_first():
     assert shown == ["overload", "missed", "unknown", "met"]
     assert rows(page, "changes", "Changed values")["Control_Function.execution_time"]["after"] == "2000 ticks"
     assert rows(page, "changes", "Results before")["system"]["after"] == "no"
+
+
+def test_a_reason_that_several_limits_have_is_told_once():
+    unknown = Proc("I", (Migrate(scheduler="s0"),), 10, priority=9)
+    tasks = (Proc(f"T{number}", (ticks(1),), 50, priority=number) for number in range(1, 7))
+    opening = text(section(page_of(system(unknown, *tasks)), "verdict"))
+    assert opening.count("depends on 'I', which could not be analysed") == 1
+    assert "T1, T2, T3, T4 and 2 more" in opening
 
 
 def test_the_same_input_gives_the_same_page():

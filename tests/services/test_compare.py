@@ -354,6 +354,23 @@ def test_a_baseline_counts_for_limits():
     assert found.is_failed
 
 
+@pytest.mark.parametrize(
+    ("metric", "bound"),
+    [
+        (perf.TimeMetric.START_TO_START, perf.Bound.UPPER),
+        (perf.TimeMetric.RESPONSE_TIME, perf.Bound.LOWER),
+    ],
+)
+def test_a_limit_of_another_quantity_does_not_replace_a_deadline(metric, bound):
+    # Both are 1 ms, as the period.
+    limit = perf.TimeLimit(metric=metric, bound=bound, value=MILLISECOND)
+    system = system_of(SIMPLE)
+    other = perf.Requirement(name="other", process="Control_Function", limit=limit)
+    system = replace(system, constraints=replace(system.constraints, requirements=(other,)))
+    found = compare(system, measurement(series("Control_Function", "response_time", [1200])))
+    assert ("Control_Function", "response time, period") in {(limit.object, limit.quantity) for limit in found.missed}
+
+
 def test_limits_of_what_was_not_measured_are_not_observed():
     found = compare(APP, measurement(series("Control_Function", "net_execution_time", [4])))
     assert {limit.verdict for limit in found.limits} == {"not_observed"}

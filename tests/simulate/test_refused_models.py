@@ -103,7 +103,10 @@ def refused(model):
             loop(ChannelFillIs(channel="nowhere", relation=Relation.EQUAL, level=1)),
             "the channel 'nowhere' is not defined in the model",
         ),
-        (Trigger(stimulus="timer", counter=Counter(prescaler=0)), "a counter has no prescaler, or a negative one"),
+        (
+            Call(runnable="r", counter=Counter(prescaler=0)),
+            "the counter of the call of 'r' has the prescaler 0, which has no meaning",
+        ),
         (
             ServerCall(runnable="r", kind=ServerCallKind.GET_RESULT),
             "it waits for the server runnable 'r', which no process executes",

@@ -219,6 +219,8 @@ class StageTiming:
         found = stages[0].counter or ALWAYS
         for stage, then in pairwise(stages):
             assert isinstance(stage.leave, Fire)
+            for flaw in filter(None, map(self.context.activations.flaws.of_stimulus, then.process.stimuli)):
+                raise UnboundedStageError(flaw)
             fired = stage.leave.position
             if fired is not None and isinstance(fired.activity, Trigger):
                 found = composed(found, fired.activity.counter or ALWAYS)

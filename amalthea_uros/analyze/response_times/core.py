@@ -87,9 +87,9 @@ class _CoreAnalysis:
         for server in servers:
             if not obstacle and server is not item and (obstacle := self._not_preempted_in(server)):
                 # Whether the end of a budget interrupts it is not standardised: it may go on, before what is above and what is below.
-                how = "can block it" if server.rank < item.rank else "can delay it for longer than the budget"
                 self._mark_unknown(
-                    item, f"{obstacle!r} in the server {server.name!r} cannot be preempted everywhere, and {how}"
+                    item,
+                    f"{obstacle!r} in the server {server.name!r} cannot be preempted everywhere, and may go on beyond its budget",
                 )
         return bool(obstacle)
 

@@ -6,7 +6,6 @@ from dataclasses import replace
 from typing import Any
 
 from amalthea_uros.bridge.codecs import (
-    DIVISOR,
     FREQUENCY,
     TIME,
     TIMES,
@@ -70,7 +69,7 @@ def _extract_arrivals(element: Any) -> perf.Arrivals | None:
 
 
 #: Numbers that are not given have these values in every version: prescaler 1, offset 0.
-COUNTER = part(_Counters(Entry(perf.Counter, am.Counter, Field("prescaler", "prescaler", DIVISOR), Field("offset", "offset"))))
+COUNTER = part(_Counters(Entry(perf.Counter, am.Counter, Field("prescaler", "prescaler"), Field("offset", "offset"))))
 
 _COMMON = (
     Field("condition", "execution_condition", CONDITION),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
@@ -59,6 +59,8 @@ _SECTIONS: Sequence[Callable[[ReportContent], Section | None]] = (
 
 #: What is missed or unknown is listed up to so many items.
 _MOST_REASONS = 12
+#: More names that have one reason are only counted.
+_MOST_NAMES = 4
 _WORDS = {Tone.GOOD: "Schedulable", Tone.BAD: "Not schedulable", Tone.UNKNOWN: "Unknown whether schedulable"}
 
 
@@ -127,12 +129,23 @@ def _facts(content: ReportContent) -> str:
     return ", ".join(counted(number, noun) for noun, number in numbers.items() if number)
 
 
+def _together(reasons: Iterable[tuple[str, str]]) -> Iterator[tuple[str, str]]:
+    """Each reason once, with the names of all that have it."""
+    names: dict[str, list[str]] = {}
+    for name, reason in reasons:
+        names.setdefault(reason, []).append(name)
+    for reason, found in names.items():
+        distinct = list(dict.fromkeys(found))
+        more = f" and {len(distinct) - _MOST_NAMES} more" if len(distinct) > _MOST_NAMES else ""
+        yield ", ".join(distinct[:_MOST_NAMES]) + more, reason
+
+
 def _verdict(content: ReportContent) -> Opening:
     summary = content.analysis.summary
     tone = tone_of(summary.schedulable)
     overloads = [(core.name, "the core is overloaded") for core in summary.overloaded]
     rows = (row.item for row in judged_rows(content.analysis) if row.item.verdict is not Verdict.MET)
-    others = [(item.name, ": ".join(filter(None, (verdict_badge(item).word, why(item))))) for item in rows]
+    others = _together((item.name, ": ".join(filter(None, (verdict_badge(item).word, why(item))))) for item in rows)
     warnings = [(each.rule, each.message) for each in content.warnings]
     reasons = list(dict.fromkeys((*overloads, *others, *warnings)))
     return Opening(tone, _WORDS[tone], closing_line(summary), reasons[:_MOST_REASONS], max(0, len(reasons) - _MOST_REASONS))

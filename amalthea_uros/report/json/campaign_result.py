@@ -6,6 +6,7 @@ from typing import Any
 
 from amalthea_uros.report.findings import finding_json, joined
 from amalthea_uros.report.json import changes
+from amalthea_uros.report.text.campaign_result import closing_line
 from amalthea_uros.services.simulate import CampaignResult
 
 
@@ -19,4 +20,11 @@ def content(result: CampaignResult) -> dict[str, Any]:
         "changes": changes.content(result.differences),
         "planned_runs": result.planned,
         "runs": result.rows,
+        "summary": {
+            "missed": len(result.missed),
+            "failed": len(result.failed),
+            "incomplete": len(result.incomplete),
+            "not_observed": len(result.not_observed),
+            "text": closing_line(result),
+        },
     }

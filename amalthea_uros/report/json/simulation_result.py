@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import Any
 
+from amalthea_uros.judge.causes import distinct
 from amalthea_uros.report.findings import finding_json, joined
 from amalthea_uros.report.json import changes, impact
 from amalthea_uros.report.simulated import SimulationShown, closing_line
@@ -37,6 +38,7 @@ def content(result: SimulationShown) -> dict[str, Any]:
         "processors": [core_json(core) for core in simulation.cores],
         "processes": [process_json(process) for process in simulation.processes],
         "chains": [chain_json(chain) for chain in simulation.chains],
+        "left_out": [left_out_json(process) for process in simulation.left_out],
         "runnables": [runnable_json(runnable) for runnable in simulation.runnables],
         "labels": [label_json(label) for label in simulation.labels],
         "lost_activations": simulation.lost_activations,
@@ -74,6 +76,12 @@ def process_json(process: ProcessObservation) -> dict[str, Any]:
         "verdict": process.verdict,
         "reason": process.reason,
     }
+
+
+def left_out_json(process: ProcessObservation) -> dict[str, Any]:
+    """A process that is not simulated."""
+    kept = ("name", "kind", "deadline_ps", "deadline_is_period", "verdict", "reason")
+    return {key: value for key, value in process_json(process).items() if key in kept}
 
 
 def runnable_json(runnable: RunnableObservation) -> dict[str, Any]:
@@ -176,6 +184,7 @@ def _summary(simulation: Simulation) -> dict[str, Any]:
         "errors": list(simulation.errors),
         "judged": len(simulation.judged),
         "missed": len(simulation.missed),
+        "failures": len(distinct(simulation.missed)),
         "not_observed": len(simulation.not_observed),
         "tightest": None if tightest is None else {"name": tightest.name, "margin_ps": _rounded(tightest.margin)},
         "text": closing_line(simulation),

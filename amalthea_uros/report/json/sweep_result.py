@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
+from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.report.findings import finding_json
 from amalthea_uros.report.json import changes
+from amalthea_uros.report.text.sweep_result import closing_line
 from amalthea_uros.services.sweep import SweepResult
 
 
@@ -20,5 +22,11 @@ def content(result: SweepResult) -> dict[str, Any]:
         "seed": result.plan.seed,
         "planned_variants": len(result.plan.runs),
         "variants": result.rows,
-        "summary": {"schedulable": len(result.schedulable), "failed": len(result.failed)},
+        "summary": {
+            "schedulable": len(result.schedulable),
+            "not_schedulable": len(result.with_verdict(Schedulable.NO)),
+            "unknown": len(result.with_verdict(Schedulable.UNKNOWN)),
+            "failed": len(result.failed),
+            "text": closing_line(result),
+        },
     }

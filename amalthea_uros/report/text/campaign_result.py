@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.services.campaign.run import Outcome
-from amalthea_uros.services.simulate import CampaignResult, missed_in
+from amalthea_uros.services.simulate import KEPT, MISSED, NOT_OBSERVED, CampaignResult, judged_in
 from amalthea_uros.units import time_text
 
 #: More runs are for a table in a file.
@@ -39,19 +40,35 @@ def _observed(outcome: Outcome) -> str:
     if outcome.error:
         return f"failed: {outcome.error}"
     lost = outcome.record.get("lost_activations")
+    missed, unseen, kept = (judged_in(outcome.record, verdict) for verdict in (MISSED, NOT_OBSERVED, KEPT))
     texts = [str(errors)] if (errors := outcome.record.get("errors")) else []
-    texts += [f"missed: {', '.join(missed)}"] if (missed := missed_in(outcome.record)) else []
+    texts += [f"missed: {', '.join(missed)}"] if missed else ["nothing missed"] if kept else []
     texts += [f"lost: {counted(lost, 'activation')}"] if isinstance(lost, int) and lost else []
-    return "; ".join(texts) or "nothing missed"
+    texts += [f"not observed: {len(unseen):,}"] if unseen else []
+    return "; ".join(texts) or "nothing to judge"
 
 
 def closing_line(result: CampaignResult) -> str:
-    """In how many runs something was missed, or that nothing was; and how many failed."""
+    """In how many runs something was missed, or that nothing was; how many failed, and in how many not everything was observed."""
     finished = len(result.outcomes)
     runs = counted(finished, "run") if result.is_complete else f"{finished:,} of {counted(result.planned, 'run')}"
     duration = time_text(result.options.duration)
-    failures = [f"{counted(len(result.failed), 'run')} failed"] if result.failed else []
+    parts = [_missed(result)] if result.missed or result.is_anything_kept else []
+    if result.failed:
+        parts.append(f"{counted(len(result.failed), 'run')} failed: {result.failed[0].error}")
     if result.incomplete:
-        failures.append(f"not everything was simulated in {len(result.incomplete):,}")
-    missed = f"limits missed or activations lost in {len(result.missed):,}" if result.missed else "nothing missed"
-    return f"Observed in {runs} of {duration} each: {'; '.join([missed, *failures])}; what was not observed can still occur"
+        parts.append(f"not everything was simulated in {len(result.incomplete):,}: {result.incomplete[0].record['errors']}")
+    if result.not_observed:
+        parts.append(f"limits not observed in {len(result.not_observed):,}")
+    found = "; ".join(parts) or "no deadline, requirement or constraint to judge"
+    return f"Observed in {runs} of {duration} each: {found}; what was not observed can still occur"
+
+
+def _missed(result: CampaignResult) -> str:
+    """In how many runs something was missed, and what is missed in most of them."""
+    numbers = Counter(name for outcome in result.missed for name in judged_in(outcome.record, MISSED))
+    if not numbers:
+        return "nothing missed"
+    ((name, number),) = numbers.most_common(1)
+    what = name if len(numbers) == 1 else f"most often {name}, in {number:,}"
+    return f"limits missed or activations lost in {len(result.missed):,} ({what})"

@@ -66,11 +66,13 @@ def _process(explanation: ProcessExplanation, terminal: Terminal) -> None:
 
 
 def _deadline(process: ProcessResult, terminal: Terminal) -> None:
-    """Write how far the response time is from the deadline."""
+    """Write how far the response time is from the deadline, or what else is wrong."""
     if process.deadline is None or process.margin is None or process.verdict is None:
         return
-    margin = _margin(process, process.margin)
-    terminal.line(f"  deadline {time_text(process.deadline)}: {process.verdict}, {margin}")
+    kind = "period" if process.is_implicit else "deadline"
+    is_about_time = process.margin < 0 or process.verdict is Verdict.MET
+    why = _margin(process, process.margin) if is_about_time else process.reason
+    terminal.line(f"  {kind} {time_text(process.deadline)}: {process.failure or process.verdict}, {why}")
 
 
 def _margin(judged: Judged, margin: Time) -> str:

@@ -43,14 +43,13 @@ def write_closing(result: SweepResult, terminal: Terminal) -> None:
 
 def closing_line(result: SweepResult) -> str:
     """For how many variants everything is met for certain, and for how many not."""
-    verdicts = [outcome.record.get(SCHEDULABLE) for outcome in result.outcomes]
     planned = len(result.plan.runs)
     of = counted(planned, "variant")
-    parts = [f"yes in {verdicts.count(Schedulable.YES):,} of {of}"]
-    parts += [f"no in {number:,}"] if (number := verdicts.count(Schedulable.NO)) else []
-    parts += [f"unknown in {number:,}"] if (number := verdicts.count(Schedulable.UNKNOWN)) else []
+    parts = [f"yes in {len(result.schedulable):,} of {of}"]
+    parts += [f"no in {number:,}"] if (number := len(result.with_verdict(Schedulable.NO))) else []
+    parts += [f"unknown in {number:,}"] if (number := len(result.with_verdict(Schedulable.UNKNOWN))) else []
     parts += [f"{len(result.failed):,} failed"] if result.failed else []
-    parts += [f"{planned - len(verdicts):,} not finished"] if not result.is_complete else []
+    parts += [f"{planned - len(result.outcomes):,} not finished"] if not result.is_complete else []
     sample = f"; a random sample of {result.plan.total:,} combinations" if planned < result.plan.total else ""
     return f"Schedulable: {', '.join(parts)}{sample}"
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 
+from amalthea_uros.judge.causes import quantity_of
 from amalthea_uros.judge.evidence import ObservedValues
 from amalthea_uros.judge.limits import (
     Stated,
@@ -44,11 +45,11 @@ def judge_limits(system: System, settings: Settings, targets: Iterable[Target]) 
     }
     stated = list(stated_limits(system))
     of_requirements = {
-        (limit.object, limit.limit) for item, limits in stated if isinstance(item, Requirement) for limit in limits
+        (quantity_of(limit), limit.limit) for item, limits in stated if isinstance(item, Requirement) for limit in limits
     }
     for limit in _deadlines(TimingContext.of_scheduling(system, settings)):
         # A deadline that is also stated as a requirement is judged once.
-        if (limit.object, limit.limit) not in of_requirements:
+        if (quantity_of(limit), limit.limit) not in of_requirements:
             yield _judged(limit, measured, system)
     for item, limits in stated:
         for limit in limits or [without_number(item)]:

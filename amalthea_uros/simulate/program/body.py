@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from fractions import Fraction
 
-from amalthea_uros.perf.activities import AccessKind, Activity, Call, Communication, Count, Demand
+from amalthea_uros.perf.activities import AccessKind, Activity, Call, Communication, Count, Demand, Trigger
 from amalthea_uros.perf.conditions import Condition
 from amalthea_uros.perf.events import Event
 from amalthea_uros.perf.software import Preemption, Process
@@ -23,6 +23,7 @@ from amalthea_uros.simulate.program.resources import Resources, constant
 from amalthea_uros.simulate.program.watches import Source
 from amalthea_uros.simulate.sampling.streams import Stream
 from amalthea_uros.timing.context import TimingContext
+from amalthea_uros.timing.counter_flaws import flaw_of_activity
 from amalthea_uros.timing.counters import reached
 from amalthea_uros.timing.multiframe import Frame
 from amalthea_uros.timing.settings import Memory
@@ -96,6 +97,9 @@ class Body:
         is_counted = getattr(activity, "counter", None) is not None
         if is_counted:
             self._services(activity)
+        if isinstance(activity, Trigger) and flaw_of_activity(activity):
+            # Only of what it activates it is unknown what happens, which is left out.
+            return
         skips = self._skips(activity)
         if isinstance(activity, Call):
             # Its hooks are within its repetitions.
@@ -132,6 +136,8 @@ class Body:
         """A label to which a job goes if a counter does not let this time take effect."""
         name = self.process.name if self.process is not None else ""
         queue = self.parts.queues.get((name, counter.source)) if counter is not None and counter.arrivals is not None else None
+        if flaw := flaw_of_activity(owner):
+            raise NotSimulatedError(flaw)
         place = queue or self.resources.counter(owner, counter)
         if not place:
             return None

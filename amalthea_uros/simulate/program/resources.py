@@ -168,8 +168,6 @@ class Resources:
         """The record of the counter of an element of the model, which all that pass the element share; 0: every time counts."""
         if counter is None:
             return 0
-        if counter.prescaler < 1:
-            raise NotSimulatedError("a counter has no prescaler, or a negative one")
         if id(owner) not in self._counters:
             first = first_effect(counter) if counter.is_phase_known else self._phase(counter)
             fields = {EVERY: counter.prescaler, FIRST_EFFECT: first}

@@ -60,6 +60,10 @@ class StimulusRecords:
         for name, record in self.parts.stimuli.items():
             stimulus, targets = system.stimuli_by_name[name], activated.get(name, [])
             try:
+                if flaw := self.resources.context.activations.flaws.of_stimulus(name):
+                    number = self.resources.entities.number(EntityKind.STIMULUS, name)
+                    self.resources.image.put(record, {STIMULUS_ENTITY: number})
+                    raise NotSimulatedError(flaw)
                 self._stimulus(stimulus, record, targets)
                 if isinstance(stimulus, EventTriggered) and not self.resources.context.activations.causes(stimulus):
                     raise NotSimulatedError(f"no activity in the model raises an event of the stimulus {name!r}")

@@ -10,7 +10,7 @@ from amalthea_uros.perf.executors import Executor
 from amalthea_uros.perf.network import Direction, Purpose
 from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.transports import Can, CanFd, CustomTransport, Driver, Serial, Transport, UsbCdc
-from amalthea_uros.units import SECOND, Time, data_size_text, time_text
+from amalthea_uros.units import SECOND, Time, data_size_text, percent_text, time_text
 from amalthea_uros.uros.notes import Notes
 from amalthea_uros.uros.transports.can_fd import SIZES
 from amalthea_uros.uros.transports.choice import driver_of, is_bus
@@ -213,7 +213,7 @@ def check_load(plan: WirePlan, transport: Transport, notes: Notes) -> None:
     if not worst or loads[worst] <= 1:
         return
     location = plan.line.section.location(_rate_key(plan))
-    share = f"up to {100 * float(loads[worst]):.1f} %"
+    share = f"up to {percent_text(loads[worst], 1)} %"
     if plan.line.key == "can":
         text = f"overload: the messages need {share} of the CAN bus"
         notes.warning("UR131", text, location, "Increase the bit rate, or send fewer or smaller messages.")
