@@ -24,7 +24,7 @@ EXCEPTIONS: dict[str, float] = {}
 @pytest.mark.parametrize("first", range(0, SEEDS, BLOCK))
 def test_no_claim_is_refuted(first):
     found = {}
-    for seed in every(10, range(first, first + BLOCK)):
+    for seed in every(12, range(first, first + BLOCK)):
         if claims := false_claims(random_system(seed), PLAYS):
             found[seed] = [str(claim) for claim in claims]
     assert found == {}
