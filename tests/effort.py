@@ -9,7 +9,7 @@ from hypothesis import settings
 T = TypeVar("T")
 
 #: The examples of a property by default, and where time does not matter.
-USUAL, THOROUGH = 27, 1000
+USUAL, THOROUGH = 16, 1000
 
 PROFILE = os.environ.get("HYPOTHESIS_PROFILE") or ("ci" if os.environ.get("CI") else "default")
 IS_THOROUGH = PROFILE == "thorough"

@@ -19,7 +19,10 @@ ADVANCED = "bodas-test-advanced.yaml"
 #: Section -> commands whose results, all together, have each of its fields.
 RUNS = {
     "amuros analyze": (
-        ("analyze", ADVANCED, "--sensitivity", "--assign-priorities", "--explain", "Executor_Task"),
+        (
+            *("analyze", ADVANCED, "--phase", "Message_Factor=0ms"),
+            *("--sensitivity", "--assign-priorities", "--explain", "Executor_Task"),
+        ),
         ("analyze", ADVANCED, "--explain", "factor-to-output", "--method", "all"),
         ("analyze", ADVANCED, "--explain", "Control_Function"),
         ("analyze", ADVANCED, "--scale", "80", "--explain", "Control_Function"),

@@ -12,6 +12,7 @@ import ast
 import re
 import sys
 from collections.abc import Iterator, Mapping
+from functools import cache
 from pathlib import Path
 
 import networkx as nx
@@ -29,6 +30,11 @@ _ENTRANCES = ("__init__", "__main__")
 
 def module_imports() -> nx.DiGraph:
     """The modules of the package, each with those that it imports."""
+    return _module_imports().copy()
+
+
+@cache
+def _module_imports() -> nx.DiGraph:
     files = {_module_name(path): path for path in (ROOT / PACKAGE).rglob("*.py")}
     graph = nx.DiGraph()
     graph.add_nodes_from(files)

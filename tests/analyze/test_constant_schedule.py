@@ -47,7 +47,7 @@ def task_sets(draw):
     return tasks
 
 
-@examples(40)
+@examples(24)
 @given(task_sets())
 def test_response_times_are_those_of_the_schedule(tasks):
     analysis = analyze_system(system_of(tasks, [task["name"] for task in tasks], preemptive=False))

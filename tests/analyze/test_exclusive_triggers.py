@@ -166,7 +166,7 @@ def paths_of(activity):
             yield activity.demand.ticks.value
 
 
-@examples(60)
+@examples(36)
 @given(st.lists(st.recursive(LEAVES, within, max_leaves=7), max_size=3))
 def test_the_load_of_random_paths(activities):
     found = percent(analysed(*activities, **DEMANDS))

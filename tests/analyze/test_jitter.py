@@ -133,7 +133,7 @@ def of_random_tasks(tasks, limit):
 
 
 @given(tasks=st.lists(TASK, min_size=1, max_size=3), limit=st.sampled_from([1, 100, 300]))
-@examples(12)
+@examples(8)
 def test_no_run_has_a_greater_jitter_than_the_bound(tmp_path_factory, tasks, limit):
     path = tmp_path_factory.mktemp("random") / "app.yaml"
     path.write_text(of_random_tasks(tasks, limit))

@@ -540,7 +540,7 @@ def test_periodic_releases_and_a_server_are_no_exact_schedule():
     assert claims == {"T": "bound", "I": "bound"}
 
 
-@examples(60)
+@examples(36)
 @given(systems(), st.sampled_from(Memory))
 def test_no_system_is_too_strange(system, memory):
     analysis = analyze_system(system, Settings(memory=memory))

@@ -119,7 +119,7 @@ SHARING = st.lists(
 
 
 @given(st.one_of(SHARING, st.builds(lambda high, rows: [high, *rows], HIGH, SHARING)))
-@examples(100)
+@examples(60)
 # Two jobs of a task are pending at a time, and each begins a slice of its own.
 @example([Row(3, 1, 4), Row(30, 8, 1), Row(30, 6, 4)])
 def test_no_response_is_longer_than_its_bound(rows):

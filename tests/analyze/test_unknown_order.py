@@ -108,7 +108,7 @@ TASKS = st.lists(
 ).filter(lambda tasks: sum(demand / period for period, demand, _ in tasks) <= 1)
 
 
-@examples(60)
+@examples(36)
 @given(TASKS, st.data())
 def test_no_order_exceeds_the_bound(tasks, data):
     offsets = [data.draw(st.integers(0, period - 1)) for period, _, _ in tasks]

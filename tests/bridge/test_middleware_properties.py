@@ -73,7 +73,7 @@ def test_executors_and_the_network_come_back(tmp_path):
 
 
 @given(data=st.data())
-@examples(30)
+@examples(18)
 def test_any_executor_comes_back_from_its_text(data):
     executor = data.draw(EXECUTORS)
     assert from_text(Executor, to_text(executor, without=("task",)), task=executor.task) == executor

@@ -5,6 +5,7 @@ import re
 
 import pytest
 from command import amuros
+from effort import every
 from support import ROOT
 
 from amalthea_uros._internal.resources import known_platforms
@@ -12,7 +13,7 @@ from amalthea_uros.cli.main import COMMANDS
 from amalthea_uros.services.init import example_names
 
 
-@pytest.mark.parametrize("board", known_platforms())
+@pytest.mark.parametrize("board", every(3, known_platforms()))
 def test_what_is_written_for_a_board_is_built_checked_and_schedulable(board, tmp_path):
     assert amuros("init", "--board", board, cwd=tmp_path).returncode == 0
     assert f"platform: {board} #" in (tmp_path / "app.yaml").read_text()

@@ -83,7 +83,7 @@ def test_a_namespace_and_a_renamed_user():
     assert told(old, new) == {("name", "T", "U"), ("namespace", "unset", "N")}
 
 
-@examples(30)
+@examples(18)
 @given(st.permutations(range(6)))
 def test_any_permutation_of_names_is_told_as_renames(order):
     def system(names):

@@ -3,6 +3,7 @@
 import ast
 import re
 from collections import defaultdict
+from functools import cache
 
 import pytest
 from support import MODEL, ROOT
@@ -23,6 +24,7 @@ KINDS = {kind.id: kind for kind in ALL_KINDS}
 ID = re.compile(r"[A-Z]{2,}\d{3}|(?:INC|TIM|AM|EMF|TA|DOC)-[A-Za-z/.-]+")
 
 
+@cache
 def emitted():
     """The ids in calls of the source, each with the severities in the same call."""
     found = defaultdict(set)

@@ -185,7 +185,8 @@ def test_verdicts_are_decided_in_one_room():
         f"{path.relative_to(ROOT)}:{node.lineno}"
         for path in (ROOT / "amalthea_uros").rglob("*.py")
         if path.parent.name != "judge"
-        for node in decisions(ast.parse(path.read_text()))
+        if "Verdict" in (text := path.read_text())
+        for node in decisions(ast.parse(text))
     ]
     assert deciding == []
 

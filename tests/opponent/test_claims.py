@@ -24,7 +24,7 @@ EXCEPTIONS: dict[str, float] = {}
 @pytest.mark.parametrize("first", range(0, SEEDS, BLOCK))
 def test_no_claim_is_refuted(first):
     found = {}
-    for seed in every(4, range(first, first + BLOCK)):
+    for seed in every(12, range(first, first + BLOCK)):
         if claims := false_claims(random_system(seed), PLAYS):
             found[seed] = [str(claim) for claim in claims]
     assert found == {}
@@ -32,7 +32,7 @@ def test_no_claim_is_refuted(first):
 
 def test_most_results_are_known():
     tally = Tally()
-    for seed in range(200):
+    for seed in every(2, range(200)):
         system = random_system(seed)
         tally.add_analysis(analyze_system(to_perf(system)), constructs_of(system))
     too_many = {name: share for name, share in tally.shares().items() if share > EXCEPTIONS.get(name, MOST_UNKNOWN)}

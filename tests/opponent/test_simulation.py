@@ -57,20 +57,20 @@ def is_comparable(plain):
 
 @pytest.mark.parametrize("first", range(0, 2000, 200))
 def test_jobs_of_determined_systems_are_those_of_the_player(first):
-    systems = {seed: random_system(seed) for seed in every(2, range(first, first + 200))}
+    systems = {seed: random_system(seed) for seed in every(5, range(first, first + 200))}
     different = [seed for seed, plain in systems.items() if is_comparable(plain) and not has_same_jobs(plain)]
     assert different == [], "\n".join(described(systems[seed]) for seed in different)
 
 
 @pytest.mark.parametrize("first", range(0, 300, 50))
 def test_nothing_is_beyond_a_claim(first):
-    found = {seed: texts for seed in every(3, range(first, first + 50)) if (texts := contradictions(random_system(seed)))}
+    found = {seed: texts for seed in every(7, range(first, first + 50)) if (texts := contradictions(random_system(seed)))}
     assert found == {}, [constructs_of(random_system(seed)) for seed in found]
 
 
 @pytest.mark.parametrize("first", range(0, 400, 100))
 def test_schedules_keep_to_the_rules(first):
-    found = {seed: texts for seed in every(2, range(first, first + 100)) if (texts := violations(random_system(seed)))}
+    found = {seed: texts for seed in every(5, range(first, first + 100)) if (texts := violations(random_system(seed)))}
     assert found == {}
 
 

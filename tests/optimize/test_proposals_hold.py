@@ -30,7 +30,7 @@ def task_sets(draw):
     return system_of(tasks)
 
 
-@examples(15)
+@examples(9)
 @given(system=task_sets())
 def test_no_deadline_is_missed_in_the_simulation_of_a_proposal(system):
     found = optimize(system, proposals=2)

@@ -6,6 +6,7 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
+from effort import every
 from hand_made_systems import Proc, system, ticks
 from lxml import html
 from support import ROOT, analysis_of
@@ -20,7 +21,7 @@ from amalthea_uros.units import Rounding, rounded_time_text
 
 SAMPLES = ROOT / "samples"
 ADVANCED = SAMPLES / "bodas-test-advanced.yaml"
-ALL = sorted([*SAMPLES.glob("*.yaml"), SAMPLES / "executor.amxmi"])
+ALL = every(3, sorted([*SAMPLES.glob("*.yaml"), SAMPLES / "executor.amxmi"]))
 #: Elements of HTML that have no end tag.
 VOID = {"meta", "link", "br", "hr", "img", "input"}
 NAMES = {
@@ -208,7 +209,7 @@ def test_a_reason_that_several_limits_have_is_told_once():
 
 def test_the_same_input_gives_the_same_page():
     assert report(ADVANCED, duration="100 ms").html == page_of(ADVANCED)
-    assert "2026-01-31" in report(ADVANCED, duration="100 ms", date="2026-01-31").html
+    assert "2026-01-31" in report(SAMPLES / "executor.amxmi", with_simulation=False, date="2026-01-31").html
 
 
 def test_the_pools_of_an_app_are_ready_to_copy():

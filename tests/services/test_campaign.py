@@ -7,6 +7,8 @@ import os
 import pickle
 import sys
 import time
+from concurrent.futures import Future
+from concurrent.futures.process import BrokenProcessPool
 from contextlib import closing
 from fractions import Fraction
 from functools import partial
@@ -18,6 +20,7 @@ from support import ROOT
 from amalthea_uros.changes.change import Change
 from amalthea_uros.changes.sweep import parse_sweep
 from amalthea_uros.errors import InvalidArgumentError, WriteError
+from amalthea_uros.services.campaign import executors
 from amalthea_uros.services.campaign.campaign import run_campaign
 from amalthea_uros.services.campaign.executors import cluster, processes, serial
 from amalthea_uros.services.campaign.run import Outcome, Run, plan_runs
@@ -96,6 +99,64 @@ def test_a_process_that_somebody_kills_loses_nothing(tmp_path):
     job = partial(campaign_jobs.dying_once, folder=tmp_path)
     outcomes = list(run_campaign(job, runs(60), processes(2)))
     assert sorted(outcome.record["number"] for outcome in outcomes) == list(range(1, 61))
+
+
+class Pool:
+    """Executes in this process; the first of them breaks when it gets its second run, as if a worker was killed."""
+
+    started = 0
+
+    def __init__(self, _count, _context, *, initializer, initargs):
+        self.job = pickle.loads(initargs[0])
+        self.open = []
+        Pool.started += 1
+        self.breaks = Pool.started == 1
+
+    def submit(self, _execute, runs):
+        future = Future()
+        if self.breaks and self.open:
+            self.open[0].set_exception(BrokenProcessPool("killed"))
+            raise self.error
+        self.open.append(future)
+        if not self.breaks:
+            future.set_result([Outcome(run, dict(self.job(run))) for run in runs])
+        return future
+
+    def shutdown(self, **_options):
+        pass
+
+
+@pytest.mark.parametrize(
+    "error",
+    [
+        BrokenProcessPool("a process was terminated abruptly"),
+        # It closes its queues while another process is started that shall have them, or that process is the one that is killed.
+        OSError("handle is closed"),
+        BrokenPipeError("broken pipe"),
+        # It has noted that it accepts nothing, but not yet why.
+        RuntimeError("cannot schedule new futures after shutdown"),
+    ],
+    ids=lambda error: type(error).__name__,
+)
+def test_a_process_that_is_killed_while_another_one_starts_loses_nothing(monkeypatch, error):
+    monkeypatch.setattr(executors, "ProcessPoolExecutor", Pool)
+    monkeypatch.setattr(Pool, "started", 0)
+    monkeypatch.setattr(Pool, "error", error, raising=False)
+    outcomes = list(run_campaign(campaign_jobs.square, runs(6), processes(2)))
+    assert sorted((outcome.run.number, outcome.record["square"]) for outcome in outcomes) == [
+        (number, number**2) for number in range(1, 7)
+    ]
+    assert Pool.started == 2
+
+
+def test_a_pool_that_cannot_be_replaced_is_an_error(monkeypatch):
+    class Full(Pool):
+        def submit(self, _execute, _runs):
+            raise OSError("too many open files")
+
+    monkeypatch.setattr(executors, "ProcessPoolExecutor", Full)
+    with pytest.raises(OSError, match="too many open files"):
+        list(run_campaign(campaign_jobs.square, runs(2), processes(2)))
 
 
 def test_processes_end_when_a_campaign_is_stopped_early():

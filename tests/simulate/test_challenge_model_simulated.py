@@ -57,9 +57,13 @@ def test_worst_cases_from_time_0_are_those_of_another_simulator(system, settings
         assert float(process.response_time.max / US) == pytest.approx(expected, abs=1e-6)
 
 
+@pytest.fixture(scope="module")
+def bounds(system, settings):
+    return analyze_system(system, settings)
+
+
 @pytest.mark.parametrize("mode", [Mode.SAMPLED, Mode.WORST, Mode.BEST, Mode.AVERAGE])
-def test_latencies_are_within_the_bounds(system, settings, mode):
-    bounds = analyze_system(system, settings)
+def test_latencies_are_within_the_bounds(system, settings, bounds, mode):
     found = simulate_system(system, Options(duration=SECOND, mode=mode, settings=settings))
     for chain in found.chains:
         values = {value.quantity: value.value for value in bounds.chains[chain.name].values}

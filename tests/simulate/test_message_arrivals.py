@@ -60,14 +60,14 @@ class Recorded(list):
 
 
 @given(st.integers(0, 39))
-@examples(10)
+@examples(6)
 def test_regular_arrivals_on_the_grid_are_the_counter(phase):
     stated = f"Message_Factor.phase={phase}ms"
     assert observed(simulate(stated, "Message_Factor.arrival_jitter=0ms")) == observed(simulate(stated))
 
 
 @given(st.integers(1, 20 * MS), st.booleans())
-@examples(10)
+@examples(6)
 def test_a_job_takes_what_arrived_before_its_activation(phase, is_queued):
     changes = [f"Message_Factor.phase={phase}ps", *(["Message_Factor.arrival_jitter=0ms"] if is_queued else [])]
     next_activation = f"Message_Factor.phase={-(-phase // MS)}ms"
@@ -146,7 +146,7 @@ def test_without_sampling_the_first_possibility_counts():
 
 
 @given(st.integers(0, 45_000), st.integers(700, 45_000), st.integers(1, 1000))
-@examples(25)
+@examples(15)
 def test_no_bound_is_exceeded(jitter, period, seed):
     """Microseconds; the analysis knows period and jitter, and nothing else."""
     changes = [f"Message_Factor.arrival_jitter={jitter}us", f"Message_Factor.arrival_period={period}us"]

@@ -121,7 +121,7 @@ def sample():
 
 
 @given(seed=st.integers(1, 10_000), mode=st.sampled_from(list(Mode)))
-@examples(15)
+@examples(9)
 def test_no_bound_is_exceeded(sample, seed, mode):
     """Phases of messages and timers are independent of each other, and random."""
     system, bounds = sample

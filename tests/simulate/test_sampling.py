@@ -149,7 +149,7 @@ def test_values_are_within_the_bounds(distribution):
     assert max(found) <= stream.highest <= highest(distribution)
 
 
-@examples(50)
+@examples(30)
 @given(st.one_of(between(Statistics, average=True), between(Beta, alpha=st.floats(0.1, 10), beta=st.floats(0.1, 10))))
 def test_the_mean_is_the_stated_one_even_of_small_numbers(distribution):
     found = variate(distribution).of(source().words(20_000)) - lowest(distribution)

@@ -91,7 +91,7 @@ def drawn(inside, beside):
     ]
 
 
-@examples(60)
+@examples(36)
 @given(st.sampled_from(FIXED), st.integers(1, 5), st.integers(6, 15), tasks_inside, tasks_beside, st.integers(0, 99))
 def test_budgets_are_kept_and_claims_hold(policy, capacity, period, inside, beside, seed):
     built, duration = system(policy, capacity, period, drawn(inside, beside)), 2000 * US
@@ -105,7 +105,7 @@ def test_budgets_are_kept_and_claims_hold(policy, capacity, period, inside, besi
             assert max(used_by_period(run, names, period * US * units).values(), default=0) <= capacity * US * units
 
 
-@examples(30)
+@examples(18)
 @given(st.integers(1, 5), st.integers(10, 15), tasks_inside, st.integers(0, 99))
 def test_a_bandwidth_server_disturbs_others_no_more_than_its_bandwidth(capacity, period, inside, seed):
     # Abeni and Buttazzo 1998, theorem 1: beside a server of bandwidth U, deadlines are met if the load of the others is at most 1 - U.

@@ -12,7 +12,7 @@ from amalthea_uros.timing.dataflow.events import EventLocator, UnresolvedError, 
 
 
 @given(systems())
-@examples(50)
+@examples(30)
 def test_they_are_those_that_a_look_at_each_activity_finds(system):
     locator = EventLocator(system)
     try:

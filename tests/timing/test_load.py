@@ -247,7 +247,7 @@ def systems(draw):
     )
 
 
-@examples(30)
+@examples(18)
 @given(systems())
 def test_the_load_of_random_systems(system):
     model = build_model(system)

@@ -116,7 +116,7 @@ WISHES |= {"INC-HW-ACCESS", "INC-SW-TICKS-BETA", "INC-SW-TICKS-DEFAULT", "INC-SW
 
 
 @given(description=applications())
-@examples(40)
+@examples(24)
 def test_a_random_application(file, description):
     file.write_text(yaml.safe_dump(description))
     built, findings = built_or_refused(file)

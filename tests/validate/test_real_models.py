@@ -74,13 +74,13 @@ def test_no_rule_fails_where_nothing_is_set(identifier):
 RULES = [rule for rule in map(registry.rule, registry.ids()) if isinstance(rule, ModelRule)]
 
 
-@examples(30)
+@examples(18)
 @given(models(size=60))
 def test_no_rule_fails_at_a_random_model(model):
     assert [finding for finding in run(model, RULES) if finding.rule == "CHK001"] == []
 
 
-@examples(30)
+@examples(18)
 @given(systems(3))
 def test_no_rule_fails_at_a_model_of_a_random_system(system):
     assert [finding for finding in run(build_model(system), RULES) if finding.rule == "CHK001"] == []

@@ -122,7 +122,7 @@ class Hostile(Scrambler):
         ]
 
 
-@examples(60)
+@examples(36)
 @given(model=models(12), rng=st.randoms(use_true_random=False))
 def test_the_canonical_form_of_any_file_is_a_fixed_point(model, rng):
     document = model.documents[0]

@@ -42,14 +42,14 @@ def said(model) -> object:
     return meaning(document.root, version=document.version)
 
 
-@examples(30)
+@examples(18)
 @given(scrambled())
 def test_an_ugly_file_says_the_same(case):
     loaded, model, _ = case
     assert said(loaded) == said(model)
 
 
-@examples(40)
+@examples(24)
 @given(scrambled())
 def test_merging_unchanged_objects_changes_nothing(case):
     loaded, _, _ = case
@@ -57,7 +57,7 @@ def test_merging_unchanged_objects_changes_nothing(case):
     assert text_of(loaded) == loaded.documents[0].source.text
 
 
-@examples(30)
+@examples(18)
 @given(scrambled())
 def test_the_canonical_form_of_an_ugly_file_says_the_same_and_is_canonical(case):
     loaded, model, _ = case
@@ -69,7 +69,7 @@ def test_the_canonical_form_of_an_ugly_file_says_the_same_and_is_canonical(case)
 
 @pytest.mark.parametrize("encoding", ENCODINGS)
 @pytest.mark.parametrize("newline", ["\n", "\r\n"])
-@examples(10)
+@examples(6)
 @given(rng=st.randoms(use_true_random=False))
 def test_saving_unchanged_gives_the_same_bytes(encoding, newline, rng, tmp_path_factory):
     path = tmp_path_factory.mktemp("model") / "ugly.amxmi"
@@ -256,7 +256,7 @@ def check_edit(loaded, rng) -> None:
     assert sorted(set(marks) - set(gone)) == sorted(MARK.findall(new_source.text))
 
 
-@examples(60)
+@examples(36)
 @given(scrambled())
 def test_an_edit_changes_what_was_edited_and_nothing_else(case):
     loaded, _, rng = case

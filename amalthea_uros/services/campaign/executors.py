@@ -9,7 +9,6 @@ import pickle
 import signal
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from functools import lru_cache
@@ -91,6 +90,11 @@ def processes(count: int) -> Executor:
     return provide
 
 
+#: What a pool raises at more work when a process was killed. If it knows: `RuntimeError`, of which `BrokenProcessPool` is a kind.
+#: `OSError` if it closes its queues while it starts another process, or if the one that it starts was killed.
+_BREAKING = (RuntimeError, OSError)
+
+
 class _Pool:
     """Processes that are replaced if one of them dies, for example for lack of memory."""
 
@@ -109,7 +113,8 @@ class _Pool:
         with _blocked_interrupts():
             try:
                 return self._pool.submit(_execute_installed, runs)
-            except BrokenProcessPool:
+            except _BREAKING:
+                # The former pool is let go, and ends by itself; what it has not done comes back from its futures.
                 self._pool = self._start()
                 return self._pool.submit(_execute_installed, runs)
 

@@ -223,21 +223,21 @@ ANY = [Preemption.PREEMPTIVE, Preemption.NON_PREEMPTIVE]
 
 
 @pytest.mark.parametrize("communication", Communication)
-@examples(20)
+@examples(12)
 @given(systems(["one"], ALWAYS, varying=True, triggered=False))
 def test_one_core(communication, drawn):
     check(drawn, communication)
 
 
 @pytest.mark.parametrize("communication", [Communication.IMPLICIT, Communication.EXPLICIT])
-@examples(20)
+@examples(12)
 @given(systems(["one", "two"], ANY, varying=True, triggered=False))
 def test_two_cores_and_tasks_that_are_not_interrupted(communication, drawn):
     check(drawn, communication)
 
 
 @pytest.mark.parametrize("communication", [Communication.IMPLICIT, Communication.EXPLICIT])
-@examples(20)
+@examples(12)
 @given(systems(["one", "two"], ANY, varying=True, triggered=True))
 # The triggered task writes before it executes anything.
 @example(
@@ -255,7 +255,7 @@ def test_triggers(communication, drawn):
 
 
 @pytest.mark.parametrize("communication", [Communication.IMPLICIT, Communication.EXPLICIT])
-@examples(20)
+@examples(12)
 @given(systems(["one", "two"], ALWAYS, varying=False, triggered=False))
 def test_constant_execution_times_are_met_exactly(communication, drawn):
     tasks, chain = drawn

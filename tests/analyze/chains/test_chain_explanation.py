@@ -40,7 +40,7 @@ def check_sums(explanation):
 
 
 @pytest.mark.parametrize("communication", [Communication.IMPLICIT, Communication.EXPLICIT])
-@examples(20)
+@examples(12)
 @given(systems(["one", "two"], ALWAYS, varying=False, triggered=False))
 def test_the_jobs_of_exact_values_are_those_of_a_run(communication, drawn):
     tasks, chain = drawn
@@ -69,13 +69,13 @@ def test_the_jobs_of_exact_values_are_those_of_a_run(communication, drawn):
 
 
 @pytest.mark.parametrize("communication", [Communication.IMPLICIT, Communication.EXPLICIT])
-@examples(20)
+@examples(12)
 @given(systems(["one", "two"], ANY, varying=True, triggered=True), st.booleans())
 def test_the_hops_of_bounds_add_up(communication, drawn, controllers):
     check_all_hops(communication, drawn, controllers)
 
 
-@examples(20)
+@examples(12)
 @given(systems(["one", "two"], ANY, varying=True, triggered=False), st.booleans())
 def test_the_hops_of_logical_times_add_up(drawn, controllers):
     check_all_hops(Communication.LET, drawn, controllers)
@@ -125,7 +125,7 @@ def played(tasks, until):
     return executed
 
 
-@examples(30)
+@examples(18)
 @given(systems(["one", "two"], ALWAYS, varying=False, triggered=False))
 def test_the_causes_are_what_the_core_executes(drawn):
     """Between release and read others execute first; between read and output the job itself and those that preempt it."""

@@ -101,7 +101,7 @@ class TestCounters:
 
     COUNTERS = st.builds(Counter, prescaler=st.integers(1, 5), offset=st.integers(0, 7))
 
-    @examples(60)
+    @examples(36)
     @given(
         first=COUNTERS, then=COUNTERS, is_first_before=st.booleans(), communication=st.sampled_from(["implicit", "explicit"])
     )

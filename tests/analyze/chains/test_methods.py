@@ -269,7 +269,7 @@ def backward(chain_times):
             yield start if others else read, write, next_write
 
 
-@examples(100)
+@examples(60)
 @given(rows=ROWS, data=st.data())
 def test_no_run_is_worse_than_a_bound(rows, data):
     tasks = drawn(rows)

@@ -77,7 +77,7 @@ def test_unknown_sizes_make_a_lower_bound():
     assert (stacks.size, stacks.unknown) == (100, ("B",))
 
 
-@examples(25)
+@examples(15)
 @given(
     st.lists(
         st.tuples(st.integers(1, 4), st.integers(1, 50), st.sampled_from(KINDS), st.integers(1, 2)), min_size=1, max_size=6
