@@ -23,7 +23,7 @@ RUNS = {
             *("analyze", ADVANCED, "--phase", "Message_Factor=0ms"),
             *("--sensitivity", "--assign-priorities", "--explain", "Executor_Task"),
         ),
-        ("analyze", ADVANCED, "--explain", "factor-to-output", "--method", "all"),
+        ("analyze", ADVANCED, "--phase", "Message_Factor=0ms", "--explain", "factor-to-output", "--method", "all"),
         ("analyze", ADVANCED, "--explain", "Control_Function"),
         ("analyze", ADVANCED, "--scale", "80", "--explain", "Control_Function"),
         ("analyze", "rclc-in-executor.yaml", "--explain", "On_Command_Callback"),

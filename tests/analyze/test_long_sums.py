@@ -1,6 +1,7 @@
 """Sums that do not fit into 64 bits do not wrap."""
 
 import pytest
+from effort import every
 
 from amalthea_uros.analyze.response_times import priority_levels
 from amalthea_uros.analyze.response_times.busy_window import Interference
@@ -8,25 +9,38 @@ from amalthea_uros.analyze.response_times.task import Task
 from amalthea_uros.timing.event_models import Pattern, Periodic
 from amalthea_uros.timing.multiframe import Frame, MultiframeDemand
 
+LONGEST = 2**54
 
-@pytest.mark.parametrize("distinct", [0, 1], ids=["one row", "a row for each task"])
-def test_sums_do_not_wrap(distinct):
-    # More than 2^64 together, though each job comes so seldom that the load is small.
-    longest = 2**54
-    tasks = [
+
+def seldom(distinct):
+    """More than 2^64 together, though each job comes so seldom that the load is small."""
+    return [
         Task(
             name=str(number),
             events=Periodic(2**40 + distinct * number),
-            demand=MultiframeDemand((Frame(worst=longest, best=longest, prescaler=2**30),)),
+            demand=MultiframeDemand((Frame(worst=LONGEST, best=LONGEST, prescaler=2**30),)),
             priority=1 + number,
         )
         for number in range(1030)
     ]
+
+
+ROWS = {"a row for each task": 1, "one row": 0}
+
+
+@pytest.mark.parametrize("distinct", ROWS.values(), ids=ROWS.keys())
+def test_sums_of_a_window_do_not_wrap(distinct):
+    assert Interference.of(seldom(distinct)).in_window(1) == 1030 * LONGEST
+
+
+# Each of the tasks above has a response time, too, which takes seconds.
+@pytest.mark.parametrize("rows", every(2, list(ROWS)))
+def test_response_times_do_not_wrap(rows):
+    tasks = seldom(ROWS[rows])
     last = Task(name="last", events=Periodic(2**59), demand=MultiframeDemand.constant(1))
     *_, response = priority_levels.response_times([*tasks, last])
     assert response.worst is None
     assert response.best == 1
-    assert Interference.of(tasks).in_window(1) == 1030 * longest
 
 
 def test_a_fixed_demand_beyond_all_limits():
