@@ -13,7 +13,7 @@ from itertools import pairwise, product
 from xml.etree import ElementTree
 
 from opponent.models.player import Job, Player
-from opponent.models.reading import Played, kind_of, reference
+from opponent.models.reading import Item, Played, kind_of, reference
 from opponent.models.variants import items_of
 
 #: A process and what happens to its job: activate, start, terminate.
@@ -70,15 +70,15 @@ def _links(played: Played, source: str, target: str) -> Iterator[str]:
         writers = [process for process, found in accesses.items() if ("write", name) in found]
         if writers == [source]:
             yield name
-    stimuli = {item[1] for item in _items(played, source) if item[0] == "trigger"}
-    events = {item[1] for item in _items(played, source) if item[0] == "event"}
+    stimuli = {item[1] for item in items_of_process(played, source) if item[0] == "trigger"}
+    events = {item[1] for item in items_of_process(played, source) if item[0] == "event"}
     stimuli |= {stimulus for event in events for stimulus in played.listeners.get(event, ())}
     of_target = next(process.stimuli for process in played.processes if process.name == target)
     if stimuli & set(of_target):
         yield ""
 
 
-def _items(played: Played, process: str) -> Iterator[tuple[object, ...]]:
+def items_of_process(played: Played, process: str) -> Iterator[Item]:
     """All items that a process can reach."""
     bodies = [next(p.body for p in played.processes if p.name == process)]
     known: set[str] = set()
@@ -94,7 +94,7 @@ def _items(played: Played, process: str) -> Iterator[tuple[object, ...]]:
 
 
 def _accesses(played: Played, process: str) -> set[tuple[str, str]]:
-    return {(str(item[0]), str(item[1])) for item in _items(played, process) if item[0] in ("read", "write")}
+    return {(str(item[0]), str(item[1])) for item in items_of_process(played, process) if item[0] in ("read", "write")}
 
 
 def readings(chain: Chain) -> Iterator[tuple[str, ...]]:

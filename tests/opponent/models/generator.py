@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from random import Random
 
 from opponent.models import writing
+from opponent.models.choosing import constraints_of
+from opponent.models.constraints import Constraint
 from opponent.models.erasing import erased
+from opponent.models.reading import UnplayableError, read
 from opponent.models.writing import Parts, item, ticks, time
 
 #: What is in some models; a model has one to four of them.
@@ -44,7 +47,7 @@ class Plan:
 
 @dataclass(frozen=True, slots=True)
 class RandomModel:
-    """A model, what it has in it, and pairs of events between which a delay can be limited.
+    """A model, what it has in it, and pairs of events between which a delay can be limited, and what else can be.
 
     Attributes
     ----------
@@ -55,6 +58,7 @@ class RandomModel:
     features: frozenset[str]
     delays: tuple[tuple[tuple[str, str], tuple[str, str]], ...]
     hides: int | None = None
+    constraints: tuple[Constraint, ...] = ()
 
     def told(self) -> tuple[str, frozenset[str]]:
         """What the model states, and what is in it."""
@@ -66,10 +70,20 @@ class RandomModel:
 
 def random_model(seed: int) -> RandomModel:
     """The model of a number."""
-    return _Generator(Random(seed)).model()
+    return Generator(Random(seed)).model()
 
 
-class _Generator:
+def constrained(model: RandomModel, seed: int) -> RandomModel:
+    """The same model with constraints."""
+    try:
+        return replace(model, constraints=constraints_of(read(model.text), Random(seed)))
+    except UnplayableError:
+        return model
+
+
+class Generator:
+    """Makes a model, part by part."""
+
     def __init__(self, rng: Random) -> None:
         self.rng, self.parts = rng, Parts()
         self.features = set(rng.sample(FEATURES, rng.choice((1, 2, 2, 3, 4))))

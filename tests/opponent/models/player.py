@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from heapq import heappop, heappush
-from typing import Any
+from typing import Any, NamedTuple
 
 from opponent.models.arrivals import occurrences
 from opponent.models.comparisons import is_true
@@ -16,6 +16,15 @@ from opponent.models.variants import Choices, Variant
 
 NEVER = 10**18
 _MOST_STEPS = 200_000
+
+
+class Mark(NamedTuple):
+    """Something that a job does, and within which runnable."""
+
+    change: str
+    name: str
+    time: int
+    runnable: str
 
 
 @dataclass(slots=True, eq=False)
@@ -38,12 +47,14 @@ class Job:
     end: int | None = None
     accesses: dict[tuple[str, str], list[int]] = field(default_factory=dict)
     copies: list[str] = field(default_factory=list)
+    #: What runnables do: they start, terminate, read and write; with the name of what they access, or their own.
+    marks: list[Mark] = field(default_factory=list)
 
     def has_more(self) -> bool:
         """Whether anything is left in its text."""
-        return any(index < len(body) for body, index, _ in self.stack)
+        return any(index < len(body) for body, index, *_ in self.stack)
 
-    def next_item(self) -> Item | None:
+    def next_item(self, now: int) -> Item | None:
         """Take the next item; that a non-interruptible group is left is one, since others can run then."""
         while self.stack:
             top = self.stack[-1]
@@ -51,15 +62,22 @@ class Job:
                 top[1] += 1
                 return tuple(top[0][top[1] - 1])
             self.stack.pop()
+            if top[3]:
+                self.marks.append(Mark("terminate", top[3], now, top[3]))
             if top[2]:
                 self.masks -= top[2]
                 return ("left",)
         return None
 
-    def enter(self, body: Body, masks: int = 0) -> None:
-        """Continue inside a body."""
+    def enter(self, body: Body, masks: int = 0, runnable: str = "") -> None:
+        """Continue inside a body, which can be the one of a runnable."""
         self.masks += masks
-        self.stack.append([body, 0, masks])
+        self.stack.append([body, 0, masks, runnable])
+
+    @property
+    def runnable(self) -> str:
+        """The innermost runnable that is executed; "" if it is none."""
+        return next((frame[3] for frame in reversed(self.stack) if frame[3]), "")
 
 
 class Player:
@@ -160,7 +178,7 @@ class Player:
             activated=self.now,
             rank=(self.now, self.rank if is_sliced else order),
             deadline=self.now + (process.deadline or NEVER),
-            stack=[[body, 0, 0]],
+            stack=[[body, 0, 0, ""]],
             slice_left=process.slice if is_sliced and process.slice else NEVER,
             cause=cause,
         )
@@ -257,7 +275,7 @@ class Player:
                 self._act(job)
 
     def _act(self, job: Job) -> None:
-        item = job.next_item()
+        item = job.next_item(self.now)
         if item is None:
             self._end(job)
             return
@@ -267,6 +285,7 @@ class Player:
 
     def _end(self, job: Job) -> None:
         job.end = self.now
+        job.marks += [Mark("terminate", frame[3], self.now, frame[3]) for frame in reversed(job.stack) if frame[3]]
         for label in dict.fromkeys(job.copies):
             job.accesses.setdefault(("write", label), []).append(self.now)
         self.queues[job.process].remove(job)
@@ -287,7 +306,8 @@ class Player:
     def _do_call(self, job: Job, runnable: str, counter: tuple[int, int] | None, key: int) -> None:
         body, condition = self.played.runnables[runnable]
         if is_true(condition, self.modes, self.fills) and self._counts(key, counter):
-            job.enter(body)
+            job.marks.append(Mark("start", runnable, self.now, runnable))
+            job.enter(body, runnable=runnable)
 
     def _do_group(self, job: Job, body: Body, is_ordered: bool, is_interruptible: bool) -> None:
         inner = list(body)
@@ -304,8 +324,10 @@ class Player:
     def _do_read(self, job: Job, label: str, implementation: str) -> None:
         time = job.start if implementation == "implicit" and job.start is not None else self.now
         job.accesses.setdefault(("read", label), []).append(time)
+        job.marks.append(Mark("read", label, self.now, job.runnable))
 
     def _do_write(self, job: Job, label: str, implementation: str) -> None:
+        job.marks.append(Mark("write", label, self.now, job.runnable))
         if implementation == "implicit":
             job.copies.append(label)
         else:
