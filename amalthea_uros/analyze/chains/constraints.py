@@ -38,13 +38,14 @@ from amalthea_uros.perf.constraints import (
     RepetitionConstraint,
 )
 from amalthea_uros.perf.events import EventChain, LabelChange, LabelEvent
+from amalthea_uros.timing.counters import is_always
 from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.links import LinkKind
-from amalthea_uros.timing.dataflow.routes import corresponding, routes
+from amalthea_uros.timing.dataflow.routes import Route, corresponding, routes
 from amalthea_uros.timing.event_models import EventModel, Periodic, can_be_dense, is_strictly_periodic
 from amalthea_uros.timing.jitter import jitter_of
 from amalthea_uros.timing.releases import known_releases
-from amalthea_uros.timing.runnable_order import order_scope
+from amalthea_uros.timing.runnable_order import are_activated_together, has_counted_effect, order_scope
 from amalthea_uros.units import Time, time_text
 
 _REACTION = (Quantity.MIN_FIRST_TO_FIRST, Quantity.MAX_REDUCED_REACTION_TIME)
@@ -136,16 +137,35 @@ class ConstraintEvaluator:
     def _delay(self, constraint: DelayConstraint, limits: Sequence[SystemLimit]) -> Iterator[_Judged]:
         source, target = self.windows.event(constraint.source), self.windows.event(constraint.target)
         found = corresponding(source, target, self.evaluation.context.dataflow)
+        self._require_all_sources(constraint.source, found)
         if constraint.matching is not Matching.REACTION:
-            links = {link.kind for route in found for link in route.links}
-            later = any(
-                stage.jobs_later is not None for route in found for group in self.evaluation.groups(route) for stage in group
-            )
-            if later or not links <= {LinkKind.JOB, LinkKind.TRIGGER}:
-                raise UnknownError(
-                    "data between the events can be overwritten or read again, so their occurrences do not correspond one to one"
-                )
+            self._require_one_to_one(constraint, found)
         yield from _proved(limits, _Latencies(self.evaluation.worst(found), *_REACTION).limited)
+
+    def _require_all_sources(self, source: str, found: Iterable[Route]) -> None:
+        """Refuse a source that also occurs in jobs that a counter lets take no part in what follows."""
+        for route in found:
+            counter = self.evaluation.groups(route)[0][0].counter
+            is_apart = route.occurrences[0].position is None and (counter is None or not is_always(counter))
+            if is_apart or any(link.write is not None and has_counted_effect(link.write) for link in route.links):
+                raise UnknownError(
+                    f"{source!r} occurs in each job, but a counter lets only some jobs take part in what follows"
+                )
+
+    def _require_one_to_one(self, constraint: DelayConstraint, found: Sequence[Route]) -> None:
+        """Refuse events whose occurrences need not correspond one to one."""
+        links = {link.kind for route in found for link in route.links}
+        later = any(
+            stage.jobs_later is not None for route in found for group in self.evaluation.groups(route) for stage in group
+        )
+        if later or not links <= {LinkKind.JOB, LinkKind.TRIGGER}:
+            raise UnknownError(
+                "data between the events can be overwritten or read again, so their occurrences do not correspond one to one"
+            )
+        source, target = (self.windows.occurrence(name).process.name for name in (constraint.source, constraint.target))
+        context = self.evaluation.context
+        if not are_activated_together(source, target, context.system, context.dataflow.events):
+            raise UnknownError(f"it is not certain that each job of {source!r} activates {target!r} exactly once")
 
     def _chain_synchronization(self, constraint: ChainSynchronization, limits: Sequence[SystemLimit]) -> Iterator[_Judged]:
         found = [self.chains.get(name) for name in constraint.chains]

@@ -182,7 +182,8 @@ def falsely_met(analysis: Analysis, limits: Iterable[Limit], tally: Tally) -> It
         limit = by_name.get(requirement.name.removesuffix(" repetition"))
         if limit is None:
             continue
-        kind = f"{limit.key[0]} {' '.join(w for w in limit.key[1].split() if w.isalpha())}" if limit.key[0] == "constraint" else limit.key[0]
+        words = limit.key[1].split() if limit.key[0] == "constraint" else []
+        kind = " ".join([limit.key[0], *(word for word in words if word.isalpha())])
         tally.limits[str(requirement.verdict)] += 1
         tally.kinds[f"{kind}: {requirement.verdict}"] += 1
         # A constraint is met if all that is said about it is.

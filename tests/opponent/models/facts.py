@@ -170,10 +170,10 @@ def _add(found: Extremes, played: Played, run: Player, pairs: Iterable[tuple[Eve
 
 def _constrain(by_reading: dict[Constraint, dict[int, Extremes]], run: Play) -> None:
     """What constraints limit in a play, reading by reading."""
-    for constraint, readings in by_reading.items():
+    for constraint, found in by_reading.items():
         for value in constraint.values(run):
             for reading in value.readings:
-                extremes = readings.setdefault(reading, Extremes())
+                extremes = found.setdefault(reading, Extremes())
                 add = extremes.add if value.is_complete else extremes.at_least
                 add(("constraint", constraint.name, ""), value.value)
 

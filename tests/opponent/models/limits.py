@@ -101,7 +101,7 @@ def limits_of(facts: Facts) -> Iterator[Limit]:
             elif key[2] in SIGNED and key[0] == "process":
                 least = -NEVER
             limit = (judged - 1) // unit * unit if is_upper else (judged // unit + 1) * unit
-            if limit >= least:
+            if limit >= least and judged < NEVER:
                 yield Limit(name_of(key, is_upper=is_upper), key, is_upper, limit, judged)
 
 
