@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import pytest
-from test_chain_systems import END, START, at, producer_and_consumer, read, system, ticks, write
+from test_chain_systems import ACTIVATION, END, START, at, producer_and_consumer, read, system, ticks, write
 
 from amalthea_uros import analyze_system
 from amalthea_uros.perf.activities import AccessKind, Call, SenderReceiverAccess, Trigger
@@ -267,3 +267,20 @@ def test_a_runnable_that_a_job_executes_several_times_repeats_within_it():
     )
     repetition = RepetitionConstraint(name="R", event="r start", lower=30 * US)
     assert evaluate(repetition, built=built) == [("repetition", None, "unknown")]
+
+
+def test_the_activation_of_the_job_that_reads_answers_nothing():
+    # X keeps A off from 0 to 9 or 10, and A keeps B off, which is activated at 0 and at 40: that is 30 or 31 after the start of A.
+    tasks = [("X", 120, [ticks(10, 9)]), ("A", 60, [ticks(5)]), ("B", 40, [ticks(1)])]
+    built = system(tasks, (at("A", START), at("B", ACTIVATION)))
+    delay = DelayConstraint(name="D", source="A start", target="B activate", upper=29 * US)
+    assert [verdict for _, _, verdict in evaluate(delay, built=built)] == ["unknown"]
+
+
+def test_data_within_a_job_do_not_reach_what_comes_before():
+    built = system(
+        [("X", 40, [ticks(9, 4)]), ("A", 40, [ticks(3), write("L"), read("L")])], (at("A", START), at("A", ACTIVATION))
+    )
+    delay = DelayConstraint(name="D", source="A start", target="A activate", upper=30 * US)
+    # A starts 4 to 9 after its activation, and is activated 31 to 36 later.
+    assert [verdict for _, _, verdict in evaluate(delay, built=built)] == ["missed"]

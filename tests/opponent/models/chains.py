@@ -13,8 +13,8 @@ from itertools import pairwise, product
 from xml.etree import ElementTree
 
 from opponent.models.player import Job, Player
-from opponent.models.reading import Item, Played, kind_of, reference
-from opponent.models.variants import items_of
+from opponent.models.reading import Played, kind_of, reference
+from opponent.models.variants import items_of_process
 
 #: A process and what happens to its job: activate, start, terminate.
 Event = tuple[str, str]
@@ -76,21 +76,6 @@ def _links(played: Played, source: str, target: str) -> Iterator[str]:
     of_target = next(process.stimuli for process in played.processes if process.name == target)
     if stimuli & set(of_target):
         yield ""
-
-
-def items_of_process(played: Played, process: str) -> Iterator[Item]:
-    """All items that a process can reach."""
-    bodies = [next(p.body for p in played.processes if p.name == process)]
-    known: set[str] = set()
-    while bodies:
-        alone = Played(
-            **{f: getattr(played, f) for f in played.__slots__} | {"processes": (), "runnables": {"": (bodies.pop(), ())}}
-        )
-        for item in items_of(alone):
-            yield item
-            if item[0] == "call" and item[1] not in known:
-                known.add(item[1])
-                bodies.append(played.runnables[item[1]][0])
 
 
 def _accesses(played: Played, process: str) -> set[tuple[str, str]]:

@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from itertools import permutations
 from random import Random
 
-from opponent.models.chains import items_of_process
 from opponent.models.constraints import (
     ORDERS,
     Age,
@@ -21,6 +20,7 @@ from opponent.models.constraints import (
 )
 from opponent.models.facts import period_of
 from opponent.models.reading import Item, Played, Process
+from opponent.models.variants import items_of_process
 
 MICROSECOND = 10**6
 #: How many constraints of a kind a model has at most.

@@ -207,9 +207,10 @@ def is_determined(facts: Facts) -> bool:
     """Whether nothing is left to chance, and all readings were played."""
     ticks = str([process.body for process in facts.played.processes]) + str(facts.played.runnables)
     kinds = {stimulus.kind for stimulus in facts.played.stimuli.values()}
-    random = kinds & {"RelativePeriodic", "ArrivalCurve", "VariableRate"} or "chance" in ticks
+    is_random = bool(kinds & {"RelativePeriodic", "ArrivalCurve", "VariableRate"}) or "chance" in ticks
+    is_random |= any(item[0] == "group" and not item[2] for item in items_of(facts.played))
     jitters = any("jitter" in stimulus.given for stimulus in facts.played.stimuli.values())
-    return facts.is_complete and not (random or jitters or facts.lost or facts.played.servers or _varies(facts))
+    return facts.is_complete and not (is_random or jitters or facts.lost or facts.played.servers or _varies(facts))
 
 
 def _varies(facts: Facts) -> bool:

@@ -202,8 +202,8 @@ def metrics(process: Process, jobs: list[Job]) -> Iterator[tuple[str, int]]:
             yield "response_time", job.end - job.activated
             yield "gross_execution_time", job.end - job.start
             yield "running_time", job.executed
-            yield "net_execution_time", job.executed
-            yield "ready_time", job.end - job.start - job.executed
+            yield "net_execution_time", job.executed + job.waited
+            yield "ready_time", job.end - job.start - job.executed - job.waited
             if process.deadline is not None:
                 yield "lateness", job.end - job.activated - process.deadline
     for one, other in pairwise(jobs):

@@ -86,12 +86,18 @@ class Generator:
 
     def __init__(self, rng: Random) -> None:
         self.rng, self.parts = rng, Parts()
-        self.features = set(rng.sample(FEATURES, rng.choice((1, 2, 2, 3, 4))))
+        self.features = self._features()
         if rng.random() < 0.25:
             self.features = {f for f in self.features if f not in POLICIES}
         self.plans: list[Plan] = []
         self.used: set[str] = set()
         self.runnables = 0
+
+    def _features(self) -> set[str]:
+        return set(self.rng.sample(FEATURES, self.rng.choice((1, 2, 2, 3, 4))))
+
+    def _period(self) -> int:
+        return self.rng.choice(PERIODS)
 
     def has(self, *names: str, chance: float = 1.0) -> bool:
         """Whether the model shall have something, here."""
@@ -111,9 +117,9 @@ class Generator:
         self.policy = next((POLICIES[f] for f in POLICIES if f in self.features), "FixedPriorityPreemptive")
         self.used |= self.features & set(POLICIES)
         for n in range(rng.choice((2, 3, 3, 4))):
-            self.plans.append(Plan(f"T{n}", False, rng.choice([*parts.cores]), rng.choice(PERIODS)))
+            self.plans.append(Plan(f"T{n}", False, rng.choice([*parts.cores]), self._period()))
         if self.has("isr", "isr overhead"):
-            self.plans.append(Plan(f"T{len(self.plans)}", True, rng.choice([*parts.cores]), rng.choice(PERIODS)))
+            self.plans.append(Plan(f"T{len(self.plans)}", True, rng.choice([*parts.cores]), self._period()))
         self._state()
         for plan in self.plans:
             self._body(plan)
@@ -386,12 +392,18 @@ class Generator:
             if self.has("migration", chance=0.5) and self.policy == "FixedPriorityPreemptive" and not self.has("server"):
                 other = "c1" if plan.core == "c0" else "c0"
                 body += item("EnforcedMigration", f'resourceOwner="S{other}?type=TaskScheduler"') + self._ticks()
-            mode = "non_preemptive" if self.has("non-preemptive", chance=0.5) else "preemptive"
+            mode, limit = self._mode(plan), self._limit()
             parts.tasks.append(
                 f'<tasks xmi:id="{plan.name}?type=Task" name="{plan.name}" stimuli="{stimuli}" preemption="{mode}" '
-                f'multipleTaskActivationLimit="99"><activityGraph>{body}</activityGraph></tasks>'
+                f'multipleTaskActivationLimit="{limit}"><activityGraph>{body}</activityGraph></tasks>'
             )
             parts.allocations.append(self._allocation(plan, priority))
+
+    def _mode(self, _plan: Plan) -> str:
+        return "non_preemptive" if self.has("non-preemptive", chance=0.5) else "preemptive"
+
+    def _limit(self) -> int:
+        return 99
 
     def _allocation(self, plan: Plan, priority: int) -> str:
         rng, scheduler = self.rng, f"S{plan.core}"

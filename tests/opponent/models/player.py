@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from opponent.models.arrivals import occurrences
 from opponent.models.comparisons import is_true
 from opponent.models.reading import Body, Item, Played, Process, UnplayableError
-from opponent.models.variants import Choices, Variant
+from opponent.models.variants import Choices, Variant, items_of_process
 
 NEVER = 10**18
 _MOST_STEPS = 200_000
@@ -49,6 +49,14 @@ class Job:
     copies: list[str] = field(default_factory=list)
     #: What runnables do: they start, terminate, read and write; with the name of what they access, or their own.
     marks: list[Mark] = field(default_factory=list)
+    #: A cooperative job lets other ones go first, and so it does after calls.
+    at_point: bool = False
+    yields_at_calls: bool = False
+    #: Semaphores that it holds, and the one that it waits for, since when, and how long it has waited.
+    held: list[str] = field(default_factory=list)
+    awaited: str = ""
+    since: int = 0
+    waited: int = 0
 
     def has_more(self) -> bool:
         """Whether anything is left in its text."""
@@ -64,6 +72,8 @@ class Job:
             self.stack.pop()
             if top[3]:
                 self.marks.append(Mark("terminate", top[3], now, top[3]))
+                if self.yields_at_calls:
+                    return ("point",)
             if top[2]:
                 self.masks -= top[2]
                 return ("left",)
@@ -97,6 +107,10 @@ class Player:
         self.budgets = {name: server.capacity for name, server in played.servers.items()}
         self.activated_by = {
             name: [i for i, process in enumerate(self.processes) if name in process.stimuli] for name in played.stimuli
+        }
+        self.ceilings = {
+            name: max(p.priority for p in self.processes if ("request", name) in items_of_process(played, p.name))
+            for name in played.semaphores
         }
         self.timeline: list[tuple[int, int, int, str]] = []
         for order, stimulus in enumerate(played.stimuli.values()):
@@ -181,6 +195,7 @@ class Player:
             stack=[[body, 0, 0, ""]],
             slice_left=process.slice if is_sliced and process.slice else NEVER,
             cause=cause,
+            yields_at_calls=process.mode == "cooperative" and self.variant.points_at_calls,
         )
         self.queues[index].append(job)
         self.jobs[index].append(job)
@@ -200,11 +215,12 @@ class Player:
             return (job.deadline, 0, job.rank)
         if policy.startswith("DeadlineMonotonic"):
             return (process.deadline, 0, job.rank)
-        return (-process.priority, 0, job.rank)
+        ceilings = (self.ceilings[name] for name in job.held if self.played.semaphores[name])
+        return (-max(process.priority, *ceilings, -NEVER), 0, job.rank)
 
     def _pick(self, core: str) -> Job | None:
         """The job that has the core."""
-        ready = [queue[0] for queue in self.queues if queue and queue[0].core == core]
+        ready = [queue[0] for queue in self.queues if queue and queue[0].core == core and not queue[0].awaited]
         masking = [job for job in ready if job.masks]
         isrs = [job for job in ready if self.processes[job.process].is_isr]
         if masking and not (self.variant.unmasked and isrs):
@@ -218,7 +234,15 @@ class Player:
             return None
         ready = [job for job in ready if self._has_budget(job)]
         keeping = [job for job in ready if job.start is not None and self.processes[job.process].mode == "non_preemptive"]
+        between = [job for job in ready if job.start is not None and self._is_cooperative(job) and not job.at_point]
+        if between and self.variant.whole_cooperative:
+            keeping += between
+        elif between:
+            ready = [job for job in ready if job in between or not self._is_cooperative(job)]
         return min(keeping or ready, key=self._urgency, default=None)
+
+    def _is_cooperative(self, job: Job) -> bool:
+        return self.processes[job.process].mode == "cooperative"
 
     def _priority(self, job: Job) -> int:
         return self.processes[job.process].priority
@@ -275,6 +299,7 @@ class Player:
                 self._act(job)
 
     def _act(self, job: Job) -> None:
+        job.at_point = False
         item = job.next_item(self.now)
         if item is None:
             self._end(job)
@@ -366,8 +391,23 @@ class Player:
         for stimulus in reversed(listeners) if self.variant.last_first else listeners:
             self._do_fire(job, stimulus)
 
-    def _do_point(self, _job: Job) -> None:
+    def _do_point(self, job: Job) -> None:
         """Others go first only where the task is cooperative."""
+        job.at_point = True
+
+    def _do_request(self, job: Job, semaphore: str) -> None:
+        if any(semaphore in other.held for queue in self.queues for other in queue):
+            job.awaited, job.since = semaphore, self.now
+        else:
+            job.held.append(semaphore)
+
+    def _do_release(self, job: Job, semaphore: str) -> None:
+        job.held.remove(semaphore)
+        waiting = [other for queue in self.queues for other in queue if other.awaited == semaphore]
+        if waiting:
+            first = min(waiting, key=self._urgency)
+            first.held.append(semaphore)
+            first.awaited, first.waited = "", first.waited + self.now - first.since
 
     def _do_migrate(self, job: Job, core: str) -> None:
         job.core = core

@@ -1,10 +1,167 @@
-"""Random models with constraints."""
+"""Random models with constraints, and with further constructs; those of `generator` stay as they are."""
 
 from __future__ import annotations
 
-from opponent.models.generator import RandomModel, constrained, random_model
+from itertools import pairwise
+from random import Random
+
+from opponent.models.generator import FEATURES, PERIODS, Generator, Plan, RandomModel, constrained, random_model
+from opponent.models.writing import item
+
+#: What is in some of these models, besides up to two of the other features.
+FURTHER = (
+    "equal periods", "data in runnables", "nested calls", "switch in a runnable", "unordered group", "chance", "cooperative",
+    "few activations", "two chains", "long chain", "semaphore", "ceiling", "non-preemptive", "calls",
+)  # fmt: skip
 
 
 def richer_model(seed: int) -> RandomModel:
-    """The model of a number, with constraints."""
-    return constrained(random_model(seed), seed)
+    """The model of a number, with constraints: every third one is one of the other generator."""
+    if seed % 3 == 0:
+        return constrained(random_model(seed // 3), seed)
+    return constrained(_Richer(Random(seed)).model(), seed)
+
+
+class _Richer(Generator):
+    def _features(self) -> set[str]:
+        rng = self.rng
+        return {*rng.sample(FURTHER, rng.choice((2, 3, 4))), *rng.sample(FEATURES, rng.choice((0, 0, 1, 2)))}
+
+    def _period(self) -> int:
+        if self.plans and self.has("equal periods", chance=0.8):
+            return self.plans[0].period
+        return self.rng.choice(PERIODS)
+
+    def _mode(self, plan: Plan) -> str:
+        return "cooperative" if self.has("cooperative", chance=0.6) else super()._mode(plan)
+
+    def _limit(self) -> int:
+        return self.rng.choice((1, 1, 2)) if self.has("few activations", chance=0.6) else 99
+
+    # Bodies.
+
+    def _item(self, plan: Plan) -> str:
+        rng = self.rng
+        if self.has("calls", "nested calls", chance=0.5):
+            return self._call()
+        if self.has("unordered group", chance=0.4):
+            return item("Group", 'ordered="false" interruptible="true"', self._ticks() + self._call() + self._ticks())
+        if self.has("chance", chance=0.4):
+            return self._chance()
+        if self.has("cooperative", chance=0.3):
+            return item("SchedulePoint")
+        if self.features & {"semaphore", "ceiling"} and self.policy == "FixedPriorityPreemptive" and rng.random() < 0.4:
+            return self._locked(plan)
+        return super()._item(plan)
+
+    def _chance(self) -> str:
+        branches = "".join(
+            f'<entries probability="{self.rng.randint(1, 3)}.0">{self._ticks() if self.rng.random() < 0.7 else self._call()}</entries>'
+            for _ in range(2)
+        )
+        return item("ProbabilitySwitch", content=branches)
+
+    def _call(self) -> str:
+        """A call of a runnable, which can call another one."""
+        if not self.has("nested calls", "switch in a runnable", chance=0.6):
+            return super()._call()
+        inner = super()._call()
+        content = self._ticks() + inner if self.rng.random() < 0.6 else inner + self._ticks()
+        if self.has("switch in a runnable", chance=0.7):
+            content += self._switch()
+        return self._runnable(content)
+
+    def _switch(self) -> str:
+        if not self.features & {"modes", "stimulus condition", "mode switch"}:
+            return self._chance()
+        branch = f'<entries name="e0">{self._ticks()}<condition>{self._condition()}</condition></entries>'
+        return item("Switch", content=branch + f"<defaultEntry>{self._ticks()}</defaultEntry>")
+
+    def _runnable(self, content: str) -> str:
+        """A call of a new runnable."""
+        name = f"r{self.runnables}"
+        self.runnables += 1
+        self.parts.runnables.append(
+            f'<runnables xmi:id="{name}?type=Runnable" name="{name}" callback="false" service="false">'
+            f"<activityGraph>{content}</activityGraph></runnables>"
+        )
+        counter = '<counter prescaler="2" offset="0"/>' if self.has("counter", chance=0.3) else ""
+        return item("RunnableCall", f'runnable="{name}?type=Runnable"', counter)
+
+    def _locked(self, plan: Plan) -> str:
+        """An execution with a semaphore of a core, or two, one within the other; ISRs have none."""
+        if plan.is_isr or self.has("server", "migration"):
+            return self._ticks()
+        names = [f"{plan.core}{which}" for which in "ab"[: self.rng.choice((1, 1, 2))]]
+        content = self._ticks()
+        for name in reversed(names):
+            if not any(f'name="{name}"' in text for text in self.parts.semaphores):
+                has_ceiling = str(self.has("ceiling")).lower()
+                self.used |= self.features & {"semaphore"}
+                self.parts.semaphores.append(
+                    f'<semaphores xmi:id="{name}?type=Semaphore" name="{name}" initialValue="0" maxValue="1" '
+                    f'priorityCeilingProtocol="{has_ceiling}"/>'
+                )
+            request, release = (
+                item("SemaphoreAccess", f'semaphore="{name}?type=Semaphore" access="{access}" waitingBehaviour="passive"')
+                for access in ("request", "release")
+            )
+            content = request + content + release
+        return item("Group", 'ordered="true" interruptible="true"', content)
+
+    # Chains.
+
+    def _chain(self) -> None:
+        rng = self.rng
+        most = 4 if self.has("long chain") else 3
+        path = rng.sample(self.plans, min(len(self.plans), rng.randint(2, most)))
+        self._link(path, "L")
+        ends = [rng.choice(("start", "activate", "terminate")), rng.choice(("terminate", "start"))]
+        self._state_chain("chain", path, ends, "v")
+        if self.has("two chains"):
+            # From the same stimulus to another response, or from another process.
+            others = [plan for plan in self.plans if plan not in path] or self.plans[:1]
+            other = [path[0] if rng.random() < 0.7 else path[-1], rng.choice(others)]
+            if other[0] is not other[1]:
+                self._link(other, "P")
+                self._state_chain("other", other, [ends[0] if other[0] is path[0] else "start", "terminate"], "w")
+
+    def _link(self, path: list[Plan], label: str) -> None:
+        for n, (source, target) in enumerate(pairwise(path)):
+            self._share(source, target, f"{label}{n}")
+
+    def _state_chain(self, name: str, path: list[Plan], ends: list[str], event: str) -> None:
+        names = [f"{event}{n}" for n in range(len(path))]
+        if event == "w" and any(f'entity="{path[0].name}?' in text and 'id="v0?' in text for text in self.parts.events):
+            names[0] = "v0"
+        for plan, change, each in zip(path, [ends[0], *["terminate"] * (len(path) - 2), ends[1]], names, strict=True):
+            if each == "v0" and event == "w":
+                continue
+            self.parts.events.append(
+                f'<events xsi:type="am:ProcessEvent" xmi:id="{each}?type=ProcessEvent" name="{each}" eventType="{change}" '
+                f'entity="{plan.name}?type={plan.kind}"/>'
+            )
+        items = "".join(
+            f'<items xsi:type="am:EventChainContainer"><eventChain name="" stimulus="{one}?type=ProcessEvent" '
+            f'response="{other}?type=ProcessEvent" minItemsCompleted="1"/></items>'
+            for one, other in pairwise(names)
+        )
+        self.parts.chains.append(
+            f'<eventChains xmi:id="{name}?type=EventChain" name="{name}" stimulus="{names[0]}?type=ProcessEvent" '
+            f'response="{names[-1]}?type=ProcessEvent" itemType="sequence" minItemsCompleted="1">{items}</eventChains>'
+        )
+        self.used.add("chain")
+
+    def _share(self, source: Plan, target: Plan, label: str) -> None:
+        if not self.has("data in runnables"):
+            super()._share(source, target, label)
+            return
+        self.parts.data.append(f'<labels xmi:id="{label}?type=Label" name="{label}" constant="false" bVolatile="false"/>')
+        how = self.rng.choice(("explicit", "explicit", "implicit"))
+        for plan, access in ((source, "write"), (target, "read")):
+            text = item("LabelAccess", f'data="{label}?type=Label" access="{access}" implementation="{how}"')
+            content = [self._ticks(), text] if self.rng.random() < 0.5 else [text, self._ticks()]
+            call = self._runnable("".join(content))
+            if self.has("nested calls", chance=0.5):
+                call = self._runnable(call + self._ticks())
+            plan.items.insert(self.rng.randint(0, len(plan.items)), call)
