@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import permutations
+from itertools import pairwise, permutations
 from random import Random
 
+from opponent.models.chains import Chain, chains_of
 from opponent.models.constraints import (
     ORDERS,
     Age,
     AgeInCycles,
+    ChainSynchronization,
     Constraint,
     Delay,
     Deviation,
@@ -19,7 +21,7 @@ from opponent.models.constraints import (
     Synchronization,
 )
 from opponent.models.facts import period_of
-from opponent.models.reading import Item, Played, Process
+from opponent.models.reading import Item, Played, Process, read
 from opponent.models.variants import items_of_process
 
 MICROSECOND = 10**6
@@ -27,9 +29,20 @@ MICROSECOND = 10**6
 MOST = 3
 
 
-def constraints_of(played: Played, rng: Random) -> tuple[Constraint, ...]:
-    """Some constraints of each kind."""
-    return tuple(_Choice(played, rng).all())
+def constraints_of(text: str, rng: Random) -> tuple[Constraint, ...]:
+    """Some constraints of each kind on what a model has."""
+    played = read(text)
+    chains = list(chains_of(text, played))
+    together = [
+        ChainSynchronization(f"chains {end}", (one, other), end, _stimulus(one) == _stimulus(other), rng.random() < 0.5)
+        for one, other in pairwise(chains)
+        for end in ("Stimulus", "Response")
+    ]
+    return (*_Choice(played, rng).all(), *together)
+
+
+def _stimulus(chain: Chain) -> tuple[str, str]:
+    return chain.processes[0], chain.stimulus
 
 
 class _Choice:

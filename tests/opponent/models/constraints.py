@@ -9,9 +9,11 @@ from abc import ABC, abstractmethod
 from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import product
 from typing import ClassVar, NamedTuple
 from urllib.parse import quote_plus
 
+from opponent.models.chains import Chain, answers, readings
 from opponent.models.player import NEVER, Job, Mark, Player
 from opponent.models.reading import Played
 
@@ -44,7 +46,7 @@ class Play:
     """What happens in a play up to its end."""
 
     def __init__(self, played: Played, run: Player, until: int) -> None:
-        self.played, self.until = played, until
+        self.played, self.run, self.until = played, run, until
         self.jobs: dict[str, list[Job]] = {p.name: jobs for p, jobs in zip(played.processes, run.jobs, strict=True)}
 
     def times(self, event: EventOf) -> list[int]:
@@ -216,6 +218,49 @@ def windows(events: Sequence[list[int]], until: int, *, with_equal: bool) -> Ite
             seen.clear()
     if begin is not None:
         yield until - begin, False
+
+
+@dataclass(frozen=True, slots=True)
+class ChainSynchronization(Constraint):
+    """How far two chains are apart at an end: all such events, or, from the same stimulus, the responses to each."""
+
+    chains: tuple[Chain, Chain]
+    end: str
+    has_same_stimulus: bool
+    is_multiple: bool
+
+    has_lower = False
+
+    def values(self, play: Play) -> Iterator[Value]:
+        yield from Synchronization("", tuple(map(self._event, self.chains)), self.is_multiple).values(play)
+        if self.end == "Stimulus" or not self.has_same_stimulus:
+            return
+        for number, (one, other) in enumerate(product(*map(readings, self.chains)), 3):
+            pairs = zip(
+                *(answers(play.played, play.run, chain, links) for chain, links in zip(self.chains, (one, other), strict=True)),
+                strict=False,
+            )
+            found = [(first, then) for (_, first), (_, then) in pairs]
+            yield from (
+                Value(abs((play.until if first is None else first) - (play.until if then is None else then)), (number,))
+                for first, then in found
+            )
+            if not found:
+                yield Value(0, (number,))
+
+    def _event(self, chain: Chain) -> EventOf:
+        process, event = (
+            (chain.processes[0], chain.stimulus) if self.end == "Stimulus" else (chain.processes[-1], chain.response)
+        )
+        change, _, name = event.partition(" ")
+        if not name:
+            return EventOf("process", process, change)
+        return EventOf("label" if change in ("read", "write") else "runnable", name, change, process)
+
+    def text(self, name: str, limit: int, event: Referring, *, is_upper: bool) -> str:
+        scope = " ".join(f"{quote_plus(chain.name)}?type=EventChain" for chain in self.chains)
+        attributes = f'scope="{scope}" type="{self.end}" multipleOccurrencesAllowed="{str(self.is_multiple).lower()}"'
+        return element("EventChainSynchronizationConstraint", name, attributes, _time("tolerance", limit))
 
 
 @dataclass(frozen=True, slots=True)

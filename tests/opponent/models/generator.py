@@ -10,7 +10,7 @@ from opponent.models import writing
 from opponent.models.choosing import constraints_of
 from opponent.models.constraints import Constraint
 from opponent.models.erasing import erased
-from opponent.models.reading import UnplayableError, read
+from opponent.models.reading import UnplayableError
 from opponent.models.writing import Parts, item, ticks, time
 
 #: What is in some models; a model has one to four of them.
@@ -76,7 +76,7 @@ def random_model(seed: int) -> RandomModel:
 def constrained(model: RandomModel, seed: int) -> RandomModel:
     """The same model with constraints."""
     try:
-        return replace(model, constraints=constraints_of(read(model.text), Random(seed)))
+        return replace(model, constraints=constraints_of(model.text, Random(seed)))
     except UnplayableError:
         return model
 

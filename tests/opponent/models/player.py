@@ -54,6 +54,9 @@ class Job:
     yields_at_calls: bool = False
     #: Semaphores that it holds, and the one that it waits for, since when, and how long it has waited.
     held: list[str] = field(default_factory=list)
+    #: Labels whose data are visible at the end of the period, and whether that is before the end of the job.
+    timed: list[str] = field(default_factory=list)
+    is_late: bool = False
     awaited: str = ""
     since: int = 0
     waited: int = 0
@@ -313,6 +316,10 @@ class Player:
         job.marks += [Mark("terminate", frame[3], self.now, frame[3]) for frame in reversed(job.stack) if frame[3]]
         for label in dict.fromkeys(job.copies):
             job.accesses.setdefault(("write", label), []).append(self.now)
+        for label in dict.fromkeys(job.timed):
+            visible = job.activated + self._period(job)
+            job.is_late |= visible < self.now
+            job.accesses.setdefault(("write", label), []).append(visible)
         self.queues[job.process].remove(job)
         process = self.processes[job.process]
         if self.variant.decides_outside and not process.is_isr:
@@ -348,15 +355,26 @@ class Player:
 
     def _do_read(self, job: Job, label: str, implementation: str) -> None:
         time = job.start if implementation == "implicit" and job.start is not None else self.now
+        if implementation == "timed":
+            time = job.activated if self._period(job) else time
         job.accesses.setdefault(("read", label), []).append(time)
         job.marks.append(Mark("read", label, self.now, job.runnable))
 
     def _do_write(self, job: Job, label: str, implementation: str) -> None:
         job.marks.append(Mark("write", label, self.now, job.runnable))
-        if implementation == "implicit":
+        if implementation == "timed":
+            job.timed.append(label)
+        elif implementation == "implicit":
             job.copies.append(label)
         else:
             job.accesses.setdefault(("write", label), []).append(self.now)
+
+    def _period(self, job: Job) -> int:
+        """The period of a job, which only processes with one periodic stimulus have."""
+        stimuli = [self.played.stimuli[name] for name in self.processes[job.process].stimuli]
+        if len(stimuli) != 1 or stimuli[0].kind != "Periodic" or "jitter" in stimuli[0].given:
+            raise UnplayableError("accesses at the ends of periods that there are not")
+        return int(stimuli[0].given["recurrence"])
 
     def _do_mode(self, job: Job, label: str, access: str, value: int) -> None:
         job.accesses.setdefault(("read" if access == "read" else "write", label), []).append(self.now)

@@ -361,7 +361,7 @@ def _bounds(value: Element) -> tuple[int, int]:
 
 
 def _label_access(e: Element) -> Item:
-    if e.get("access") not in ("read", "write") or e.get("implementation") == "timed":
+    if e.get("access") not in ("read", "write"):
         raise UnplayableError("such accesses to labels")
     return (e.get("access"), reference(e.get("data")), e.get("implementation", "explicit"))
 

@@ -11,7 +11,8 @@ from opponent.models.writing import item
 #: What is in some of these models, besides up to two of the other features.
 FURTHER = (
     "equal periods", "data in runnables", "nested calls", "switch in a runnable", "unordered group", "chance", "cooperative",
-    "few activations", "two chains", "long chain", "semaphore", "ceiling", "non-preemptive", "calls",
+    "few activations", "two chains", "long chain", "semaphore", "ceiling",
+    "non-preemptive", "calls", "timed", "label events", "runnable events", "nested chain",
 )  # fmt: skip
 
 
@@ -77,7 +78,7 @@ class _Richer(Generator):
         branch = f'<entries name="e0">{self._ticks()}<condition>{self._condition()}</condition></entries>'
         return item("Switch", content=branch + f"<defaultEntry>{self._ticks()}</defaultEntry>")
 
-    def _runnable(self, content: str) -> str:
+    def _runnable(self, content: str, *, is_counted: bool = True) -> str:
         """A call of a new runnable."""
         name = f"r{self.runnables}"
         self.runnables += 1
@@ -85,7 +86,7 @@ class _Richer(Generator):
             f'<runnables xmi:id="{name}?type=Runnable" name="{name}" callback="false" service="false">'
             f"<activityGraph>{content}</activityGraph></runnables>"
         )
-        counter = '<counter prescaler="2" offset="0"/>' if self.has("counter", chance=0.3) else ""
+        counter = '<counter prescaler="2" offset="0"/>' if is_counted and self.has("counter", chance=0.3) else ""
         return item("RunnableCall", f'runnable="{name}?type=Runnable"', counter)
 
     def _locked(self, plan: Plan) -> str:
@@ -115,53 +116,94 @@ class _Richer(Generator):
         rng = self.rng
         most = 4 if self.has("long chain") else 3
         path = rng.sample(self.plans, min(len(self.plans), rng.randint(2, most)))
-        self._link(path, "L")
-        ends = [rng.choice(("start", "activate", "terminate")), rng.choice(("terminate", "start"))]
-        self._state_chain("chain", path, ends, "v")
+        first = self._path(path, "L")
+        self._state_chain("chain", first)
         if self.has("two chains"):
             # From the same stimulus to another response, or from another process.
             others = [plan for plan in self.plans if plan not in path] or self.plans[:1]
             other = [path[0] if rng.random() < 0.7 else path[-1], rng.choice(others)]
             if other[0] is not other[1]:
-                self._link(other, "P")
-                self._state_chain("other", other, [ends[0] if other[0] is path[0] else "start", "terminate"], "w")
+                events = self._path(other, "P")
+                self._state_chain("other", [first[0], *events[1:]] if other[0] is path[0] else events)
 
-    def _link(self, path: list[Plan], label: str) -> None:
+    def _path(self, path: list[Plan], label: str) -> list[str]:
+        """References to the events of a way through some processes, which share data."""
+        rng = self.rng
+        between = [self._process_event(plan, "terminate") for plan in path[1:]]
+        steps = [[self._process_event(path[0], rng.choice(("start", "activate", "terminate")))]]
+        if self.has("runnable events", chance=0.6):
+            call, name = self._named_runnable(self._ticks())
+            path[0].items.insert(0, call)
+            steps = [[self._runnable_event(path[0], name, rng.choice(("start", "terminate")))]]
         for n, (source, target) in enumerate(pairwise(path)):
-            self._share(source, target, f"{label}{n}")
+            is_explicit = self.has("label events", chance=0.7)
+            self._share(source, target, f"{label}{n}", "explicit" if is_explicit else "")
+            if is_explicit:
+                steps.append(
+                    [self._label_event(source, f"{label}{n}", "write"), self._label_event(target, f"{label}{n}", "read")]
+                )
+            elif n + 2 < len(path):
+                steps.append([between[n]])
+        if self.has("runnable events", chance=0.4):
+            call, name = self._named_runnable(self._ticks())
+            path[-1].items.append(call)
+            steps.append([self._runnable_event(path[-1], name, "terminate")])
+        else:
+            steps.append([self._process_event(path[-1], rng.choice(("terminate", "terminate", "start")))])
+        return list(dict.fromkeys(event for step in steps for event in step))
 
-    def _state_chain(self, name: str, path: list[Plan], ends: list[str], event: str) -> None:
-        names = [f"{event}{n}" for n in range(len(path))]
-        if event == "w" and any(f'entity="{path[0].name}?' in text and 'id="v0?' in text for text in self.parts.events):
-            names[0] = "v0"
-        for plan, change, each in zip(path, [ends[0], *["terminate"] * (len(path) - 2), ends[1]], names, strict=True):
-            if each == "v0" and event == "w":
-                continue
-            self.parts.events.append(
-                f'<events xsi:type="am:ProcessEvent" xmi:id="{each}?type=ProcessEvent" name="{each}" eventType="{change}" '
-                f'entity="{plan.name}?type={plan.kind}"/>'
-            )
-        items = "".join(
-            f'<items xsi:type="am:EventChainContainer"><eventChain name="" stimulus="{one}?type=ProcessEvent" '
-            f'response="{other}?type=ProcessEvent" minItemsCompleted="1"/></items>'
-            for one, other in pairwise(names)
-        )
-        self.parts.chains.append(
-            f'<eventChains xmi:id="{name}?type=EventChain" name="{name}" stimulus="{names[0]}?type=ProcessEvent" '
-            f'response="{names[-1]}?type=ProcessEvent" itemType="sequence" minItemsCompleted="1">{items}</eventChains>'
-        )
+    def _event(self, kind: str, name: str, attributes: str) -> str:
+        reference = f"{name}?type={kind}"
+        text = f'<events xsi:type="am:{kind}" xmi:id="{reference}" name="{name}" {attributes}/>'
+        if text not in self.parts.events:
+            self.parts.events.append(text)
+        return reference
+
+    def _process_event(self, plan: Plan, change: str) -> str:
+        entity = f"{plan.name}?type={plan.kind}"
+        return self._event("ProcessEvent", f"{plan.name}.{change}", f'eventType="{change}" entity="{entity}"')
+
+    def _runnable_event(self, plan: Plan, runnable: str, change: str) -> str:
+        attributes = f'eventType="{change}" entity="{runnable}?type=Runnable" process="{plan.name}?type={plan.kind}"'
+        return self._event("RunnableEvent", f"{runnable}.{change}", attributes)
+
+    def _label_event(self, plan: Plan, label: str, change: str) -> str:
+        attributes = f'eventType="{change}" entity="{label}?type=Label" process="{plan.name}?type={plan.kind}"'
+        return self._event("LabelEvent", f"{label}.{change}.{plan.name}", attributes)
+
+    def _state_chain(self, name: str, events: list[str]) -> None:
+        """A chain of events; its first two steps can be a chain of their own."""
+        items = [
+            f'<items xsi:type="am:EventChainContainer"><eventChain name="" stimulus="{one}" response="{other}" '
+            f'minItemsCompleted="1"/></items>'
+            for one, other in pairwise(events)
+        ]
+        if len(items) > 2 and self.has("nested chain"):
+            self._stated(f"{name} part", events[:3], items[:2])
+            reference = f"{name}+part?type=EventChain"
+            items[:2] = [f'<items xsi:type="am:EventChainReference" eventChain="{reference}"/>']
+        self._stated(name, events, items)
         self.used.add("chain")
 
-    def _share(self, source: Plan, target: Plan, label: str) -> None:
-        if not self.has("data in runnables"):
-            super()._share(source, target, label)
-            return
+    def _stated(self, name: str, events: list[str], items: list[str]) -> None:
+        self.parts.chains.append(
+            f'<eventChains xmi:id="{name.replace(" ", "+")}?type=EventChain" name="{name}" stimulus="{events[0]}" '
+            f'response="{events[-1]}" itemType="sequence" minItemsCompleted="1">{"".join(items)}</eventChains>'
+        )
+
+    def _named_runnable(self, content: str) -> tuple[str, str]:
+        name = f"r{self.runnables}"
+        return self._runnable(content, is_counted=False), name
+
+    def _share(self, source: Plan, target: Plan, label: str, how: str = "") -> None:
         self.parts.data.append(f'<labels xmi:id="{label}?type=Label" name="{label}" constant="false" bVolatile="false"/>')
-        how = self.rng.choice(("explicit", "explicit", "implicit"))
+        how = how or self.rng.choice(("explicit", "explicit", "implicit"))
+        how = "timed" if self.has("timed", chance=0.6) and how == "implicit" else how
+        in_runnables = self.has("data in runnables")
         for plan, access in ((source, "write"), (target, "read")):
             text = item("LabelAccess", f'data="{label}?type=Label" access="{access}" implementation="{how}"')
-            content = [self._ticks(), text] if self.rng.random() < 0.5 else [text, self._ticks()]
-            call = self._runnable("".join(content))
-            if self.has("nested calls", chance=0.5):
-                call = self._runnable(call + self._ticks())
-            plan.items.insert(self.rng.randint(0, len(plan.items)), call)
+            if in_runnables:
+                text = self._runnable("".join([self._ticks(), text] if self.rng.random() < 0.5 else [text, self._ticks()]))
+                if self.has("nested calls", chance=0.5):
+                    text = self._runnable(text + self._ticks())
+            plan.items.insert(self.rng.randint(0, len(plan.items)), text)
