@@ -77,6 +77,7 @@ def false_claims(model: RandomModel, tally: Tally | None = None) -> list[str]:
         found = wrong_answers(path, facts, limits, tally, features, is_told=is_told)
         if is_told and model.constraints and is_determined(facts):
             path.write_text(with_limits(text, facts, list(loose_limits_of(facts))), encoding="utf-8")
+            tally.kinds["simulated with limits that are kept"] += 1
             found += falsely_missed(path, facts)
         return found
 

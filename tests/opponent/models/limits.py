@@ -110,14 +110,16 @@ def loose_limits_of(facts: Facts) -> Iterator[Limit]:
     constraints = {constraint.name: constraint for constraint in facts.constraints}
     for key, (least, most) in facts.loose.items():
         unit = constraints[key[1]].unit if key[0] == "constraint" else UNIT
-        sides = {"max": (True,), "min": (False,)}[key[2][:3]] if key[0] == "chain" else (True, False)
-        if key[0] == "chain" and key[2] not in LATENCIES:
+        # The latencies of chains are compared with those of the simulation elsewhere.
+        if key[0] == "chain":
             continue
-        if most < NEVER and True in sides:
+        if key[0] == "constraint" and constraints[key[1]].least == 0 and most > 0:
+            continue
+        if most < NEVER:
             yield Limit(name_of(key, is_upper=True), key, is_upper=True, limit=-(-most // unit) * unit, observed=most)
         if key[0] == "constraint" and not constraints[key[1]].has_lower:
             continue
-        if least is not None and least // unit > 0 and False in sides:
+        if least is not None and least // unit > 0:
             yield Limit(name_of(key, is_upper=False), key, is_upper=False, limit=least // unit * unit, observed=least)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import pairwise
 from random import Random
 
+from opponent.models import writing
 from opponent.models.generator import FEATURES, PERIODS, Generator, Plan, RandomModel, constrained, random_model
 from opponent.models.writing import item
 
@@ -26,7 +27,14 @@ def richer_model(seed: int) -> RandomModel:
 class _Richer(Generator):
     def _features(self) -> set[str]:
         rng = self.rng
-        return {*rng.sample(FURTHER, rng.choice((2, 3, 4))), *rng.sample(FEATURES, rng.choice((0, 0, 1, 2)))}
+        constant = {"constant times"} if rng.random() < 0.5 else set()
+        return {*constant, *rng.sample(FURTHER, rng.choice((2, 3, 4))), *rng.sample(FEATURES, rng.choice((0, 0, 1, 2)))}
+
+    def _ticks(self) -> str:
+        if "constant times" in self.features:
+            number = self.rng.randint(1, 4)
+            return writing.ticks(number, number)
+        return super()._ticks()
 
     def _period(self) -> int:
         if self.plans and self.has("equal periods", chance=0.8):
