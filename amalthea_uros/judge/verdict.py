@@ -204,7 +204,8 @@ def observe(limit: SystemLimit, values: ObservedValues) -> ObservedJudgement:
     if limit.limit is None:
         is_kept = values.high is not None
         return ObservedJudgement(ObservedVerdict.OK) if is_kept else not_observed(values.reason)
-    if limit.is_upper and values.pending > limit.limit:
+    # Without anything pending, it is 0, which is no value of what can be negative.
+    if limit.is_upper and values.pending > max(limit.limit, 0):
         if values.high is not None and values.high >= values.pending:
             return ObservedJudgement(ObservedVerdict.MISSED, values.high, at=values.high_at)
         return ObservedJudgement(ObservedVerdict.MISSED, values.pending, "not ended at the end of the run")

@@ -113,17 +113,30 @@ def _together(calls: Sequence[ActivityPosition], system: System, events: EventLo
         if not is_once_per_job(call, system) or any(map(ends_early, events.positions(call.process.name))):
             raise _OpenError(f"jobs of {call.process.name!r} need not execute {name!r} exactly once")
         found[name] = call
-    sources = {_source(call.process.name, system, events, frozenset()): call.process.name for call in found.values()}
+    sources = {_source(call.process.name, system, events): call.process.name for call in found.values()}
     if len(sources) > 1:
         one, other = list(sources.values())[:2]
         raise _OpenError(f"{one!r} and {other!r} are not activated equally often, so their executions do not correspond")
     return found
 
 
+def are_activated_together(one: str, other: str, system: System, events: EventLocator) -> bool:
+    """Whether it is certain that two processes are activated equally often."""
+    try:
+        return one == other or _source(one, system, events) == _source(other, system, events)
+    except _OpenError:
+        return False
+
+
 def is_once_per_job(position: ActivityPosition, system: System) -> bool:
     """Whether each job executes an activity exactly once."""
-    is_counted = position.counter is None or not is_always(position.counter)
+    is_counted = position.counter is None or not is_always(position.counter) or has_counted_effect(position)
     return not is_counted and position.times == 1 and not can_be_skipped(position, system, {})
+
+
+def has_counted_effect(position: ActivityPosition) -> bool:
+    """Whether jobs reach a trigger that has no effect in each of them."""
+    return isinstance(position.activity, Trigger) and position.activity.counter is not None
 
 
 def is_in_fixed_order(position: ActivityPosition) -> bool:
@@ -132,7 +145,7 @@ def is_in_fixed_order(position: ActivityPosition) -> bool:
     return all(each.ordered for each in around if isinstance(each, Group))
 
 
-def _source(process: str, system: System, events: EventLocator, above: frozenset[str]) -> object:
+def _source(process: str, system: System, events: EventLocator, above: frozenset[str] = frozenset()) -> object:
     """What activates a process, the same for all processes that are activated equally often."""
     names = system.processes[process].stimuli
     stimulus = system.stimuli_by_name.get(names[0]) if len(names) == 1 else None

@@ -130,6 +130,9 @@ def seen(low, high, **others):
         # What is still pending is at least as long as it has lasted.
         (MOST, seen(5, 8, pending=Fraction(12)), "observed_missed", 12),
         (LEAST, seen(12, 15, pending=Fraction(20)), "observed_ok", 12),
+        # Nothing is pending of what is below zero.
+        (limit(-5, is_signed=True), seen(-9, -6), "observed_ok", -6),
+        (limit(-5, is_signed=True), seen(-9, -4), "observed_missed", -4),
         # If values are missing, a limit that was kept may not have been.
         (MOST, seen(5, 10, is_complete=False, reason="some"), "not_observed", 10),
         (MOST, seen(5, 11, is_complete=False, reason="some"), "observed_missed", 11),

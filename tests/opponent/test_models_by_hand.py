@@ -1,6 +1,16 @@
 """The player of models plays small ones as they can be computed by hand."""
 
 import pytest
+from opponent.models.constraints import (
+    Age,
+    AgeInCycles,
+    Delay,
+    Deviation,
+    EventOf,
+    Order,
+    Repetition,
+    Synchronization,
+)
 from opponent.models.facts import Facts, facts_of
 from opponent.models.limits import limits_of, with_limits
 from opponent.models.reading import UnplayableError, read
@@ -138,3 +148,79 @@ def test_what_is_not_understood_is_refused(parts):
     task(parts, "T", 1, item("WaitEvent"))
     with pytest.raises(UnplayableError):
         read(parts.text())
+
+
+def constrained(parts: Parts, constraint) -> tuple[int | None, int]:
+    """The greatest of the minima and the least of the maxima of a constraint, in microseconds."""
+    facts = facts_of(parts.text(), (), (constraint,), until=200 * 10**6)
+    key = ("constraint", constraint.name, "")
+    return facts.least.get(key, 0) // constraint.unit, facts.greatest[key] // constraint.unit
+
+
+def runnable(parts: Parts, name: str, body: str) -> str:
+    parts.runnables.append(f'<runnables name="{name}"><activityGraph>{body}</activityGraph></runnables>')
+    return item("RunnableCall", f'runnable="{name}"')
+
+
+@pytest.fixture
+def writer_and_reader(parts) -> Parts:
+    """W at 0, 20, ... executes 1, w that takes 2 and then writes, and 1; R at 5, 25, ... executes r, which reads and takes 1."""
+    parts.data.append('<labels name="L"/>')
+    write, read_label = (
+        item("LabelAccess", f'data="L" access="{access}" implementation="explicit"') for access in ("write", "read")
+    )
+    task(parts, "W", 2, ticks(1, 1) + runnable(parts, "w", ticks(2, 2) + write) + ticks(1, 1))
+    later = time("recurrence", 20) + time("offset", 5)
+    task(parts, "R", 1, runnable(parts, "r", read_label + ticks(1, 1)) + runnable(parts, "s", ticks(1, 1)), later)
+    return parts
+
+
+def of_process(name: str, change: str) -> EventOf:
+    return EventOf("process", name, change)
+
+
+@pytest.mark.parametrize(
+    ("constraint", "expected"),
+    [
+        # w starts at 1, L is written at 3 and read at 5.
+        (Delay("D", EventOf("runnable", "w", "start"), EventOf("label", "L", "read"), "OneToOne"), (4, 4)),
+        (Age("A", "w", "L", "W"), (2, 2)),
+        # W is activated at 0, and again at 20.
+        (AgeInCycles("C", "w", "L", "W"), (0, 0)),
+        (Repetition("R", EventOf("runnable", "r", "terminate"), 2), (40, 40)),
+        # Ten times every 20, instead of every 30.
+        (Deviation("J", of_process("W", "start"), 30 * 10**6), (90, 90)),
+        (Synchronization("S", (of_process("W", "start"), of_process("R", "terminate")), is_multiple=True), (7, 7)),
+        (Order("O", "w", "r", "successor", ()), (0, 0)),
+        (Order("O", "r", "w", "successor", ()), (1, 1)),
+        (Order("O", "s", "r", "successor", (("R", "Task"),)), (1, 1)),
+        (Order("O", "r", "s", "immediateSuccessorEndSequence", (("R", "Task"),)), (0, 0)),
+    ],
+    ids=str,
+)
+def test_what_constraints_limit(writer_and_reader, constraint, expected):
+    assert constrained(writer_and_reader, constraint) == expected
+
+
+def test_a_semaphore_with_and_without_ceiling(parts):
+    request, release = (item("SemaphoreAccess", f'semaphore="S" access="{access}"') for access in ("request", "release"))
+    task(parts, "low", 1, request + ticks(5, 5) + release)
+    task(parts, "mid", 2, ticks(3, 3), time("recurrence", 20) + time("offset", 2))
+    task(parts, "high", 3, request + ticks(1, 1) + release, time("recurrence", 20) + time("offset", 1))
+    parts.semaphores.append('<semaphores name="S" priorityCeilingProtocol="true"/>')
+    # low has the semaphore from 0 to 5, then high ends at 6 and mid at 9
+    assert [responses(played(parts), name) for name in ("low", "mid", "high")] == [(5, 5), (7, 7), (5, 5)]
+    parts.semaphores[:] = ['<semaphores name="S" priorityCeilingProtocol="false"/>']
+    # high waits from 1, mid goes from 2 to 5, low ends at 8, high at 9
+    facts = played(parts)
+    assert [responses(facts, name) for name in ("low", "mid", "high")] == [(8, 8), (3, 3), (8, 8)]
+    assert facts.greatest[("process", "high", "net_execution_time")] == 8 * 10**6
+
+
+def test_a_cooperative_task(parts):
+    task(parts, "low", 1, ticks(4, 4) + item("SchedulePoint") + ticks(2, 2))
+    task(parts, "high", 2, ticks(1, 1), time("recurrence", 20) + time("offset", 1))
+    parts.tasks[:] = [text.replace('"preemptive"', '"cooperative"') for text in parts.tasks]
+    # high waits from 1 to 4
+    facts = played(parts)
+    assert (responses(facts, "low"), responses(facts, "high")) == ((7, 7), (4, 4))

@@ -17,7 +17,7 @@ import numpy as np
 
 from amalthea_uros._internal.failures import failure
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
-from amalthea_uros.analyze.chains.event_delays import delays
+from amalthea_uros.analyze.chains.event_delays import exact_delays
 from amalthea_uros.analyze.chains.event_windows import EventWindows, UnknownError
 from amalthea_uros.analyze.chains.runnable_orders import holds_across, holds_in_each_job
 from amalthea_uros.analyze.chains.stage_timing import UnboundedStageError
@@ -39,13 +39,14 @@ from amalthea_uros.perf.constraints import (
     RepetitionConstraint,
 )
 from amalthea_uros.perf.events import EventChain, LabelChange, LabelEvent
+from amalthea_uros.timing.counters import is_always
 from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.links import LinkKind
-from amalthea_uros.timing.dataflow.routes import corresponding, routes
+from amalthea_uros.timing.dataflow.routes import Route, corresponding, routes
 from amalthea_uros.timing.event_models import EventModel, Periodic, can_be_dense, is_strictly_periodic
 from amalthea_uros.timing.jitter import jitter_of
 from amalthea_uros.timing.releases import known_releases
-from amalthea_uros.timing.runnable_order import order_scope
+from amalthea_uros.timing.runnable_order import are_activated_together, has_counted_effect, order_scope
 from amalthea_uros.units import Time, time_text
 
 _REACTION = (Quantity.MIN_FIRST_TO_FIRST, Quantity.MAX_REDUCED_REACTION_TIME)
@@ -136,20 +137,14 @@ class ConstraintEvaluator:
 
     def _delay(self, constraint: DelayConstraint, limits: Sequence[SystemLimit]) -> Iterator[_Judged]:
         source, target = self.windows.event(constraint.source), self.windows.event(constraint.target)
-        exact = self._exact_delays(constraint) if constraint.matching is Matching.REACTION else None
+        exact = exact_delays(constraint, self.windows) if constraint.matching is Matching.REACTION else None
         if exact is not None:
             yield from _proved(limits, lambda limit: Ends.exactly(exact[1] if limit.is_upper else exact[0]))
             return
         found = corresponding(source, target, self.evaluation.context.dataflow)
+        self._require_all_sources(constraint.source, found)
         if constraint.matching is not Matching.REACTION:
-            links = {link.kind for route in found for link in route.links}
-            later = any(
-                stage.jobs_later is not None for route in found for group in self.evaluation.groups(route) for stage in group
-            )
-            if later or not links <= {LinkKind.JOB, LinkKind.TRIGGER}:
-                raise UnknownError(
-                    "data between the events can be overwritten or read again, so their occurrences do not correspond one to one"
-                )
+            self._require_one_to_one(constraint, found)
         latencies = _Latencies(self.evaluation.worst(found), *_REACTION)
         if constraint.lower is not None and (latencies.of_minimum.lower or 0) < constraint.lower:
             # A target below the lower limit is ignored, and how much later the next one comes is unknown.
@@ -158,20 +153,30 @@ class ConstraintEvaluator:
             return
         yield from _proved(limits, latencies.limited)
 
-    def _exact_delays(self, constraint: DelayConstraint) -> tuple[Time, Time] | None:
-        """The least and the greatest delay; None unless the times of both events are known exactly."""
-        timing, windows = self.evaluation.timing, self.windows
-        try:
-            ends = [windows.occurrence(windows.event(name).name) for name in (constraint.source, constraint.target)]
-            times = [timing.exact_times(end) for end in ends]
-        except (UnknownError, UnresolvedError, UnboundedStageError):
-            return None
-        if len({self.evaluation.controller(end.process.name) for end in ends}) > 1:
-            return None  # the clocks are not synchronized
-        source, target = times
-        if source is None or target is None:
-            return None
-        return delays(source, target, (constraint.lower or 0) * timing.unit, timing.unit)
+    def _require_all_sources(self, source: str, found: Iterable[Route]) -> None:
+        """Refuse a source that also occurs in jobs that a counter lets take no part in what follows."""
+        for route in found:
+            counter = self.evaluation.groups(route)[0][0].counter
+            is_apart = route.occurrences[0].position is None and (counter is None or not is_always(counter))
+            if is_apart or any(link.write is not None and has_counted_effect(link.write) for link in route.links):
+                raise UnknownError(
+                    f"{source!r} occurs in each job, but a counter lets only some jobs take part in what follows"
+                )
+
+    def _require_one_to_one(self, constraint: DelayConstraint, found: Sequence[Route]) -> None:
+        """Refuse events whose occurrences need not correspond one to one."""
+        links = {link.kind for route in found for link in route.links}
+        later = any(
+            stage.jobs_later is not None for route in found for group in self.evaluation.groups(route) for stage in group
+        )
+        if later or not links <= {LinkKind.JOB, LinkKind.TRIGGER}:
+            raise UnknownError(
+                "data between the events can be overwritten or read again, so their occurrences do not correspond one to one"
+            )
+        source, target = (self.windows.occurrence(name).process.name for name in (constraint.source, constraint.target))
+        context = self.evaluation.context
+        if not are_activated_together(source, target, context.system, context.dataflow.events):
+            raise UnknownError(f"it is not certain that each job of {source!r} activates {target!r} exactly once")
 
     def _chain_synchronization(self, constraint: ChainSynchronization, limits: Sequence[SystemLimit]) -> Iterator[_Judged]:
         found = [self.chains.get(name) for name in constraint.chains]

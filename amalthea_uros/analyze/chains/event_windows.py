@@ -42,7 +42,7 @@ class EventWindows:
 
         Raises
         ------
-        UnknownError : it occurs at several positions, or in some jobs only.
+        UnknownError : it occurs at several positions, in some jobs only, or several times in a job.
         """
         occurrences = self.evaluation.context.dataflow.events.of(self.event(name))
         if len(occurrences) > 1:
@@ -54,6 +54,8 @@ class EventWindows:
             or can_be_skipped(position, context.system, context.settings.modes)
         ):
             raise UnknownError(f"the event {name!r} occurs in some jobs only")
+        if position is not None and position.times != 1:
+            raise UnknownError(f"the event {name!r} can occur several times in a job")
         return occurrences[0]
 
     def of(self, occurrence: EventOccurrence) -> tuple[Time, Time]:

@@ -316,7 +316,8 @@ class StageTiming:
             return False  # a job cannot read its own future output
         # A reader that reads later than at its start may read just when the writer is released.
         is_at_start = isinstance(follower.enter, Read) and follower.enter.communication is Communication.IMPLICIT
-        return is_at_start and self._takes_core(base, follower)
+        # The activation of a job that is kept off until then is no answer.
+        return is_at_start and kind(follower.leave) is not JobPhase.ACTIVATION and self._takes_core(base, follower)
 
     def _takes_core(self, one: Stage, other: Stage) -> bool:
         """Whether the process of a stage, as long as it is ready, keeps that of another one from executing."""

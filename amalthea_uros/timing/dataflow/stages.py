@@ -117,6 +117,9 @@ def stages(route: Route, communication: Communication | None) -> list[Stage]:
         leave = Fire(link.write, link.is_before) if is_trigger else Write(write, link.write)
         is_same = before.process.name == then.process.name and not is_trigger
         later = _jobs_later(link, write, read) if is_same else None
+        if later == SAME_JOB and then.order < before.order:
+            # What the data reach in the same job comes before the event.
+            later = NEXT_JOB
         if _has_left_before(enter, leave):
             # What the job has sent before the event does not come from it: the next job sends. The effect of what it has sent may be
             # meant nevertheless if that comes after the event, so that no minimum relies on the next job.

@@ -3,10 +3,10 @@
 from dataclasses import replace
 
 import pytest
-from test_chain_systems import END, START, at, producer_and_consumer, read, system, ticks, write
+from test_chain_systems import ACTIVATION, END, START, at, producer_and_consumer, read, system, ticks, write
 
 from amalthea_uros import analyze_system
-from amalthea_uros.perf.activities import AccessKind, Call, SenderReceiverAccess
+from amalthea_uros.perf.activities import AccessKind, Call, SenderReceiverAccess, Trigger
 from amalthea_uros.perf.constraints import (
     ChainEnd,
     ChainSynchronization,
@@ -22,9 +22,9 @@ from amalthea_uros.perf.constraints import (
     RepetitionConstraint,
 )
 from amalthea_uros.perf.distributions import Boundaries
-from amalthea_uros.perf.events import EventChain
+from amalthea_uros.perf.events import EventChain, RunnableChange, RunnableEvent
 from amalthea_uros.perf.software import Runnable
-from amalthea_uros.perf.stimuli import RelativePeriodic
+from amalthea_uros.perf.stimuli import Counter, InterProcess, RelativePeriodic
 from amalthea_uros.units import MICROSECOND as US
 
 EVENTS = (at("producer", START), at("producer", END), at("consumer", START), at("consumer", END))
@@ -203,3 +203,84 @@ def test_the_order_of_runnables(groups, ordering, verdict):
     built = system([("T", 10, [Call(runnable=name) for name in "abc"])], [at("T", START), at("T", END)], runnables=runnables)
     order = OrderConstraint(name="O", groups=tuple(map(tuple, groups)), ordering=ordering)
     assert evaluate(built=built, orders=[order]) == [("order of runnables", None, verdict)]
+
+
+def body(kind):
+    """What a job of A does, every 40; it activates B, and r takes 2."""
+    counted = Counter(prescaler=2, offset=1)
+    return {
+        "a counted call": [ticks(1), Call(runnable="r", counter=counted)],
+        "two calls": [ticks(1), Call(runnable="r"), Call(runnable="r")],
+        "repeated calls": [ticks(1), Call(runnable="r", times=2)],
+        "a trigger": [ticks(1), Trigger(stimulus="B")],
+        "a counted trigger": [ticks(1), Trigger(stimulus="B", counter=counted)],
+        "two triggers": [ticks(1), Trigger(stimulus="B"), ticks(1), Trigger(stimulus="B")],
+    }[kind]
+
+
+@pytest.mark.parametrize(
+    ("kind", "source", "target", "upper", "reaction", "one_to_one"),
+    [
+        # Each second start is followed by the end of r only in the job after it, 40 later.
+        ("a counted call", "A start", "r end", 30, "unknown", "unknown"),
+        # A ends twice as often as r starts, but after each start.
+        ("a counted call", "r start", "A terminate", 30, "met", "unknown"),
+        ("two calls", "A start", "r end", 30, "met", "unknown"),
+        ("repeated calls", "A start", "r end", 30, "met", "unknown"),
+        ("a trigger", "A start", "B start", 30, "met", "met"),
+        ("a counted trigger", "A start", "B start", 30, "unknown", "unknown"),
+        ("two triggers", "A start", "B start", 30, "met", "unknown"),
+    ],
+)
+def test_a_delay_of_events_that_do_not_occur_equally_often(kind, source, target, upper, reaction, one_to_one):
+    events = (
+        *(at("A", START), at("A", END), at("B", START)),
+        RunnableEvent(name="r start", runnable="r", change=RunnableChange.START),
+        RunnableEvent(name="r end", runnable="r", change=RunnableChange.TERMINATE),
+    )
+    tasks = [("A", 40, body(kind)), ("B", None, [ticks(2)])]
+    stimuli, runnables = [InterProcess(name="B")], [Runnable(name="r", activities=(ticks(2),))]
+    built = system(tasks, events, stimuli=stimuli, runnables=runnables)
+    delays = [
+        DelayConstraint(name=matching, source=source, target=target, matching=matching, upper=upper * US)
+        for matching in Matching
+    ]
+    assert [verdict for _, _, verdict in evaluate(*delays, built=built)] == [reaction, one_to_one, one_to_one]
+
+
+def test_what_others_activate_too_does_not_belong_to_one_source():
+    tasks = [
+        ("A", 40, [ticks(1), Trigger(stimulus="B")]),
+        ("C", 40, [ticks(1), Trigger(stimulus="B")]),
+        ("B", None, [ticks(2)]),
+    ]
+    built = system(tasks, (at("A", START), at("B", START)), stimuli=[InterProcess(name="B")])
+    delay = DelayConstraint(name="D", source="A start", target="B start", matching=Matching.ONE_TO_ONE, upper=99 * US)
+    assert evaluate(delay, built=built) == [("delay", None, "unknown")]
+
+
+def test_a_runnable_that_a_job_executes_several_times_repeats_within_it():
+    built = system(
+        [("A", 40, body("repeated calls"))],
+        [RunnableEvent(name="r start", runnable="r", change=RunnableChange.START)],
+        runnables=[Runnable(name="r", activities=(ticks(2),))],
+    )
+    repetition = RepetitionConstraint(name="R", event="r start", lower=30 * US)
+    assert evaluate(repetition, built=built) == [("repetition", None, "unknown")]
+
+
+def test_the_activation_of_the_job_that_reads_answers_nothing():
+    # X keeps A off from 0 to 9 or 10, and A keeps B off, which is activated at 0 and at 40: that is 30 or 31 after the start of A.
+    tasks = [("X", 120, [ticks(10, 9)]), ("A", 60, [ticks(5)]), ("B", 40, [ticks(1)])]
+    built = system(tasks, (at("A", START), at("B", ACTIVATION)))
+    delay = DelayConstraint(name="D", source="A start", target="B activate", upper=29 * US)
+    assert [verdict for _, _, verdict in evaluate(delay, built=built)] == ["unknown"]
+
+
+def test_data_within_a_job_do_not_reach_what_comes_before():
+    built = system(
+        [("X", 40, [ticks(9, 4)]), ("A", 40, [ticks(3), write("L"), read("L")])], (at("A", START), at("A", ACTIVATION))
+    )
+    delay = DelayConstraint(name="D", source="A start", target="A activate", upper=30 * US)
+    # A starts 4 to 9 after its activation, and is activated 31 to 36 later.
+    assert [verdict for _, _, verdict in evaluate(delay, built=built)] == ["missed"]

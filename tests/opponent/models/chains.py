@@ -14,9 +14,9 @@ from xml.etree import ElementTree
 
 from opponent.models.player import Job, Player
 from opponent.models.reading import Played, kind_of, reference
-from opponent.models.variants import items_of
+from opponent.models.variants import items_of_process
 
-#: A process and what happens to its job: activate, start, terminate.
+#: A process and what happens to its job: activate, start, terminate; or that and the name of a runnable, or of the label it accesses.
 Event = tuple[str, str]
 #: Jobs and the times at which they do something.
 Times = list[tuple[int, int]]
@@ -34,31 +34,56 @@ class Chain:
 
 
 def events_of(root: ElementTree.Element) -> dict[str, Event]:
-    """The events of starts, ends and activations of processes."""
-    return {
-        e.get("name", ""): (reference(e.get("entity")), e.get("eventType", ""))
-        for e in root.iter("events")
-        if kind_of(e) == "ProcessEvent" and e.get("eventType") in ("activate", "start", "terminate")
-    }
+    """The events of processes, and those of runnables and labels in a process."""
+    found: dict[str, Event] = {}
+    for e in root.iter("events"):
+        name, entity, change = e.get("name", ""), reference(e.get("entity")), e.get("eventType", "")
+        if kind_of(e) == "ProcessEvent" and change in ("activate", "start", "terminate"):
+            found[name] = (entity, change)
+        elif kind_of(e) in ("RunnableEvent", "LabelEvent") and e.get("process") and not e.get("runnable"):
+            found[name] = (reference(e.get("process")), f"{change} {entity}")
+    return found
 
 
 def chains_of(text: str | bytes, played: Played) -> Iterator[Chain]:
     """The chains of which every step is understood."""
     root = ElementTree.fromstring(text)
     events = events_of(root)
-    for chain in root.iter("eventChains"):
-        parts = [part for item in chain.findall("items") for part in item.findall("eventChain")]
-        if len(parts) != len(chain.findall("items")) or chain.get("itemType") == "parallel":
+    chains = {chain.get("name", ""): chain for chain in root.iter("eventChains")}
+    for name, chain in chains.items():
+        names = _events_of_chain(chain, chains)
+        steps = [events[each] for each in names if each in events]
+        if not names or len(steps) != len(names):
             continue
-        names = [chain.get("stimulus"), *(part.get("response") for part in parts), *([] if parts else [chain.get("response")])]
-        steps = [events.get(reference(name)) for name in names]
-        if not all(steps):
-            continue
-        processes = [steps[0][0]]  # type: ignore[index]
-        processes += [b[0] for a, b in pairwise(steps) if a[0] != b[0]]  # type: ignore[index]
-        links = tuple(tuple(_links(played, *pair)) for pair in pairwise(processes))
+        processes = [steps[0][0]]
+        processes += [b[0] for a, b in pairwise(steps) if a[0] != b[0]]
+        links = tuple(tuple(_links_of_step(played, a, b)) for a, b in pairwise(steps) if a[0] != b[0])
         if links and all(links):
-            yield Chain(chain.get("name", ""), steps[0][1], steps[-1][1], tuple(processes), links)  # type: ignore[index]
+            yield Chain(name, steps[0][1], steps[-1][1], tuple(processes), links)
+
+
+def _events_of_chain(chain: ElementTree.Element, chains: dict[str, ElementTree.Element]) -> list[str]:
+    """The events of a chain in order, of chains that it refers to, too; none if parts are parallel."""
+    items = chain.findall("items")
+    if chain.get("itemType") == "parallel":
+        return []
+    names = [reference(chain.get("stimulus"))]
+    for item in items:
+        part = chains.get(reference(item.get("eventChain"))) if item.get("eventChain") else item.find("eventChain")
+        inner = [] if part is None else _events_of_chain(part, chains)
+        if not inner:
+            return []
+        names += inner[1:]
+    return names if items else [*names, reference(chain.get("response"))]
+
+
+def _links_of_step(played: Played, first: Event, then: Event) -> Iterator[str]:
+    """What leads from an event to one of another process: if both access the same data, that."""
+    written, read = first[1].partition(" "), then[1].partition(" ")
+    if (written[0], read[0]) == ("write", "read") and written[2] == read[2]:
+        yield written[2]
+    else:
+        yield from _links(played, first[0], then[0])
 
 
 def _links(played: Played, source: str, target: str) -> Iterator[str]:
@@ -70,31 +95,16 @@ def _links(played: Played, source: str, target: str) -> Iterator[str]:
         writers = [process for process, found in accesses.items() if ("write", name) in found]
         if writers == [source]:
             yield name
-    stimuli = {item[1] for item in _items(played, source) if item[0] == "trigger"}
-    events = {item[1] for item in _items(played, source) if item[0] == "event"}
+    stimuli = {item[1] for item in items_of_process(played, source) if item[0] == "trigger"}
+    events = {item[1] for item in items_of_process(played, source) if item[0] == "event"}
     stimuli |= {stimulus for event in events for stimulus in played.listeners.get(event, ())}
     of_target = next(process.stimuli for process in played.processes if process.name == target)
     if stimuli & set(of_target):
         yield ""
 
 
-def _items(played: Played, process: str) -> Iterator[tuple[object, ...]]:
-    """All items that a process can reach."""
-    bodies = [next(p.body for p in played.processes if p.name == process)]
-    known: set[str] = set()
-    while bodies:
-        alone = Played(
-            **{f: getattr(played, f) for f in played.__slots__} | {"processes": (), "runnables": {"": (bodies.pop(), ())}}
-        )
-        for item in items_of(alone):
-            yield item
-            if item[0] == "call" and item[1] not in known:
-                known.add(item[1])
-                bodies.append(played.runnables[item[1]][0])
-
-
 def _accesses(played: Played, process: str) -> set[tuple[str, str]]:
-    return {(str(item[0]), str(item[1])) for item in _items(played, process) if item[0] in ("read", "write")}
+    return {(str(item[0]), str(item[1])) for item in items_of_process(played, process) if item[0] in ("read", "write")}
 
 
 def readings(chain: Chain) -> Iterator[tuple[str, ...]]:
@@ -109,7 +119,7 @@ def latencies(played: Played, play: Player, chain: Chain, links: tuple[str, ...]
     hops = [
         _Hop.of(*pair, link, index[name]) for pair, link, name in zip(pairwise(stages), links, chain.processes, strict=False)
     ]
-    if not all(hop.is_clear for hop in hops):
+    if not all(hop.is_clear for hop in hops) or not _is_clear(stages, hops, chain):
         return
     stimuli = [time for job in stages[0] if (time := _time(job, chain.stimulus)) is not None]
     responses = [time for job in stages[-1] if (time := _time(job, chain.response)) is not None]
@@ -119,21 +129,60 @@ def latencies(played: Played, play: Player, chain: Chain, links: tuple[str, ...]
     yield from _backward(hops, stimuli, responses)
 
 
-def _forward(hops: list[_Hop], stimuli: list[int], responses: list[int], until: int) -> Iterator[tuple[str, int]]:
+def answers(played: Played, play: Player, chain: Chain, links: tuple[str, ...]) -> list[tuple[int, int | None]]:
+    """Each stimulus with its first response, if there was one; nothing if it is not clear which data a job is based on."""
+    index = {process.name: number for number, process in enumerate(played.processes)}
+    stages = [play.jobs[index[name]] for name in chain.processes]
+    hops = [
+        _Hop.of(*pair, link, index[name]) for pair, link, name in zip(pairwise(stages), links, chain.processes, strict=False)
+    ]
+    if not all(hop.is_clear for hop in hops) or not _is_clear(stages, hops, chain):
+        return []
+    stimuli = [time for job in stages[0] if (time := _time(job, chain.stimulus)) is not None]
+    responses = [time for job in stages[-1] if (time := _time(job, chain.response)) is not None]
+    return [(stimulus, end) for stimulus, end in _answers(hops, stimuli, responses)]
+
+
+def _is_clear(stages: list[list[Job]], hops: list[_Hop], chain: Chain) -> bool:
+    """Whether each job has its event once, before it writes and after it has read."""
+    for jobs, change, accesses, is_late in (
+        (stages[0], chain.stimulus, hops[0].writes, True),
+        (stages[-1], chain.response, hops[-1].reads, False),
+    ):
+        if " " not in change:
+            continue
+        times = {job.number: _time(job, change) for job in jobs}
+        if any(times[job.number] is None for job in jobs if job.end is not None):
+            return False
+        if not hops[0 if is_late else -1].is_trigger:
+            for time, number in accesses:
+                own = times[number]
+                if own is not None and (own > time if is_late else own < time):
+                    return False
+        elif is_late:
+            return False
+    return True
+
+
+def _answers(hops: list[_Hop], stimuli: list[int], responses: list[int]) -> Iterator[tuple[int, int | None]]:
     for number, stimulus in enumerate(stimuli):
         reached: int | None = number
         for hop in hops:
             reached = None if reached is None else hop.after(reached)
         while reached is not None and reached < len(responses) and responses[reached] < stimulus:
             reached += 1
-        is_answered = reached is not None and reached < len(responses)
-        end = responses[reached] if is_answered and reached is not None else until
-        if not is_answered and stimulus >= until:
+        yield stimulus, responses[reached] if reached is not None and reached < len(responses) else None
+
+
+def _forward(hops: list[_Hop], stimuli: list[int], responses: list[int], until: int) -> Iterator[tuple[str, int]]:
+    for number, (stimulus, answer) in enumerate(_answers(hops, stimuli, responses)):
+        end = until if answer is None else answer
+        if answer is None and stimulus >= until:
             return
         yield "max_reduced_reaction_time", end - stimulus
         if number:
             yield "max_reaction_time", end - stimuli[number - 1]
-        if is_answered:
+        if answer is not None:
             yield "min_first_to_first", end - stimulus
 
 
@@ -171,6 +220,7 @@ class _Hop:
         single = all(
             len(times) == 1 for job in (*source, *target) for access, times in job.accesses.items() if access[1] == label
         )
+        single &= not any(job.is_late for job in (*source, *target))
         ended = sum(job.end is not None for job in target)
         return cls(writes, reads, False, single and len(reads) >= ended)
 
@@ -196,4 +246,8 @@ class _Hop:
 
 
 def _time(job: Job, event: str) -> int | None:
-    return {"activate": job.activated, "start": job.start, "terminate": job.end}[event]
+    change, _, name = event.partition(" ")
+    if not name:
+        return {"activate": job.activated, "start": job.start, "terminate": job.end}[change]
+    times = [mark.time for mark in job.marks if (mark.change, mark.name) == (change, name)]
+    return times[0] if len(times) == 1 else None

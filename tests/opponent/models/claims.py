@@ -11,17 +11,17 @@ from tempfile import TemporaryDirectory
 from fuzzing.contradictions import contradictions
 from opponent.models.facts import Facts, facts_of, horizon
 from opponent.models.generator import RandomModel
-from opponent.models.limits import Limit, limits_of, with_limits
+from opponent.models.limits import Limit, limits_of, loose_limits_of, with_limits
 from opponent.models.reading import UnplayableError
 from opponent.models.variants import items_of
 
-from amalthea_uros.analyze.results import Analysis, ChainResult, ProcessResult
+from amalthea_uros.analyze.results import Analysis, ChainResult, ProcessResult, RequirementResult
 from amalthea_uros.errors import AmurosError
-from amalthea_uros.judge.verdict import Verdict
+from amalthea_uros.judge.verdict import ObservedVerdict, Verdict
 from amalthea_uros.services.analyze import analyze_files
 from amalthea_uros.services.simulate import simulate_files
 from amalthea_uros.simulate.options import Mode, Options
-from amalthea_uros.simulate.results import Simulation
+from amalthea_uros.simulate.results import RequirementObservation, Simulation
 from amalthea_uros.timing.job_metric import JobMetric
 
 #: The runs that are compared: how values are chosen, and the seed.
@@ -37,6 +37,7 @@ class Tally:
     claims: Counter[str] = field(default_factory=Counter)
     unknown: Counter[str] = field(default_factory=Counter)
     limits: Counter[str] = field(default_factory=Counter)
+    kinds: Counter[str] = field(default_factory=Counter)
     ratios: dict[str, list[float]] = field(default_factory=dict)
 
     def add_all(self, other: Tally) -> None:
@@ -46,6 +47,7 @@ class Tally:
         self.claims += other.claims
         self.unknown += other.unknown
         self.limits += other.limits
+        self.kinds += other.kinds
         for name, found in other.ratios.items():
             self.ratios.setdefault(name, []).extend(found)
 
@@ -62,7 +64,7 @@ def false_claims(model: RandomModel, tally: Tally | None = None) -> list[str]:
     """Whatever the product says falsely of a model with limits that it breaks; unplayable ones are left out."""
     tally = Tally() if tally is None else tally
     try:
-        facts = facts_of(model.text, model.delays)
+        facts = facts_of(model.text, model.delays, model.constraints)
     except UnplayableError as error:
         tally.unplayable[str(error)] += 1
         return []
@@ -71,11 +73,31 @@ def false_claims(model: RandomModel, tally: Tally | None = None) -> list[str]:
         path = Path(folder) / "model.amxmi"
         text, features = model.told()
         path.write_text(with_limits(text, facts, limits), encoding="utf-8")
-        return wrong_answers(path, facts, limits, tally, features, is_told=text == model.text)
+        is_told = text == model.text
+        found = wrong_answers(path, facts, limits, tally, features, is_told=is_told)
+        if is_told and model.constraints and is_determined(facts):
+            path.write_text(with_limits(text, facts, list(loose_limits_of(facts))), encoding="utf-8")
+            tally.kinds["simulated with limits that are kept"] += 1
+            found += falsely_missed(path, facts)
+        return found
+
+
+def falsely_missed(path: Path, facts: Facts) -> list[str]:
+    """Limits that all plays keep, and a simulation of the same time does not."""
+    try:
+        simulation = simulate_files(path, Options(duration=_duration(facts), seed=1, mode=Mode.WORST)).simulation
+    except AmurosError:
+        return []
+    by_name = {limit.name: limit for limit in loose_limits_of(facts)}
+    return [
+        f"simulated: {each.name}: limit {each.limit} missed by {each.value} {each.reason}, but {by_name[each.name].observed} is played"
+        for each in simulation.requirements
+        if each.verdict is ObservedVerdict.MISSED and each.name in by_name
+    ]
 
 
 def wrong_answers(
-    path: Path, facts: Facts, limits: Iterable[Limit], tally: Tally, features: frozenset[str], *, is_told: bool = True
+    path: Path, facts: Facts, limits: list[Limit], tally: Tally, features: frozenset[str], *, is_told: bool = True
 ) -> list[str]:
     """What analysis and simulation of a file say falsely; `is_told`: it says all that was played."""
     try:
@@ -98,6 +120,7 @@ def wrong_answers(
         found += [f"simulated {mode} {seed}: {text}" for text in contradictions(analysis, simulation)]
         if mode is Mode.WORST and is_told and is_determined(facts):
             found += [f"simulated: {text}" for text in played_otherwise(simulation, facts)]
+            found += [f"simulated: {text}" for text in falsely_kept(simulation, limits)]
     return found
 
 
@@ -153,23 +176,42 @@ def _refuted_process(process: ProcessResult, facts: Facts) -> Iterator[str]:
 def falsely_met(analysis: Analysis, limits: Iterable[Limit], tally: Tally) -> Iterator[str]:
     """Limits inside of what occurs that are said to be met."""
     by_name = {limit.name: limit for limit in limits}
+    results: dict[str, list[RequirementResult]] = {}
+    for requirement in analysis.requirements:
+        results.setdefault(requirement.name, []).append(requirement)
     for requirement in analysis.requirements:
         limit = by_name.get(requirement.name.removesuffix(" repetition"))
         if limit is None:
             continue
+        words = limit.key[1].split() if limit.key[0] == "constraint" else []
+        kind = " ".join([limit.key[0], *(word for word in words if word.isalpha())])
         tally.limits[str(requirement.verdict)] += 1
-        if requirement.verdict is Verdict.MET:
+        tally.kinds[f"{kind}: {requirement.verdict}"] += 1
+        # A constraint is met if all that is said about it is.
+        if all(each.verdict is Verdict.MET for each in results[requirement.name]):
             bounds = f"[{requirement.lower}, {requirement.upper}]"
             yield f"{requirement.name}: limit {limit.limit} met by {bounds}, but {limit.observed} occurs"
+
+
+def falsely_kept(simulation: Simulation, limits: Iterable[Limit]) -> Iterator[str]:
+    """Limits that no play keeps, and a simulation says that it did."""
+    by_name = {limit.name: limit for limit in limits if limit.key[0] == "constraint"}
+    results: dict[str, list[RequirementObservation]] = {}
+    for requirement in simulation.requirements:
+        results.setdefault(requirement.name, []).append(requirement)
+    for name, limit in by_name.items():
+        if name in results and all(each.verdict is ObservedVerdict.OK for each in results[name]):
+            yield f"{name}: limit {limit.limit} kept with {results[name][0].value}, but {limit.observed} is played"
 
 
 def is_determined(facts: Facts) -> bool:
     """Whether nothing is left to chance, and all readings were played."""
     ticks = str([process.body for process in facts.played.processes]) + str(facts.played.runnables)
     kinds = {stimulus.kind for stimulus in facts.played.stimuli.values()}
-    random = kinds & {"RelativePeriodic", "ArrivalCurve", "VariableRate"} or "chance" in ticks
+    is_random = bool(kinds & {"RelativePeriodic", "ArrivalCurve", "VariableRate"}) or "chance" in ticks
+    is_random |= any(item[0] == "group" and not item[2] for item in items_of(facts.played))
     jitters = any("jitter" in stimulus.given for stimulus in facts.played.stimuli.values())
-    return facts.is_complete and not (random or jitters or facts.lost or facts.played.servers or _varies(facts))
+    return facts.is_complete and not (is_random or jitters or facts.lost or facts.played.servers or _varies(facts))
 
 
 def _varies(facts: Facts) -> bool:

@@ -9,11 +9,12 @@ from itertools import pairwise
 from random import Random
 
 from opponent.models.chains import Chain, Event, chains_of, latencies, readings
+from opponent.models.constraints import Constraint, Play
 from opponent.models.player import Job, Player, play
-from opponent.models.reading import Played, read
+from opponent.models.reading import Played, Process, read
 from opponent.models.variants import Choices, variants_of
 
-#: What is measured: its kind ("process", "chain", "delay"), of what, and the quantity.
+#: What is measured: its kind ("process", "jitter", "chain", "delay", "constraint"), of what, and the quantity.
 Key = tuple[str, str, str]
 
 #: Plays under each reading, and readings.
@@ -29,8 +30,12 @@ class Extremes:
 
     def add(self, key: Key, value: int) -> None:
         """One more value."""
-        self.greatest[key] = max(value, self.greatest.get(key, value))
+        self.at_least(key, value)
         self.least[key] = min(value, self.least.get(key, value))
+
+    def at_least(self, key: Key, value: int) -> None:
+        """One more value that is not complete."""
+        self.greatest[key] = max(value, self.greatest.get(key, value))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -41,6 +46,7 @@ class Facts:
     ----------
     greatest, least : the least of the maxima under all readings, and the greatest of the minima
     spread : the least and the greatest value under any reading
+    loose : the least and the greatest value in any way to read a constraint, and up to the end of a play; None: no complete one
     lost : processes of which activations were beyond a limit in some play
     is_complete : whether all readings were played
     """
@@ -51,6 +57,8 @@ class Facts:
     greatest: dict[Key, int]
     least: dict[Key, int]
     spread: dict[Key, tuple[int, int]]
+    loose: dict[Key, tuple[int | None, int]]
+    constraints: tuple[Constraint, ...]
     lost: frozenset[str]
     is_complete: bool
 
@@ -65,6 +73,7 @@ def horizon(played: Played) -> int:
 def facts_of(
     text: str | bytes,
     delays: Iterable[tuple[Event, Event]] = (),
+    constraints: tuple[Constraint, ...] = (),
     *,
     plays: int = PLAYS,
     most: int = MOST_VARIANTS,
@@ -78,10 +87,12 @@ def facts_of(
     chosen = variants if len(variants) <= most else Random(0).sample(variants, most)
     # The quantities of a chain are read in several ways, too: over each of the links of a step.
     results: list[Extremes] = []
+    ways: dict[Constraint, list[Extremes]] = {}
     lost: set[str] = set()
     for variant in chosen:
         found = Extremes()
         by_link: dict[tuple[str, tuple[str, ...]], Extremes] = {}
+        by_reading: dict[Constraint, dict[int, Extremes]] = {constraint: {} for constraint in constraints}
         for seed in range(plays):
             run = play(played, variant, Choices(seed), end)
             lost.update(process.name for process, count in zip(played.processes, run.lost, strict=True) if count)
@@ -91,6 +102,12 @@ def facts_of(
                     extremes = by_link.setdefault((chain.name, links), Extremes())
                     for quantity, value in latencies(played, run, chain, links, end):
                         extremes.add(("chain", chain.name, quantity), value)
+            _constrain(by_reading, Play(played, run, end))
+        for constraint, each in by_reading.items():
+            ways.setdefault(constraint, []).extend(each.values())
+            common = under_all([*each.values()])
+            found.greatest |= common[0]
+            found.least |= common[1]
         for chain in chains:
             common = under_all([e for (name, _), e in by_link.items() if name == chain.name])
             found.greatest |= common[0]
@@ -98,7 +115,15 @@ def facts_of(
         results.append(found)
     greatest, least = under_all(results)
     spread = {key: (min(r.least[key] for r in results), max(r.greatest[key] for r in results)) for key in least}
+    loose: dict[Key, tuple[int | None, int]] = dict(spread)
+    for constraint, extremes in ways.items():
+        key = ("constraint", constraint.name, "")
+        complete = [each.least[key] for each in extremes if key in each.least]
+        if extremes:
+            loose[key] = (min(complete, default=None), max(each.greatest[key] for each in extremes))
     return Facts(
+        loose=loose,
+        constraints=constraints,
         played=played,
         chains=chains,
         delays=pairs,
@@ -124,8 +149,16 @@ def under_all(results: list[Extremes]) -> tuple[dict[Key, int], dict[Key, int]]:
 
 def _add(found: Extremes, played: Played, run: Player, pairs: Iterable[tuple[Event, Event]], until: int) -> None:
     for process, jobs in zip(played.processes, run.jobs, strict=True):
-        for quantity, value in metrics(jobs):
+        for job in jobs:
+            if job.end is None:
+                found.at_least(("process", process.name, "response_time"), until - job.activated)
+        occurred: dict[str, list[int]] = {}
+        for quantity, value in metrics(process, jobs):
             found.add(("process", process.name, quantity), value)
+            occurred.setdefault(quantity, []).append(value)
+        for quantity, values in occurred.items():
+            if (jitter := jitter_of(quantity, values, period_of(process, played))) is not None:
+                found.at_least(("jitter", process.name, quantity), jitter)
     jobs_of = {process.name: jobs for process, jobs in zip(played.processes, run.jobs, strict=True)}
     for source, target in pairs:
         key = ("delay", f"{source[0]} {source[1]}", f"{target[0]} {target[1]}")
@@ -135,7 +168,32 @@ def _add(found: Extremes, played: Played, run: Player, pairs: Iterable[tuple[Eve
                 found.least[key] = min(value, found.least.get(key, value))
 
 
-def metrics(jobs: list[Job]) -> Iterator[tuple[str, int]]:
+def _constrain(by_reading: dict[Constraint, dict[int, Extremes]], run: Play) -> None:
+    """What constraints limit in a play, reading by reading."""
+    for constraint, found in by_reading.items():
+        for value in constraint.values(run):
+            for reading in value.readings:
+                extremes = found.setdefault(reading, Extremes())
+                add = extremes.add if value.is_complete else extremes.at_least
+                add(("constraint", constraint.name, ""), value.value)
+
+
+def period_of(process: Process, played: Played) -> int | None:
+    """The nominal period of a process with one periodic stimulus."""
+    stimuli = [played.stimuli[name] for name in process.stimuli]
+    if len(stimuli) != 1 or stimuli[0].kind != "Periodic":
+        return None
+    return int(stimuli[0].given["recurrence"])
+
+
+def jitter_of(quantity: str, values: list[int], period: int | None) -> int | None:
+    """How far values are apart; those from a job to the next one, from the period of the process."""
+    if quantity in ("activate_to_activate", "start_to_start", "end_to_end"):
+        return None if period is None else max(max(values) - period, period - min(values))
+    return max(values) - min(values) if len(values) > 1 else None
+
+
+def metrics(process: Process, jobs: list[Job]) -> Iterator[tuple[str, int]]:
     """The times of the jobs of a process."""
     for job in jobs:
         if job.start is not None:
@@ -144,6 +202,10 @@ def metrics(jobs: list[Job]) -> Iterator[tuple[str, int]]:
             yield "response_time", job.end - job.activated
             yield "gross_execution_time", job.end - job.start
             yield "running_time", job.executed
+            yield "net_execution_time", job.executed + job.waited
+            yield "ready_time", job.end - job.start - job.executed - job.waited
+            if process.deadline is not None:
+                yield "lateness", job.end - job.activated - process.deadline
     for one, other in pairwise(jobs):
         yield "activate_to_activate", other.activated - one.activated
         if one.start is not None and other.start is not None:

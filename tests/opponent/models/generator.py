@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from random import Random
 
 from opponent.models import writing
+from opponent.models.choosing import constraints_of
+from opponent.models.constraints import Constraint
 from opponent.models.erasing import erased
+from opponent.models.reading import UnplayableError
 from opponent.models.writing import Parts, item, ticks, time
 
 #: What is in some models; a model has one to four of them.
@@ -44,7 +47,7 @@ class Plan:
 
 @dataclass(frozen=True, slots=True)
 class RandomModel:
-    """A model, what it has in it, and pairs of events between which a delay can be limited.
+    """A model, what it has in it, and pairs of events between which a delay can be limited, and what else can be.
 
     Attributes
     ----------
@@ -55,6 +58,7 @@ class RandomModel:
     features: frozenset[str]
     delays: tuple[tuple[tuple[str, str], tuple[str, str]], ...]
     hides: int | None = None
+    constraints: tuple[Constraint, ...] = ()
 
     def told(self) -> tuple[str, frozenset[str]]:
         """What the model states, and what is in it."""
@@ -66,18 +70,34 @@ class RandomModel:
 
 def random_model(seed: int) -> RandomModel:
     """The model of a number."""
-    return _Generator(Random(seed)).model()
+    return Generator(Random(seed)).model()
 
 
-class _Generator:
+def constrained(model: RandomModel, seed: int) -> RandomModel:
+    """The same model with constraints."""
+    try:
+        return replace(model, constraints=constraints_of(model.text, Random(seed)))
+    except UnplayableError:
+        return model
+
+
+class Generator:
+    """Makes a model, part by part."""
+
     def __init__(self, rng: Random) -> None:
         self.rng, self.parts = rng, Parts()
-        self.features = set(rng.sample(FEATURES, rng.choice((1, 2, 2, 3, 4))))
+        self.features = self._features()
         if rng.random() < 0.25:
             self.features = {f for f in self.features if f not in POLICIES}
         self.plans: list[Plan] = []
         self.used: set[str] = set()
         self.runnables = 0
+
+    def _features(self) -> set[str]:
+        return set(self.rng.sample(FEATURES, self.rng.choice((1, 2, 2, 3, 4))))
+
+    def _period(self) -> int:
+        return self.rng.choice(PERIODS)
 
     def has(self, *names: str, chance: float = 1.0) -> bool:
         """Whether the model shall have something, here."""
@@ -97,9 +117,9 @@ class _Generator:
         self.policy = next((POLICIES[f] for f in POLICIES if f in self.features), "FixedPriorityPreemptive")
         self.used |= self.features & set(POLICIES)
         for n in range(rng.choice((2, 3, 3, 4))):
-            self.plans.append(Plan(f"T{n}", False, rng.choice([*parts.cores]), rng.choice(PERIODS)))
+            self.plans.append(Plan(f"T{n}", False, rng.choice([*parts.cores]), self._period()))
         if self.has("isr", "isr overhead"):
-            self.plans.append(Plan(f"T{len(self.plans)}", True, rng.choice([*parts.cores]), rng.choice(PERIODS)))
+            self.plans.append(Plan(f"T{len(self.plans)}", True, rng.choice([*parts.cores]), self._period()))
         self._state()
         for plan in self.plans:
             self._body(plan)
@@ -372,12 +392,18 @@ class _Generator:
             if self.has("migration", chance=0.5) and self.policy == "FixedPriorityPreemptive" and not self.has("server"):
                 other = "c1" if plan.core == "c0" else "c0"
                 body += item("EnforcedMigration", f'resourceOwner="S{other}?type=TaskScheduler"') + self._ticks()
-            mode = "non_preemptive" if self.has("non-preemptive", chance=0.5) else "preemptive"
+            mode, limit = self._mode(plan), self._limit()
             parts.tasks.append(
                 f'<tasks xmi:id="{plan.name}?type=Task" name="{plan.name}" stimuli="{stimuli}" preemption="{mode}" '
-                f'multipleTaskActivationLimit="99"><activityGraph>{body}</activityGraph></tasks>'
+                f'multipleTaskActivationLimit="{limit}"><activityGraph>{body}</activityGraph></tasks>'
             )
             parts.allocations.append(self._allocation(plan, priority))
+
+    def _mode(self, _plan: Plan) -> str:
+        return "non_preemptive" if self.has("non-preemptive", chance=0.5) else "preemptive"
+
+    def _limit(self) -> int:
+        return 99
 
     def _allocation(self, plan: Plan, priority: int) -> str:
         rng, scheduler = self.rng, f"S{plan.core}"

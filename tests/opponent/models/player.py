@@ -7,15 +7,24 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from heapq import heappop, heappush
-from typing import Any
+from typing import Any, NamedTuple
 
 from opponent.models.arrivals import occurrences
 from opponent.models.comparisons import is_true
 from opponent.models.reading import Body, Item, Played, Process, UnplayableError
-from opponent.models.variants import Choices, Variant
+from opponent.models.variants import Choices, Variant, items_of_process
 
 NEVER = 10**18
 _MOST_STEPS = 200_000
+
+
+class Mark(NamedTuple):
+    """Something that a job does, and within which runnable."""
+
+    change: str
+    name: str
+    time: int
+    runnable: str
 
 
 @dataclass(slots=True, eq=False)
@@ -38,12 +47,25 @@ class Job:
     end: int | None = None
     accesses: dict[tuple[str, str], list[int]] = field(default_factory=dict)
     copies: list[str] = field(default_factory=list)
+    #: What runnables do: they start, terminate, read and write; with the name of what they access, or their own.
+    marks: list[Mark] = field(default_factory=list)
+    #: A cooperative job lets other ones go first, and so it does after calls.
+    at_point: bool = False
+    yields_at_calls: bool = False
+    #: Semaphores that it holds, and the one that it waits for, since when, and how long it has waited.
+    held: list[str] = field(default_factory=list)
+    #: Labels whose data are visible at the end of the period, and whether that is before the end of the job.
+    timed: list[str] = field(default_factory=list)
+    is_late: bool = False
+    awaited: str = ""
+    since: int = 0
+    waited: int = 0
 
     def has_more(self) -> bool:
         """Whether anything is left in its text."""
-        return any(index < len(body) for body, index, _ in self.stack)
+        return any(index < len(body) for body, index, *_ in self.stack)
 
-    def next_item(self) -> Item | None:
+    def next_item(self, now: int) -> Item | None:
         """Take the next item; that a non-interruptible group is left is one, since others can run then."""
         while self.stack:
             top = self.stack[-1]
@@ -51,15 +73,24 @@ class Job:
                 top[1] += 1
                 return tuple(top[0][top[1] - 1])
             self.stack.pop()
+            if top[3]:
+                self.marks.append(Mark("terminate", top[3], now, top[3]))
+                if self.yields_at_calls:
+                    return ("point",)
             if top[2]:
                 self.masks -= top[2]
                 return ("left",)
         return None
 
-    def enter(self, body: Body, masks: int = 0) -> None:
-        """Continue inside a body."""
+    def enter(self, body: Body, masks: int = 0, runnable: str = "") -> None:
+        """Continue inside a body, which can be the one of a runnable."""
         self.masks += masks
-        self.stack.append([body, 0, masks])
+        self.stack.append([body, 0, masks, runnable])
+
+    @property
+    def runnable(self) -> str:
+        """The innermost runnable that is executed; "" if it is none."""
+        return next((frame[3] for frame in reversed(self.stack) if frame[3]), "")
 
 
 class Player:
@@ -79,6 +110,10 @@ class Player:
         self.budgets = {name: server.capacity for name, server in played.servers.items()}
         self.activated_by = {
             name: [i for i, process in enumerate(self.processes) if name in process.stimuli] for name in played.stimuli
+        }
+        self.ceilings = {
+            name: max(p.priority for p in self.processes if ("request", name) in items_of_process(played, p.name))
+            for name in played.semaphores
         }
         self.timeline: list[tuple[int, int, int, str]] = []
         for order, stimulus in enumerate(played.stimuli.values()):
@@ -160,9 +195,10 @@ class Player:
             activated=self.now,
             rank=(self.now, self.rank if is_sliced else order),
             deadline=self.now + (process.deadline or NEVER),
-            stack=[[body, 0, 0]],
+            stack=[[body, 0, 0, ""]],
             slice_left=process.slice if is_sliced and process.slice else NEVER,
             cause=cause,
+            yields_at_calls=process.mode == "cooperative" and self.variant.points_at_calls,
         )
         self.queues[index].append(job)
         self.jobs[index].append(job)
@@ -182,11 +218,12 @@ class Player:
             return (job.deadline, 0, job.rank)
         if policy.startswith("DeadlineMonotonic"):
             return (process.deadline, 0, job.rank)
-        return (-process.priority, 0, job.rank)
+        ceilings = (self.ceilings[name] for name in job.held if self.played.semaphores[name])
+        return (-max(process.priority, *ceilings, -NEVER), 0, job.rank)
 
     def _pick(self, core: str) -> Job | None:
         """The job that has the core."""
-        ready = [queue[0] for queue in self.queues if queue and queue[0].core == core]
+        ready = [queue[0] for queue in self.queues if queue and queue[0].core == core and not queue[0].awaited]
         masking = [job for job in ready if job.masks]
         isrs = [job for job in ready if self.processes[job.process].is_isr]
         if masking and not (self.variant.unmasked and isrs):
@@ -200,7 +237,15 @@ class Player:
             return None
         ready = [job for job in ready if self._has_budget(job)]
         keeping = [job for job in ready if job.start is not None and self.processes[job.process].mode == "non_preemptive"]
+        between = [job for job in ready if job.start is not None and self._is_cooperative(job) and not job.at_point]
+        if between and self.variant.whole_cooperative:
+            keeping += between
+        elif between:
+            ready = [job for job in ready if job in between or not self._is_cooperative(job)]
         return min(keeping or ready, key=self._urgency, default=None)
+
+    def _is_cooperative(self, job: Job) -> bool:
+        return self.processes[job.process].mode == "cooperative"
 
     def _priority(self, job: Job) -> int:
         return self.processes[job.process].priority
@@ -257,7 +302,8 @@ class Player:
                 self._act(job)
 
     def _act(self, job: Job) -> None:
-        item = job.next_item()
+        job.at_point = False
+        item = job.next_item(self.now)
         if item is None:
             self._end(job)
             return
@@ -267,8 +313,13 @@ class Player:
 
     def _end(self, job: Job) -> None:
         job.end = self.now
+        job.marks += [Mark("terminate", frame[3], self.now, frame[3]) for frame in reversed(job.stack) if frame[3]]
         for label in dict.fromkeys(job.copies):
             job.accesses.setdefault(("write", label), []).append(self.now)
+        for label in dict.fromkeys(job.timed):
+            visible = job.activated + self._period(job)
+            job.is_late |= visible < self.now
+            job.accesses.setdefault(("write", label), []).append(visible)
         self.queues[job.process].remove(job)
         process = self.processes[job.process]
         if self.variant.decides_outside and not process.is_isr:
@@ -287,7 +338,8 @@ class Player:
     def _do_call(self, job: Job, runnable: str, counter: tuple[int, int] | None, key: int) -> None:
         body, condition = self.played.runnables[runnable]
         if is_true(condition, self.modes, self.fills) and self._counts(key, counter):
-            job.enter(body)
+            job.marks.append(Mark("start", runnable, self.now, runnable))
+            job.enter(body, runnable=runnable)
 
     def _do_group(self, job: Job, body: Body, is_ordered: bool, is_interruptible: bool) -> None:
         inner = list(body)
@@ -303,13 +355,26 @@ class Player:
 
     def _do_read(self, job: Job, label: str, implementation: str) -> None:
         time = job.start if implementation == "implicit" and job.start is not None else self.now
+        if implementation == "timed":
+            time = job.activated if self._period(job) else time
         job.accesses.setdefault(("read", label), []).append(time)
+        job.marks.append(Mark("read", label, self.now, job.runnable))
 
     def _do_write(self, job: Job, label: str, implementation: str) -> None:
-        if implementation == "implicit":
+        job.marks.append(Mark("write", label, self.now, job.runnable))
+        if implementation == "timed":
+            job.timed.append(label)
+        elif implementation == "implicit":
             job.copies.append(label)
         else:
             job.accesses.setdefault(("write", label), []).append(self.now)
+
+    def _period(self, job: Job) -> int:
+        """The period of a job, which only processes with one periodic stimulus have."""
+        stimuli = [self.played.stimuli[name] for name in self.processes[job.process].stimuli]
+        if len(stimuli) != 1 or stimuli[0].kind != "Periodic" or "jitter" in stimuli[0].given:
+            raise UnplayableError("accesses at the ends of periods that there are not")
+        return int(stimuli[0].given["recurrence"])
 
     def _do_mode(self, job: Job, label: str, access: str, value: int) -> None:
         job.accesses.setdefault(("read" if access == "read" else "write", label), []).append(self.now)
@@ -344,8 +409,23 @@ class Player:
         for stimulus in reversed(listeners) if self.variant.last_first else listeners:
             self._do_fire(job, stimulus)
 
-    def _do_point(self, _job: Job) -> None:
+    def _do_point(self, job: Job) -> None:
         """Others go first only where the task is cooperative."""
+        job.at_point = True
+
+    def _do_request(self, job: Job, semaphore: str) -> None:
+        if any(semaphore in other.held for queue in self.queues for other in queue):
+            job.awaited, job.since = semaphore, self.now
+        else:
+            job.held.append(semaphore)
+
+    def _do_release(self, job: Job, semaphore: str) -> None:
+        job.held.remove(semaphore)
+        waiting = [other for queue in self.queues for other in queue if other.awaited == semaphore]
+        if waiting:
+            first = min(waiting, key=self._urgency)
+            first.held.append(semaphore)
+            first.awaited, first.waited = "", first.waited + self.now - first.since
 
     def _do_migrate(self, job: Job, core: str) -> None:
         job.core = core

@@ -84,6 +84,8 @@ class Played:
     channels: dict[str, tuple[int, int]]
     listeners: dict[str, tuple[str, ...]]
     overhead: dict[str, int] = field(default_factory=dict)
+    #: Whether holders of a semaphore have the highest priority of those that use it.
+    semaphores: dict[str, bool] = field(default_factory=dict)
 
 
 def reference(text: str | None) -> str:
@@ -159,6 +161,7 @@ class _Reader:
             },
             listeners=self._listeners(),
             overhead=self._overhead(first_core),
+            semaphores={e.get("name", ""): e.get("priorityCeilingProtocol") == "true" for e in self.root.iter("semaphores")},
         )
 
     def _servers(self) -> Iterator[tuple[str, Server]]:
@@ -248,6 +251,7 @@ class _Reader:
             ),
             "InterProcessTrigger": lambda e: ("trigger", reference(e.get("stimulus")), _counter(e), id(e)),
             "CustomEventTrigger": lambda e: ("event", reference(e.get("event"))),
+            "SemaphoreAccess": lambda e: (e.get("access"), reference(e.get("semaphore"))),
             "SchedulePoint": lambda _: ("point",),
             "EnforcedMigration": lambda e: ("migrate", self.core_of[reference(e.get("resourceOwner"))]),
         }
@@ -357,7 +361,7 @@ def _bounds(value: Element) -> tuple[int, int]:
 
 
 def _label_access(e: Element) -> Item:
-    if e.get("access") not in ("read", "write") or e.get("implementation") == "timed":
+    if e.get("access") not in ("read", "write"):
         raise UnplayableError("such accesses to labels")
     return (e.get("access"), reference(e.get("data")), e.get("implementation", "explicit"))
 

@@ -8,7 +8,7 @@ from itertools import product
 from random import Random
 from typing import Any
 
-from opponent.models.reading import Body, Played
+from opponent.models.reading import Body, Item, Played
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -27,6 +27,8 @@ class Variant:
     decides_below : decisions of schedulers do not keep interrupts off
     decides_outside : the decision at the end of a job is no part of it
     polls_early : a polling server looks for work before what arrives at that instant
+    points_at_calls : cooperative tasks let others go first after calls, too
+    whole_cooperative : cooperative tasks keep off all tasks between these points, not only cooperative ones
     """
 
     ends_late: bool = False
@@ -39,6 +41,8 @@ class Variant:
     decides_below: bool = False
     decides_outside: bool = False
     polls_early: bool = False
+    points_at_calls: bool = False
+    whole_cooperative: bool = False
 
 
 def variants_of(played: Played) -> list[Variant]:
@@ -52,7 +56,10 @@ def _open_points(played: Played) -> dict[str, bool]:
     isrs = [process for process in played.processes if process.is_isr]
     items = list(items_of(played))
     has_slices = any("RoundRobin" in policy for policy in played.policies.values())
+    cooperative = [process for process in played.processes if process.mode == "cooperative"]
     return {
+        "points_at_calls": any(item[0] == "call" for p in cooperative for item in p.body),
+        "whole_cooperative": bool(cooperative),
         "ends_late": True,
         "last_first": True,
         "serial_isrs": len({p.core for p in isrs}) < len(isrs),
@@ -81,6 +88,21 @@ def _inside(body: Body) -> Iterator[tuple[Any, ...]]:
         inner += [item[2]] if item[0] == "switch" else []
         for part in inner:
             yield from _inside(part)
+
+
+def items_of_process(played: Played, process: str) -> Iterator[Item]:
+    """All items that a process can reach."""
+    bodies = [next(p.body for p in played.processes if p.name == process)]
+    known: set[str] = set()
+    while bodies:
+        alone = Played(
+            **{f: getattr(played, f) for f in played.__slots__} | {"processes": (), "runnables": {"": (bodies.pop(), ())}}
+        )
+        for item in items_of(alone):
+            yield item
+            if item[0] == "call" and item[1] not in known:
+                known.add(item[1])
+                bodies.append(played.runnables[item[1]][0])
 
 
 class Choices:

@@ -28,6 +28,7 @@ class Parts:
     cores: dict[str, str] = field(default_factory=dict)
     schedulers: list[str] = field(default_factory=list)
     overheads: list[str] = field(default_factory=list)
+    semaphores: list[str] = field(default_factory=list)
     stimuli: list[str] = field(default_factory=list)
     events: list[str] = field(default_factory=list)
     chains: list[str] = field(default_factory=list)
@@ -70,6 +71,7 @@ class Parts:
                 *self.schedulers,
                 *controllers,
                 "</operatingSystems>",
+                *self.semaphores,
                 *self.overheads,
                 *map(_definition, DEFINITIONS),
                 *(
