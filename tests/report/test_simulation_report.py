@@ -246,7 +246,7 @@ def test_what_was_not_simulated_comes_first():
     )
     nothing = replace(SIMULATION, processes=Results(), findings=(left_out, left_out))
     assert closing_line(nothing).startswith(
-        "Observed over 5 min (seed 7): nothing was executed: 'Task_A' is not simulated: its execution time is not known; 1 other error; "
+        f"Observed over 5 min (seed 7): nothing was executed: {left_out.message}; 1 other error; "
     )
 
 
