@@ -12,12 +12,14 @@ from amalthea_uros.judge.evidence import ObservedProcess, ObservedValues
 from amalthea_uros.judge.limits import EventConstraint, SystemLimit, deadline_limit, stated_limits, without_number
 from amalthea_uros.judge.verdict import in_doubt, not_observed, observe, observe_process
 from amalthea_uros.perf.constraints import LatencyConstraint, LatencyKind, Requirement
+from amalthea_uros.perf.events import EventChain
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.system import System
 from amalthea_uros.simulate.limited_values import LimitedQuantity, limited_values, limited_values_of_runnable, observed_values
 from amalthea_uros.simulate.not_simulated import NOT_SIMULATED
 from amalthea_uros.simulate.results import ChainObservation, ProcessObservation, RequirementObservation, RunnableObservation
 from amalthea_uros.timing.chain_quantity import ChainQuantity
+from amalthea_uros.timing.dataflow.chains import UnfoldError, forks, unfold
 from amalthea_uros.timing.releases import activation_period
 from amalthea_uros.units import Time
 
@@ -76,7 +78,7 @@ def judge_requirements(
             values = _of_requirement(item, system, processes, duration, runnables)
             quantities: Sequence[LimitedQuantity] = [LimitedQuantity(limit, values) for limit in limits]
         elif isinstance(item, LatencyConstraint):
-            quantities = [LimitedQuantity(limit, _of_latency(limit, item, chains)) for limit in limits]
+            quantities = [LimitedQuantity(limit, _of_chain(limit, item, chains, system)) for limit in limits]
         else:
             quantities = observers.quantities(item)
         doubt = doubts.get(item.name, "")
@@ -117,6 +119,27 @@ def _of_requirement(
         return ObservedValues(reason=f"the process that it limits {NOT_SIMULATED}")
     kind = "process" if requirement.runnable is None else "runnable"
     return ObservedValues(reason=f"the {kind} that it limits is not defined, or was left out when reading")
+
+
+def _of_chain(
+    limit: SystemLimit, constraint: LatencyConstraint, chains: Results[ChainObservation], system: System
+) -> ObservedValues:
+    """What a latency constraint limits; the ways through a fork are observed one by one, although only some of them decide."""
+    chain = system.chains.get(constraint.chain)
+    if constraint.kind is LatencyKind.REACTION and chain is not None and _decide_some(chain, limit, system):
+        return ObservedValues(reason="only some of the ways through the chain decide, and each of them is observed by itself")
+    return _of_latency(limit, constraint, chains)
+
+
+def _decide_some(chain: EventChain, limit: SystemLimit, system: System) -> bool:
+    """Whether the longest way through a chain, or the shortest one for a lower limit, does not decide on a reaction."""
+    try:
+        found = list(forks(unfold(chain, system)[0]))
+    except UnfoldError:
+        return False
+    is_earlier = any(fork.needed < len(fork.branches) for fork in found)
+    is_later = any(fork.needed > 1 for fork in found)
+    return is_earlier or is_later if limit.is_jitter else is_earlier if limit.is_upper else is_later
 
 
 def _of_latency(limit: SystemLimit, constraint: LatencyConstraint, chains: Results[ChainObservation]) -> ObservedValues:

@@ -64,6 +64,8 @@ def _scope(constraint: OrderConstraint, system: System, events: EventLocator) ->
     if callers and elsewhere:
         raise _OpenError(f"{elsewhere[0]!r} is only called by processes outside of the scope")
     if everywhere < wanted or all(names == wanted for names in callers.values()):
+        for call in (call for found in calls.values() for call in found):
+            _require_direct(call)
         return OrderScope(alone=tuple(callers))
     return OrderScope(together=_together([call for found in calls.values() for call in found], system, events))
 
@@ -100,12 +102,17 @@ def called_runnable(call: ActivityPosition) -> str:
     return call.activity.runnable
 
 
+def _require_direct(call: ActivityPosition) -> None:
+    """Refuse a call within a runnable: what is in between then is not stated, and neither is what ends first."""
+    if call.runnable is not None:
+        raise _OpenError(f"{called_runnable(call)!r} is called by the runnable {call.runnable!r}, and not by a process")
+
+
 def _together(calls: Sequence[ActivityPosition], system: System, events: EventLocator) -> Mapping[str, ActivityPosition]:
     found: dict[str, ActivityPosition] = {}
     for call in calls:
         name = called_runnable(call)
-        if call.runnable is not None:
-            raise _OpenError(f"{name!r} is called by the runnable {call.runnable!r}, and not by a process")
+        _require_direct(call)
         if name in found:
             raise _OpenError(
                 f"{name!r} is called at several positions, so it is unknown which of its executions belong to the others"

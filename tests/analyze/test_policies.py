@@ -37,7 +37,7 @@ from amalthea_uros.perf.events import CustomEvent, Events, LabelChange, LabelEve
 from amalthea_uros.perf.hardware import Clock, Core, Hardware, Structure
 from amalthea_uros.perf.mapping import Mapping, TaskAllocation
 from amalthea_uros.perf.os import Duration, OperatingSystem, Os, Overhead, Parameter, Parent, Policy, Scheduler, Service
-from amalthea_uros.perf.software import Channel, Isr, IsrCategory, Label, Runnable, Software, Task
+from amalthea_uros.perf.software import Channel, Isr, IsrCategory, Label, Preemption, Runnable, Software, Task
 from amalthea_uros.perf.stimuli import EventTriggered, Periodic, RelativePeriodic, Stimuli
 from amalthea_uros.perf.system import System
 from amalthea_uros.report.closing_line import closing_line
@@ -244,6 +244,19 @@ class TestSchedulersBelowEachOther:
         # One cause, which is told once, and no finding of each task.
         assert closing_line(analysis.summary).endswith(f"because of 'above': {cause}")
         assert not any(cause in finding.message for finding in analysis.findings)
+
+    def test_cooperative_tasks_in_a_server_and_below_it(self):
+        tasks = [
+            ("inside", 100, [ticks(4)], {"scheduler": "server", "priority": 1}),
+            ("above", 20, [ticks(9)], {"scheduler": "root", "priority": 9}),
+            ("below", 100, [ticks(30)], {"scheduler": "root", "priority": 1}),
+        ]
+        built = system([root(), under("server", Policy.POLLING_SERVER, 5, capacity=2, period=20)], tasks)
+        cooperative = [replace(task, preemption=Preemption.COOPERATIVE) for task in built.software.tasks]
+        found = worst(replace(built, software=replace(built.software, tasks=tuple(cooperative))))
+        # Each can keep off the other ones up to its end, whatever the budget is.
+        assert found["above"] == "'inside' in the server 'server' cannot be preempted everywhere, and can block it"
+        assert found["inside"] == "'below' is cooperative, and can block cooperative tasks in the server 'server'"
 
     def test_decisions_above_a_server(self):
         tasks = [

@@ -136,3 +136,17 @@ def test_a_second_call_in_a_branch_is_not_overlooked():
     branches = (Chance(weight=1, activities=(Call(runnable="a"),)), Chance(weight=1, activities=()))
     found = answers({"A": ["a", "b", ProbabilitySwitch(branches=branches)], "B": ["d"]}, A_THEN_B, **every(10))
     assert found == {"A": ("unknown", "observed_missed")}
+
+
+@pytest.mark.parametrize("first", ["a", "outer"])
+def test_a_runnable_that_another_one_calls_is_not_overlooked(first):
+    """The job executes b after a, within another runnable, or before it."""
+    order = OrderConstraint(name="O", groups=A_THEN_B)
+    then = "outer" if first == "a" else "a"
+    runnables = {"a": [work(1)], "b": [work(1)], "outer": [Call(runnable="b"), work(1)]}
+    model = system(
+        {"A": [Call(runnable=first), Call(runnable=then)], "B": []}, runnables=runnables, orders=(order,), **every(10)
+    )
+    (proved,), (observed,) = analyze_system(model).requirements, simulated(model).requirements
+    assert (str(proved.verdict), str(observed.verdict)) == ("unknown", "not_observed")
+    assert observed.reason.startswith("'b' is called by the runnable 'outer'")

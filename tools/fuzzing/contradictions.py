@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from amalthea_uros.analyze.results import Analysis, ChainResult, ProcessResult, RequirementResult
 from amalthea_uros.judge.verdict import ObservedVerdict, Verdict
 from amalthea_uros.simulate.results import ChainObservation, ProcessObservation, RequirementObservation, Simulation
+from amalthea_uros.timing.dataflow.chains import UnfoldError, forks, unfold
 from amalthea_uros.timing.job_metric import JobMetric
 
 
@@ -26,12 +27,22 @@ def contradictions(analysis: Analysis, simulation: Simulation) -> Iterator[str]:
             yield f"{process.name} is met, but observed as missed: {found.reason}"
     chains = {chain.name: chain for chain in simulation.chains}
     for chain in analysis.chains:
-        if chain.name in chains:
+        # The simulation observes the ways through a chain one by one; of alternatives, the first one decides.
+        if chain.name in chains and not _has_alternatives(analysis, chain.name):
             yield from _latencies(chain, chains[chain.name])
     missed = set(map(_identity, (item for item in simulation.requirements if item.verdict is ObservedVerdict.MISSED)))
     for requirement in analysis.requirements:
         if requirement.verdict is Verdict.MET and _identity(requirement) in missed:
             yield f"{requirement.name}, {requirement.quantity} of {requirement.object}, is met, but observed as missed"
+
+
+def _has_alternatives(analysis: Analysis, chain: str) -> bool:
+    system = analysis.solution.context.system
+    try:
+        unfolded, _ = unfold(system.chains[chain], system)
+    except UnfoldError:
+        return False
+    return any(fork.needed < len(fork.branches) for fork in forks(unfolded))
 
 
 def _crossed(analysis: Analysis) -> Iterator[str]:

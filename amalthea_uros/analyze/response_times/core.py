@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
 
@@ -84,6 +84,10 @@ class _CoreAnalysis:
         obstacle = blocking.obstacle(item) if isinstance(item, ScheduledProcess) and blocking.unknown else ""
         if obstacle:
             self._mark_unknown(item, f"{obstacle!r}, which could not be analysed, can block it")
+        elif isinstance(item, Server) and (obstacle := self._cooperative_below(item, blocking)):
+            self._mark_unknown(
+                item, f"{obstacle!r} is cooperative, and can block cooperative tasks in the server {item.name!r}"
+            )
         for server in servers:
             if not obstacle and server is not item and (obstacle := self._not_preempted_in(server)):
                 # Whether the end of a budget interrupts it is not standardised: it may go on, before what is above and what is below.
@@ -93,17 +97,32 @@ class _CoreAnalysis:
                 )
         return bool(obstacle)
 
-    def _not_preempted_in(self, server: Server) -> str:
-        """A process in the budget of a server that is not preempted in some part of its jobs; "" if there is none."""
+    def _cooperative_below(self, server: Server, blocking: Blocking) -> str:
+        """A cooperative process below a server that has cooperative ones, too; "" if there is none."""
+        if not any(preemption(each) is Preemption.COOPERATIVE for each in self._processes_in(server)):
+            return ""
+        below = (each for each in blocking.processes if each.rank < server.rank)
+        return next((each.name for each in below if preemption(each) is Preemption.COOPERATIVE), "")
+
+    def _processes_in(self, server: Server) -> Iterator[ScheduledProcess]:
+        """The processes in the budget of a server, and of those within it."""
         for item in self.context.served(self.core, server.name):
             if isinstance(item, Server):
-                if found := self._not_preempted_in(item):
-                    return found
-            elif (
-                preemption(item) is Preemption.NON_PREEMPTIVE or self.context.protection[item.name].has_non_interruptible_group
-            ):
-                return item.name
-        return ""
+                yield from self._processes_in(item)
+            else:
+                yield item
+
+    def _not_preempted_in(self, server: Server) -> str:
+        """A process in the budget of a server that is not preempted in some part of its jobs; "" if there is none."""
+        return next(
+            (
+                item.name
+                for item in self._processes_in(server)
+                if preemption(item) is not Preemption.PREEMPTIVE
+                or self.context.protection[item.name].has_non_interruptible_group
+            ),
+            "",
+        )
 
     def _is_known(self, item: ScheduledProcess | Server) -> bool:
         return isinstance(item, Server) or self.solution.is_analysable(item.name)

@@ -214,6 +214,15 @@ def combined(unfolded: Unfolded, value: Mapping[tuple[str, ...], int | None], be
     return value[before]
 
 
+def forks(unfolded: Unfolded) -> Iterator[Fork]:
+    """All forks of a chain."""
+    for part in unfolded:
+        if isinstance(part, Fork):
+            yield part
+            for branch in part.branches:
+                yield from forks(branch)
+
+
 def _endless_last(value: int | None) -> tuple[bool, int]:
     return (value is None, value or 0)
 

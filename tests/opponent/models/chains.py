@@ -10,6 +10,7 @@ from bisect import bisect_left, bisect_right
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise, product
+from typing import Any
 from xml.etree import ElementTree
 
 from opponent.models.player import Job, Player
@@ -24,13 +25,25 @@ Times = list[tuple[int, int]]
 
 @dataclass(frozen=True, slots=True)
 class Chain:
-    """A chain of processes from an event to another one; between two of them is one of several links, a label or a trigger ("")."""
+    """A chain of processes from an event to another one; between two of them is one of several links, a label or a trigger ("").
+
+    Attributes
+    ----------
+    branches : chains between the same events that are parallel, instead of processes
+    completed : how many of them have to lead to a response
+    """
 
     name: str
     stimulus: str
     response: str
     processes: tuple[str, ...]
     links: tuple[tuple[str, ...], ...]
+    branches: tuple[Chain, ...] = ()
+    completed: int = 1
+
+
+#: One link for each step, of each branch.
+Reading = tuple[Any, ...]
 
 
 def events_of(root: ElementTree.Element) -> dict[str, Event]:
@@ -51,15 +64,27 @@ def chains_of(text: str | bytes, played: Played) -> Iterator[Chain]:
     events = events_of(root)
     chains = {chain.get("name", ""): chain for chain in root.iter("eventChains")}
     for name, chain in chains.items():
-        names = _events_of_chain(chain, chains)
-        steps = [events[each] for each in names if each in events]
-        if not names or len(steps) != len(names):
-            continue
-        processes = [steps[0][0]]
-        processes += [b[0] for a, b in pairwise(steps) if a[0] != b[0]]
-        links = tuple(tuple(_links_of_step(played, a, b)) for a, b in pairwise(steps) if a[0] != b[0])
-        if links and all(links):
-            yield Chain(name, steps[0][1], steps[-1][1], tuple(processes), links)
+        if chain.get("itemType") == "parallel":
+            found = [
+                _chain_of(_events_of_chain(part, chains), name, events, played) for part in chain.iterfind("items/eventChain")
+            ]
+            branches = tuple(branch for branch in found if branch is not None)
+            if len(branches) == len(found) > 1:
+                completed = int(chain.get("minItemsCompleted", "1"))
+                yield Chain(name, branches[0].stimulus, branches[0].response, (), (), branches, completed)
+        elif single := _chain_of(_events_of_chain(chain, chains), name, events, played):
+            yield single
+
+
+def _chain_of(names: list[str], name: str, events: dict[str, Event], played: Played) -> Chain | None:
+    """The chain of some events, if every step is understood."""
+    steps = [events[each] for each in names if each in events]
+    if not names or len(steps) != len(names):
+        return None
+    processes = [steps[0][0]]
+    processes += [b[0] for a, b in pairwise(steps) if a[0] != b[0]]
+    links = tuple(tuple(_links_of_step(played, a, b)) for a, b in pairwise(steps) if a[0] != b[0])
+    return Chain(name, steps[0][1], steps[-1][1], tuple(processes), links) if links and all(links) else None
 
 
 def _events_of_chain(chain: ElementTree.Element, chains: dict[str, ElementTree.Element]) -> list[str]:
@@ -107,13 +132,16 @@ def _accesses(played: Played, process: str) -> set[tuple[str, str]]:
     return {(str(item[0]), str(item[1])) for item in items_of_process(played, process) if item[0] in ("read", "write")}
 
 
-def readings(chain: Chain) -> Iterator[tuple[str, ...]]:
+def readings(chain: Chain) -> Iterator[Reading]:
     """One link for each step."""
-    yield from product(*chain.links)
+    yield from product(*map(readings, chain.branches)) if chain.branches else product(*chain.links)
 
 
-def latencies(played: Played, play: Player, chain: Chain, links: tuple[str, ...], until: int) -> Iterator[tuple[str, int]]:
+def latencies(played: Played, play: Player, chain: Chain, links: Reading, until: int) -> Iterator[tuple[str, int]]:
     """All values of each quantity, over one link a step; none if it is not clear which data a job is based on."""
+    if chain.branches:
+        yield from _reactions(answers(played, play, chain, links), until)
+        return
     index = {process.name: number for number, process in enumerate(played.processes)}
     stages = [play.jobs[index[name]] for name in chain.processes]
     hops = [
@@ -125,12 +153,17 @@ def latencies(played: Played, play: Player, chain: Chain, links: tuple[str, ...]
     responses = [time for job in stages[-1] if (time := _time(job, chain.response)) is not None]
     # Of a job that has not ended, it is not known yet what it reads.
     known = min([until, *(time for job in stages[-1] if job.end is None and (time := _time(job, chain.response)) is not None)])
-    yield from _forward(hops, stimuli, responses, known)
+    yield from _reactions(list(_answers(hops, stimuli, responses)), known)
     yield from _backward(hops, stimuli, responses)
 
 
-def answers(played: Played, play: Player, chain: Chain, links: tuple[str, ...]) -> list[tuple[int, int | None]]:
+def answers(played: Played, play: Player, chain: Chain, links: Reading) -> list[tuple[int, int | None]]:
     """Each stimulus with its first response, if there was one; nothing if it is not clear which data a job is based on."""
+    if chain.branches:
+        each = [answers(played, play, branch, own) for branch, own in zip(chain.branches, links, strict=True)]
+        if not all(each):
+            return []
+        return [(group[0][0], _completed([end for _, end in group], chain.completed)) for group in zip(*each, strict=True)]
     index = {process.name: number for number, process in enumerate(played.processes)}
     stages = [play.jobs[index[name]] for name in chain.processes]
     hops = [
@@ -174,16 +207,24 @@ def _answers(hops: list[_Hop], stimuli: list[int], responses: list[int]) -> Iter
         yield stimulus, responses[reached] if reached is not None and reached < len(responses) else None
 
 
-def _forward(hops: list[_Hop], stimuli: list[int], responses: list[int], until: int) -> Iterator[tuple[str, int]]:
-    for number, (stimulus, answer) in enumerate(_answers(hops, stimuli, responses)):
-        end = until if answer is None else answer
+def _completed(ends: list[int | None], number: int) -> int | None:
+    """When a number of parallel parts have led to a response."""
+    known = sorted(end for end in ends if end is not None)
+    return known[number - 1] if len(known) >= number else None
+
+
+def _reactions(found: list[tuple[int, int | None]], until: int) -> Iterator[tuple[str, int]]:
+    before: int | None = None
+    for stimulus, answer in found:
         if answer is None and stimulus >= until:
             return
+        end = until if answer is None else answer
         yield "max_reduced_reaction_time", end - stimulus
-        if number:
-            yield "max_reaction_time", end - stimuli[number - 1]
+        if before is not None:
+            yield "max_reaction_time", end - before
         if answer is not None:
             yield "min_first_to_first", end - stimulus
+        before = stimulus
 
 
 def _backward(hops: list[_Hop], stimuli: list[int], responses: list[int]) -> Iterator[tuple[str, int]]:

@@ -32,7 +32,7 @@ MOST = 3
 def constraints_of(text: str, rng: Random) -> tuple[Constraint, ...]:
     """Some constraints of each kind on what a model has."""
     played = read(text)
-    chains = list(chains_of(text, played))
+    chains = [chain for chain in chains_of(text, played) if not chain.branches]
     together = [
         ChainSynchronization(f"chains {end}", (one, other), end, _stimulus(one) == _stimulus(other), rng.random() < 0.5)
         for one, other in pairwise(chains)

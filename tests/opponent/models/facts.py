@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from random import Random
 
-from opponent.models.chains import Chain, Event, chains_of, latencies, readings
+from opponent.models.chains import Chain, Event, Reading, chains_of, latencies, readings
 from opponent.models.constraints import Constraint, Play
 from opponent.models.player import Job, Player, play
 from opponent.models.reading import Played, Process, read
@@ -91,7 +91,7 @@ def facts_of(
     lost: set[str] = set()
     for variant in chosen:
         found = Extremes()
-        by_link: dict[tuple[str, tuple[str, ...]], Extremes] = {}
+        by_link: dict[tuple[str, Reading], Extremes] = {}
         by_reading: dict[Constraint, dict[int, Extremes]] = {constraint: {} for constraint in constraints}
         for seed in range(plays):
             run = play(played, variant, Choices(seed), end)

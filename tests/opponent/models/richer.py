@@ -13,7 +13,7 @@ from opponent.models.writing import item
 FURTHER = (
     "equal periods", "data in runnables", "nested calls", "switch in a runnable", "unordered group", "chance", "cooperative",
     "few activations", "two chains", "long chain", "semaphore", "ceiling",
-    "non-preemptive", "calls", "timed", "label events", "runnable events", "nested chain",
+    "non-preemptive", "calls", "timed", "label events", "runnable events", "nested chain", "parallel chain",
 )  # fmt: skip
 
 
@@ -125,6 +125,10 @@ class _Richer(Generator):
         most = 4 if self.has("long chain") else 3
         path = rng.sample(self.plans, min(len(self.plans), rng.randint(2, most)))
         first = self._path(path, "L")
+        if len(self.plans) > len(path) and self.has("parallel chain"):
+            aside = rng.choice([plan for plan in self.plans if plan not in path])
+            between = self._path([path[0], aside, path[-1]], "B")
+            self._state_parallel("both", [first, [first[0], *between[1:-1], first[-1]]])
         self._state_chain("chain", first)
         if self.has("two chains"):
             # From the same stimulus to another response, or from another process.
@@ -181,17 +185,25 @@ class _Richer(Generator):
 
     def _state_chain(self, name: str, events: list[str]) -> None:
         """A chain of events; its first two steps can be a chain of their own."""
-        items = [
-            f'<items xsi:type="am:EventChainContainer"><eventChain name="" stimulus="{one}" response="{other}" '
-            f'minItemsCompleted="1"/></items>'
-            for one, other in pairwise(events)
-        ]
+        items = list(map(_step, pairwise(events)))
         if len(items) > 2 and self.has("nested chain"):
             self._stated(f"{name} part", events[:3], items[:2])
             reference = f"{name}+part?type=EventChain"
             items[:2] = [f'<items xsi:type="am:EventChainReference" eventChain="{reference}"/>']
         self._stated(name, events, items)
         self.used.add("chain")
+
+    def _state_parallel(self, name: str, ways: list[list[str]]) -> None:
+        """Ways between the same events, one or all of which have to be completed."""
+        branches = "".join(
+            f'<items xsi:type="am:EventChainContainer"><eventChain name="" stimulus="{events[0]}" response="{events[-1]}" '
+            f'itemType="sequence" minItemsCompleted="1">{"".join(map(_step, pairwise(events)))}</eventChain></items>'
+            for events in ways
+        )
+        self.parts.chains.append(
+            f'<eventChains xmi:id="{name}?type=EventChain" name="{name}" stimulus="{ways[0][0]}" response="{ways[0][-1]}" '
+            f'itemType="parallel" minItemsCompleted="{self.rng.randint(1, 2)}">{branches}</eventChains>'
+        )
 
     def _stated(self, name: str, events: list[str], items: list[str]) -> None:
         self.parts.chains.append(
@@ -215,3 +227,10 @@ class _Richer(Generator):
                 if self.has("nested calls", chance=0.5):
                     text = self._runnable(text + self._ticks())
             plan.items.insert(self.rng.randint(0, len(plan.items)), text)
+
+
+def _step(events: tuple[str, str]) -> str:
+    return (
+        f'<items xsi:type="am:EventChainContainer"><eventChain name="" stimulus="{events[0]}" response="{events[1]}" '
+        f'minItemsCompleted="1"/></items>'
+    )
