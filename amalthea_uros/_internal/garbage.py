@@ -25,9 +25,10 @@ def paused_garbage_collection() -> Iterator[None]:
 
 
 class _Collected:
-    """How many objects were left by the last collection here."""
+    """How many objects were left by the last collection here, and how many have been made since then."""
 
-    objects = 0
+    left = 0
+    made = 0
 
 
 def _keep() -> None:
@@ -36,16 +37,11 @@ def _keep() -> None:
     Python does not count objects that get there in this way, so that it would never collect them. Here they are collected as Python
     does it: once a quarter has been added, but later where the process has asked for rare collections.
     """
-    objects = _moved()
-    few = max(FEW_OBJECTS, 20 * gc.get_threshold()[0], _Collected.objects // 4)
-    if objects > _Collected.objects + few:
-        gc.collect()
-        _Collected.objects = _moved()
-
-
-def _moved() -> int:
-    """Move all objects to the oldest generation; returns their number."""
+    _Collected.made += gc.get_count()[0]
     gc.freeze()
-    objects = gc.get_freeze_count()
     gc.unfreeze()
-    return objects
+    if _Collected.made > max(FEW_OBJECTS, 20 * gc.get_threshold()[0], _Collected.left // 4):
+        gc.collect()
+        gc.freeze()
+        _Collected.left, _Collected.made = gc.get_freeze_count(), 0
+        gc.unfreeze()

@@ -98,7 +98,11 @@ def read_nodes(path: Path, text: str) -> tuple[Node, Source, list[Finding]]:
     try:
         node = reader.document(text)
     except yaml.MarkedYAMLError as error:
-        raise reader.stop("YML001", _reason(error, source), error.problem_mark or error.context_mark) from None
+        mark = error.problem_mark or error.context_mark
+        if "maximum nesting depth" in (error.problem or ""):
+            # Newer versions of libyaml have a limit of their own, above that of a description.
+            raise reader.too_deep(mark) from None
+        raise reader.stop("YML001", _reason(error, source), mark) from None
     except yaml.reader.ReaderError as error:
         raise ReadError([_unreadable(source, text, error)]) from None
     return node, source, reader.findings
@@ -240,7 +244,11 @@ class _Reader:
     def check_depth(self, depth: int, mark: Any) -> None:
         """Stop at the limit of nesting."""
         if depth > MAX_DEPTH:
-            raise self.stop("YML002", f"the content is nested more than {MAX_DEPTH} levels deep", mark)
+            raise self.too_deep(mark)
+
+    def too_deep(self, mark: Any) -> ReadError:
+        """The error of content that is nested too deep."""
+        return self.stop("YML002", f"the content is nested more than {MAX_DEPTH} levels deep", mark)
 
     def tally(self, mark: Any) -> None:
         """Count a node, and stop at the limit."""

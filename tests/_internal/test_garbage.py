@@ -19,7 +19,8 @@ class Knot:
 def made(count):
     """A reference to the first one of some objects that nothing else refers to."""
     with paused_garbage_collection():
-        return ref(next(Knot() for _ in range(count)))
+        knots = [Knot() for _ in range(count)]
+        return ref(knots[0])
 
 
 @pytest.fixture
@@ -28,7 +29,8 @@ def few_objects(monkeypatch):
     gc.set_threshold(10)
     gc.collect()
     monkeypatch.setattr(garbage, "FEW_OBJECTS", 1000)
-    monkeypatch.setattr(garbage._Collected, "objects", len(gc.get_objects()))
+    monkeypatch.setattr(garbage._Collected, "left", len(gc.get_objects()))
+    monkeypatch.setattr(garbage._Collected, "made", 0)
     yield
     gc.set_threshold(*threshold)
 
@@ -42,11 +44,11 @@ def test_garbage_is_collected_once_there_is_much_of_it():
 
 @pytest.mark.usefixtures("few_objects")
 def test_what_is_in_use_is_scanned_again_only_once_there_is_a_quarter_more():
-    before = garbage._Collected.objects
+    before = garbage._Collected.left
     with paused_garbage_collection():
         many = [[] for _ in range(before)]
-    left = garbage._Collected.objects
+    left = garbage._Collected.left
     assert left > 1.5 * before
     with paused_garbage_collection():
         many += [[] for _ in range(before // 4)]
-    assert garbage._Collected.objects == left
+    assert garbage._Collected.left == left
