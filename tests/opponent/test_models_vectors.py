@@ -44,6 +44,8 @@ def published(name: str) -> Facts:
         greatest=greatest,
         least=least,
         spread=spread,
+        loose=dict(spread),
+        constraints=(),
         lost=frozenset(),
         is_complete=False,  # type: ignore[arg-type]
     )
