@@ -128,7 +128,9 @@ class MetricEvaluator:
         longest = process.wcet if not self._waits(process.name) else response.worst if response is not None else None
         yield JobMetric.NET_EXECUTION_TIME, Metric(min=bcet, max=longest)
         if process.min_interarrival is not None and process.name not in self.solution.losing:
-            yield JobMetric.ACTIVATE_TO_ACTIVATE, Metric(min=process.min_interarrival, max=process.max_interarrival)
+            # Activations can be lost if it is unknown how long jobs are pending.
+            longest_gap = None if response is None else process.max_interarrival
+            yield JobMetric.ACTIVATE_TO_ACTIVATE, Metric(min=process.min_interarrival, max=longest_gap)
         if response is None:
             return
         best, worst = response.best, response.worst
