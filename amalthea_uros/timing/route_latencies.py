@@ -10,6 +10,9 @@ and of the inputs that reach the end (N. Feiertag and others 2008):
 - at each stimulus that some response shows: last-to-first up to the first of these responses, and first-to-last from the stimulus
   that was shown before to the last one
 
+A response that comes before the stimulus that its job shows, such as the start of a job that reads later, does not answer it: it shows
+the latest stimulus before it.
+
 What needs a stimulus before the first one, or a response after the end of the run, is not observed.
 """
 
@@ -126,6 +129,9 @@ class RouteLatencies:
         ----------
         kept : for each response the number of the first stimulus for which it is evaluated
         """
+        # The latest stimulus that has come before the response.
+        possible = np.searchsorted(self._times, times, side="right") - 1 + self._first_kept
+        stamps = np.minimum(stamps, possible)
         newest = np.maximum.accumulate(np.maximum(stamps, self.answered))
         is_evaluated = (stamps >= 0) & (stamps >= kept)
         self.not_evaluated += int(np.count_nonzero((stamps >= 0) & ~is_evaluated))

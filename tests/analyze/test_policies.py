@@ -255,7 +255,9 @@ class TestSchedulersBelowEachOther:
         cooperative = [replace(task, preemption=Preemption.COOPERATIVE) for task in built.software.tasks]
         found = worst(replace(built, software=replace(built.software, tasks=tuple(cooperative))))
         # Each can keep off the other ones up to its end, whatever the budget is.
-        assert found["above"] == "'inside' in the server 'server' cannot be preempted everywhere, and may go on beyond its budget"
+        assert (
+            found["above"] == "'inside' in the server 'server' cannot be preempted everywhere, and may go on beyond its budget"
+        )
         assert found["inside"] == "'below' is cooperative, and can block cooperative tasks in the server 'server'"
 
     def test_decisions_above_a_server(self):

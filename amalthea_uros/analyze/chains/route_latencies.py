@@ -60,6 +60,8 @@ class RouteLatencies:
         if not self.is_certain:
             return "bounds: the time at which an event of the chain causes the next one is unknown"
         if not any(value.source == job_chains.SOURCE for value in values):
+            if self.parts[-1][-1].responds_before_read:
+                return "bounds: the event at the end comes before its job reads, so that it can come before the stimulus"
             return f"bounds: {job_chains.TOO_MANY_JOBS}"
         varying = next((timed.task.name for timed in everything if not timed.is_exact), None)
         if varying is not None:
@@ -103,14 +105,29 @@ class RouteLatencies:
         return [*kept, *(replace(value, value=(value.value or 0) + longer, claim=Claim.BOUND) for value in reduced)]
 
     def _values(self) -> Iterator[Value]:
-        yield from self._of_job_chains()
+        is_answered_later = self._can_respond_before_stimulus()
+        if not is_answered_later:
+            yield from self._of_job_chains()
         tasks = [timed.task for part in self.parts for timed in part]
         yield from self._of_periods(tasks)
         if all(timed.is_logical for part in self.parts for timed in part):
             time = hamann.reaction_time(tasks) + _wait_at_start(tasks)
             yield from self._reactions(time, tasks, "two periods for each step", hamann.SOURCE)
-        if len(self.parts) == 1 and all(timed.is_visible_at_once for timed in self.parts[0]):
+        if len(self.parts) == 1 and all(timed.is_visible_at_once for timed in self.parts[0]) and not is_answered_later:
             yield from self._of_releases(tasks)
+
+    def _can_respond_before_stimulus(self) -> bool:
+        """Whether the job that reads can have responded before the stimulus, so that only the response of a later job answers it.
+
+        Bounds by periods cover that later job, those by the reads and writes of jobs do not.
+        """
+        if not self.parts[-1][-1].responds_before_read:
+            return False
+        earliest = self._job_chains(self.parts[0], pessimistic=False) if len(self.parts) == 1 else None
+        if earliest is None:
+            return True
+        times = earliest.from_start(is_exact=True).first_to_first
+        return not times.size or int(times.min()) < 0
 
     # By job chains
 

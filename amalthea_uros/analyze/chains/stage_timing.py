@@ -82,7 +82,11 @@ class StageTiming:
         ------
         UnboundedStageError : a response time in it is unbounded or unknown.
         """
-        return replace(self._group(stages, follower), stimulus_wait=self._stimulus_wait(stages))
+        return replace(
+            self._group(stages, follower),
+            stimulus_wait=self._stimulus_wait(stages),
+            responds_before_read=_responds_before_read(stages[-1]),
+        )
 
     def exact_times(self, occurrence: EventOccurrence) -> ReadWriteBounds | None:
         """The times of an event in all jobs, at which a stage from it to itself reads; None unless they are known exactly.
@@ -417,6 +421,14 @@ class StageTiming:
             optimistic=read_write_times(windows.latest(stage.enter), windows.earliest(stage.leave)),
             steady_state_start=offset,
         )
+
+
+def _responds_before_read(stage: Stage) -> bool:
+    """Whether the event at the end of a chain comes before its job reads."""
+    if not isinstance(stage.enter, Read) or not isinstance(stage.leave, At):
+        return False
+    read, event = kind(stage.enter), kind(stage.leave)
+    return event is JobPhase.ACTIVATION is not read or (event is JobPhase.START and read is JobPhase.BEFORE)
 
 
 def _later(times: ReadWriteTimes, delay: Time) -> ReadWriteTimes:

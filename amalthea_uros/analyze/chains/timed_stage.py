@@ -71,6 +71,7 @@ class TimedStage:
     is_certain : whether it is known which jobs take part
     stimulus_wait : how long a job that takes part comes at most after one that begins the chain, but of which no trigger has an
         effect; None if there is no maximum
+    responds_before_read : whether the event that ends the chain comes before the job reads
     """
 
     task: ChainTask
@@ -79,6 +80,7 @@ class TimedStage:
     why_irregular: str = ""
     is_certain: bool = True
     stimulus_wait: Time | None = 0
+    responds_before_read: bool = False
 
     @property
     def is_exact(self) -> bool:

@@ -140,21 +140,23 @@ def readings(chain: Chain) -> Iterator[Reading]:
 def latencies(played: Played, play: Player, chain: Chain, links: Reading, until: int) -> Iterator[tuple[str, int]]:
     """All values of each quantity, over one link a step; none if it is not clear which data a job is based on."""
     if chain.branches:
-        yield from _reactions(answers(played, play, chain, links), until)
+        yield from _reactions(answers(played, play, chain, links), _known(played, play, chain, until))
         return
-    index = {process.name: number for number, process in enumerate(played.processes)}
-    stages = [play.jobs[index[name]] for name in chain.processes]
-    hops = [
-        _Hop.of(*pair, link, index[name]) for pair, link, name in zip(pairwise(stages), links, chain.processes, strict=False)
-    ]
-    if not all(hop.is_clear for hop in hops) or not _is_clear(stages, hops, chain):
+    found = _found(played, play, chain, links)
+    if found is None:
         return
-    stimuli = [time for job in stages[0] if (time := _time(job, chain.stimulus)) is not None]
-    responses = [time for job in stages[-1] if (time := _time(job, chain.response)) is not None]
-    # Of a job that has not ended, it is not known yet what it reads.
-    known = min([until, *(time for job in stages[-1] if job.end is None and (time := _time(job, chain.response)) is not None)])
-    yield from _reactions(list(_answers(hops, stimuli, responses)), known)
+    hops, stimuli, responses = found
+    yield from _reactions(list(_answers(hops, stimuli, responses)), _known(played, play, chain, until))
     yield from _backward(hops, stimuli, responses)
+
+
+def _known(played: Played, play: Player, chain: Chain, until: int) -> int:
+    """Up to when all responses are known: of a job that has not ended, it is not known yet what it reads."""
+    if chain.branches:
+        return min(_known(played, play, branch, until) for branch in chain.branches)
+    last = next(n for n, process in enumerate(played.processes) if process.name == chain.processes[-1])
+    open_jobs = (_time(job, chain.response) for job in play.jobs[last] if job.end is None)
+    return min([until, *(time for time in open_jobs if time is not None)])
 
 
 def answers(played: Played, play: Player, chain: Chain, links: Reading) -> list[tuple[int, int | None]]:
@@ -164,16 +166,25 @@ def answers(played: Played, play: Player, chain: Chain, links: Reading) -> list[
         if not all(each):
             return []
         return [(group[0][0], _completed([end for _, end in group], chain.completed)) for group in zip(*each, strict=True)]
+    found = _found(played, play, chain, links)
+    return [] if found is None else list(_answers(*found))
+
+
+def _found(played: Played, play: Player, chain: Chain, links: Reading) -> tuple[list[_Hop], list[int], list[int]] | None:
+    """The hops, stimuli and responses of a chain without branches; None if it is not clear which data a job is based on."""
     index = {process.name: number for number, process in enumerate(played.processes)}
     stages = [play.jobs[index[name]] for name in chain.processes]
     hops = [
         _Hop.of(*pair, link, index[name]) for pair, link, name in zip(pairwise(stages), links, chain.processes, strict=False)
     ]
     if not all(hop.is_clear for hop in hops) or not _is_clear(stages, hops, chain):
-        return []
+        return None
+    # Only jobs that write take part: that others do not is documented.
+    if not hops[0].is_trigger and len(hops[0].writes) < sum(job.end is not None for job in stages[0]):
+        return None
     stimuli = [time for job in stages[0] if (time := _time(job, chain.stimulus)) is not None]
     responses = [time for job in stages[-1] if (time := _time(job, chain.response)) is not None]
-    return [(stimulus, end) for stimulus, end in _answers(hops, stimuli, responses)]
+    return hops, stimuli, responses
 
 
 def _is_clear(stages: list[list[Job]], hops: list[_Hop], chain: Chain) -> bool:
