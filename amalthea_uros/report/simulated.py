@@ -12,7 +12,7 @@ from amalthea_uros.changes.apply import Difference
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.judge.causes import distinct
 from amalthea_uros.report.closing_line import left_text
-from amalthea_uros.simulate.not_simulated import NOT_SIMULATED
+from amalthea_uros.simulate.not_simulated import LIMITED_PROCESS_LEFT_OUT, consequence_of
 from amalthea_uros.simulate.results import IDLE, Judged, RequirementObservation, Simulation
 from amalthea_uros.units import SECOND, Time, number_text, time_text
 
@@ -116,7 +116,8 @@ def _not_observed(simulation: Simulation) -> str:
     missing = simulation.not_observed
     if not missing:
         return ""
-    count, told = f"not observed: {len(missing)} of {len(simulation.judged)}", {each.name for each in simulation.left_out}
-    # What is not simulated is said already, and what follows from it.
-    others = [each for each in missing if each.name not in told and not each.reason.endswith(NOT_SIMULATED)]
+    count, left_out = f"not observed: {len(missing)} of {len(simulation.judged)}", {each.name for each in simulation.left_out}
+    # What is not simulated stands before this in the line; what follows from it needs no reason of its own.
+    consequences = {LIMITED_PROCESS_LEFT_OUT, *map(consequence_of, left_out)}
+    others = [each for each in missing if each.name not in left_out and each.reason not in consequences]
     return f"{count}, because of {others[0].name!r}: {others[0].reason}" if others else count

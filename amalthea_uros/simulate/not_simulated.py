@@ -16,8 +16,8 @@ from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.links import reads, writes
 from amalthea_uros.timing.dataflow.positions import ActivityPosition
 
-#: The end of the reasons for what follows from a process that is not simulated.
-NOT_SIMULATED = "is not simulated"
+#: Why nothing was observed of a requirement on a process that is not simulated.
+LIMITED_PROCESS_LEFT_OUT = "the process that it limits is not simulated"
 
 
 @dataclass(frozen=True)
@@ -40,11 +40,11 @@ class NotSimulated:
     def doubt_about(self, process: str) -> str:
         """Why what is seen of a process is no behaviour of the system; "" if it is one."""
         origin = self._touched.get(process)
-        return "" if origin is None else _reason(origin)
+        return "" if origin is None else consequence_of(origin)
 
     def doubt_about_limits(self) -> Mapping[str, str]:
         """The same for requirements and constraints, by their names."""
-        return {name: _reason(origin) for name, origin in self._origins.items()}
+        return {name: consequence_of(origin) for name, origin in self._origins.items()}
 
     @cached_property
     def _origins(self) -> Mapping[str, str]:
@@ -101,5 +101,6 @@ class NotSimulated:
         return self.context.dataflow.events.all_positions()
 
 
-def _reason(origin: str) -> str:
-    return f"depends on {origin!r}, which {NOT_SIMULATED}"
+def consequence_of(origin: str) -> str:
+    """Why what depends on a process that is not simulated is not observed."""
+    return f"depends on {origin!r}, which is not simulated"

@@ -16,7 +16,7 @@ from amalthea_uros.perf.events import EventChain
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.system import System
 from amalthea_uros.simulate.limited_values import LimitedQuantity, limited_values, limited_values_of_runnable, observed_values
-from amalthea_uros.simulate.not_simulated import NOT_SIMULATED
+from amalthea_uros.simulate.not_simulated import LIMITED_PROCESS_LEFT_OUT
 from amalthea_uros.simulate.results import ChainObservation, ProcessObservation, RequirementObservation, RunnableObservation
 from amalthea_uros.timing.chain_quantity import ChainQuantity
 from amalthea_uros.timing.dataflow.chains import UnfoldError, forks, unfold
@@ -35,8 +35,8 @@ class ConstraintObservers(Protocol):
 
 
 #: Why nothing is observed of an executor that loops, and of its callbacks.
-LOOPING = "it is an executor that loops, whose rounds are not simulated; analyze the model"
-_OF_LOOP = LOOPING.replace("is an", "is part of an")
+LOOPING = "it is an executor that loops, whose iterations are not simulated; analyze the model"
+_IN_LOOP = "it is part of an executor that loops, whose iterations are not simulated; analyze the model"
 
 
 def judge_process(process: ProcessObservation, model: Process, doubt: str = "", left_out: str = "") -> ProcessObservation:
@@ -109,14 +109,14 @@ def _of_requirement(
     process = next((each for each in processes if each.name == requirement.process), None)
     runnable = next((each for each in runnables if each.name == requirement.runnable), None)
     if _is_of_loop(requirement, system):
-        return ObservedValues(reason=_OF_LOOP)
+        return ObservedValues(reason=_IN_LOOP)
     if process is not None:
         model = system.processes.get(process.name)
         return limited_values(limit, process, duration, None if model is None else activation_period(model, system))
     if runnable is not None:
         return limited_values_of_runnable(limit, runnable)
     if requirement.process in system.processes:
-        return ObservedValues(reason=f"the process that it limits {NOT_SIMULATED}")
+        return ObservedValues(reason=LIMITED_PROCESS_LEFT_OUT)
     kind = "process" if requirement.runnable is None else "runnable"
     return ObservedValues(reason=f"the {kind} that it limits is not defined, or was left out when reading")
 

@@ -241,7 +241,7 @@ class TestSchedulersBelowEachOther:
         cause = "'inside' in the server 'server' cannot be preempted everywhere, and may go on beyond its budget"
         assert (found["above"], found["below"]) == (cause, cause)
         analysis = analyze_system(model)
-        # One cause, which is told once, and no finding of each task.
+        # One cause, stated once, and no finding for each task.
         assert closing_line(analysis.summary).endswith(f"because of 'above': {cause}")
         assert not any(cause in finding.message for finding in analysis.findings)
 

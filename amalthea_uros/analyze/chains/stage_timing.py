@@ -428,7 +428,9 @@ def _responds_before_read(stage: Stage) -> bool:
     if not isinstance(stage.enter, Read) or not isinstance(stage.leave, At):
         return False
     read, event = kind(stage.enter), kind(stage.leave)
-    return event is JobPhase.ACTIVATION is not read or (event is JobPhase.START and read is JobPhase.BEFORE)
+    if event is JobPhase.ACTIVATION:
+        return read is not JobPhase.ACTIVATION
+    return event is JobPhase.START and read is JobPhase.BEFORE
 
 
 def _later(times: ReadWriteTimes, delay: Time) -> ReadWriteTimes:

@@ -83,7 +83,7 @@ class ChainCompiler:
         """Follow a chain, or note why that is not possible."""
         if crosses(chain, self.resources.context.dataflow):
             self.left_out[chain.name] = (
-                "it passes a wire or an executor that loops, whose rounds are not simulated; analyze the model"
+                "it passes a wire or an executor that loops, whose iterations are not simulated; analyze the model"
             )
             return
         try:

@@ -90,7 +90,7 @@ def falsely_missed(path: Path, facts: Facts) -> list[str]:
         return []
     by_name = {limit.name: limit for limit in loose_limits_of(facts)}
     return [
-        f"simulated: {each.name}: limit {each.limit} missed by {each.value} {each.reason}, but {by_name[each.name].observed} is played"
+        f"simulated: {each.name}: limit {each.limit} missed by {each.value} {each.reason}, but {by_name[each.name].observed} occurs"
         for each in simulation.requirements
         if each.verdict is ObservedVerdict.MISSED and each.name in by_name
     ]
@@ -201,7 +201,7 @@ def falsely_kept(simulation: Simulation, limits: Iterable[Limit]) -> Iterator[st
         results.setdefault(requirement.name, []).append(requirement)
     for name, limit in by_name.items():
         if name in results and all(each.verdict is ObservedVerdict.OK for each in results[name]):
-            yield f"{name}: limit {limit.limit} kept with {results[name][0].value}, but {limit.observed} is played"
+            yield f"{name}: limit {limit.limit} kept with {results[name][0].value}, but {limit.observed} occurs"
 
 
 def is_determined(facts: Facts) -> bool:

@@ -27,7 +27,7 @@ class Variant:
     decides_below : decisions of schedulers do not keep interrupts off
     decides_outside : the decision at the end of a job is no part of it
     polls_early : a polling server looks for work before what arrives at that instant
-    points_at_calls : cooperative tasks let others go first after calls, too
+    points_at_calls : cooperative tasks can be preempted after calls, too
     whole_cooperative : cooperative tasks keep off all tasks between these points, not only cooperative ones
     """
 
