@@ -146,12 +146,34 @@ class ConstraintEvaluator:
         if constraint.matching is not Matching.REACTION:
             self._require_one_to_one(constraint, found)
         latencies = _Latencies(self.evaluation.worst(found), *_REACTION)
-        if constraint.lower is not None and (latencies.of_minimum.lower or 0) < constraint.lower:
-            # A target below the lower limit is ignored, and how much later the next one comes is unknown.
-            latest = Ends(latencies.of_maximum.lower, None)
-            yield from _proved(limits, lambda limit: latest if limit.is_upper else latencies.of_minimum)
-            return
-        yield from _proved(limits, latencies.limited)
+        if constraint.matching is Matching.REACTION:
+            greatest, least = self._to_any_target(constraint, latencies)
+            yield from _proved(limits, lambda limit: greatest if limit.is_upper else least)
+        else:
+            yield from _proved(limits, latencies.limited)
+
+    def _to_any_target(self, constraint: DelayConstraint, latencies: _Latencies) -> tuple[Ends, Ends]:
+        """Between which ends the greatest and the least reaction lie, given those to the targets that the sources cause.
+
+        Any target within the limits will do. So another one can come earlier, unless targets are farther apart than that; and one below
+        the lower limit is ignored, and how much later the next one comes is unknown.
+        """
+        greatest, least = latencies.of_maximum, latencies.of_minimum
+        if greatest.upper is None or greatest.upper >= self._least_distance(constraint.target):
+            greatest = Ends(None, greatest.upper)
+        if (least.lower or 0) < (constraint.lower or 0):
+            greatest = Ends(greatest.lower, None)
+        return greatest, Ends(least.lower, None)
+
+    def _least_distance(self, event: str) -> Time:
+        """The minimum time between two occurrences of an event; 0 if it is unknown."""
+        try:
+            occurrence = self.windows.occurrence(event)
+            early, late = self.windows.of(occurrence)
+        except UnknownError:
+            return 0
+        activations = self.evaluation.solution.event_models.get(occurrence.process.name)
+        return 0 if activations is None else max(0, activations.delta_min(2) - (late - early))
 
     def _require_all_sources(self, source: str, found: Iterable[Route]) -> None:
         """Refuse a source that also occurs in jobs that a counter lets take no part in what follows."""

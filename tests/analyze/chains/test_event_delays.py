@@ -56,6 +56,17 @@ def test_how_late_the_next_target_above_a_lower_limit_comes_is_unknown_without_a
     assert found["upper"] == "unknown"
 
 
+def test_a_target_that_the_source_does_not_cause_will_do():
+    # S triggers T after 20 us, T comes every 10 us anyway: no limit is missed because of the job that S triggers.
+    source = Proc("S", (ticks(20), Trigger(stimulus="t")), 100, priority=1)
+    target = Proc("T", (ticks(1),), 10, stimuli=("t",), priority=1, scheduler="s1", task={"activation_limit": 5})
+    changes = (ProcessChange.START, ProcessChange.TERMINATE)
+    model = built(source, target, changes=changes, upper=15, triggers=("t",))
+    (observed,) = simulate_system(model, Options(duration=1000 * US)).requirements
+    assert str(observed.verdict) == "observed_ok"
+    assert verdicts(analyze_system(model)) == {"upper": "unknown"}
+
+
 @given(
     periods=st.tuples(st.sampled_from((10, 15, 20)), st.sampled_from((10, 15, 30))),
     offsets=st.tuples(st.integers(0, 25), st.integers(0, 25)),
