@@ -216,8 +216,7 @@ class Scheduling:
         if policy == Policy.GROUPING:
             return self._in_group(scheduler, parameters, above)
         if policy in SERVERS:
-            server = self._server(scheduler, above)
-            return SchedulingContext(server=server.name, rank=() if parameters.priority is None else (parameters.priority,))
+            return self._in_server(scheduler, parameters, above)
         base = self._of_scheduler(scheduler, above)
         if base.equal_priority is not EqualPriority.FIFO:
             message = f"{scheduler.name!r} cannot be analysed: its parent schedules by {base.equal_priority}"
@@ -240,6 +239,15 @@ class Scheduling:
         if policy == Policy.OSEK and parameters.of(scheduler, _GROUP) == _NO_GROUP:
             self.notes.assume(f"task group {_NO_GROUP} of OSEK schedulers means that a task is in no group")
         return by_policy(scheduler, parameters, base)
+
+    def _in_server(self, scheduler: Scheduler, parameters: _Parameters, above: tuple[str, ...]) -> SchedulingContext:
+        """The scheduling of a task or scheduler in the budget of a server, by priority."""
+        server = self._server(scheduler, above)
+        if self._lacks_priorities(scheduler):
+            return SchedulingContext(server=server.name, rank=(0,), equal_priority=EqualPriority.UNKNOWN)
+        if parameters.priority is None and self._serves_one(scheduler):
+            return SchedulingContext(server=server.name, rank=())
+        return SchedulingContext(server=server.name, rank=(parameters.required(parameters.priority, "priority"),))
 
     def _lacks_priorities(self, scheduler: Scheduler) -> bool:
         """Whether a scheduler decides for tasks only, and some of them have no priority: then it may serve them in any order."""

@@ -210,6 +210,21 @@ class TestSchedulersBelowEachOther:
         built = system([root(), under("server", policy, 5, capacity=2, period=10)], tasks)
         assert worst(built) == {"inside": inside, "below": below}
 
+    @pytest.mark.parametrize("priorities", [(3, None), (None, 3), (None, None)])
+    def test_a_server_serves_tasks_without_priority_in_any_order(self, priorities):
+        # 5 of waiting, 7 of budget, 5 of waiting; both tasks in it, 2 and 6, end one after the other: 5 + 7 + 5 + 1.
+        tasks = [
+            (name, 100, [ticks(demand)], {"scheduler": "server", "priority": priority})
+            for name, demand, priority in zip(("short", "long"), (2, 6), priorities, strict=True)
+        ]
+        built = system([root(), under("server", Policy.DEFERRABLE_SERVER, 5, capacity=7, period=12)], tasks)
+        assert worst(built) == {"short": 18, "long": 18}
+
+    def test_a_task_alone_in_a_server_needs_no_priority(self):
+        tasks = [("inside", 100, [ticks(2)], {"scheduler": "server", "priority": None})]
+        built = system([root(), under("server", Policy.DEFERRABLE_SERVER, 5, capacity=7, period=12)], tasks)
+        assert worst(built) == {"inside": 7}
+
     @pytest.mark.parametrize(("ends_with_access", "longest"), [(False, 22), (True, 30)])
     def test_an_access_at_the_end_of_a_budget_can_wait_for_the_next_one(self, ends_with_access, longest):
         # 10 of waiting after the polling, 2, 8 of waiting, 2: the budget ends just when the demand is served, before the access.

@@ -21,7 +21,7 @@ from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.counters import composed, first_effect, of_one_in
 from amalthea_uros.units import MICROSECOND, MILLISECOND
 
-JOBS = 120
+JOBS, MANY_JOBS = 120, 60_000
 SCHEDULER = Scheduler(name="scheduler", policy=Policy.FIXED_PRIORITY_PREEMPTIVE, cores=("core",))
 
 
@@ -56,7 +56,7 @@ def takes_effect(counter, number):
     return number >= max(counter.offset, 1) and (number - counter.offset) % counter.prescaler == 0
 
 
-def played(tasks, runnables):
+def played(tasks, runnables, jobs=JOBS):
     """The ticks of the jobs of each task, all of which are released together and executed in their order."""
     reached = Tally()
 
@@ -73,7 +73,7 @@ def played(tasks, runnables):
                     total += ticks(runnables[activity.runnable])
         return total
 
-    rows = [{name: ticks(body) for name, body in tasks.items()} for _ in range(JOBS)]
+    rows = [{name: ticks(body) for name, body in tasks.items()} for _ in range(jobs)]
     return {name: [row[name] for row in rows] for name in tasks}
 
 
@@ -145,16 +145,20 @@ def test_the_demand_of_tasks_that_share_runnables(structure):
 @given(structure=structures(["T", "U"]))
 def test_an_exact_response_time_occurs(structure):
     tasks, runnables = structure
-    executed = played(tasks, runnables)
-    responses = [upper + lower for upper, lower in zip(executed["T"], executed["U"], strict=True)]
-    analysis = analyze_system(system(tasks, runnables))
-    # A job without demand also waits for the core before it ends.
-    for name, times in (("T", executed["T"]), ("U", responses)):
+    analysis, executed = analyze_system(system(tasks, runnables)), response_times(tasks, runnables, JOBS)
+    for name, times in executed.items():
         response = analysis[name].response
         assert response.worst >= max(times) * MICROSECOND
         assert response.best <= min(times) * MICROSECOND
-        if response.claim is Claim.EXACT:
-            assert response.worst == max(times) * MICROSECOND
+        if response.claim is Claim.EXACT and response.worst != max(times) * MICROSECOND:
+            # Counters of several calls meet late.
+            assert response.worst == max(response_times(tasks, runnables, MANY_JOBS)[name]) * MICROSECOND
+
+
+def response_times(tasks, runnables, jobs):
+    """Those of the jobs of T and of U below it; a job without demand also waits for the core before it ends."""
+    executed = played(tasks, runnables, jobs)
+    return {"T": executed["T"], "U": [sum(both) for both in zip(executed["T"], executed["U"], strict=True)]}
 
 
 class TestCallsThatAreFollowed:

@@ -120,6 +120,9 @@ def stages(route: Route, communication: Communication | None) -> list[Stage]:
         if later == SAME_JOB and then.order < before.order:
             # What the data reach in the same job comes before the event.
             later = NEXT_JOB
+        if later == NEXT_JOB and before.when is JobPhase.END and then.position is not None:
+            # What the same job does at the instant of its end may be meant.
+            later = SAME_OR_NEXT_JOB
         if _has_left_before(enter, leave):
             # What the job has sent before the event does not come from it: the next job sends. The effect of what it has sent may be
             # meant nevertheless if that comes after the event, so that no minimum relies on the next job.

@@ -8,6 +8,7 @@ from test_chain_systems import END, at, evaluate, read, system, ticks
 from amalthea_uros import analyze_system
 from amalthea_uros.perf.activities import AccessKind, Communication, LabelAccess, Trigger
 from amalthea_uros.perf.constraints import Constraints, DelayConstraint, Matching
+from amalthea_uros.perf.events import LabelChange, LabelEvent
 from amalthea_uros.perf.stimuli import InterProcess
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.system import simulate_system
@@ -66,3 +67,18 @@ def test_what_responds_after_the_end_may_be_meant_as_its_response():
     built = system(tasks, (at("W", END), at("R", END)), stimuli=(InterProcess(name="R"),))
     _, values, _, _ = evaluate(built)
     assert values["min_first_to_first"] <= 2 < 102 <= values["max_reduced_reaction_time"]
+
+
+def test_what_is_written_at_the_instant_of_the_end_may_be_meant_by_what_follows_it():
+    # W reads S of the job before it, executes 4 and writes S and L at the instant of its end; R reads L every 40, the first time at 4.
+    explicit = Communication.EXPLICIT
+    body = [
+        LabelAccess(label="S", kind=AccessKind.READ, communication=explicit),
+        ticks(4),
+        *(LabelAccess(label=label, kind=AccessKind.WRITE, communication=explicit) for label in "SL"),
+    ]
+    written = LabelEvent(name="written", label="L", process="W", change=LabelChange.WRITE)
+    built = system([("W", 80, body), ("R", 40, [read("L"), ticks(2)])], (at("W", END), written, at("R", END)))
+    _, values, _, _ = evaluate(built)
+    # R ends at 6; if L of the next W is meant, which has read what this one wrote, at 86.
+    assert values["min_first_to_first"] <= 6 - 4 < 86 - 4 <= values["max_reduced_reaction_time"]

@@ -5,6 +5,7 @@ It knows nothing of the product. Choices are made by `Choices`; how a model is t
 
 from __future__ import annotations
 
+from collections.abc import Container
 from dataclasses import dataclass, field
 from heapq import heappop, heappush
 from typing import Any, NamedTuple
@@ -12,7 +13,7 @@ from typing import Any, NamedTuple
 from opponent.models.arrivals import occurrences
 from opponent.models.comparisons import is_true
 from opponent.models.reading import Body, Item, Played, Process, UnplayableError
-from opponent.models.variants import Choices, Variant, items_of_process
+from opponent.models.variants import ACCESSES, Choices, Variant, items_of_process
 
 NEVER = 10**18
 _MOST_STEPS = 200_000
@@ -64,6 +65,10 @@ class Job:
     def has_more(self) -> bool:
         """Whether anything is left in its text."""
         return any(index < len(body) for body, index, *_ in self.stack)
+
+    def has_only(self, kinds: Container[str]) -> bool:
+        """Whether nothing but items of some kinds is left in its text."""
+        return all(item[0] in kinds for body, index, *_ in self.stack for item in body[index:])
 
     def next_item(self, now: int) -> Item | None:
         """Take the next item; that a non-interruptible group is left is one, since others can run then."""
@@ -412,6 +417,11 @@ class Player:
     def _do_point(self, job: Job) -> None:
         """Others go first only where the task is cooperative."""
         job.at_point = True
+        if self.variant.accesses_last and job.has_only(ACCESSES):
+            while job.has_more():
+                item = job.next_item(self.now)
+                if item is not None and item[0] in ACCESSES:
+                    getattr(self, f"_do_{item[0]}")(job, *item[1:])
 
     def _do_request(self, job: Job, semaphore: str) -> None:
         if any(semaphore in other.held for queue in self.queues for other in queue):

@@ -29,6 +29,7 @@ class Variant:
     polls_early : a polling server looks for work before what arrives at that instant
     points_at_calls : cooperative tasks can be preempted after calls, too
     whole_cooperative : cooperative tasks keep off all tasks between these points, not only cooperative ones
+    accesses_last : a cooperative task that has only accesses of labels left is done, also at such a point
     """
 
     ends_late: bool = False
@@ -43,6 +44,10 @@ class Variant:
     polls_early: bool = False
     points_at_calls: bool = False
     whole_cooperative: bool = False
+    accesses_last: bool = False
+
+
+ACCESSES = ("read", "write")
 
 
 def variants_of(played: Played) -> list[Variant]:
@@ -60,6 +65,7 @@ def _open_points(played: Played) -> dict[str, bool]:
     return {
         "points_at_calls": any(item[0] == "call" for p in cooperative for item in p.body),
         "whole_cooperative": bool(cooperative),
+        "accesses_last": any(p.body and p.body[-1][0] in ACCESSES for p in cooperative),
         "ends_late": True,
         "last_first": True,
         "serial_isrs": len({p.core for p in isrs}) < len(isrs),
