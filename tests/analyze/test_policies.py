@@ -225,6 +225,28 @@ class TestSchedulersBelowEachOther:
         built = system([root(), under("server", Policy.DEFERRABLE_SERVER, 5, capacity=7, period=12)], tasks)
         assert worst(built) == {"inside": 7}
 
+    @pytest.mark.parametrize(
+        ("preemption", "body", "longest"),
+        [
+            (Preemption.PREEMPTIVE, [ticks(4)], 8 + 2 + 8 + 1),
+            (Preemption.COOPERATIVE, [ticks(4)], 8 + 2 + 8 + 1),
+            # The budget begins 4 late, just after one that was in time.
+            (Preemption.NON_PREEMPTIVE, [ticks(4)], 8 + 4 + 2 + 8 + 1),
+            (Preemption.PREEMPTIVE, [ticks(1), Group(activities=(ticks(4),), interruptible=False)], 8 + 4 + 2 + 8 + 1),
+            (Preemption.NON_PREEMPTIVE, [ticks(9)], "the server 'server' is not guaranteed its budget in each period"),
+            (Preemption.NON_PREEMPTIVE, [WaitEvent(events=("E",))], "'below', which could not be analysed, can block it"),
+        ],
+    )
+    def test_what_is_not_preempted_below_a_server_delays_its_budget(self, preemption, body, longest):
+        tasks = [
+            ("inside", 100, [ticks(3)], {"scheduler": "server", "priority": 1}),
+            ("below", 100, body, {"scheduler": "root", "priority": 1}),
+        ]
+        built = system([root(), under("server", Policy.DEFERRABLE_SERVER, 5, capacity=2, period=10)], tasks)
+        inside, below = built.software.tasks
+        software = replace(built.software, tasks=(inside, replace(below, preemption=preemption)))
+        assert worst(replace(built, software=software))["inside"] == longest
+
     @pytest.mark.parametrize(("ends_with_access", "longest"), [(False, 22), (True, 30)])
     def test_an_access_at_the_end_of_a_budget_can_wait_for_the_next_one(self, ends_with_access, longest):
         # 10 of waiting after the polling, 2, 8 of waiting, 2: the budget ends just when the demand is served, before the access.

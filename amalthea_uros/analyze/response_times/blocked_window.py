@@ -38,10 +38,12 @@ class BlockedWindow:
     wait: Time
     supply: Supply
 
-    def response(self, index: int, item: ScheduledProcess, plain: Response) -> Response:
-        """The response time; `plain` where each process is preempted at once."""
+    def response(self, index: int, item: ScheduledProcess | Server, plain: Response) -> Response:
+        """The response time of a process, or of the budget of a server; `plain` where each process is preempted at once."""
         if not self.blocking.is_possible:
             return plain
+        if isinstance(item, Server):
+            return self._of_budget(index, item, plain)
         level = self.blocking.level(item)
         task = self.tasks[index]
         higher = self._of_level(index, level.rank)
@@ -64,6 +66,14 @@ class BlockedWindow:
             found = replace(found, is_overload=False, reason=reason)
         # What only interferes at the lowered level is avoidable.
         return replace(found, best=self._best(index, item, plain.best))
+
+    def _of_budget(self, index: int, server: Server, plain: Response) -> Response:
+        """The response time of the budget of a server, which can be preempted at once."""
+        level = self.blocking.level(server)
+        if level.rank == server.rank and not level.is_flat:
+            return plain
+        higher = Interference.of(self._of_level(index, level.rank), self.supply)
+        return fixed_priority.response_time(self.tasks[index], higher, self.wait)[0]
 
     def _of_level(self, index: int, rank: Rank) -> list[Task]:
         """The other tasks of at least a rank, and the decisions of schedulers."""

@@ -24,7 +24,7 @@ from amalthea_uros.timing.critical_sections import Protection
 from amalthea_uros.timing.demand import DemandModel
 from amalthea_uros.timing.preemption import preemption
 from amalthea_uros.timing.process_stretches import ProcessStretches
-from amalthea_uros.timing.scheduling import EqualPriority, Rank, ScheduledProcess
+from amalthea_uros.timing.scheduling import EqualPriority, Rank, ScheduledProcess, SchedulingContext
 from amalthea_uros.timing.stretches import KeptOff, Stretches
 from amalthea_uros.units import Time
 
@@ -112,13 +112,13 @@ class Blocking:
         is_preemptive = preemption(item) is Preemption.PREEMPTIVE and item.group is None
         return not is_preemptive or bool(uses.semaphores) or uses.has_non_interruptible_group
 
-    def level(self, item: ScheduledProcess) -> Level:
+    def level(self, item: SchedulingContext) -> Level:
         """The level of the busy window of a process."""
         if item.rank not in self._levels:
             self._levels[item.rank] = self._level(item) if self.is_possible else Level(item.rank)
         return self._levels[item.rank]
 
-    def _level(self, item: ScheduledProcess) -> Level:
+    def _level(self, item: SchedulingContext) -> Level:
         rank = item.rank
         while True:
             above = self._above(rank)
@@ -161,7 +161,7 @@ class Blocking:
                 other.rank for other in below if other.rank > lowest and preemption(other) is not Preemption.COOPERATIVE
             )
 
-    def _is_flat(self, item: ScheduledProcess, rank: Rank, above: _Above) -> bool:
+    def _is_flat(self, item: SchedulingContext, rank: Rank, above: _Above) -> bool:
         if not self.open_semaphores.isdisjoint(above.semaphores):
             return True
         together = [other for other in self.processes if other.rank == item.rank]
@@ -178,7 +178,7 @@ class Blocking:
                 return rank < item.rank or len(kinds) > 1
         return rank < item.rank
 
-    def time(self, item: ScheduledProcess) -> Time:
+    def time(self, item: SchedulingContext) -> Time:
         """The maximum time for which a process below the level of another one keeps it off."""
         return max((length for _, length in self.stretches_below(self.level(item))), default=0) if self.is_possible else 0
 
@@ -189,7 +189,7 @@ class Blocking:
             if other.rank < level.rank and other.name not in self.unknown:
                 yield other, self._longest_stretch(other, above, self._up_to_ceiling(other, above))
 
-    def obstacle(self, item: ScheduledProcess) -> str:
+    def obstacle(self, item: SchedulingContext) -> str:
         """A process of lower priority that can delay another one for an unknown time; "" if there is none."""
         level = self.level(item)
         above = self._above(level.rank)

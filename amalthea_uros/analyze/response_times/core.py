@@ -52,7 +52,7 @@ class _CoreAnalysis:
         is_complete = len(processes) == len(here) and supply is FULL and self.solution.is_closed(self.core)
         found = self.exact(processes) if is_complete else None
         if found is None:
-            found = self.bounds(usable, [item for item in here if isinstance(item, ScheduledProcess)], supply)
+            found = self.bounds(usable, self._blocking(here), supply)
         by_name = {item.name: response for item, response in zip(usable, found, strict=True)}
         for item in usable:
             if isinstance(item, Server):
@@ -73,15 +73,26 @@ class _CoreAnalysis:
             else:
                 for item in level:
                     self._mark_unknown(item, f"depends on {unknown!r}, which could not be analysed")
-        blocking = Blocking.of([item for item in here if isinstance(item, ScheduledProcess)], self.solution)
+        blocking = self._blocking(here)
         servers = [item for item in here if isinstance(item, Server)]
         return [item for item in found if not self._is_blocked_for_unknown_time(item, blocking, servers)]
+
+    def _blocking(self, here: Sequence[ScheduledProcess | Server]) -> Blocking:
+        """The blocking on the core itself or in a server; what is in a server waits and keeps others off at the rank of the server."""
+        processes = [item for item in here if isinstance(item, ScheduledProcess)]
+        for server in here:
+            if isinstance(server, Server):
+                processes += [
+                    replace(item, rank=server.rank, equal_priority=server.equal_priority, group=None)
+                    for item in self._processes_in(server)
+                ]
+        return Blocking.of(processes, self.solution)
 
     def _is_blocked_for_unknown_time(
         self, item: ScheduledProcess | Server, blocking: Blocking, servers: Sequence[Server]
     ) -> bool:
         """Whether a process can block or delay an item for an unknown time; the item is marked unknown then."""
-        obstacle = blocking.obstacle(item) if isinstance(item, ScheduledProcess) and blocking.unknown else ""
+        obstacle = blocking.obstacle(item) if blocking.unknown else ""
         if obstacle:
             self._mark_unknown(item, f"{obstacle!r}, which could not be analysed, can block it")
         elif isinstance(item, Server) and (obstacle := self._cooperative_below(item, blocking)):
@@ -195,15 +206,12 @@ class _CoreAnalysis:
             priority=rank,
         )
 
-    def bounds(
-        self, usable: Sequence[ScheduledProcess | Server], here: Sequence[ScheduledProcess], supply: Supply
-    ) -> list[Response]:
+    def bounds(self, usable: Sequence[ScheduledProcess | Server], blocking: Blocking, supply: Supply) -> list[Response]:
         """Bounds by busy windows; processes of lower priority can block."""
         notes = self.context.notes
         ranks = sorted({item.rank for item in usable})
         tasks = [self._task(item, ranks) for item in usable]
-        blocking = Blocking.of(here, self.solution)
-        waits = [blocking.time(item) if isinstance(item, ScheduledProcess) else 0 for item in usable]
+        waits = [blocking.time(item) for item in usable]
         if tasks:
             notes.assume("if not all releases on a core are known, all tasks can be released together at the worst moment")
             notes.assume("best cases on such cores hold once all tasks have been released")
@@ -212,9 +220,8 @@ class _CoreAnalysis:
         decisions = self._decisions(len(ranks)) if supply is FULL else []
         found = priority_levels.response_times([*tasks, *decisions], [*waits, *[0] * len(decisions)], supply)
         for index, item in enumerate(usable):
-            if isinstance(item, ScheduledProcess):
-                window = BlockedWindow(notes, self.time_base, blocking, usable, [*tasks, *decisions], waits[index], supply)
-                found[index] = window.response(index, item, found[index])
+            window = BlockedWindow(notes, self.time_base, blocking, usable, [*tasks, *decisions], waits[index], supply)
+            found[index] = window.response(index, item, found[index])
         for index, item in enumerate(usable):
             if found[index].worst is None and isinstance(item, ScheduledProcess):
                 rank = blocking.level(item).rank
