@@ -116,15 +116,16 @@ class MetricEvaluator:
     def _waits(self, name: str) -> bool:
         """Whether a job can wait once it executes; under a priority ceiling it does not wait for a semaphore."""
         context = self.solution.context
-        uses = context.protection.get(name)
-        return uses is not None and not uses.semaphores.isdisjoint(context.open_semaphores)
+        semaphores = context.touching.protection[name].semaphores
+        is_scheduled = name in context.scheduled and self.solution.is_analysable(name)
+        return bool(semaphores & context.open_semaphores if is_scheduled else semaphores)
 
     def _bounds(self, process: ProcessResult) -> Iterator[tuple[JobMetric, Metric]]:
         """Bounds by execution times, response times and activations."""
         response, bcet = process.response, process.bcet
         if bcet is None:
             return
-        # The net execution time includes waiting for semaphores.
+        # The net execution time includes waiting for semaphores; of what waits for anything else, the execution time is unknown.
         longest = process.wcet if not self._waits(process.name) else response.worst if response is not None else None
         yield JobMetric.NET_EXECUTION_TIME, Metric(min=bcet, max=longest)
         if process.min_interarrival is not None and process.name not in self.solution.losing:

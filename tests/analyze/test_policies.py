@@ -247,6 +247,15 @@ class TestSchedulersBelowEachOther:
         software = replace(built.software, tasks=(inside, replace(below, preemption=preemption)))
         assert worst(replace(built, software=software))["inside"] == longest
 
+    def test_a_task_of_the_priority_of_a_server_waits_for_each_of_its_budgets(self):
+        # A job in the server that came first goes on in its next budget, before the task.
+        tasks = [
+            ("inside", 100, [ticks(10)], {"scheduler": "server", "priority": 1}),
+            ("beside", 100, [ticks(15)], {"scheduler": "root", "priority": 5}),
+        ]
+        built = system([root(), under("server", Policy.POLLING_SERVER, 5, capacity=8, period=20)], tasks)
+        assert worst(built)["beside"] == 15 + 2 * 8
+
     @pytest.mark.parametrize(("ends_with_access", "longest"), [(False, 22), (True, 30)])
     def test_an_access_at_the_end_of_a_budget_can_wait_for_the_next_one(self, ends_with_access, longest):
         # 10 of waiting after the polling, 2, 8 of waiting, 2: the budget ends just when the demand is served, before the access.

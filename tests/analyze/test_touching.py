@@ -9,7 +9,7 @@ from dataclasses import replace
 import pytest
 from hand_made_systems import READ, WRITE, Proc, access, chain, locked, system, ticks
 
-from amalthea_uros.analyze.results import Claim
+from amalthea_uros.analyze.results import Claim, JobMetric
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.analyze.unknown_origins import origins
 from amalthea_uros.perf.activities import Group, Incomplete, Migrate, Trigger, WaitEvent
@@ -110,6 +110,24 @@ class TestCores:
         analysis = analyze_system(replace(twice, mapping=replace(twice.mapping, tasks=allocations)))
         assert [worst(analysis, name) for name in ("U", "T", "other")] == [None, None, None]
         assert loads(analysis) == [None, None]
+
+
+@pytest.mark.parametrize(
+    ("body", "longest"),
+    [
+        ((ticks(3),), 3),
+        # It can also wait, for nobody knows how long.
+        ((*locked("S", 2), ticks(1)), None),
+    ],
+)
+def test_the_net_execution_time_of_what_cannot_be_analysed_includes_waiting(body, longest):
+    semaphore = Semaphore(name="S", users=1)
+    analysis = analysed(
+        Proc("U", body, 50, priority=1, scheduler="s0"), schedulers=[scheduler(policy=None)], semaphores=(semaphore,)
+    )
+    assert worst(analysis, "U") is None
+    net = analysis.processes["U"].metrics[JobMetric.NET_EXECUTION_TIME]
+    assert (net.min, net.max) == (3 * US, None if longest is None else longest * US)
 
 
 class TestNobodyStatedWhere:

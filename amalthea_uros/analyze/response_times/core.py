@@ -210,7 +210,7 @@ class _CoreAnalysis:
         """Bounds by busy windows; processes of lower priority can block."""
         notes = self.context.notes
         ranks = sorted({item.rank for item in usable})
-        tasks = [self._task(item, ranks) for item in usable]
+        tasks = _without_order_beside_servers([self._task(item, ranks) for item in usable], usable)
         waits = [blocking.time(item) for item in usable]
         if tasks:
             notes.assume("if not all releases on a core are known, all tasks can be released together at the worst moment")
@@ -319,6 +319,15 @@ def in_picoseconds(response: Response, time_base: int) -> Response:
         completions=tuple(-(-end // time_base) for end in response.completions),
         terms=terms,
     )
+
+
+def _without_order_beside_servers(tasks: Sequence[Task], items: Sequence[ScheduledProcess | Server]) -> list[Task]:
+    """The tasks; jobs in a server keep their places in the queue of a priority, so that its budgets precede others in any order."""
+    with_server = {item.rank for item in items if isinstance(item, Server)}
+    return [
+        replace(task, equal_priority=EqualPriority.UNKNOWN) if item.rank in with_server else task
+        for task, item in zip(tasks, items, strict=True)
+    ]
 
 
 def _is_isr(item: ScheduledProcess | Server) -> bool:
