@@ -77,8 +77,10 @@ def main() -> None:
     parser.add_argument("--out", type=Path, help="folder for the smallest models")
     parser.add_argument("--shrink", type=int, default=1, metavar="N", help="smallest models of N failures of each kind")
     parser.add_argument("--richer", action="store_true", help="models with constraints and further constructs")
+    parser.add_argument("--always", default="", metavar="FEATURE[,FEATURE]", help="richer models that have these constructs")
     arguments = parser.parse_args()
-    make = richer_model if arguments.richer else random_model
+    always = frozenset(filter(None, arguments.always.split(",")))
+    make = partial(richer_model, always=always) if arguments.richer or always else random_model
     first, end = map(int, arguments.seeds.split(".."))
     total, kinds, failing, begin = Tally(), Counter[str](), 0, time.monotonic()
     for seed, said, tally in _results(make, range(first, end), arguments.jobs):

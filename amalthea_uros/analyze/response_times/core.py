@@ -47,19 +47,21 @@ class _CoreAnalysis:
     def responses(self, server: str | None, supply: Supply) -> dict[str, Response]:
         """The response times of processes on the core itself, or in the budget of a server, including those of nested servers."""
         here = self.context.served(self.core, server)
-        usable = self._analysable(here)
-        processes = [item for item in usable if isinstance(item, ScheduledProcess)]
+        usable = self._known(here)
+        # What is blocked for an unknown time delays others nevertheless.
+        blocked = self._blocked_for_unknown_time(usable, here)
+        processes = [item for item in usable if isinstance(item, ScheduledProcess) and item not in blocked]
         is_complete = len(processes) == len(here) and supply is FULL and self.solution.is_closed(self.core)
         found = self.exact(processes) if is_complete else None
         if found is None:
             found = self.bounds(usable, self._blocking(here), supply)
-        by_name = {item.name: response for item, response in zip(usable, found, strict=True)}
+        by_name = {item.name: response for item, response in zip(usable, found, strict=True) if item not in blocked}
         for item in usable:
-            if isinstance(item, Server):
+            if isinstance(item, Server) and item not in blocked:
                 by_name |= self._inside(item, by_name.pop(item.name))
         return by_name
 
-    def _analysable(self, here: Sequence[ScheduledProcess | Server]) -> list[ScheduledProcess | Server]:
+    def _known(self, here: Sequence[ScheduledProcess | Server]) -> list[ScheduledProcess | Server]:
         """The items that depend on no unknown process of the same or a higher rank; the others are marked unknown."""
         found: list[ScheduledProcess | Server] = []
         unknown = self.solution.intruder(self.core, above_isrs=True)
@@ -73,9 +75,15 @@ class _CoreAnalysis:
             else:
                 for item in level:
                     self._mark_unknown(item, f"depends on {unknown!r}, which could not be analysed")
+        return found
+
+    def _blocked_for_unknown_time(
+        self, items: Sequence[ScheduledProcess | Server], here: Sequence[ScheduledProcess | Server]
+    ) -> list[ScheduledProcess | Server]:
+        """The items that a process can block, or delay beyond the budget of its server, for an unknown time."""
         blocking = self._blocking(here)
         servers = [item for item in here if isinstance(item, Server)]
-        return [item for item in found if not self._is_blocked_for_unknown_time(item, blocking, servers)]
+        return [item for item in items if self._is_blocked_for_unknown_time(item, blocking, servers)]
 
     def _blocking(self, here: Sequence[ScheduledProcess | Server]) -> Blocking:
         """The blocking on the core itself or in a server; what is in a server waits and keeps others off at the rank of the server."""
@@ -100,13 +108,20 @@ class _CoreAnalysis:
                 item, f"{obstacle!r} is cooperative, and can block cooperative tasks in the server {item.name!r}"
             )
         for server in servers:
-            if not obstacle and server is not item and (obstacle := self._not_preempted_in(server)):
+            # What is above the server and waits for a job beyond its budget delays the next budget, too.
+            is_touched = server is not item or self._is_below_others(server)
+            if not obstacle and is_touched and (obstacle := self._not_preempted_in(server)):
                 # Whether the end of a budget interrupts it is not standardised: it may go on, before what is above and what is below.
                 self._mark_unknown(
                     item,
                     f"{obstacle!r} in the server {server.name!r} cannot be preempted everywhere, and may go on beyond its budget",
                 )
         return bool(obstacle)
+
+    def _is_below_others(self, server: Server) -> bool:
+        """Whether something of at least the rank of a server shares its core, or the budget that it uses."""
+        others = self.context.served(self.core, server.server)
+        return any(other is not server and other.rank >= server.rank for other in others)
 
     def _cooperative_below(self, server: Server, blocking: Blocking) -> str:
         """A cooperative process below a server that has cooperative ones, too; "" if there is none."""

@@ -17,18 +17,22 @@ FURTHER = (
 )  # fmt: skip
 
 
-def richer_model(seed: int) -> RandomModel:
-    """The model of a number, with constraints: every third one is one of the other generator."""
-    if seed % 3 == 0:
+def richer_model(seed: int, always: frozenset[str] = frozenset()) -> RandomModel:
+    """The model of a number, with constraints: every third one is one of the other generator, unless it has some features always."""
+    if seed % 3 == 0 and not always:
         return constrained(random_model(seed // 3), seed)
-    return constrained(_Richer(Random(seed)).model(), seed)
+    return constrained(_Richer(Random(seed), always).model(), seed)
 
 
 class _Richer(Generator):
+    def __init__(self, rng: Random, always: frozenset[str]) -> None:
+        self.always = always
+        super().__init__(rng)
+
     def _features(self) -> set[str]:
         rng = self.rng
         constant = {"constant times"} if rng.random() < 0.5 else set()
-        return {*constant, *rng.sample(FURTHER, rng.choice((2, 3, 4))), *rng.sample(FEATURES, rng.choice((0, 0, 1, 2)))}
+        return {*self.always, *constant, *rng.sample(FURTHER, rng.choice((2, 3, 4))), *rng.sample(FEATURES, rng.choice((0, 0, 1, 2)))}
 
     def _ticks(self) -> str:
         if "constant times" in self.features:
