@@ -219,8 +219,8 @@ def _varies(facts: Facts) -> bool:
 
 
 def played_otherwise(simulation: Simulation, facts: Facts) -> Iterator[str]:
-    """Where the response times of a simulation are not between those of the plays."""
-    for process in simulation.processes:
+    """Where the response times of a simulation are not between those of the plays; without some processes, they are no results."""
+    for process in () if simulation.left_out else simulation.processes:
         spread, times = facts.spread.get(("process", process.name, "response_time")), process.response_time
         if times is None or spread is None:
             continue

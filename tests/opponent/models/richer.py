@@ -32,7 +32,12 @@ class _Richer(Generator):
     def _features(self) -> set[str]:
         rng = self.rng
         constant = {"constant times"} if rng.random() < 0.5 else set()
-        return {*self.always, *constant, *rng.sample(FURTHER, rng.choice((2, 3, 4))), *rng.sample(FEATURES, rng.choice((0, 0, 1, 2)))}
+        return {
+            *self.always,
+            *constant,
+            *rng.sample(FURTHER, rng.choice((2, 3, 4))),
+            *rng.sample(FEATURES, rng.choice((0, 0, 1, 2))),
+        }
 
     def _ticks(self) -> str:
         if "constant times" in self.features:
