@@ -313,6 +313,10 @@ class Player:
             self._end(job)
             return
         getattr(self, f"_do_{item[0]}")(job, *item[1:])
+        if self.variant.accesses_last and not job.remaining and not job.awaited and job.has_only(ACCESSES):
+            while (item := job.next_item(self.now)) is not None:
+                if item[0] in ACCESSES:
+                    getattr(self, f"_do_{item[0]}")(job, *item[1:])
         if not job.remaining and not job.has_more():
             self._end(job)
 
@@ -417,11 +421,6 @@ class Player:
     def _do_point(self, job: Job) -> None:
         """Others go first only where the task is cooperative."""
         job.at_point = True
-        if self.variant.accesses_last and job.has_only(ACCESSES):
-            while job.has_more():
-                item = job.next_item(self.now)
-                if item is not None and item[0] in ACCESSES:
-                    getattr(self, f"_do_{item[0]}")(job, *item[1:])
 
     def _do_request(self, job: Job, semaphore: str) -> None:
         if any(semaphore in other.held for queue in self.queues for other in queue):

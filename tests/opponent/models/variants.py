@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import product
+from itertools import dropwhile, product
 from random import Random
 from typing import Any
 
-from opponent.models.reading import Body, Item, Played
+from opponent.models.reading import Body, Item, Played, Process
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -29,7 +29,7 @@ class Variant:
     polls_early : a polling server looks for work before what arrives at that instant
     points_at_calls : cooperative tasks can be preempted after calls, too
     whole_cooperative : cooperative tasks keep off all tasks between these points, not only cooperative ones
-    accesses_last : a cooperative task that has only accesses of labels left is done, also at such a point
+    accesses_last : a job that has only accesses of labels left is done, whoever it has let in or activated
     """
 
     ends_late: bool = False
@@ -65,7 +65,7 @@ def _open_points(played: Played) -> dict[str, bool]:
     return {
         "points_at_calls": any(item[0] == "call" for p in cooperative for item in p.body),
         "whole_cooperative": bool(cooperative),
-        "accesses_last": any(p.body and p.body[-1][0] in ACCESSES for p in cooperative),
+        "accesses_last": any(map(_ends_with_accesses, played.processes)),
         "ends_late": True,
         "last_first": True,
         "serial_isrs": len({p.core for p in isrs}) < len(isrs),
@@ -77,6 +77,13 @@ def _open_points(played: Played) -> dict[str, bool]:
         "decides_outside": bool(played.decisions),
         "polls_early": any("Polling" in server.policy for server in played.servers.values()),
     }
+
+
+def _ends_with_accesses(process: Process) -> bool:
+    """Whether only accesses follow something that lets others in."""
+    kinds = [item[0] for item in process.body]
+    rest = list(dropwhile(lambda kind: kind in ACCESSES, reversed(kinds)))
+    return 0 < len(rest) < len(kinds) and rest[0] != "execute"
 
 
 def items_of(played: Played) -> Iterator[tuple[Any, ...]]:
