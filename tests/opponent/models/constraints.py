@@ -175,9 +175,9 @@ class Synchronization(Constraint):
         times = [play.times(event) for event in self.events]
         yield from (Value(value, (0,), is_complete) for value, is_complete in narrowest(times, play.until))
         if not self.is_multiple:
-            for number, with_equal in enumerate((True, False), 1):
-                found = windows(times, play.until, with_equal=with_equal)
-                yield from (Value(value, (number,), is_complete) for value, is_complete in found)
+            for number, (with_equal, order) in enumerate(product((True, False), (1, -1))):
+                found = windows(times[::order], play.until, with_equal=with_equal)
+                yield from (Value(value, (-2 - number,), is_complete) for value, is_complete in found)
 
     def text(self, name: str, limit: int, event: Referring, *, is_upper: bool) -> str:
         events = " ".join(map(event, self.events))
@@ -203,7 +203,10 @@ def narrowest(events: Sequence[list[int]], until: int) -> Iterator[tuple[int, bo
 
 
 def windows(events: Sequence[list[int]], until: int, *, with_equal: bool) -> Iterator[tuple[int, bool]]:
-    """Windows one after the other, each up to where all events have occurred; of one instant, the rest can belong to it or not."""
+    """Windows one after the other, each up to where all events have occurred; of one instant, the rest can belong to it or not.
+
+    Events of one instant come in the given order.
+    """
     order = sorted((time, number) for number, times in enumerate(events) for time in times)
     begin, seen, end = None, set[int](), -1
     for time, number in order:
@@ -235,7 +238,7 @@ class ChainSynchronization(Constraint):
         yield from Synchronization("", tuple(map(self._event, self.chains)), self.is_multiple).values(play)
         if self.end == "Stimulus" or not self.has_same_stimulus:
             return
-        for number, (one, other) in enumerate(product(*map(readings, self.chains)), 3):
+        for number, (one, other) in enumerate(product(*map(readings, self.chains)), 1):
             pairs = zip(
                 *(answers(play.played, play.run, chain, links) for chain, links in zip(self.chains, (one, other), strict=True)),
                 strict=False,
