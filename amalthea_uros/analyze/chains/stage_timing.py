@@ -117,8 +117,8 @@ class StageTiming:
         if left == 0:
             return False
         # A job that is kept from its core goes on only after the response.
-        keep = all(self._takes_core(stage, base) for stage in triggered)
-        return keep or sum(self._windows(stage).latest(stage.leave) for stage in triggered) < left
+        is_kept_off = all(self._interrupts(stage, base) for stage in triggered)
+        return is_kept_off or sum(self._windows(stage).latest(stage.leave) for stage in triggered) < left
 
     def _left_after(self, base: Stage) -> Time:
         """The minimum demand of a job after it has triggered the next stage."""
@@ -330,6 +330,13 @@ class StageTiming:
             return False
         # While something below keeps the first one off, or it waits for that, the other one can start.
         return self._blocking_on(first.core).level(first).rank > then.rank
+
+    def _interrupts(self, one: Stage, other: Stage) -> bool:
+        """Whether the process of a stage, once it is ready, preempts that of another one at once and keeps it off until its end."""
+        if not self._takes_core(one, other):
+            return False
+        first, then = (self.context.scheduled[stage.process.name] for stage in (one, other))
+        return self._blocking_on(first.core).always_preempts(first, then)
 
     def _is_visible_at_once(self, writer: Stage, reader: Stage | None) -> bool:
         """Whether a read at the instant of a write certainly comes after it.

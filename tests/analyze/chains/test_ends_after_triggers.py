@@ -9,6 +9,7 @@ from amalthea_uros import analyze_system
 from amalthea_uros.perf.activities import AccessKind, Communication, LabelAccess, Trigger
 from amalthea_uros.perf.constraints import Constraints, DelayConstraint, Matching
 from amalthea_uros.perf.events import LabelChange, LabelEvent
+from amalthea_uros.perf.software import Preemption
 from amalthea_uros.perf.stimuli import InterProcess
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.system import simulate_system
@@ -35,6 +36,14 @@ def triggering(cores=("core",), *, constraints=()):
 def test_the_next_job_responds_to_the_end_of_a_job_that_has_triggered(cores, least):
     _, values, _, _ = evaluate(triggering(cores))
     assert 0 < values["min_first_to_first"] <= least <= values["max_reduced_reaction_time"] <= 100
+
+
+def test_what_cannot_preempt_the_job_responds_after_its_end():
+    built = triggering()
+    tasks = tuple(replace(task, preemption=Preemption.NON_PREEMPTIVE) for task in built.software.tasks)
+    _, values, _, _ = evaluate(replace(built, software=replace(built.software, tasks=tasks)))
+    # W keeps the core up to its end at 10, R executes after that.
+    assert values["min_first_to_first"] <= 2
 
 
 def test_the_simulation_agrees_with_the_analysis():
