@@ -54,14 +54,15 @@ class JobBudget:
 class Inputs:
     """The jobs of the first task whose data reach the end without being overwritten, after N. Feiertag and others 2008.
 
+    They are those of a cycle and of all jobs before, from the start of the system on.
+
     Attributes
     ----------
-    reads, previous_reads : of each of these jobs, and of the one of them before it
+    reads : of each of these jobs
     first_writes, last_writes : of the first and the last output that is based on it
     """
 
     reads: Numbers
-    previous_reads: Numbers
     first_writes: Numbers
     last_writes: Numbers
 
@@ -72,8 +73,8 @@ class Inputs:
 
     @property
     def first_to_last(self) -> Numbers:
-        """From just after the previous input to the last output based on this one."""
-        return self.last_writes - self.previous_reads
+        """From just after the previous input, which the first one does not have, to the last output based on this one."""
+        return self.last_writes[1:] - self.reads[:-1]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -198,7 +199,7 @@ def build_job_chains(chain: Sequence[ReadWriteTimes], steady_state_start: Time) 
     own = _latencies(whole, begin, end)
     return JobChains(
         **{name: getattr(own, name) for name in _TIMES},
-        inputs=_inputs(whole, start, cycle, length),
+        inputs=_inputs(whole, np.concatenate([based, _jobs_in(last, start, start + cycle + length)]), start + cycle),
         before=_latencies(whole, first_jobs, based),
         possible=_possible(whole, np.setdiff1d(last_jobs, based, assume_unique=True)),
     )
@@ -227,19 +228,14 @@ def _possible(chain: Sequence[ReadWriteTimes], end: Numbers) -> Latencies:
     )
 
 
-def _inputs(chain: Sequence[ReadWriteTimes], start: Time, cycle: Time, length: Time) -> Inputs:
+def _inputs(chain: Sequence[ReadWriteTimes], outputs: Numbers, until: Time) -> Inputs:
+    """The inputs before a time; some outputs after it belong to them."""
     first, last = chain[0], chain[-1]
-    outputs = _jobs_in(last, start - length, start + cycle + length)
     jobs, first_of = np.unique(backward(chain, outputs), return_index=True)
-    first_outputs = outputs[first_of]
-    reads = first.reads[jobs]
-    # Without the inputs at both ends, for which some outputs are outside.
-    here = np.flatnonzero((reads[1:-1] >= start) & (reads[1:-1] < start + cycle)) + 1
+    first_outputs, reads = outputs[first_of], first.reads[jobs]
+    here = np.flatnonzero(reads[:-1] < until)
     return Inputs(
-        reads=reads[here],
-        previous_reads=reads[here - 1],
-        first_writes=last.writes[first_outputs[here]],
-        last_writes=last.writes[first_outputs[here + 1] - 1],
+        reads=reads[here], first_writes=last.writes[first_outputs[here]], last_writes=last.writes[first_outputs[here + 1] - 1]
     )
 
 

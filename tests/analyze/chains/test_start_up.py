@@ -40,6 +40,16 @@ def test_the_first_job_waits_for_a_later_one(offset, reaction):
     assert observed.quantities[ChainQuantity.REDUCED_REACTION_TIME].max == reaction * US
 
 
+@pytest.mark.parametrize("offset", [10, 38])
+def test_inputs_count_from_the_start_on(offset):
+    # The first input reaches the end later than each of the others, whether it is the last one until then or not.
+    built = first_alone(offset)
+    _chain, values, _, _ = evaluate(built)
+    (observed,) = simulate_system(built, Options(duration=1 * MS)).chains
+    for name in ("last_to_first", "first_to_last"):
+        assert values[f"max_{name}"] * US == observed.quantities[ChainQuantity(name)].max
+
+
 def limited(built, constraint):
     (found,) = analyze_system(replace(built, constraints=Constraints(constraints=(constraint,)))).requirements
     return str(found.verdict)
