@@ -179,12 +179,24 @@ def _found(played: Played, play: Player, chain: Chain, links: Reading) -> tuple[
     ]
     if not all(hop.is_clear for hop in hops) or not _is_clear(stages, hops, chain):
         return None
+    if not all(_reads_before_it_writes(jobs, *labels) for jobs, labels in zip(stages[1:], pairwise(links), strict=False)):
+        return None
     # Only jobs that write take part: that others do not is documented.
     if not hops[0].is_trigger and len(hops[0].writes) < sum(job.end is not None for job in stages[0]):
         return None
     stimuli = [time for job in stages[0] if (time := _time(job, chain.stimulus)) is not None]
     responses = [time for job in stages[-1] if (time := _time(job, chain.response)) is not None]
     return hops, stimuli, responses
+
+
+def _reads_before_it_writes(jobs: list[Job], read: str, written: str) -> bool:
+    """Whether no job writes something explicitly before it reads what that is to be based on."""
+    for job in jobs:
+        places = {(mark.change, mark.name): number for number, mark in enumerate(job.marks)}
+        place = places.get(("write", written)) if written not in (*job.copies, *job.timed) else None
+        if place is not None and place < places.get(("read", read), place):
+            return False
+    return True
 
 
 def _is_clear(stages: list[list[Job]], hops: list[_Hop], chain: Chain) -> bool:
