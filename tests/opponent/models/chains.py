@@ -179,7 +179,12 @@ def _found(played: Played, play: Player, chain: Chain, links: Reading) -> tuple[
     ]
     if not all(hop.is_clear for hop in hops) or not _is_clear(stages, hops, chain):
         return None
-    if not all(_reads_before_it_writes(jobs, *labels) for jobs, labels in zip(stages[1:], pairwise(links), strict=False)):
+    if not all(
+        _comes_before_it_writes(jobs, ("read", label), then)
+        for jobs, (label, then) in zip(stages[1:], pairwise(links), strict=False)
+    ):
+        return None
+    if " " in chain.stimulus and not _comes_before_it_writes(stages[0], tuple(chain.stimulus.split(" ", 1)), links[0]):
         return None
     # Only jobs that write take part: that others do not is documented.
     if not hops[0].is_trigger and len(hops[0].writes) < sum(job.end is not None for job in stages[0]):
@@ -189,12 +194,12 @@ def _found(played: Played, play: Player, chain: Chain, links: Reading) -> tuple[
     return hops, stimuli, responses
 
 
-def _reads_before_it_writes(jobs: list[Job], read: str, written: str) -> bool:
-    """Whether no job writes something explicitly before it reads what that is to be based on."""
+def _comes_before_it_writes(jobs: list[Job], event: tuple[str, ...], written: str) -> bool:
+    """Whether no job writes something explicitly before an event on which that is to be based, also at the same instant."""
     for job in jobs:
-        places = {(mark.change, mark.name): number for number, mark in enumerate(job.marks)}
+        places: dict[tuple[str, ...], int] = {(mark.change, mark.name): number for number, mark in enumerate(job.marks)}
         place = places.get(("write", written)) if written not in (*job.copies, *job.timed) else None
-        if place is not None and place < places.get(("read", read), place):
+        if place is not None and place < places.get(event, place):
             return False
     return True
 
