@@ -79,12 +79,18 @@ def chains_of(text: str | bytes, played: Played) -> Iterator[Chain]:
 def _chain_of(names: list[str], name: str, events: dict[str, Event], played: Played) -> Chain | None:
     """The chain of some events, if every step is understood."""
     steps = [events[each] for each in names if each in events]
-    if not names or len(steps) != len(names):
+    if not names or len(steps) != len(names) or any(map(_is_against_order, steps, steps[1:])):
         return None
     processes = [steps[0][0]]
     processes += [b[0] for a, b in pairwise(steps) if a[0] != b[0]]
     links = tuple(tuple(_links_of_step(played, a, b)) for a, b in pairwise(steps) if a[0] != b[0])
     return Chain(name, steps[0][1], steps[-1][1], tuple(processes), links) if links and all(links) else None
+
+
+def _is_against_order(first: Event, then: Event) -> bool:
+    """Whether two events of a process are stated against their order in a job, so that it is open which job the second one is of."""
+    order = {"activate": 0, "start": 1, "terminate": 3}
+    return first[0] == then[0] and order.get(then[1], 2) < order.get(first[1], 2)
 
 
 def _events_of_chain(chain: ElementTree.Element, chains: dict[str, ElementTree.Element]) -> list[str]:
@@ -186,6 +192,8 @@ def _found(played: Played, play: Player, chain: Chain, links: Reading) -> tuple[
         return None
     if " " in chain.stimulus and not _comes_before_it_writes(stages[0], tuple(chain.stimulus.split(" ", 1)), links[0]):
         return None
+    if " " in chain.response and not _comes_after_it_reads(stages[-1], tuple(chain.response.split(" ", 1)), links[-1]):
+        return None
     # Only jobs that write take part: that others do not is documented.
     if not hops[0].is_trigger and len(hops[0].writes) < sum(job.end is not None for job in stages[0]):
         return None
@@ -200,6 +208,15 @@ def _comes_before_it_writes(jobs: list[Job], event: tuple[str, ...], written: st
         places: dict[tuple[str, ...], int] = {(mark.change, mark.name): number for number, mark in enumerate(job.marks)}
         place = places.get(("write", written)) if written not in (*job.copies, *job.timed) else None
         if place is not None and place < places.get(event, place):
+            return False
+    return True
+
+
+def _comes_after_it_reads(jobs: list[Job], event: tuple[str, ...], read: str) -> bool:
+    """Whether no job reads something after an event that is to be based on that, also at the same instant."""
+    for job in jobs:
+        places: dict[tuple[str, ...], int] = {(mark.change, mark.name): number for number, mark in enumerate(job.marks)}
+        if places.get(event, 0) < places.get(("read", read), 0):
             return False
     return True
 
