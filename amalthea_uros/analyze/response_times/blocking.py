@@ -113,7 +113,7 @@ class Blocking:
         return not is_preemptive or bool(uses.semaphores) or uses.has_non_interruptible_group
 
     def level(self, item: SchedulingContext) -> Level:
-        """The level of the busy window of a process."""
+        """The level of the busy window of a process or server."""
         if item.rank not in self._levels:
             self._levels[item.rank] = self._level(item) if self.is_possible else Level(item.rank)
         return self._levels[item.rank]
@@ -179,7 +179,7 @@ class Blocking:
         return rank < item.rank
 
     def time(self, item: SchedulingContext) -> Time:
-        """The maximum time for which a process below the level of another one keeps it off."""
+        """The maximum time for which a process below the level of a process or server keeps it off."""
         return max((length for _, length in self.stretches_below(self.level(item))), default=0) if self.is_possible else 0
 
     def stretches_below(self, level: Level) -> Iterator[tuple[ScheduledProcess, Time]]:
@@ -190,7 +190,7 @@ class Blocking:
                 yield other, self._longest_stretch(other, above, self._up_to_ceiling(other, above))
 
     def obstacle(self, item: SchedulingContext) -> str:
-        """A process of lower priority that can delay another one for an unknown time; "" if there is none."""
+        """A process of lower priority that can delay a process or server for an unknown time; "" if there is none."""
         level = self.level(item)
         above = self._above(level.rank)
         below = (other for other in self.processes if other.name in self.unknown and other.rank < item.rank)

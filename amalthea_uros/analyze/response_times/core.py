@@ -47,14 +47,14 @@ class _CoreAnalysis:
     def responses(self, server: str | None, supply: Supply) -> dict[str, Response]:
         """The response times of processes on the core itself, or in the budget of a server, including those of nested servers."""
         here = self.context.served(self.core, server)
-        usable = self._known(here)
+        usable, blocking = self._known(here), self._blocking(here)
         # What is blocked for an unknown time delays others nevertheless.
-        blocked = self._blocked_for_unknown_time(usable, here)
+        blocked = self._blocked_for_unknown_time(usable, here, blocking)
         processes = [item for item in usable if isinstance(item, ScheduledProcess) and item not in blocked]
         is_complete = len(processes) == len(here) and supply is FULL and self.solution.is_closed(self.core)
         found = self.exact(processes) if is_complete else None
         if found is None:
-            found = self.bounds(usable, self._blocking(here), supply)
+            found = self.bounds(usable, blocking, supply)
         by_name = {item.name: response for item, response in zip(usable, found, strict=True) if item not in blocked}
         for item in usable:
             if isinstance(item, Server) and item not in blocked:
@@ -78,10 +78,9 @@ class _CoreAnalysis:
         return found
 
     def _blocked_for_unknown_time(
-        self, items: Sequence[ScheduledProcess | Server], here: Sequence[ScheduledProcess | Server]
+        self, items: Sequence[ScheduledProcess | Server], here: Sequence[ScheduledProcess | Server], blocking: Blocking
     ) -> list[ScheduledProcess | Server]:
         """The items that a process can block, or delay beyond the budget of its server, for an unknown time."""
-        blocking = self._blocking(here)
         servers = [item for item in here if isinstance(item, Server)]
         return [item for item in items if self._is_blocked_for_unknown_time(item, blocking, servers)]
 

@@ -186,13 +186,13 @@ def _found(played: Played, play: Player, chain: Chain, links: Reading) -> tuple[
     if not all(hop.is_clear for hop in hops) or not _is_clear(stages, hops, chain):
         return None
     if not all(
-        _comes_before_it_writes(jobs, ("read", label), then)
-        for jobs, (label, then) in zip(stages[1:], pairwise(links), strict=False)
+        _writes_after(jobs, ("read", label), then) for jobs, (label, then) in zip(stages[1:], pairwise(links), strict=False)
     ):
         return None
-    if " " in chain.stimulus and not _comes_before_it_writes(stages[0], tuple(chain.stimulus.split(" ", 1)), links[0]):
+    if " " in chain.stimulus and not _writes_after(stages[0], tuple(chain.stimulus.split(" ", 1)), links[0]):
         return None
-    if " " in chain.response and not _comes_after_it_reads(stages[-1], tuple(chain.response.split(" ", 1)), links[-1]):
+    response = tuple(chain.response.split(" ", 1))
+    if " " in chain.response and not all(_is_in_order(job, ("read", links[-1]), response) for job in stages[-1]):
         return None
     # Only jobs that write take part: that others do not is documented.
     if not hops[0].is_trigger and len(hops[0].writes) < sum(job.end is not None for job in stages[0]):
@@ -202,23 +202,16 @@ def _found(played: Played, play: Player, chain: Chain, links: Reading) -> tuple[
     return hops, stimuli, responses
 
 
-def _comes_before_it_writes(jobs: list[Job], event: tuple[str, ...], written: str) -> bool:
-    """Whether no job writes something explicitly before an event on which that is to be based, also at the same instant."""
-    for job in jobs:
-        places: dict[tuple[str, ...], int] = {(mark.change, mark.name): number for number, mark in enumerate(job.marks)}
-        place = places.get(("write", written)) if written not in (*job.copies, *job.timed) else None
-        if place is not None and place < places.get(event, place):
-            return False
-    return True
+def _writes_after(jobs: list[Job], event: tuple[str, ...], label: str) -> bool:
+    """Whether no job writes a label explicitly before an event on which that is to be based, also at the same instant."""
+    explicit = [job for job in jobs if label not in (*job.copies, *job.timed)]
+    return all(_is_in_order(job, event, ("write", label)) for job in explicit)
 
 
-def _comes_after_it_reads(jobs: list[Job], event: tuple[str, ...], read: str) -> bool:
-    """Whether no job reads something after an event that is to be based on that, also at the same instant."""
-    for job in jobs:
-        places: dict[tuple[str, ...], int] = {(mark.change, mark.name): number for number, mark in enumerate(job.marks)}
-        if places.get(event, 0) < places.get(("read", read), 0):
-            return False
-    return True
+def _is_in_order(job: Job, first: tuple[str, ...], then: tuple[str, ...]) -> bool:
+    """Whether one thing that a job does comes before another one; true if it does not do both."""
+    places: dict[tuple[str, ...], int] = {(mark.change, mark.name): number for number, mark in enumerate(job.marks)}
+    return first not in places or then not in places or places[first] <= places[then]
 
 
 def _is_clear(stages: list[list[Job]], hops: list[_Hop], chain: Chain) -> bool:

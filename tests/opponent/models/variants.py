@@ -29,7 +29,7 @@ class Variant:
     polls_early : a polling server looks for work before what arrives at that instant
     points_at_calls : cooperative tasks can be preempted after calls, too
     whole_cooperative : cooperative tasks keep off all tasks between these points, not only cooperative ones
-    accesses_last : a job that has only accesses of labels left is done, whoever it has let in or activated
+    accesses_last : a job that has only accesses of labels left ends at once, before more urgent jobs that it has activated
     """
 
     ends_late: bool = False
@@ -80,7 +80,7 @@ def _open_points(played: Played) -> dict[str, bool]:
 
 
 def _ends_with_accesses(process: Process) -> bool:
-    """Whether only accesses follow something that lets others in."""
+    """Whether a body ends with accesses that do not directly follow an execution."""
     kinds = [item[0] for item in process.body]
     rest = list(dropwhile(lambda kind: kind in ACCESSES, reversed(kinds)))
     return 0 < len(rest) < len(kinds) and rest[0] != "execute"
