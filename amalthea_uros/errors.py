@@ -33,3 +33,7 @@ class WriteError(AmurosError):
 
 class InvalidArgumentError(ValueError):
     """An argument that cannot be right, such as a name that does not exist; the text says what was expected."""
+
+
+class UnknownError(Exception):
+    """A value that cannot be determined; the text says why."""

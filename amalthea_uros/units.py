@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from dataclasses import dataclass
 from decimal import MAX_EMAX, ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Context, Decimal
 from enum import StrEnum
 from fractions import Fraction
 from math import ceil, floor
-from typing import NamedTuple, TypeAlias
+from typing import Generic, NamedTuple, TypeAlias, TypeVar
 
 #: Picoseconds.
 Time: TypeAlias = int
@@ -22,6 +23,25 @@ Frequency: TypeAlias = Fraction
 DataSize: TypeAlias = int
 #: Bits per second.
 BitRate: TypeAlias = int
+
+#: A number: a time, a demand, a count.
+N_co = TypeVar("N_co", int, Fraction, float, covariant=True)
+
+
+@dataclass(frozen=True, slots=True)
+class OpenInterval(Generic[N_co]):
+    """Bounds of a value whose upper bound may be unknown (None)."""
+
+    lower: N_co
+    upper: N_co | None
+
+
+@dataclass(frozen=True, slots=True)
+class Interval(OpenInterval[N_co]):
+    """Bounds of a value: the lower and the upper one, both known, in the unit of the value."""
+
+    upper: N_co
+
 
 PICOSECOND: Time = 1
 NANOSECOND: Time = 1000 * PICOSECOND

@@ -196,3 +196,10 @@ def test_very_long_texts_are_refused_at_once(text):
 )
 def test_a_percentage_is_on_its_side_of_all(share, decimals, rounding, text):
     assert units.percent_text(share, decimals, rounding) == text
+
+
+def test_the_bounds_of_a_value():
+    bounds = units.Interval(units.MILLISECOND, 2 * units.MILLISECOND)
+    assert (bounds.lower, bounds.upper) == (units.MILLISECOND, 2 * units.MILLISECOND)
+    assert isinstance(bounds, units.OpenInterval)
+    assert units.OpenInterval(3, None) == units.OpenInterval(lower=3, upper=None)

@@ -18,11 +18,12 @@ import numpy as np
 from amalthea_uros._internal.failures import failure
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.chains.event_delays import exact_delays
-from amalthea_uros.analyze.chains.event_windows import EventWindows, UnknownError
+from amalthea_uros.analyze.chains.event_windows import EventWindows
 from amalthea_uros.analyze.chains.runnable_orders import holds_across, holds_in_each_job
 from amalthea_uros.analyze.chains.stage_timing import UnboundedStageError
 from amalthea_uros.analyze.implausible_limits import note_implausible
 from amalthea_uros.analyze.results import ChainResult, Claim, Quantity, RequirementResult, Value
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.judge.evidence import Ends
 from amalthea_uros.judge.limits import EventConstraint, SystemLimit, limits_of, without_number
 from amalthea_uros.judge.verdict import Judgement, prove, prove_kept, unknown

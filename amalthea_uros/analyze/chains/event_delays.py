@@ -6,10 +6,11 @@ from math import lcm
 
 import numpy as np
 
-from amalthea_uros.analyze.chains.event_windows import EventWindows, UnknownError
+from amalthea_uros.analyze.chains.event_windows import EventWindows
 from amalthea_uros.analyze.chains.job_chains import MAX_JOBS
 from amalthea_uros.analyze.chains.stage_timing import UnboundedStageError
 from amalthea_uros.analyze.chains.timed_stage import ReadWriteBounds
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.constraints import DelayConstraint
 from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.units import Time

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.judge.evidence import Ends
 from amalthea_uros.perf.events import Event, EventSet
 from amalthea_uros.timing.counters import is_always
@@ -13,10 +14,6 @@ from amalthea_uros.timing.dataflow.events import EventOccurrence, JobPhase
 from amalthea_uros.timing.dataflow.skipping import can_be_skipped
 from amalthea_uros.timing.releases import known_releases
 from amalthea_uros.units import Time
-
-
-class UnknownError(Exception):
-    """A constraint cannot be evaluated; the text says why."""
 
 
 @dataclass(frozen=True, slots=True)
