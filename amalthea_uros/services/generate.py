@@ -27,7 +27,7 @@ from amalthea_uros.uros.generated_options import check_meta, values_of, with_gen
 from amalthea_uros.uros.memory.entities import LIFECYCLE_SERVICES, PARAMETER_SERVICES, executors_of
 from amalthea_uros.uros.memory.ram import Memory
 from amalthea_uros.uros.middleware.load import profile_of
-from amalthea_uros.uros.middleware.profile import Option, OptionRole
+from amalthea_uros.uros.middleware.options import Option, OptionRole
 
 META, HEADER, CMAKE = "colcon.meta", "amuros_limits.h", "zenoh_options.cmake"
 #: In each file, by which it can be told from those that people wrote.
@@ -126,18 +126,15 @@ def check_colcon_meta(path: StrPath, meta: StrPath, platform: str | None = None)
     except FileError as error:
         raise ReadError([Finding("GEN006", Severity.ERROR, error.reason, Location(file), error.advice)]) from None
     description, file_options = assembly.description, parse_meta(file, text)
-    findings = check_meta(
-        description.application, description.middleware, assembly.profile, file_options, waiting_messages(assembly)
-    )
+    findings = check_meta(description.application, assembly.profile, file_options, waiting_messages(assembly))
     return MetaCheck(description=Path(path), path=file, findings=findings)
 
 
 def generated_memory(assembly: Assembly) -> Memory:
     """The memory with the options that are generated."""
-    application, middleware = assembly.description.application, assembly.description.middleware
-    profile = assembly.profile
-    described = profile.memory(application, middleware)
-    generated = profile.memory(application, with_generated_options(middleware, assembly.options, profile))
+    application, profile = assembly.description.application, assembly.profile
+    described = profile.memory(application)
+    generated = with_generated_options(profile, assembly.options).memory(application)
     rest = [use for use in assembly.memory.uses if use not in described]
     return replace(assembly.memory, uses=(*generated, *rest))
 
@@ -151,7 +148,7 @@ def _described(path: StrPath, platform: str | None) -> Assembly:
             raise
     whole, name, _ = complete(read_description(Path(path)), folder_of(Path(path)), platform)
     middleware = whole.middleware
-    sizes = [row.name for row in profile_of(middleware).option_table().values() if row.role is not OptionRole.SETTING]
+    sizes = [row.name for row in profile_of(middleware).option_table.values() if row.role is not OptionRole.SETTING]
     limits = middleware.limits.model_copy(update=dict.fromkeys(name for name in sizes if middleware.limits.states(name)))
     whole = whole.model_copy(update={"middleware": middleware.model_copy(update={"limits": limits})})
     return assemble(whole, whole.hardware, name)

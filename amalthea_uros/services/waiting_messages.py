@@ -13,7 +13,7 @@ from amalthea_uros.uros.assemble import Assembly
 from amalthea_uros.uros.generated_options import WaitingMessages, with_waiting_messages
 from amalthea_uros.uros.memory.entities import executors_of
 from amalthea_uros.uros.middleware.histories import kept_messages
-from amalthea_uros.uros.middleware.profile import OptionRole
+from amalthea_uros.uros.middleware.options import OptionRole
 
 
 def with_analysed_storage(assembly: Assembly, analysis: Analysis | None = None) -> Assembly:

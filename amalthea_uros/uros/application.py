@@ -56,7 +56,7 @@ def add_callbacks(context: AssemblyContext, callbacks: Sequence[Callback]) -> tu
     loops = [executor.name for executor in executors if executor.loop is not None]
     if loops:
         sending = [callback for callback in callbacks if not callback.in_executor and callback.outgoing]
-        if not context.profile.sending(context.description.middleware).is_protected:
+        if not context.profile.sending.is_protected:
             check_threads([executor.name for executor in executors], sending, context.description.middleware, context.notes)
     return tuple(choices)
 

@@ -38,7 +38,8 @@ from amalthea_uros.uros.labels import check_misspelled_labels, labels_of, placem
 from amalthea_uros.uros.memory.ram import Memory, check_memory, memory_of
 from amalthea_uros.uros.middleware.check import check_middleware
 from amalthea_uros.uros.middleware.load import profile_of
-from amalthea_uros.uros.middleware.profile import Option, Profile
+from amalthea_uros.uros.middleware.options import Option
+from amalthea_uros.uros.middleware.profile import Profile
 from amalthea_uros.uros.names import check_unique_data, check_unique_names
 from amalthea_uros.uros.notes import Notes
 from amalthea_uros.uros.os import isr_allocations, os_of, task_allocations
@@ -141,17 +142,16 @@ def _profile(middleware: Middleware, notes: Notes) -> Profile | None:
 def _assembly(context: AssemblyContext, hardware: Hardware, database: Sequence[ForeignFrame]) -> Assembly:
     application, middleware = context.description.application, context.description.middleware
     callbacks = callbacks_of(application, middleware, context.notes)
-    messages = bus_messages(callbacks, middleware, context.profile)
+    messages = bus_messages(callbacks, context.profile)
     check_identifiers(messages, middleware.transport, context.notes)
-    options = context.profile.options(application, middleware)
+    options = context.profile.options(application)
     check_options(options, middleware, context.notes)
-    check_middleware(callbacks, middleware, context.profile, context.notes)
+    check_middleware(callbacks, context.profile, context.notes)
     context.channels = internal_channels(callbacks)
     choices = add_callbacks(context, callbacks)
     network = planned_network(
         context,
         callbacks,
-        context.profile,
         tick=context.description.os.tick,
         wakes=[round_trigger_name(each.name) for each in context.executors if is_triggered(each)],
         database=database,
@@ -196,7 +196,7 @@ def _system(context: AssemblyContext, callbacks: Sequence[Callback], network: Pl
     check_unique_data(labels, context.channels.values(), notes)
     elements = chain_elements(context, callbacks)
     system = triggered_rounds(with_network(_without_demands(context, labels), network, context))
-    waits = waits_outside(callbacks, system, description.middleware, context.profile)
+    waits = waits_outside(callbacks, system, context.profile)
     system = replace(system, network=replace(system.network, waits=tuple(waits)))
     check_shared_priorities(system, context.tasks, notes, context.priority_scale)
     chains = Chains(elements, Topics.of(callbacks, system.network), Dataflow(system), notes)

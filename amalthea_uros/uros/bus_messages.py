@@ -8,13 +8,13 @@ from fractions import Fraction
 
 from amalthea_uros.perf.network import Direction
 from amalthea_uros.perf.stimuli import Burst, Periodic, Stimulus
-from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.spec.transports import Can, Transport
 from amalthea_uros.units import SECOND, Time, percent_text
 from amalthea_uros.uros.callbacks import Callback, Message
 from amalthea_uros.uros.can import FRAME_BYTES, CanBus, Identifier, frames, max_message_bits
+from amalthea_uros.uros.middleware.profile import Profile
 from amalthea_uros.uros.notes import Notes
-from amalthea_uros.uros.transports.messages import Messaging, WireMessage, wire_messages
+from amalthea_uros.uros.transports.messages import WireMessage, wire_messages
 
 #: The greatest identifier of 11 bits.
 _GREATEST_STANDARD = 0x7FF
@@ -57,12 +57,12 @@ def bus_of(can: Can) -> CanBus:
     return CanBus(bit_rate=can.bitrate, identifier=Identifier[can.identifier.upper()])
 
 
-def bus_messages(callbacks: Iterable[Callback], middleware: Middleware, profile: Messaging) -> tuple[BusMessage, ...]:
+def bus_messages(callbacks: Iterable[Callback], profile: Profile) -> tuple[BusMessage, ...]:
     """All messages that the callbacks receive and send; none without a CAN bus."""
-    can = middleware.transport.can
+    can = profile.middleware.transport.can
     if can is None:
         return ()
-    return tuple(_bus_message(message, can) for message in wire_messages(callbacks, middleware, profile))
+    return tuple(_bus_message(message, can) for message in wire_messages(callbacks, profile))
 
 
 def _bus_message(sent: WireMessage, can: Can) -> BusMessage:

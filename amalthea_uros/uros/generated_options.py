@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import islice
 
@@ -10,10 +10,10 @@ from amalthea_uros._internal.similar import Suggestions
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.spec.application import Application
-from amalthea_uros.spec.middleware import Middleware, PoolSizes
+from amalthea_uros.spec.middleware import PoolSizes
 from amalthea_uros.uros.colcon_meta import ColconMeta, Definition
-from amalthea_uros.uros.middleware.options import OptionRow
-from amalthea_uros.uros.middleware.profile import Option, OptionRole, Profile
+from amalthea_uros.uros.middleware.options import Option, OptionRole, OptionRow
+from amalthea_uros.uros.middleware.profile import Profile
 
 #: So many are reported of a file; more of them say nothing new.
 MAX_FINDINGS = 100
@@ -70,18 +70,19 @@ def values_of(options: Sequence[Option]) -> list[tuple[Option, int]]:
     return [(option, value) for option in options if (value := value_of(option)) is not None]
 
 
-def with_generated_options(middleware: Middleware, options: Sequence[Option], profile: Profile) -> Middleware:
-    """The middleware that is built with the options to generate."""
-    table = profile.option_table()
+def with_generated_options(profile: Profile, options: Sequence[Option]) -> Profile:
+    """The middleware as it is built with the options to generate."""
+    table = profile.option_table
     values = {option.name: table[option.name].described(value) for option, value in values_of(options)}
+    middleware = profile.middleware
     limits = middleware.limits.model_copy(
         update={name: value for name, value in values.items() if name in PoolSizes.model_fields}
     )
-    return middleware.model_copy(update={"limits": limits})
+    return profile.configured(middleware.model_copy(update={"limits": limits}))
 
 
 def check_meta(
-    application: Application, middleware: Middleware, profile: Profile, meta: ColconMeta, waiting: WaitingMessages | None = None
+    application: Application, profile: Profile, meta: ColconMeta, waiting: WaitingMessages | None = None
 ) -> tuple[Finding, ...]:
     """What is wrong with a file of build options for an application.
 
@@ -89,7 +90,7 @@ def check_meta(
     ----------
     waiting : what the storage for messages has to be for; None for what follows from the description alone
     """
-    comparison = _Comparison(application, middleware, profile, profile.option_table(), waiting)
+    comparison = _Comparison(application, profile, waiting)
     return tuple(islice(comparison.findings_of(meta), MAX_FINDINGS))
 
 
@@ -104,9 +105,7 @@ class _Comparison(Brief):
     """
 
     application: Application
-    middleware: Middleware
     profile: Profile
-    table: Mapping[str, OptionRow]
     waiting: WaitingMessages | None
     values: dict[str, int] = field(default_factory=dict)
     places: dict[str, Location] = field(default_factory=dict)
@@ -119,15 +118,15 @@ class _Comparison(Brief):
             yield Finding("GEN007", Severity.WARNING, message, place, "Start comments with '#', or remove them.")
         for definition in meta.definitions:
             yield from self._accept(definition)
-        described = {option.name: option for option in self.profile.options(self.application, self.middleware)}
-        middleware = self._built()
-        for option in with_waiting_messages(self.profile.options(self.application, middleware), self.waiting):
-            yield from self._judge(option, described.get(option.name), middleware, Location(meta.path))
+        described = {option.name: option for option in self.profile.options(self.application)}
+        built = self._built()
+        for option in with_waiting_messages(built.options(self.application), self.waiting):
+            yield from self._judge(option, described.get(option.name), built, Location(meta.path))
 
     def _accept(self, definition: Definition) -> Iterator[Finding]:
         """Keep the value of an option, or say why the build does not."""
         name, place = definition.name, definition.location
-        row = self.table.get(name)
+        row = self.profile.option_table.get(name)
         if row is None:
             if (advice := self._misspelled(name)) is not None:
                 message = f"unknown option {name}: it has no effect"
@@ -152,24 +151,28 @@ class _Comparison(Brief):
     def _misspelled(self, name: str) -> str | None:
         """Advice about a name that no option has; None if it may be one that is not known here."""
         family = name.partition("_")[0]
-        if name.startswith(_OTHERS) or family not in {known.partition("_")[0] for known in self.table}:
+        if name.startswith(_OTHERS) or family not in {known.partition("_")[0] for known in self.profile.option_table}:
             return None
-        near = self.suggestions.nearest(name, self.table)
+        near = self.suggestions.nearest(name, self.profile.option_table)
         return f"Did you mean {near}?" if near else "Remove it." if name.startswith("RMW_UXRCE_") else None
 
-    def _built(self) -> Middleware:
+    def _built(self) -> Profile:
         """The middleware that is built with the file."""
         limits = PoolSizes.model_construct(
-            **{name: self.table[name].described(value) for name, value in self.values.items() if name in PoolSizes.model_fields}
+            **{
+                name: self.profile.option_table[name].described(value)
+                for name, value in self.values.items()
+                if name in PoolSizes.model_fields
+            }
         )
         update = {
             "limits": limits,
             "multithread": self.values.get(_MULTITHREAD, 0) == 1,
-            "reliable": self.middleware.reliable.model_copy(update={"timeout": None}),
+            "reliable": self.profile.middleware.reliable.model_copy(update={"timeout": None}),
         }
-        return self.middleware.model_copy(update=update)
+        return self.profile.configured(self.profile.middleware.model_copy(update=update))
 
-    def _judge(self, option: Option, described: Option | None, middleware: Middleware, file: Location) -> Iterator[Finding]:
+    def _judge(self, option: Option, described: Option | None, built: Profile, file: Location) -> Iterator[Finding]:
         """What is wrong with the value that an option has with the file."""
         place = self.places.get(option.name, file)
         if option.name in self.places and option.name not in self.values:
@@ -184,15 +187,15 @@ class _Comparison(Brief):
             message = f"{option.name} is {value}, but the application needs {option.smallest}: {option.counts}"
             yield Finding("GEN001", severity, message, place, f"{option.when_exhausted} Set it to {option.smallest}.".strip())
         elif option.role in _COUNTED and option.name in self.values and self.values[option.name] >= 0:
-            yield from self._surplus(option, middleware, place)
+            yield from self._surplus(option, built, place)
         elif described is not None and option.role is OptionRole.SETTING:
             yield from self._difference(option, described, place)
 
-    def _surplus(self, option: Option, middleware: Middleware, place: Location) -> Iterator[Finding]:
+    def _surplus(self, option: Option, built: Profile, place: Location) -> Iterator[Finding]:
         smallest = option.smallest
         if smallest is None or option.available <= smallest:
             return
-        saved = self._size(middleware) - self._size(self._with(middleware, option.name, smallest))
+        saved = self._size(built) - self._size(self._with(built, option.name, smallest))
         message = f"{option.name} is {option.available}, but {smallest} would be enough"
         advice = f"Set it to {smallest} to save {saved} B." if saved else f"Set it to {smallest}."
         yield Finding("GEN002", Severity.INFO, message, place, advice)
@@ -211,12 +214,13 @@ class _Comparison(Brief):
             advice = "The figures for the other value do not hold. Change one of them."
             yield Finding("GEN008", Severity.WARNING, message, place, advice)
 
-    def _with(self, middleware: Middleware, name: str, value: int) -> Middleware:
-        limits = middleware.limits.model_copy(update={name: self.table[name].described(value)})
-        return middleware.model_copy(update={"limits": limits})
+    def _with(self, built: Profile, name: str, value: int) -> Profile:
+        middleware = built.middleware
+        limits = middleware.limits.model_copy(update={name: self.profile.option_table[name].described(value)})
+        return built.configured(middleware.model_copy(update={"limits": limits}))
 
-    def _size(self, middleware: Middleware) -> int:
-        return sum(use.size for use in self.profile.memory(self.application, middleware))
+    def _size(self, built: Profile) -> int:
+        return sum(use.size for use in built.memory(self.application))
 
 
 def _problem(row: OptionRow, value: int | None, text: str) -> str | None:

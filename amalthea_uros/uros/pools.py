@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.spec.middleware import Middleware
-from amalthea_uros.uros.middleware.profile import Option, OptionRole
+from amalthea_uros.uros.middleware.options import Option, OptionRole
 from amalthea_uros.uros.notes import Notes
 
 

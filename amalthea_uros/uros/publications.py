@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from amalthea_uros.perf.executors import Publication
-from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.uros.callbacks import Callback, CallbackKind, Message, transmission_name_of
 from amalthea_uros.uros.middleware.kinds import content_bytes, message_kind
 from amalthea_uros.uros.middleware.profile import MessageKind, Profile
@@ -13,19 +12,19 @@ from amalthea_uros.uros.transports.line import describes_wire
 from amalthea_uros.uros.transports.messages import acknowledgement_name
 
 
-def publications(callback: Callback, middleware: Middleware, profile: Profile) -> tuple[Publication, ...]:
+def publications(callback: Callback, profile: Profile) -> tuple[Publication, ...]:
     """The messages that a callback sends, in their order: to topics, requests, then its response."""
     if callback.kind in (CallbackKind.PARAMETERS, CallbackKind.LIFECYCLE):
-        return tuple(_of_middleware(callback, middleware, profile))
-    return tuple(_publication(message, middleware, profile) for message in callback.outgoing)
+        return tuple(_of_middleware(callback, profile))
+    return tuple(_publication(message, profile) for message in callback.outgoing)
 
 
-def _publication(message: Message, middleware: Middleware, profile: Profile) -> Publication:
+def _publication(message: Message, profile: Profile) -> Publication:
     kind, content = message_kind(message, incoming=False), content_bytes(message)
-    timeout = profile.gives_up_after(kind, content, reliable=message.reliable, middleware=middleware)
-    parts = profile.parts(kind, content, reliable=message.reliable, middleware=middleware)
+    timeout = profile.times_out_after(kind, content, reliable=message.reliable)
+    parts = profile.parts(kind, content, reliable=message.reliable)
     is_acknowledged = any(part.acknowledgement is not None for part in parts)
-    transmission = transmission_name_of(message, incoming=False) if describes_wire(middleware.transport) else None
+    transmission = transmission_name_of(message, incoming=False) if describes_wire(profile.middleware.transport) else None
     return Publication(
         topic=message.topic,
         transmission=transmission,
@@ -36,9 +35,9 @@ def _publication(message: Message, middleware: Middleware, profile: Profile) -> 
     )
 
 
-def _of_middleware(callback: Callback, middleware: Middleware, profile: Profile) -> Iterator[Publication]:
+def _of_middleware(callback: Callback, profile: Profile) -> Iterator[Publication]:
     """Responses of parameters and of the lifecycle: of unknown sizes, but reliable, so that they keep the executor as others do."""
-    timeout = profile.gives_up_after(MessageKind.RESPONSE_OUT, 0, reliable=True, middleware=middleware)
+    timeout = profile.times_out_after(MessageKind.RESPONSE_OUT, 0, reliable=True)
     topics = [f"{callback.name} (response)"]
     server = callback.node.parameter_server if callback.kind is CallbackKind.PARAMETERS else None
     if server is not None and server.events:

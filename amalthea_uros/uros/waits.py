@@ -9,14 +9,13 @@ from collections.abc import Iterable, Iterator
 
 from amalthea_uros.perf.network import Wait
 from amalthea_uros.perf.system import System
-from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.uros.application import body_name
 from amalthea_uros.uros.callbacks import Callback
 from amalthea_uros.uros.middleware.profile import Profile
 from amalthea_uros.uros.publications import publications
 
 
-def waits_outside(callbacks: Iterable[Callback], system: System, middleware: Middleware, profile: Profile) -> Iterator[Wait]:
+def waits_outside(callbacks: Iterable[Callback], system: System, profile: Profile) -> Iterator[Wait]:
     """The waits of callbacks that no executor in a loop runs, for acknowledgements of messages that no wire of the system has.
 
     Parameters
@@ -28,6 +27,6 @@ def waits_outside(callbacks: Iterable[Callback], system: System, middleware: Mid
     for callback in callbacks:
         if callback.in_executor and callback.executor in loops:
             continue
-        for each in publications(callback, middleware, profile):
+        for each in publications(callback, profile):
             if each.waits and each.transmission not in wired:
                 yield Wait(runnable=body_name(callback.name), topic=each.topic, timeout=each.timeout)

@@ -207,5 +207,5 @@ def test_what_is_not_source_code_is_refused(content, reason, tmp_path):
 
 def test_the_pools_of_the_import_are_those_of_the_middleware():
     """The room of source code knows no middleware, so it has the defaults once more."""
-    table = profile_of(Middleware()).option_table()
+    table = profile_of(Middleware()).option_table
     assert {name: table[name].default for name in _POOLS} == {name: default for name, (default, _) in _POOLS.items()}

@@ -13,7 +13,7 @@ from amalthea_uros.units import percent_text, time_text
 from amalthea_uros.uros.assemble import Assembly
 from amalthea_uros.uros.initialisation import Initialisation
 from amalthea_uros.uros.memory.ram import Memory
-from amalthea_uros.uros.middleware.profile import Option, OptionRole
+from amalthea_uros.uros.middleware.options import Option, OptionRole
 
 
 def write(result: BuildResult, terminal: Terminal) -> None:

@@ -88,8 +88,8 @@ def _executor(
             if runnable.activities or runnable is body:
                 context.runnables[runnable.name] = runnable
         own_take = take if take.activities and callback.in_executor else None
-        handles += handles_of(callback, own_take, body, middleware, context.profile)
-    waiting = context.profile.waiting(middleware)
+        handles += handles_of(callback, own_take, body, context.profile)
+    waiting = context.profile.waiting
     return Executor(
         name=section.name,
         task=section.name,

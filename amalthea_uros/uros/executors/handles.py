@@ -8,7 +8,6 @@ from dataclasses import replace
 from amalthea_uros.perf.executors import Handle, HandleKind
 from amalthea_uros.perf.software import Runnable
 from amalthea_uros.spec.application import MessageCallback, Subscription
-from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.uros.callbacks import Callback, CallbackKind, transmission_name_of
 from amalthea_uros.uros.executors.counts import handle_count, source_count
 from amalthea_uros.uros.middleware.histories import depth_of
@@ -36,9 +35,7 @@ def handle_names(callback: Callback) -> tuple[str, ...]:
     return (callback.name,)
 
 
-def handles_of(
-    callback: Callback, take: Runnable | None, body: Runnable, middleware: Middleware, profile: Profile
-) -> Iterator[Handle]:
+def handles_of(callback: Callback, take: Runnable | None, body: Runnable, profile: Profile) -> Iterator[Handle]:
     """The handles of a callback in its executor.
 
     Parameters
@@ -61,14 +58,14 @@ def handles_of(
         is_periodic=is_subscription or callback.kind is CallbackKind.TIMER,
         phase=section.phase,
         transmission=(
-            transmission_name_of(incoming, incoming=True) if incoming and describes_wire(middleware.transport) else None
+            transmission_name_of(incoming, incoming=True) if incoming and describes_wire(profile.middleware.transport) else None
         ),
         always=isinstance(section, Subscription) and section.invocation == "always",
         depth=depth_of(section),
         overwrites=not isinstance(section, MessageCallback) or section.history == "keep-last",
         reliable=reliable,
         sources=source_count(callback),
-        publications=publications(callback, middleware, profile) if callback.in_executor else (),
+        publications=publications(callback, profile) if callback.in_executor else (),
         origin=callback.origin,
     )
     for name in handle_names(callback):

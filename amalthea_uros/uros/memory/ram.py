@@ -61,8 +61,8 @@ def memory_of(description: Description, hardware: Hardware, system: System, prof
     """
     application, middleware = description.application, description.middleware
     handles = _handles(application, middleware) if application.nodes else ()
-    static = profile.memory(application, middleware)
-    stacks = stacks_of(description, system, profile.threads(middleware))
+    static = profile.memory(application)
+    stacks = stacks_of(description, system, profile.threads)
     others = {section.name for section in (*description.tasks, *description.isrs)}
     return Memory(
         uses=(*(static if application.nodes else ()), *handles, *_parameters(application)),

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from amalthea_uros.spec.executors import Executor
-from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.units import Time, time_text
 from amalthea_uros.uros.callbacks import Callback
 from amalthea_uros.uros.executors.serving import stated_executors
@@ -13,20 +12,20 @@ from amalthea_uros.uros.middleware.profile import Profile
 from amalthea_uros.uros.notes import Notes
 
 
-def check_blocking(callbacks: Sequence[Callback], middleware: Middleware, profile: Profile, notes: Notes) -> None:
+def check_blocking(callbacks: Sequence[Callback], profile: Profile, notes: Notes) -> None:
     """Report waiting that execution times and response times do not contain."""
     senders = [callback for callback in callbacks if callback.outgoing]
-    loops = {executor.name: executor for executor in stated_executors(middleware) if executor.loop is not None}
+    loops = {executor.name: executor for executor in stated_executors(profile.middleware) if executor.loop is not None}
     outside = [callback for callback in senders if not (callback.in_executor and callback.executor in loops)]
-    _check_waiting_outside(outside, middleware, profile, notes)
-    _check_recovery(callbacks, middleware, profile, notes)
-    if loops and (outside or len(stated_executors(middleware)) > 1):
-        _check_threads(senders, tuple(loops.values()), middleware, profile, notes)
+    _check_waiting_outside(outside, profile, notes)
+    _check_recovery(callbacks, profile, notes)
+    if loops and (outside or len(stated_executors(profile.middleware)) > 1):
+        _check_threads(senders, tuple(loops.values()), profile, notes)
 
 
-def _check_waiting_outside(senders: Iterable[Callback], middleware: Middleware, profile: Profile, notes: Notes) -> None:
+def _check_waiting_outside(senders: Iterable[Callback], profile: Profile, notes: Notes) -> None:
     """Report callbacks that wait for acknowledgements of a known time in tasks that are modelled without waiting."""
-    how, acknowledgement = profile.sending(middleware), middleware.transport.acknowledgement
+    how, acknowledgement = profile.sending, profile.middleware.transport.acknowledgement
     if not how.waits or acknowledgement is None:
         return
     for callback in senders:
@@ -41,14 +40,14 @@ def _check_waiting_outside(senders: Iterable[Callback], middleware: Middleware, 
             notes.warning("UR124", text, callback.origin, advice)
 
 
-def _check_recovery(callbacks: Sequence[Callback], middleware: Middleware, profile: Profile, notes: Notes) -> None:
+def _check_recovery(callbacks: Sequence[Callback], profile: Profile, notes: Notes) -> None:
     """Report incoming traffic that postpones the repetition of lost messages.
 
     The time without input begins anew with each message that arrives: `uxr_update_output_stream_heartbeat_timestamp` in
     src/c/core/session/stream/output_reliable_stream.c of eProsima/Micro-XRCE-DDS-Client.
     """
-    how = profile.sending(middleware)
-    if not (middleware.transport.loses_messages and how.waits) or how.resends_after is None:
+    how = profile.sending
+    if not (profile.middleware.transport.loses_messages and how.waits) or how.resends_after is None:
         return
     incoming = [callback.incoming for callback in callbacks if callback.incoming is not None]
     dense = min(incoming, key=lambda message: message.interval, default=None)
@@ -66,18 +65,18 @@ def _check_recovery(callbacks: Sequence[Callback], middleware: Middleware, profi
                 notes.warning("UR124", text, message.origin, advice)
 
 
-def _check_threads(
-    senders: Iterable[Callback], loops: Sequence[Executor], middleware: Middleware, profile: Profile, notes: Notes
-) -> None:
+def _check_threads(senders: Iterable[Callback], loops: Sequence[Executor], profile: Profile, notes: Notes) -> None:
     """Report threads that keep others from sending; that nothing protects the session is reported with the executors."""
-    how = profile.sending(middleware)
+    how = profile.sending
     if how.holds_session_while_waiting:
-        default = profile.waiting(middleware).default_timeout
+        default = profile.waiting.default_timeout
         timeout = time_text(max(_timeout(executor, default) for executor in loops))
         text = f"a thread that waits for messages keeps the session for up to {timeout}; others that send wait for it:"
         names = ", ".join(repr(callback.name) for callback in senders)
         if names:
-            notes.warning("UR124", f"{text} {names}", middleware.location("multithread"), "Use short timeouts of the loops.")
+            notes.warning(
+                "UR124", f"{text} {names}", profile.middleware.location("multithread"), "Use short timeouts of the loops."
+            )
 
 
 def _timeout(executor: Executor, default: Time) -> Time:

@@ -6,7 +6,6 @@ from collections.abc import Iterator, Sequence
 
 from amalthea_uros.spec.application import Application, MessageCallback, Node, Subscription
 from amalthea_uros.spec.application import Callback as Section
-from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.uros.callbacks import Callback
 from amalthea_uros.uros.executors.serving import stated_executors
 from amalthea_uros.uros.memory.entities import ACTION_SERVICES, ACTION_TOPICS, LIFECYCLE_SERVICES, PARAMETER_SERVICES
@@ -41,13 +40,13 @@ def _receivers(node: Node) -> Iterator[tuple[Section, int]]:
         yield MessageCallback.model_construct(), LIFECYCLE_SERVICES
 
 
-def check_histories(callbacks: Sequence[Callback], middleware: Middleware, profile: Profile, notes: Notes) -> None:
+def check_histories(callbacks: Sequence[Callback], profile: Profile, notes: Notes) -> None:
     """Report histories that are deeper than the slots for all messages together, so that these are used up first."""
-    slots = profile.waiting(middleware).slots
+    slots = profile.waiting.slots
     if slots is None:
         return
     by_default = []
-    loops = {executor.name for executor in stated_executors(middleware) if executor.loop is not None}
+    loops = {executor.name for executor in stated_executors(profile.middleware) if executor.loop is not None}
     for callback in callbacks:
         depth = depth_of(callback.section)
         if depth is None or depth <= slots:
@@ -62,7 +61,7 @@ def check_histories(callbacks: Sequence[Callback], middleware: Middleware, profi
     if by_default:
         names = ", ".join(repr(callback.name) for callback in by_default)
         text = f"by default, the histories of {names} are deeper than the storage for messages of all callbacks, {slots}"
-        place = middleware.limits.location("RMW_UXRCE_MAX_HISTORY")
+        place = profile.middleware.limits.location("RMW_UXRCE_MAX_HISTORY")
         notes.info("UR125", f"{text}: {_effect(by_default[0])}", place, _ADVICE)
 
 

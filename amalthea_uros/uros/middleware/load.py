@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from functools import cache
 from pathlib import Path
 
@@ -21,7 +21,7 @@ _SUFFIXES = (".yaml", ".yml")
 #: Keys with figures by name, and what these are; a file can change single ones.
 _TABLES = {"sizes": "size", "options": "build option"}
 #: The middlewares whose rules are known, by the names of their profiles.
-KNOWN: Mapping[str, Callable[[ProfileData], Profile]] = {"xrce-dds": XrceDds, "zenoh-pico": ZenohPico}
+KNOWN: Mapping[str, type[Profile]] = {"xrce-dds": XrceDds, "zenoh-pico": ZenohPico}
 
 
 def profile_of(middleware: Middleware, folder: Path | None = None) -> Profile:
@@ -37,15 +37,15 @@ def profile_of(middleware: Middleware, folder: Path | None = None) -> Profile:
     """
     name, place = middleware.profile, middleware.location("profile")
     if not name.endswith(_SUFFIXES):
-        return KNOWN[_known(name, place)](known_data(name))
+        return KNOWN[_known(name, place)](known_data(name), middleware)
     own = read_section(_file(name, folder, place), ProfileData)
     if own.base is None:
         message = f"the profile {own.profile!r} does not name the one that it changes"
         raise _mistake("APP003", message, own.location(), f"Set 'base' to one of: {', '.join(KNOWN)}.")
     base = known_data(_known(own.base, own.location("base")))
-    _check_names(own, {"sizes": base.sizes, "options": ["MTU", *KNOWN[own.base](base).option_table()]})
+    _check_names(own, {"sizes": base.sizes, "options": ["MTU", *KNOWN[own.base](base, middleware).option_table]})
     tables = {key: getattr(base, key) | getattr(own, key) for key in _TABLES}
-    return KNOWN[own.base](merged(own, base).model_copy(update=tables))
+    return KNOWN[own.base](merged(own, base).model_copy(update=tables), middleware)
 
 
 @cache

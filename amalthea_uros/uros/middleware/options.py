@@ -3,27 +3,43 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from enum import StrEnum
 from functools import cache
 from importlib import resources
-from typing import Any
+from typing import Any, Self
 
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.spec.middleware import PoolSizes
 from amalthea_uros.units import MILLISECOND
-from amalthea_uros.uros.middleware.profile import Option, OptionRole
 
 #: Bits or picoseconds of a description per unit of an option.
 _UNITS = {"": 1, "B": 8, "ms": MILLISECOND}
 
 
+class OptionRole(StrEnum):
+    """What depends on the value of a build option."""
+
+    POOL = "pool"  # how many things can be created
+    QUEUE = "queue"  # how many messages can wait; more of them are lost
+    ROOM = "room"  # how long a name can be
+    SETTING = "setting"  # times and sizes that the figures depend on
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OptionRow(Brief):
-    """What is known of a build option; the attributes that options have, too, are explained there.
+    """What is known of a build option of the middleware.
 
     Attributes
     ----------
+    package : the package whose build takes it, for `colcon.meta`
     default : that of the package; None if the option counts only where it is given
+    unit : such as "B" or "ms"; "" for a number of things
+    counts : what it counts, for a comment
+    when_exhausted : what happens when the application needs more
+    least : smallest value that the build takes
+    is_power_of_two : whether the build takes powers of two only
+    words : values that are words, by their numbers; () if they are numbers
     """
 
     name: str
@@ -64,23 +80,48 @@ class OptionRow(Brief):
         # A length that no value of an option has; converting more digits takes long.
         return int(text) if digits.isascii() and digits.isdecimal() and len(digits) <= 12 else None
 
-    def option(self, *, needed: int | None, available: int, is_stated: bool, without_effect: str = "") -> Option:
-        """The option of an application."""
-        return Option(
-            name=self.name,
-            package=self.package,
-            needed=needed,
-            available=available,
-            is_stated=is_stated,
-            role=self.role,
-            unit=self.unit,
-            counts=self.counts,
-            when_exhausted=self.when_exhausted,
-            least=self.least,
-            is_power_of_two=self.is_power_of_two,
-            words=self.words,
-            without_effect=without_effect,
-        )
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Option(OptionRow):
+    """A build option with what the application needs of it.
+
+    Attributes
+    ----------
+    needed : smallest value with which the application works, a lower bound for a queue; None if it has no use for it
+    available : the value that the description states, or else the default
+    is_stated : whether the description states it
+    without_effect : why the value that is stated has no effect; "" if it has
+    """
+
+    needed: int | None
+    available: int
+    is_stated: bool
+    without_effect: str = ""
+
+    @classmethod
+    def of(cls, row: OptionRow, *, needed: int | None, available: int, is_stated: bool, without_effect: str = "") -> Self:
+        """The option of a row of the table."""
+        known = {each.name: getattr(row, each.name) for each in fields(row)}
+        return cls(**known, needed=needed, available=available, is_stated=is_stated, without_effect=without_effect)
+
+    @property
+    def is_exceeded(self) -> bool:
+        """Whether the application needs more than there is, or something else."""
+        if self.needed is None:
+            return False
+        return self.needed != self.available if self.words else self.needed > self.available
+
+    @property
+    def smallest(self) -> int | None:
+        """The smallest value that the build takes and with which the application works; None if it has no use for it."""
+        if self.needed is None:
+            return None
+        value = max(self.needed, self.least)
+        return 1 << (value - 1).bit_length() if self.is_power_of_two else value
+
+    def text(self, value: int) -> str:
+        """A value as the build takes it."""
+        return self.words[value] if self.words else str(value)
 
 
 @cache

@@ -6,19 +6,19 @@ folder. A user's profile is a file that names the profile that it changes (`base
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import NamedTuple, Self
 
 from amalthea_uros.perf.executors import Waiting
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.spec.application import Application
-from amalthea_uros.spec.middleware import Middleware
-from amalthea_uros.units import Time
-
-if TYPE_CHECKING:
-    from amalthea_uros.uros.middleware.options import OptionRow
+from amalthea_uros.spec.middleware import Middleware, MiddlewareTask
+from amalthea_uros.spec.profiles import ProfileData, ThreadData
+from amalthea_uros.units import DataSize, Time
+from amalthea_uros.uros.middleware.options import Option, OptionRow
 
 
 class MessageKind(StrEnum):
@@ -44,68 +44,6 @@ class Part(Brief):
 
     length: int
     acknowledgement: int | None = None
-
-
-class OptionRole(StrEnum):
-    """What depends on the value of a build option."""
-
-    POOL = "pool"  # how many things can be created
-    QUEUE = "queue"  # how many messages can wait; more of them are lost
-    ROOM = "room"  # how long a name can be
-    SETTING = "setting"  # times and sizes that the figures depend on
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Option(Brief):
-    """A build option of the middleware.
-
-    Attributes
-    ----------
-    package : the package whose build takes it, for `colcon.meta`
-    needed : smallest value with which the application works, a lower bound for a queue; None if it has no use for it
-    available : the value that the description states, or else the default
-    is_stated : whether the description states it
-    unit : such as "B" or "ms"; "" for a number of things
-    counts : what it counts, for a comment
-    when_exhausted : what happens when the application needs more
-    least : smallest value that the build takes
-    is_power_of_two : whether the build takes powers of two only
-    words : values that are words, by their numbers; () if they are numbers
-    without_effect : why the value that is stated has no effect; "" if it has
-    """
-
-    name: str
-    package: str
-    needed: int | None
-    available: int
-    is_stated: bool
-    role: OptionRole = OptionRole.POOL
-    unit: str = ""
-    counts: str = ""
-    when_exhausted: str = ""
-    least: int = 0
-    is_power_of_two: bool = False
-    words: tuple[str, ...] = ()
-    without_effect: str = ""
-
-    @property
-    def is_exceeded(self) -> bool:
-        """Whether the application needs more than there is, or something else."""
-        if self.needed is None:
-            return False
-        return self.needed != self.available if self.words else self.needed > self.available
-
-    @property
-    def smallest(self) -> int | None:
-        """The smallest value that the build takes and with which the application works; None if it has no use for it."""
-        if self.needed is None:
-            return None
-        value = max(self.needed, self.least)
-        return 1 << (value - 1).bit_length() if self.is_power_of_two else value
-
-    def text(self, value: int) -> str:
-        """A value as the build takes it."""
-        return self.words[value] if self.words else str(value)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -181,68 +119,126 @@ class Heartbeat(NamedTuple):
     is_answered: bool
 
 
-class Profile(Protocol):
-    """A middleware; sizes are in bytes, and `content` is the serialised message without headers."""
+@dataclass(frozen=True, slots=True)
+class Profile(ABC):
+    """A middleware with the settings of a description; sizes are in bytes, and `content` is the serialised message without headers.
+
+    Attributes
+    ----------
+    data : its figures
+    """
+
+    data: ProfileData
+    middleware: Middleware
+
+    def configured(self, middleware: Middleware) -> Self:
+        """The same middleware with other settings."""
+        return replace(self, middleware=middleware)
 
     @property
     def name(self) -> str:
         """Its name."""
-        ...
+        return self.data.profile
 
     @property
     def title(self) -> str:
         """Its full name."""
-        ...
+        return self.data.title
 
     @property
     def source(self) -> str:
         """Where its figures come from."""
-        ...
+        return self.data.source
 
-    def waiting(self, middleware: Middleware) -> Waiting:
+    def size(self, name: str) -> int:
+        """A figure of the profile, rounded up to bytes."""
+        return whole_bytes(self.data.sizes[name])
+
+    @property
+    def waiting(self) -> Waiting:
         """How an executor waits."""
-        ...
+        figures = self.data.waiting
+        return Waiting(
+            messages_per_wait=figures.messages_per_wait,
+            resolution=figures.resolution,
+            stored_data_ends_wait=figures.stored_data_ends_wait,
+            guard_conditions_end_wait=figures.guard_conditions_end_wait,
+            polls_without_messages=figures.polls_without_messages,
+            slots=self.slots,
+            default_timeout=figures.default_timeout,
+        )
 
-    def sending(self, middleware: Middleware) -> Sending:
+    @property
+    def threads(self) -> tuple[MiddlewareThread, ...]:
+        """Its threads beside the executors: those of the profile, then those that only the description knows."""
+        tasks = {task.name: task for task in self.middleware.tasks}
+        known = [_thread(thread, tasks.pop(thread.name, None)) for thread in self.data.threads]
+        return (*known, *(_thread(ThreadData(name=task.name, does="receives messages"), task) for task in tasks.values()))
+
+    @property
+    @abstractmethod
+    def slots(self) -> int | None:
+        """The number of messages that can be stored for all handles together; None for no limit."""
+
+    @property
+    @abstractmethod
+    def sending(self) -> Sending:
         """How messages are sent."""
-        ...
 
-    def threads(self, middleware: Middleware) -> Sequence[MiddlewareThread]:
-        """Its threads beside the executors."""
-        ...
+    @property
+    @abstractmethod
+    def heartbeat(self) -> Heartbeat:
+        """What it sends by itself, in both directions."""
 
-    def parts(self, kind: MessageKind, content: int, *, reliable: bool, middleware: Middleware) -> Sequence[Part]:
-        """What is sent for a message: one part, or fragments."""
-        ...
-
-    def heartbeat(self, middleware: Middleware) -> Heartbeat | None:
-        """What it sends by itself, in both directions; None for nothing."""
-        ...
-
-    def gives_up_after(self, kind: MessageKind, content: int, *, reliable: bool, middleware: Middleware) -> Time | None:
-        """Time after which the sender of a message stops waiting for its acknowledgement; None if it does not wait."""
-        ...
-
-    def largest_content(self, kind: MessageKind, *, reliable: bool, middleware: Middleware) -> int | None:
-        """The longest content that can be sent or received; None for no limit."""
-        ...
-
-    def limiting_options(self, *, reliable: bool, middleware: Middleware) -> Sequence[str]:
-        """The build options that limit the content of messages."""
-        ...
-
-    def buffers(self, middleware: Middleware) -> int | None:
+    @property
+    @abstractmethod
+    def buffers(self) -> int | None:
         """The number of buffers in which reliable messages wait for their acknowledgement, a part in each; None for no limit."""
-        ...
 
+    @property
+    @abstractmethod
     def option_table(self) -> Mapping[str, OptionRow]:
         """What is known of its build options, by name."""
-        ...
 
-    def options(self, application: Application, middleware: Middleware) -> Sequence[Option]:
+    @abstractmethod
+    def parts(self, kind: MessageKind, content: int, *, reliable: bool) -> Sequence[Part]:
+        """What is sent for a message: one part, or fragments; one that cannot be sent is a single part, longer than allowed."""
+
+    @abstractmethod
+    def times_out_after(self, kind: MessageKind, content: int, *, reliable: bool) -> Time | None:
+        """Time after which the sender of a message stops waiting for its acknowledgement; None if it does not wait."""
+
+    @abstractmethod
+    def largest_content(self, kind: MessageKind, *, reliable: bool) -> int | None:
+        """The longest content that can be sent or received; None for no limit."""
+
+    @abstractmethod
+    def limiting_options(self, *, reliable: bool) -> Sequence[str]:
+        """The build options that limit the content of messages."""
+
+    @abstractmethod
+    def options(self, application: Application) -> Sequence[Option]:
         """Its build options, with what the application needs."""
-        ...
 
-    def memory(self, application: Application, middleware: Middleware) -> Sequence[MemoryUse]:
+    @abstractmethod
+    def memory(self, application: Application) -> Sequence[MemoryUse]:
         """What it occupies with the options of the description."""
-        ...
+
+
+def _thread(data: ThreadData, task: MiddlewareTask | None) -> MiddlewareThread:
+    """A thread with what the description says about it."""
+    priority = data.priority if task is None or task.priority is None else task.priority
+    stack = data.stack if task is None or task.stack is None else task.stack
+    return MiddlewareThread(
+        name=data.name,
+        priority=priority,
+        period=data.period,
+        stack=None if stack is None else whole_bytes(stack),
+        calls_subscribers=data.calls_subscribers,
+        does=data.does,
+    )
+
+
+def whole_bytes(bits: DataSize) -> int:
+    """A size in bytes, rounded up."""
+    return -(-bits // 8)

@@ -10,14 +10,15 @@ from amalthea_uros.spec.execution_time import ExecutionTime
 from amalthea_uros.spec.transports import CustomTransport, Driver, Serial, UsbCdc
 from amalthea_uros.units import Time
 from amalthea_uros.uros.callbacks import Callback
+from amalthea_uros.uros.middleware.profile import Profile
 from amalthea_uros.uros.transports.choice import driver_of, line_of
 from amalthea_uros.uros.transports.framing import least_frame, longest_frame, reads
 from amalthea_uros.uros.transports.line import Line, time_on
-from amalthea_uros.uros.transports.messages import Messaging, opposite, wire_messages
+from amalthea_uros.uros.transports.messages import opposite, wire_messages
 
 
 def driver_costs(
-    description: Description, callback: Callback, direction: Direction, profile: Messaging
+    description: Description, callback: Callback, direction: Direction, profile: Profile
 ) -> Iterator[ExecutionTime | Time]:
     """The parts of the execution time that the driver needs for the messages of a callback in a direction, and their acknowledgements.
 
@@ -27,7 +28,7 @@ def driver_costs(
     driver = driver_of(line) if line is not None else None
     if line is None or driver is None:
         return
-    messages = wire_messages([callback], description.middleware, profile)
+    messages = wire_messages([callback], profile)
     for part in (part for message in messages if message.direction is direction for part in message.parts):
         yield from _of_part(part.length, direction, line, driver)
         if part.acknowledgement is not None:

@@ -2,32 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import Protocol
 
 from amalthea_uros.perf.network import Direction
-from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.units import Time
 from amalthea_uros.uros.callbacks import Callback, Message, transmission_name_of
 from amalthea_uros.uros.middleware.kinds import content_bytes, message_kind
-from amalthea_uros.uros.middleware.profile import Heartbeat, MessageKind, Part, Sending
-
-
-class Messaging(Protocol):
-    """What is asked of a middleware here; its profile answers."""
-
-    def parts(self, kind: MessageKind, content: int, *, reliable: bool, middleware: Middleware) -> Sequence[Part]:
-        """What is sent for a message."""
-        ...
-
-    def heartbeat(self, middleware: Middleware) -> Heartbeat | None:
-        """What the middleware sends by itself, in both directions; None for nothing."""
-        ...
-
-    def sending(self, middleware: Middleware) -> Sending:
-        """How messages are sent."""
-        ...
+from amalthea_uros.uros.middleware.profile import Part, Profile
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -53,13 +35,13 @@ class WireMessage:
         return sum(part.length for part in self.parts)
 
 
-def wire_messages(callbacks: Iterable[Callback], middleware: Middleware, profile: Messaging) -> Iterator[WireMessage]:
+def wire_messages(callbacks: Iterable[Callback], profile: Profile) -> Iterator[WireMessage]:
     """All messages that callbacks receive and send."""
     for callback in callbacks:
         if callback.incoming is not None:
-            yield _message(callback.incoming, callback, Direction.TO_CONTROLLER, middleware, profile)
+            yield _message(callback.incoming, callback, Direction.TO_CONTROLLER, profile)
         for message in callback.outgoing:
-            yield _message(message, callback, Direction.TO_AGENT, middleware, profile)
+            yield _message(message, callback, Direction.TO_AGENT, profile)
 
 
 def opposite(direction: Direction) -> Direction:
@@ -72,9 +54,7 @@ def acknowledgement_name(transmission: str) -> str:
     return f"{transmission}_acknowledgement"
 
 
-def _message(
-    message: Message, callback: Callback, direction: Direction, middleware: Middleware, profile: Messaging
-) -> WireMessage:
+def _message(message: Message, callback: Callback, direction: Direction, profile: Profile) -> WireMessage:
     is_incoming = direction is Direction.TO_CONTROLLER
     kind, content = message_kind(message, incoming=is_incoming), content_bytes(message)
     jitter = callback.jitter if is_incoming else 0
@@ -83,7 +63,7 @@ def _message(
         message=message,
         callback=callback,
         direction=direction,
-        parts=tuple(profile.parts(kind, content, reliable=message.reliable, middleware=middleware)),
+        parts=tuple(profile.parts(kind, content, reliable=message.reliable)),
         interval=message.interval + jitter,
         jitter=jitter,
     )

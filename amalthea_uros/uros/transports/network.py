@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from itertools import chain, count
-from typing import Protocol
 
 from amalthea_uros.perf.network import Purpose
 from amalthea_uros.perf.system import System
@@ -19,17 +18,13 @@ from amalthea_uros.uros.transports.choice import is_bus, is_in_system, line_of
 from amalthea_uros.uros.transports.classic_can import CanLine
 from amalthea_uros.uros.transports.foreign import ForeignFrame, arbitration_rank, described_frames, without_own
 from amalthea_uros.uros.transports.line import Frame, Line
-from amalthea_uros.uros.transports.messages import Messaging, WireMessage, wire_messages
+from amalthea_uros.uros.transports.messages import WireMessage, wire_messages
 from amalthea_uros.uros.transports.queueing import Queued, Queueing
-from amalthea_uros.uros.transports.receiving import Receivers, Threading, add_receivers, without_idle
+from amalthea_uros.uros.transports.receiving import Receivers, add_receivers, without_idle
 from amalthea_uros.uros.transports.wires import WirePlan, with_wire
 
 #: Loses the arbitration against all identifiers.
 _OF_CLIENT = 2**31
-
-
-class NetworkProfile(Messaging, Threading, Protocol):
-    """What is asked of a middleware."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -43,7 +38,6 @@ class PlannedNetwork:
 
     line: Line
     messages: tuple[WireMessage, ...]
-    profile: NetworkProfile
     receivers: Receivers
     foreign: tuple[ForeignFrame, ...]
 
@@ -51,7 +45,6 @@ class PlannedNetwork:
 def planned_network(
     context: AssemblyContext,
     callbacks: Iterable[Callback],
-    profile: NetworkProfile,
     *,
     tick: Time | None,
     wakes: Sequence[str],
@@ -70,12 +63,12 @@ def planned_network(
     line = line_of(description, tick)
     if line is None or not is_in_system(description):
         return None
-    messages = tuple(wire_messages(callbacks, description.middleware, profile))
+    messages = tuple(wire_messages(callbacks, context.profile))
     check_lengths(messages, line, context.notes)
     foreign = foreign_frames(line.section, database) if isinstance(line.section, Can | CanFd) else ()
     check_foreign(foreign, context.notes)
-    receivers = add_receivers(context, messages, profile, wakes)
-    return PlannedNetwork(line=line, messages=messages, profile=profile, receivers=receivers, foreign=foreign)
+    receivers = add_receivers(context, messages, wakes)
+    return PlannedNetwork(line=line, messages=messages, receivers=receivers, foreign=foreign)
 
 
 def foreign_frames(section: Can | CanFd, database: Sequence[ForeignFrame]) -> tuple[ForeignFrame, ...]:
@@ -93,8 +86,7 @@ def with_network(system: System, planned: PlannedNetwork | None, context: Assemb
     line = planned.line
     queueing = Queueing(
         line=line,
-        middleware=middleware,
-        profile=planned.profile,
+        profile=context.profile,
         system=system,
         receivers=planned.receivers.processes,
     )

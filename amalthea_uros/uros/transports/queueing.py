@@ -17,17 +17,16 @@ from amalthea_uros.perf.executors import HandleKind
 from amalthea_uros.perf.network import Direction, Purpose, Span, Transmission
 from amalthea_uros.perf.stimuli import Counter, InterProcess, Stimulus
 from amalthea_uros.perf.system import System
-from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.units import Time
 from amalthea_uros.uros.application import body_name
 from amalthea_uros.uros.bus_traffic import runs_per_message
 from amalthea_uros.uros.executor import notification_name
-from amalthea_uros.uros.middleware.profile import Heartbeat
+from amalthea_uros.uros.middleware.profile import Heartbeat, Profile
 from amalthea_uros.uros.transports.arrivals import arrivals
 from amalthea_uros.uros.transports.choice import keeps_sender
 from amalthea_uros.uros.transports.foreign import ForeignFrame
 from amalthea_uros.uros.transports.line import Line, span_of, time_on
-from amalthea_uros.uros.transports.messages import Messaging, WireMessage, acknowledgement_name, opposite
+from amalthea_uros.uros.transports.messages import WireMessage, acknowledgement_name, opposite
 
 _AT_ONCE = Span(most=0)
 
@@ -85,8 +84,7 @@ class Queueing:
     """
 
     line: Line
-    middleware: Middleware
-    profile: Messaging
+    profile: Profile
     system: System
     receivers: tuple[str, ...]
 
@@ -95,10 +93,8 @@ class Queueing:
         messages = tuple(messages)
         for message in messages:
             yield from self._received(message) if message.direction is Direction.TO_CONTROLLER else self._sent(message)
-        heartbeat = self.profile.heartbeat(self.middleware)
+        heartbeat = self.profile.heartbeat
         for direction in Direction:
-            if heartbeat is None:
-                continue
             if not heartbeat.is_answered:
                 yield self._heartbeat(heartbeat, direction)
             elif any(each.direction is direction and _is_acknowledged(each) for each in messages):
@@ -124,7 +120,7 @@ class Queueing:
         )
 
     def _received(self, message: WireMessage) -> Iterator[Queued]:
-        agent = span_of(self.middleware.agent.to_controller)
+        agent = span_of(self.profile.middleware.agent.to_controller)
         yield self._data(message, self._arrivals(message, agent), agent)
         if _is_acknowledged(message):
             takes = self._takes.get(body_name(message.callback.name)) or notification_name(message.callback)
@@ -142,7 +138,7 @@ class Queueing:
         return arrivals(message.name, message.interval, jitter, message.message.origin)
 
     def _sent(self, message: WireMessage) -> Iterator[Queued]:
-        callback, agent = message.callback, span_of(self.middleware.agent.to_host)
+        callback, agent = message.callback, span_of(self.profile.middleware.agent.to_host)
         body = body_name(callback.name)
         answer = acknowledgement_name(message.name) if _is_acknowledged(message) else None
         if body in self._looping_timers:
@@ -161,8 +157,8 @@ class Queueing:
     @property
     def _answer_time(self) -> Span:
         """The time that the agent takes to acknowledge; the limit for the whole of it holds for the part of the agent, too."""
-        stated = self.middleware.agent.acknowledgement
-        return Span(most=self.middleware.transport.acknowledgement) if stated is None else span_of(stated)
+        stated = self.profile.middleware.agent.acknowledgement
+        return Span(most=self.profile.middleware.transport.acknowledgement) if stated is None else span_of(stated)
 
     def _data(
         self,
@@ -249,10 +245,8 @@ class Queueing:
             driver=_sum(self.line.reading(part) for part in parts) if is_received else _AT_ONCE,
             processes=self.receivers if is_received else (),
             agent=agent,
-            waits=is_answered and not is_received and self.middleware.reliable.waits,
-            is_dropped_when_busy=purpose is Purpose.DATA
-            and not is_received
-            and self.profile.sending(self.middleware).drops_when_busy,
+            waits=is_answered and not is_received and self.profile.middleware.reliable.waits,
+            is_dropped_when_busy=purpose is Purpose.DATA and not is_received and self.profile.sending.drops_when_busy,
         )
 
     @cached_property

@@ -9,14 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Protocol
 
 from amalthea_uros.perf.activities import Activity, Call, Demand, Execute, Trigger
 from amalthea_uros.perf.network import Direction
 from amalthea_uros.perf.software import Runnable
 from amalthea_uros.perf.stimuli import InterProcess
 from amalthea_uros.perf.system import System
-from amalthea_uros.spec.middleware import Middleware, MiddlewareTask
+from amalthea_uros.spec.middleware import MiddlewareTask
 from amalthea_uros.spec.transports import Interrupt
 from amalthea_uros.uros.activities import activity_sequence, trigger_name
 from amalthea_uros.uros.context import AssemblyContext
@@ -30,14 +29,6 @@ from amalthea_uros.uros.transports.messages import WireMessage
 
 #: No message is lost between the wire and a task of the middleware.
 _UNLIMITED = 1_000_000
-
-
-class Threading(Protocol):
-    """What is asked of a middleware here; its profile answers."""
-
-    def threads(self, middleware: Middleware) -> Sequence[MiddlewareThread]:
-        """Its threads beside the executors."""
-        ...
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -56,9 +47,7 @@ class Receivers:
     other_triggers: tuple[str, ...] = ()
 
 
-def add_receivers(
-    context: AssemblyContext, messages: Sequence[WireMessage], profile: Threading, wakes: Sequence[str]
-) -> Receivers:
+def add_receivers(context: AssemblyContext, messages: Sequence[WireMessage], wakes: Sequence[str]) -> Receivers:
     """Add the processes that receive messages, and return what triggers them.
 
     Parameters
@@ -68,7 +57,7 @@ def add_receivers(
     middleware = context.description.middleware
     interrupt = receive_interrupt(middleware.transport)
     incoming = [message for message in messages if message.direction is Direction.TO_CONTROLLER]
-    threads = [thread for thread in profile.threads(middleware) if thread.period is None] if incoming else []
+    threads = [thread for thread in context.profile.threads if thread.period is None] if incoming else []
     triggers = wakes
     for thread in reversed(threads):
         triggers = (_add_thread(context, thread, incoming, triggers),)

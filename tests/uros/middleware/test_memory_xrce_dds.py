@@ -5,8 +5,7 @@ import pytest
 from amalthea_uros.spec.application import Application
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.uros.middleware.load import known_data
-from amalthea_uros.uros.middleware.xrce_dds.memory import memory
-from amalthea_uros.uros.middleware.xrce_dds.pools import mtu_of, mtu_option, options, transport_of
+from amalthea_uros.uros.middleware.xrce_dds.profile import XrceDds
 
 DATA = known_data("xrce-dds")
 TIMER = {"name": "T", "period": "10 ms", "execution_time": "1 us"}
@@ -27,12 +26,20 @@ def limits(nodes=4, publishers=4, subscriptions=4, services=4, clients=4, histor
     return {f"RMW_UXRCE_MAX_{name}": count for name, count in zip(names, counts, strict=True)} | others
 
 
+def memory(ware, data=DATA):
+    return XrceDds(data, ware).memory(application())
+
+
+def options(app, ware):
+    return XrceDds(DATA, ware).options(app)
+
+
 def needed(app, ware=None):
-    return {option.name.removeprefix("RMW_UXRCE_"): option.needed for option in options(app, ware or middleware(), DATA)}
+    return {option.name.removeprefix("RMW_UXRCE_"): option.needed for option in options(app, ware or middleware())}
 
 
 def available(ware):
-    return {option.name.removeprefix("RMW_UXRCE_"): option.available for option in options(application(), ware, DATA)}
+    return {option.name.removeprefix("RMW_UXRCE_"): option.available for option in options(application(), ware)}
 
 
 @pytest.mark.parametrize(
@@ -49,35 +56,33 @@ def available(ware):
     ids=["defaults", "ESP-IDF", "STM32", "Arduino very low memory", "host"],
 )
 def test_the_memory_of_known_builds(stated, session, history, entities):
-    sizes = [use.size for use in memory(application(), middleware(limits=stated), DATA)]
+    sizes = [use.size for use in memory(middleware(limits=stated))]
     assert sizes == pytest.approx([session, history, entities], rel=0.1)
     assert sizes[:2] == [session, history]
 
 
 def test_half_the_mtu_is_half_the_session_and_history():
-    whole, half = (
-        memory(application(), middleware(limits={"UCLIENT_CUSTOM_TRANSPORT_MTU": size}), DATA) for size in ("512 B", "256 B")
-    )
+    whole, half = (memory(middleware(limits={"UCLIENT_CUSTOM_TRANSPORT_MTU": size})) for size in ("512 B", "256 B"))
     assert 2 * half[0].size == whole[0].size
     assert 2 * (half[1].size - 8 * 64) == whole[1].size - 8 * 64
 
 
 def test_a_slot_more_costs_the_longest_message():
-    one, two = (memory(application(), middleware(limits={"RMW_UXRCE_MAX_HISTORY": slots}), DATA)[1].size for slots in (1, 2))
+    one, two = (memory(middleware(limits={"RMW_UXRCE_MAX_HISTORY": slots}))[1].size for slots in (1, 2))
     # 2048 B were measured, without the slot itself (micro-ROS.github.io, memory profiling).
     assert two - one == 2048 + 64
 
 
 def test_the_graph_costs_an_input_stream_more():
-    uses = memory(application(), middleware(limits={"RMW_UXRCE_GRAPH": True}), DATA)
+    uses = memory(middleware(limits={"RMW_UXRCE_GRAPH": True}))
     assert (uses[-1].name, uses[-1].size) == ("graph of nodes and topics", 512 * 4)
 
 
 def test_streams_of_different_length_count_only_together():
     both = {"RMW_UXRCE_STREAM_HISTORY_INPUT": 2, "RMW_UXRCE_STREAM_HISTORY_OUTPUT": 8}
-    assert memory(application(), middleware(limits=both), DATA)[0].size == 512 * (2 + 8 + 2)
+    assert memory(middleware(limits=both))[0].size == 512 * (2 + 8 + 2)
     alone = {"RMW_UXRCE_STREAM_HISTORY_INPUT": 2}
-    assert memory(application(), middleware(limits=alone), DATA)[0].size == 512 * (4 + 4 + 2)
+    assert memory(middleware(limits=alone))[0].size == 512 * (4 + 4 + 2)
 
 
 def test_every_timer_has_a_guard_condition():
@@ -160,15 +165,15 @@ def test_messages_wait_while_a_reliable_publication_does():
     ],
 )
 def test_only_the_mtu_of_the_transport_counts(wire, stated, transport, option, mtu):
-    ware = middleware(transport=wire, limits=stated)
-    assert (transport_of(ware), mtu_option(ware), mtu_of(ware, {})) == (transport, option, mtu)
+    build = XrceDds(DATA, middleware(transport=wire, limits=stated)).build
+    assert (build.transport, build.mtu_option, build.mtu) == (transport, option, mtu)
 
 
 @pytest.mark.parametrize(("size", "mtu"), [(500, 512), (501, 516), (1, 16), (4, 16)])
 def test_a_best_effort_message_needs_one_buffer(size, mtu):
     # 12 B of headers, padded to four bytes: an Int32 of 4 B has 16 B on the wire (micro_ros_arduino issue 20).
     app = application(publishers=[{"topic": "p", "message_size": f"{size} B", "reliability": "best-effort"}])
-    (option,) = (each for each in options(app, middleware(), DATA) if each.name == "UCLIENT_CUSTOM_TRANSPORT_MTU")
+    (option,) = (each for each in options(app, middleware()) if each.name == "UCLIENT_CUSTOM_TRANSPORT_MTU")
     assert option.needed == mtu
 
 
@@ -179,7 +184,7 @@ def test_a_best_effort_message_needs_one_buffer(size, mtu):
 )
 def test_a_reliable_message_that_arrives_needs_all_its_fragments(size, history):
     app = application(subscriptions=[TOPIC | {"message_size": f"{size} B"}])
-    (option,) = (each for each in options(app, middleware(), DATA) if each.name == "RMW_UXRCE_STREAM_HISTORY")
+    (option,) = (each for each in options(app, middleware()) if each.name == "RMW_UXRCE_STREAM_HISTORY")
     assert option.smallest == history
 
 
@@ -191,7 +196,7 @@ def test_a_reliable_message_that_arrives_needs_all_its_fragments(size, history):
 )
 def test_a_reliable_message_that_leaves_needs_all_its_fragments_with_several_threads(multithread, history):
     app = application(publishers=[{"topic": "p", "message_size": "2000 B"}])
-    found = options(app, middleware(multithread=multithread), DATA)
+    found = options(app, middleware(multithread=multithread))
     (option,) = (each for each in found if each.name == "RMW_UXRCE_STREAM_HISTORY")
     assert option.smallest == history
 
@@ -205,6 +210,6 @@ def test_lengths_of_names_have_a_slash_and_a_terminator():
 
 def test_a_profile_can_have_other_defaults():
     other = DATA.model_copy(update={"options": {"MTU": 256, "RMW_UXRCE_MAX_HISTORY": 2}})
-    assert [use.size for use in memory(application(), middleware(), other)][:2] == [256 * 10, 2 * (256 * 4 + 64)]
+    assert [use.size for use in memory(middleware(), other)][:2] == [256 * 10, 2 * (256 * 4 + 64)]
     stated = middleware(limits={"RMW_UXRCE_MAX_HISTORY": 1})
-    assert memory(application(), stated, other)[1].size == 256 * 4 + 64
+    assert memory(stated, other)[1].size == 256 * 4 + 64

@@ -4,8 +4,7 @@ import pytest
 
 from amalthea_uros.spec.application import Application
 from amalthea_uros.spec.middleware import Middleware
-from amalthea_uros.uros.middleware.zenoh_pico.memory import memory
-from amalthea_uros.uros.middleware.zenoh_pico.pools import options
+from amalthea_uros.uros.middleware.load import profile_of
 
 APPLICATION = Application.model_validate({"nodes": [{"name": "node"}]})
 
@@ -15,7 +14,7 @@ def middleware(**keys):
 
 
 def test_there_are_no_pools():
-    assert all(option.role == "setting" or option.role == "room" for option in options(APPLICATION, middleware(), {}))
+    assert all(option.role == "setting" or option.role == "room" for option in profile_of(middleware()).options(APPLICATION))
 
 
 @pytest.mark.parametrize(
@@ -27,13 +26,13 @@ def test_there_are_no_pools():
     ],
 )
 def test_a_buffer_for_each_direction(ware, sizes):
-    assert [use.size for use in memory(APPLICATION, middleware(**ware), {}) if use.is_bounded] == sizes
+    assert [use.size for use in profile_of(middleware(**ware)).memory(APPLICATION) if use.is_bounded] == sizes
 
 
 def test_a_message_that_arrives_in_fragments_has_a_limit():
     topic = {"name": "S", "topic": "s", "message_size": "4050 B", "rate": "1 Hz", "execution_time": "1 us"}
     application = Application.model_validate({"nodes": [{"name": "node", "subscriptions": [topic]}]})
-    (option,) = (each for each in options(application, middleware(), {}) if each.name == "FRAG_MAX_SIZE")
+    (option,) = (each for each in profile_of(middleware()).options(application) if each.name == "FRAG_MAX_SIZE")
     assert option.is_exceeded  # 4050 B and up to 50 B of headers, in 4096 B
 
 

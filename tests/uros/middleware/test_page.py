@@ -23,12 +23,12 @@ def rows(heading):
 def figures(name):
     described = Middleware(profile=name)
     profile = profile_of(described)
-    waiting, sending = profile.waiting(described), profile.sending(described)
-    (int32,) = profile.parts(MessageKind.PUBLICATION, 4, reliable=False, middleware=described)
-    (reliable,) = profile.parts(MessageKind.PUBLICATION, 4, reliable=True, middleware=described)
+    waiting, sending = profile.waiting, profile.sending
+    (int32,) = profile.parts(MessageKind.PUBLICATION, 4, reliable=False)
+    (reliable,) = profile.parts(MessageKind.PUBLICATION, 4, reliable=True)
 
     def longest(kind, reliable):
-        return f"{profile.largest_content(kind, reliable=reliable, middleware=described)} B"
+        return f"{profile.largest_content(kind, reliable=reliable)} B"
 
     def yes(value):
         return "yes" if value else "no"
@@ -47,7 +47,7 @@ def figures(name):
         else "never: the transport does it",
         "a message is dropped when another thread sends": yes(sending.drops_when_busy),
         "several threads may use it": "yes" if sending.is_protected else "with `multithread`",
-        "threads of its own": ", ".join(f"`{thread.name}`" for thread in profile.threads(described)) or "none",
+        "threads of its own": ", ".join(f"`{thread.name}`" for thread in profile.threads) or "none",
         "bytes of an Int32 (4 B) on the wire": str(int32.length),
         "bytes of its acknowledgement": str(reliable.acknowledgement or "none"),
         "longest best-effort message": longest(MessageKind.PUBLICATION, False),
@@ -68,7 +68,7 @@ def test_the_headers_of_messages():
     profile = profile_of(described)
 
     def length(kind, content):
-        (part,) = profile.parts(kind, content, reliable=True, middleware=described)
+        (part,) = profile.parts(kind, content, reliable=True)
         return part.length
 
     assert rows("message | headers | alignment") == [

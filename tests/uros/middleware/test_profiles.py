@@ -66,11 +66,11 @@ def test_a_file_changes_what_it_states(tmp_path):
     described = middleware(profile="own.yaml")
     own, base = profile_of(described, tmp_path), profile_of(Middleware())
     assert own.title == "a port that acknowledges quickly"
-    assert own.waiting(described).slots == 3
-    assert own.waiting(described).stored_data_ends_wait
-    assert own.waiting(described).default_timeout == base.waiting(described).default_timeout
-    assert own.sending(described).timeout == 20 * MILLISECOND
-    (part,) = own.parts(MessageKind.PUBLICATION, 4, reliable=True, middleware=described)
+    assert own.waiting.slots == 3
+    assert own.waiting.stored_data_ends_wait
+    assert own.waiting.default_timeout == base.waiting.default_timeout
+    assert own.sending.timeout == 20 * MILLISECOND
+    (part,) = own.parts(MessageKind.PUBLICATION, 4, reliable=True)
     assert (part.length, part.acknowledgement) == (16, 9)
 
 
@@ -129,17 +129,17 @@ def test_threads_are_those_of_the_profile_and_of_the_port():
     described = middleware(
         profile="zenoh-pico", tasks=[{"name": "zenoh_read", "priority": 7, "stack": "4 kB"}, {"name": "Receive", "priority": 9}]
     )
-    read, receive = profile_of(described).threads(described)
+    read, receive = profile_of(described).threads
     assert (read.name, read.priority, read.stack, read.calls_subscribers) == ("zenoh_read", 7, 4000, False)
     assert (receive.name, receive.priority, receive.stack, receive.period) == ("Receive", 9, None, None)
     # FreeRTOS: 5120 words of 4 B.
-    assert profile_of(Middleware(profile="zenoh-pico")).threads(Middleware())[0].stack == 20480
-    assert profile_of(Middleware()).threads(Middleware()) == ()
+    assert profile_of(Middleware(profile="zenoh-pico")).threads[0].stack == 20480
+    assert profile_of(Middleware()).threads == ()
 
 
 @pytest.mark.parametrize("name", KNOWN)
 def test_a_message_that_cannot_be_sent_is_not_cut(name):
     described = Middleware(profile=name)
     content = 2**60
-    (part,) = profile_of(described).parts(MessageKind.PUBLICATION, content, reliable=True, middleware=described)
+    (part,) = profile_of(described).parts(MessageKind.PUBLICATION, content, reliable=True)
     assert part.length > content

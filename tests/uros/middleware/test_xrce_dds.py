@@ -23,12 +23,12 @@ def middleware(**content):
 
 def lengths(kind, content, best_effort=False, **keys):
     described = middleware(**keys)
-    return [part.length for part in profile_of(described).parts(kind, content, reliable=not best_effort, middleware=described)]
+    return [part.length for part in profile_of(described).parts(kind, content, reliable=not best_effort)]
 
 
 def largest(kind, best_effort=False, **keys):
     described = middleware(**keys)
-    return profile_of(described).largest_content(kind, reliable=not best_effort, middleware=described)
+    return profile_of(described).largest_content(kind, reliable=not best_effort)
 
 
 @pytest.mark.parametrize(
@@ -61,7 +61,7 @@ def test_only_reliable_messages_are_acknowledged():
     profile = profile_of(described)
     for reliable, acknowledgement in ((True, 13), (False, None)):
         for content, fragments in ((8, 1), (1000, 3 if reliable else 1)):
-            parts = profile.parts(MessageKind.PUBLICATION, content, reliable=reliable, middleware=described)
+            parts = profile.parts(MessageKind.PUBLICATION, content, reliable=reliable)
             # One ACKNACK for each fragment.
             assert [part.acknowledgement for part in parts] == [acknowledgement] * fragments
 
@@ -124,10 +124,10 @@ def test_the_longest_content_is_the_last_that_fits(kind, transport):
     profile = profile_of(described)
     mtu = 63 if "can_fd" in transport else 512
     for reliable, buffers in ((False, 1), (True, 4)):
-        limit = profile.largest_content(kind, reliable=reliable, middleware=described)
+        limit = profile.largest_content(kind, reliable=reliable)
 
         def fits(content, reliable=reliable, buffers=buffers):
-            parts = profile.parts(kind, content, reliable=reliable, middleware=described)
+            parts = profile.parts(kind, content, reliable=reliable)
             return len(parts) <= buffers and all(part.length <= mtu for part in parts)
 
         assert [fits(limit), fits(limit + 1)] == [True, False]
@@ -156,12 +156,12 @@ def test_how_long_a_sender_waits(keys, content, timeout):
     described = middleware(**keys)
     profile = profile_of(described)
     kind = MessageKind.PUBLICATION
-    assert profile.gives_up_after(kind, content, reliable=True, middleware=described) == timeout
-    assert profile.gives_up_after(kind, content, reliable=False, middleware=described) is None
+    assert profile.times_out_after(kind, content, reliable=True) == timeout
+    assert profile.times_out_after(kind, content, reliable=False) is None
 
 
 def test_waiting_as_in_the_sources():
-    waiting = profile_of(middleware()).waiting(middleware())
+    waiting = profile_of(middleware()).waiting
     assert (waiting.messages_per_wait, waiting.resolution, waiting.slots) == (1, MILLISECOND, 8)
     assert (waiting.stored_data_ends_wait, waiting.guard_conditions_end_wait, waiting.polls_without_messages) == (
         False,
@@ -175,7 +175,7 @@ def test_waiting_as_in_the_sources():
 def test_several_threads_wait_for_each_other_only_if_they_are_protected():
     for multithread in (False, True):
         described = middleware(multithread=multithread)
-        sending = profile_of(described).sending(described)
+        sending = profile_of(described).sending
         assert (sending.holds_session_while_waiting, sending.is_protected) == (multithread, multithread)
 
 
@@ -183,5 +183,5 @@ def test_heartbeats():
     # HEARTBEAT of 13 B; the client sends one after 100 ms by default, the agent after 200 ms.
     for keys, interval in (({}, 100), ({"limits": {"UCLIENT_MIN_HEARTBEAT_TIME_INTERVAL": "1 ms"}}, 1)):
         described = middleware(**keys)
-        assert profile_of(described).heartbeat(described) == (13, interval * MILLISECOND, True)
-        assert profile_of(described).sending(described).resends_after == interval * MILLISECOND
+        assert profile_of(described).heartbeat == (13, interval * MILLISECOND, True)
+        assert profile_of(described).sending.resends_after == interval * MILLISECOND

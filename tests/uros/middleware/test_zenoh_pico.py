@@ -12,7 +12,7 @@ PROFILE = profile_of(MIDDLEWARE)
 
 
 def lengths(content, kind=MessageKind.PUBLICATION, reliable=False):
-    return [part.length for part in PROFILE.parts(kind, content, reliable=reliable, middleware=MIDDLEWARE)]
+    return [part.length for part in PROFILE.parts(kind, content, reliable=reliable)]
 
 
 @pytest.mark.parametrize(
@@ -33,10 +33,10 @@ def test_reliable_messages_and_services_have_more_headers():
 
 
 def test_nothing_is_acknowledged_and_no_sender_waits():
-    (part,) = PROFILE.parts(MessageKind.PUBLICATION, 8, reliable=True, middleware=MIDDLEWARE)
+    (part,) = PROFILE.parts(MessageKind.PUBLICATION, 8, reliable=True)
     assert part.acknowledgement is None
-    assert PROFILE.gives_up_after(MessageKind.PUBLICATION, 8, reliable=True, middleware=MIDDLEWARE) is None
-    sending = PROFILE.sending(MIDDLEWARE)
+    assert PROFILE.times_out_after(MessageKind.PUBLICATION, 8, reliable=True) is None
+    sending = PROFILE.sending
     assert (sending.waits, sending.drops_when_busy, sending.is_protected) == (False, True, True)
 
 
@@ -51,12 +51,12 @@ def test_messages_longer_than_a_batch_are_cut():
 @pytest.mark.parametrize("reliable", [True, False])
 def test_the_longest_content_is_joined_from_fragments(kind, reliable):
     # FRAG_MAX_SIZE is 4096 B, without the headers of the fragments.
-    limit = PROFILE.largest_content(kind, reliable=reliable, middleware=MIDDLEWARE)
+    limit = PROFILE.largest_content(kind, reliable=reliable)
     assert sum(length - 5 for length in lengths(limit, kind, reliable)) == 4096
 
 
 def test_waiting():
-    waiting = PROFILE.waiting(MIDDLEWARE)
+    waiting = PROFILE.waiting
     assert (waiting.messages_per_wait, waiting.slots) == (None, None)
     assert (waiting.stored_data_ends_wait, waiting.guard_conditions_end_wait, waiting.polls_without_messages) == (
         True,
@@ -67,4 +67,4 @@ def test_waiting():
 
 def test_keep_alives():
     # A third of the lease of 10 s, rounded down.
-    assert PROFILE.heartbeat(MIDDLEWARE) == (1, 10 * SECOND // 3, False)
+    assert PROFILE.heartbeat == (1, 10 * SECOND // 3, False)

@@ -6,7 +6,7 @@ from amalthea_uros.report.html.blocks import Badge, Listing, Section, Tone, tabl
 from amalthea_uros.report.memory_text import memory_rows
 from amalthea_uros.services.generate import texts_of
 from amalthea_uros.services.report import ReportContent
-from amalthea_uros.uros.middleware.profile import Option
+from amalthea_uros.uros.middleware.options import Option
 
 
 def section(content: ReportContent) -> Section | None:

@@ -1,49 +1,155 @@
-"""Messages of XRCE-DDS: their lengths, and how long they can be.
+"""Messages of XRCE-DDS: what precedes their content, their fragments, and how long they can be.
 
-As src/c/core/session/write_access.c and src/c/core/session/stream/output_reliable_stream.c of eProsima/Micro-XRCE-DDS-Client lay them
-out. A message that does not fit into a buffer of a reliable stream is cut into fragments, each of which is a message with a header.
+As src/c/core/session/session_info_internal.h, submessage_internal.h, write_access.c and stream/output_reliable_stream.c of
+eProsima/Micro-XRCE-DDS-Client lay them out. A message that does not fit into a buffer of a reliable stream is cut into fragments, each
+of which is a message with a header.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from itertools import repeat
 
-from amalthea_uros.spec.middleware import Middleware
-from amalthea_uros.spec.profiles import ProfileData
-from amalthea_uros.uros.middleware.figures import size
-from amalthea_uros.uros.middleware.profile import MessageKind, Part
-from amalthea_uros.uros.middleware.xrce_dds.headers import SENT, capacity, content_of, headers, payload, piece
-from amalthea_uros.uros.middleware.xrce_dds.limits import input_history, mtu, output_history
+from amalthea_uros.perf.named import Brief
+from amalthea_uros.spec.application import Application, Node
+from amalthea_uros.units import DataSize
+from amalthea_uros.uros.middleware.profile import MessageKind, Part, Profile, whole_bytes
+from amalthea_uros.uros.middleware.xrce_dds.build import Build
+
+#: What some messages have before their content, beside the identifier of the entity.
+_EXTRA = {
+    MessageKind.REQUEST_IN: "sample_identity",
+    MessageKind.RESPONSE_OUT: "sample_identity",
+    MessageKind.RESPONSE_IN: "reply_header",
+}
+#: What the controller sends.
+_SENT = (MessageKind.PUBLICATION, MessageKind.REQUEST_OUT, MessageKind.RESPONSE_OUT)
 
 
-def parts(kind: MessageKind, content: int, *, reliable: bool, middleware: Middleware, data: ProfileData) -> Sequence[Part]:
-    """What is sent for a message; one that cannot be sent is a single part, which is longer than the MTU allows."""
-    acknowledgement = size(data, "acknowledgement") if reliable else None
-    before, body, limit = headers(data), payload(kind, content, middleware, data), mtu(middleware, data)
-    is_whole = before + body <= capacity(True, limit, data)
-    if not reliable or is_whole or body > size(data, "longest_payload"):
-        return (Part(length=before + body, acknowledgement=acknowledgement),)
-    most = max(1, piece(limit, data))
-    full, rest = divmod(size(data, "submessage_header") + body, most)
-    lengths = [*repeat(most, full), *([rest] if rest else [])]
-    return tuple(Part(length=before + length, acknowledgement=acknowledgement) for length in lengths)
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Content(Brief):
+    """A message, with the bytes of its content."""
+
+    kind: MessageKind
+    length: int
+    reliable: bool = True
+
+    @property
+    def incoming(self) -> bool:
+        """Whether it arrives."""
+        return self.kind not in _SENT
 
 
-def largest_content(kind: MessageKind, *, reliable: bool, waits: bool, middleware: Middleware, data: ProfileData) -> int:
-    """The longest content of a message; 0 if not even an empty one can be sent."""
-    whole = capacity(reliable, mtu(middleware, data), data) - headers(data)
-    if not reliable:
-        return content_of(kind, whole, middleware, data)
-    return content_of(kind, max(whole, _longest_fragmented(kind, waits, middleware, data)), middleware, data)
+def contents_of(application: Application) -> list[Content]:
+    """All messages of an application; those of parameters and lifecycles have no stated length."""
+    return [
+        Content(kind=kind, length=whole_bytes(length), reliable=reliability == "reliable")
+        for node in application.nodes
+        for kind, length, reliability in _messages(node)
+    ]
 
 
-def _longest_fragmented(kind: MessageKind, waits: bool, middleware: Middleware, data: ProfileData) -> int:
-    """The longest payload in fragments: as many as there are buffers, or any number if full buffers can be emptied in between.
+def _messages(node: Node) -> Iterator[tuple[MessageKind, DataSize, str]]:
+    for each in node.subscriptions:
+        yield MessageKind.DELIVERY, each.message_size, each.reliability
+    for publisher in node.publishers:
+        yield MessageKind.PUBLICATION, publisher.message_size, publisher.reliability
+    for service in node.services:
+        yield MessageKind.REQUEST_IN, service.request_size, "reliable"
+        yield MessageKind.RESPONSE_OUT, service.response_size, "reliable"
+    for client in node.clients:
+        yield MessageKind.REQUEST_OUT, client.request_size, "reliable"
+        yield MessageKind.RESPONSE_IN, client.response_size, "reliable"
+    for server in node.action_servers:
+        yield MessageKind.REQUEST_IN, server.goal_size, "reliable"
+        yield MessageKind.RESPONSE_OUT, server.result_size, "reliable"
+        yield MessageKind.PUBLICATION, server.feedback_size, "reliable"
+    for action in node.action_clients:
+        yield MessageKind.REQUEST_OUT, action.goal_size, "reliable"
+        yield MessageKind.RESPONSE_IN, action.result_size, "reliable"
+        yield MessageKind.DELIVERY, action.feedback_size, "reliable"
 
-    That is not possible in builds for several threads: see `uxr_prepare_output_stream_fragmented`.
-    """
-    if kind in SENT and waits and not middleware.multithread:
-        return size(data, "longest_payload")
-    history = output_history if kind in SENT else input_history
-    return max(1, piece(mtu(middleware, data), data)) * history(middleware, data) - size(data, "submessage_header")
+
+@dataclass(frozen=True, slots=True)
+class MessageLayout:
+    """The lengths of messages in bytes, by the figures of a profile and the build options of a description."""
+
+    profile: Profile
+    build: Build
+
+    def parts(self, kind: MessageKind, content: int, *, reliable: bool) -> Sequence[Part]:
+        """What is sent for a message; one that cannot be sent is a single part, which is longer than the MTU allows."""
+        acknowledgement = self.profile.size("acknowledgement") if reliable else None
+        before, body = self.headers, self.payload(kind, content)
+        is_whole = before + body <= self.capacity(reliable=True)
+        if not reliable or is_whole or body > self.profile.size("longest_payload"):
+            return (Part(length=before + body, acknowledgement=acknowledgement),)
+        most = max(1, self.fragment)
+        full, rest = divmod(self.profile.size("submessage_header") + body, most)
+        lengths = [*repeat(most, full), *([rest] if rest else [])]
+        return tuple(Part(length=before + length, acknowledgement=acknowledgement) for length in lengths)
+
+    def largest_content(self, kind: MessageKind, *, reliable: bool, waits: bool) -> int:
+        """The longest content of a message; 0 if not even an empty one can be sent."""
+        payload = self.capacity(reliable=reliable) - self.headers
+        if reliable:
+            payload = max(payload, self._longest_fragmented(kind, waits))
+        alignment = self._alignment(kind)
+        return max(0, payload // alignment * alignment - self._fixed(kind))
+
+    def least_mtu(self, contents: Iterable[Content]) -> int:
+        """The smallest MTU for all messages: whole ones if they are best effort; a fragment needs room for more than its headers."""
+        smallest = self.profile.size("buffer_header") + self.headers + 1
+        return max((smallest if each.reliable else self._whole(each) for each in contents), default=0)
+
+    def fragments(self, content: Content) -> int | None:
+        """The buffers that a reliable message needs; None if no number of them is enough."""
+        whole = self._whole(content)
+        if whole <= self.capacity(reliable=True):
+            return 1
+        return -(-(whole - self.profile.size("message_header")) // self.fragment) if self.fragment > 0 else None
+
+    @property
+    def headers(self) -> int:
+        """The headers of a message and its submessage."""
+        return self.profile.size("message_header") + self.profile.size("submessage_header")
+
+    @property
+    def fragment(self) -> int:
+        """What a fragment carries; not positive if the MTU has no room for one."""
+        return self.capacity(reliable=True) - self.headers
+
+    def capacity(self, *, reliable: bool) -> int:
+        """The longest message that is not cut into fragments."""
+        return self.build.mtu - (self.profile.size("buffer_header") if reliable else 0)
+
+    def payload(self, kind: MessageKind, content: int) -> int:
+        """The payload of the submessage, aligned."""
+        alignment = self._alignment(kind)
+        return -(-(self._fixed(kind) + content) // alignment) * alignment
+
+    def _whole(self, content: Content) -> int:
+        return self.headers + self.payload(content.kind, content.length)
+
+    def _longest_fragmented(self, kind: MessageKind, waits: bool) -> int:
+        """The longest payload in fragments: as many as there are buffers, or any number if full buffers can be emptied in between.
+
+        That is not possible in builds for several threads: see `uxr_prepare_output_stream_fragmented`.
+        """
+        if kind in _SENT and waits and not self.profile.middleware.multithread:
+            return self.profile.size("longest_payload")
+        received, sent = self.build.histories
+        history = sent if kind in _SENT else received
+        return max(1, self.fragment) * history - self.profile.size("submessage_header")
+
+    def _fixed(self, kind: MessageKind) -> int:
+        """The part of the payload that is not content; all headers together are what the description states as `overhead`."""
+        transport = self.profile.middleware.transport
+        if transport.states("overhead"):
+            return whole_bytes(transport.overhead) - self.headers
+        return self.profile.size("object") + (self.profile.size(_EXTRA[kind]) if kind in _EXTRA else 0)
+
+    def _alignment(self, kind: MessageKind) -> int:
+        is_aligned = kind in _SENT and not self.profile.middleware.transport.states("overhead")
+        return max(1, self.profile.size("alignment")) if is_aligned else 1

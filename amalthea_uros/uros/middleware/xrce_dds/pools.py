@@ -2,108 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator
 
 from amalthea_uros.spec.application import Application, Node
 from amalthea_uros.spec.middleware import Middleware
-from amalthea_uros.spec.profiles import ProfileData
 from amalthea_uros.uros.memory.entities import Entities, entities_of, executors_of
-from amalthea_uros.uros.middleware.options import OptionRow, option_rows
-from amalthea_uros.uros.middleware.profile import Option
-from amalthea_uros.uros.middleware.xrce_dds.contents import contents_of, fragments, least_mtu
-
-#: The CAN FD transport has no option for it (eProsima/Micro-XRCE-DDS-Client src/c/profile/transport/can/can_transport.c).
-CAN_FD_MTU = 63
-_MTU = "UCLIENT_{}_TRANSPORT_MTU"
-_INPUT, _OUTPUT = "RMW_UXRCE_STREAM_HISTORY_INPUT", "RMW_UXRCE_STREAM_HISTORY_OUTPUT"
+from amalthea_uros.uros.middleware.options import Option
+from amalthea_uros.uros.middleware.xrce_dds.build import rows
+from amalthea_uros.uros.middleware.xrce_dds.messages import MessageLayout, contents_of
 
 
-def rows() -> Mapping[str, OptionRow]:
-    """The table of options."""
-    return option_rows(__name__.rpartition(".")[0])
-
-
-def transport_of(middleware: Middleware) -> str:
-    """The transport that the middleware is built with; microcontrollers have a custom one for serial lines, too."""
-    wire, limits = middleware.transport, middleware.limits
-    if limits.RMW_UXRCE_TRANSPORT is not None:
-        return limits.RMW_UXRCE_TRANSPORT
-    if (
-        wire.serial is not None
-        and limits.UCLIENT_SERIAL_TRANSPORT_MTU is not None
-        and limits.UCLIENT_CUSTOM_TRANSPORT_MTU is None
-    ):
-        return "serial"
-    return "udp" if wire.udp is not None else "tcp" if wire.tcp is not None else "custom"
-
-
-def mtu_option(middleware: Middleware) -> str | None:
-    """The option with the MTU of the transport; None for CAN FD, whose MTU is fixed."""
-    return None if middleware.transport.can_fd is not None else _MTU.format(transport_of(middleware).upper())
-
-
-def mtu_of(middleware: Middleware, defaults: Mapping[str, int]) -> int:
-    """The MTU of the transport, in bytes."""
-    option = mtu_option(middleware)
-    return CAN_FD_MTU if option is None else _value(option, middleware, defaults)
-
-
-def histories_of(middleware: Middleware, defaults: Mapping[str, int]) -> tuple[int, int]:
-    """The buffers of the input and of the output stream; those for one direction count only if both are given."""
-    limits = middleware.limits
-    if limits.RMW_UXRCE_STREAM_HISTORY_INPUT is not None and limits.RMW_UXRCE_STREAM_HISTORY_OUTPUT is not None:
-        return limits.RMW_UXRCE_STREAM_HISTORY_INPUT, limits.RMW_UXRCE_STREAM_HISTORY_OUTPUT
-    both = _value("RMW_UXRCE_STREAM_HISTORY", middleware, defaults)
-    return both, both
-
-
-def options(application: Application, middleware: Middleware, data: ProfileData) -> tuple[Option, ...]:
+def options(application: Application, layout: MessageLayout) -> Iterator[Option]:
     """The build options; those that count only where they are given are left out where they are not."""
-    needed, defaults = _needs(application, middleware, data), data.options
-    found = []
+    needed, build = _needs(application, layout), layout.build
     for name, row in rows().items():
-        stated = _stated(row, middleware)
+        stated = build.stated(row)
         if stated is None and row.default is None:
             continue
-        available = _value(name, middleware, defaults)
+        available = build.value(name)
         if name == "RMW_UXRCE_MAX_TOPICS" and available < 0:
-            available = sum(_value(f"RMW_UXRCE_MAX_{kind}", middleware, defaults) for kind in ("PUBLISHERS", "SUBSCRIPTIONS"))
-        without_effect = _without_effect(name, middleware) if stated is not None else ""
-        found.append(
-            row.option(
-                needed=needed.get(name), available=available, is_stated=stated is not None, without_effect=without_effect
-            )
+            available = sum(build.value(f"RMW_UXRCE_MAX_{kind}") for kind in ("PUBLISHERS", "SUBSCRIPTIONS"))
+        without_effect = build.without_effect(name) if stated is not None else ""
+        yield Option.of(
+            row, needed=needed.get(name), available=available, is_stated=stated is not None, without_effect=without_effect
         )
-    return tuple(found)
 
 
-def _stated(row: OptionRow, middleware: Middleware) -> int | None:
-    """What the description says of an option, in other words, too."""
-    match row.name:
-        case "RMW_UXRCE_TRANSPORT" if middleware.transport.model_fields_set:
-            return row.words.index(transport_of(middleware))
-        case "UCLIENT_PROFILE_MULTITHREAD" if middleware.multithread:
-            return 1
-        case "RMW_UXRCE_PUBLISH_RELIABLE_TIMEOUT" if middleware.reliable.timeout is not None:
-            return row.stated(middleware.limits.model_copy(update={row.name: middleware.reliable.timeout}))
-    stated = row.stated(middleware.limits)
-    if stated is None and row.name == mtu_option(middleware) and middleware.limits.RMW_UXRCE_MTU is not None:
-        return middleware.limits.RMW_UXRCE_MTU // 8
-    return stated
-
-
-def _value(name: str, middleware: Middleware, defaults: Mapping[str, int]) -> int:
-    """The value of an option that has a default or is stated."""
-    row = rows()[name]
-    if (stated := _stated(row, middleware)) is not None:
-        return stated
-    other = defaults.get("MTU") if name == mtu_option(middleware) else defaults.get(name)
-    return other if other is not None else row.default or 0
-
-
-def _needs(application: Application, middleware: Middleware, data: ProfileData) -> dict[str, int]:
+def _needs(application: Application, layout: MessageLayout) -> dict[str, int]:
     """What the application needs of each option that depends on it."""
-    entities, contents = entities_of(application, middleware), contents_of(application)
+    middleware, contents = layout.build.middleware, contents_of(application)
+    entities = entities_of(application, middleware)
     needed = {
         "RMW_UXRCE_MAX_SESSIONS": 1 if entities.nodes else 0,
         "RMW_UXRCE_MAX_NODES": entities.nodes,
@@ -118,17 +46,19 @@ def _needs(application: Application, middleware: Middleware, data: ProfileData) 
         "RMW_UXRCE_NODE_NAME_MAX_LENGTH": max((len(node.name) + 1 for node in application.nodes), default=0),
         "RMW_UXRCE_TOPIC_NAME_MAX_LENGTH": max(map(_name_length, _names(application)), default=0),
     }
-    if (option := mtu_option(middleware)) is not None:
-        needed[option] = least_mtu(contents, middleware, data)
-    buffers = [(each, fragments(each, mtu_of(middleware, data.options), middleware, data) or 0) for each in contents]
-    incoming = max((count for each, count in buffers if each.reliable and each.incoming), default=0)
-    outgoing = max((count for each, count in buffers if each.reliable and not each.incoming), default=0)
+    if (option := layout.build.mtu_option) is not None:
+        needed[option] = layout.least_mtu(contents)
+    buffers = [(each, layout.fragments(each) or 0) for each in contents if each.reliable]
+    incoming = max((count for each, count in buffers if each.incoming), default=0)
+    outgoing = max((count for each, count in buffers if not each.incoming), default=0)
     if middleware.reliable.waits and not middleware.multithread:
         # Longer ones are sent buffer by buffer, with a wait after each (eProsima/Micro-XRCE-DDS-Client src/c/core/session/session.c),
         # in builds for one thread.
         outgoing = min(outgoing, 1)
-    both = middleware.limits.RMW_UXRCE_STREAM_HISTORY_INPUT is not None and _is_given(_OUTPUT, middleware)
-    return needed | ({_INPUT: incoming, _OUTPUT: outgoing} if both else {"RMW_UXRCE_STREAM_HISTORY": max(incoming, outgoing)})
+    names = layout.build.history_options
+    return needed | (
+        dict(zip(names, (incoming, outgoing), strict=True)) if len(names) > 1 else {names[0]: max(incoming, outgoing)}
+    )
 
 
 def _waiting_messages(application: Application, entities: Entities, middleware: Middleware) -> int:
@@ -181,23 +111,3 @@ def _names(application: Application) -> list[str]:
 def _name_length(name: str) -> int:
     """With the slash that expands a relative name, and the terminator."""
     return len(name.encode()) + (not name.startswith("/")) + 1
-
-
-def _is_given(name: str, middleware: Middleware) -> bool:
-    return getattr(middleware.limits, name) is not None
-
-
-def _without_effect(name: str, middleware: Middleware) -> str:
-    """Why an option that is given has no effect; "" if it has."""
-    if name == "RMW_UXRCE_XML_BUFFER_LENGTH":
-        return "it is not read any more"
-    if name.endswith("_TRANSPORT_MTU") and name != (option := mtu_option(middleware)):
-        return f"the MTU of this transport is {option}" if option is not None else f"the MTU of CAN FD is {CAN_FD_MTU} B"
-    for one, other in ((_INPUT, _OUTPUT), (_OUTPUT, _INPUT)):
-        if name == one and not _is_given(other, middleware):
-            return f"it needs {other}, too"
-    if name == "RMW_UXRCE_STREAM_HISTORY" and _is_given(_INPUT, middleware) and _is_given(_OUTPUT, middleware):
-        return f"{_INPUT} and {_OUTPUT} replace it"
-    if name == "RMW_UXRCE_REF_BUFFER_LENGTH" and middleware.limits.RMW_UXRCE_CREATION_MODE != "refs":
-        return "RMW_UXRCE_CREATION_MODE is not 'refs'"
-    return ""
