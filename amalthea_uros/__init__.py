@@ -69,10 +69,24 @@ if TYPE_CHECKING:
     from amalthea_uros.bridge.build import build_model as build_model
     from amalthea_uros.bridge.extract import Extraction as Extraction
     from amalthea_uros.bridge.extract import extract as extract
-    from amalthea_uros.changes.change import Change as Change
-    from amalthea_uros.changes.change import parse_change as parse_change
-    from amalthea_uros.changes.sweep import Sweep as Sweep
-    from amalthea_uros.changes.sweep import parse_sweep as parse_sweep
+    from amalthea_uros.compare.calibration.values import CalibratedValue as CalibratedValue
+    from amalthea_uros.compare.naming import Meaning as Meaning
+    from amalthea_uros.compare.naming import Names as Names
+    from amalthea_uros.compare.results import Comparison as Comparison
+    from amalthea_uros.compare.results import ComparisonRow as ComparisonRow
+    from amalthea_uros.compare.results import MeasuredLimit as MeasuredLimit
+    from amalthea_uros.design.campaign.run import Outcome as Outcome
+    from amalthea_uros.design.campaign.run import Run as Run
+    from amalthea_uros.design.campaign.tables import write_table as write_table
+    from amalthea_uros.design.changes.change import Change as Change
+    from amalthea_uros.design.changes.change import parse_change as parse_change
+    from amalthea_uros.design.changes.sweep import Sweep as Sweep
+    from amalthea_uros.design.changes.sweep import parse_sweep as parse_sweep
+    from amalthea_uros.design.optimize.problem import Conclusion as Conclusion
+    from amalthea_uros.design.optimize.problem import SearchResult as SearchResult
+    from amalthea_uros.design.task_parameters import TaskParameters as TaskParameters
+    from amalthea_uros.design.task_parameters import task as task
+    from amalthea_uros.design.taskset import taskset as taskset
     from amalthea_uros.diagnostics import Finding as Finding
     from amalthea_uros.diagnostics import Location as Location
     from amalthea_uros.diagnostics import Severity as Severity
@@ -91,8 +105,6 @@ if TYPE_CHECKING:
     from amalthea_uros.metamodel.model import Document as Document
     from amalthea_uros.metamodel.model import Model as Model
     from amalthea_uros.metamodel.model import Reference as Reference
-    from amalthea_uros.optimize.problem import Conclusion as Conclusion
-    from amalthea_uros.optimize.problem import SearchResult as SearchResult
     from amalthea_uros.perf.activities import Communication as Communication
     from amalthea_uros.perf.system import System as System
     from amalthea_uros.report.library import Report as Report
@@ -106,19 +118,10 @@ if TYPE_CHECKING:
     from amalthea_uros.services.build import describe as describe
     from amalthea_uros.services.calibrate import Calibration as Calibration
     from amalthea_uros.services.calibrate import calibrate as calibrate
-    from amalthea_uros.services.calibration.values import CalibratedValue as CalibratedValue
-    from amalthea_uros.services.campaign.run import Outcome as Outcome
-    from amalthea_uros.services.campaign.run import Run as Run
-    from amalthea_uros.services.campaign.tables import write_table as write_table
     from amalthea_uros.services.check import CheckResult as CheckResult
     from amalthea_uros.services.check import check as check
     from amalthea_uros.services.check import check_files as check_files
     from amalthea_uros.services.compare import compare as compare
-    from amalthea_uros.services.comparison.naming import Meaning as Meaning
-    from amalthea_uros.services.comparison.naming import Names as Names
-    from amalthea_uros.services.comparison.results import Comparison as Comparison
-    from amalthea_uros.services.comparison.results import ComparisonRow as ComparisonRow
-    from amalthea_uros.services.comparison.results import MeasuredLimit as MeasuredLimit
     from amalthea_uros.services.diff import DiffResult as DiffResult
     from amalthea_uros.services.diff import diff as diff
     from amalthea_uros.services.explain import explain as explain
@@ -145,9 +148,6 @@ if TYPE_CHECKING:
     from amalthea_uros.services.simulate import simulate_files as simulate_files
     from amalthea_uros.services.sweep import SweepResult as SweepResult
     from amalthea_uros.services.sweep import sweep as sweep
-    from amalthea_uros.services.task_parameters import TaskParameters as TaskParameters
-    from amalthea_uros.services.task_parameters import task as task
-    from amalthea_uros.services.taskset import taskset as taskset
     from amalthea_uros.services.what_if import WhatIf as WhatIf
     from amalthea_uros.services.what_if import what_if as what_if
     from amalthea_uros.simulate.options import Mode as Mode
@@ -197,22 +197,22 @@ _NAMES = {
     "measure.statistics": ("Statistics",),
     "metamodel.element": ("Element",),
     "metamodel.model": ("Document", "Model", "Reference"),
-    "optimize.problem": ("Conclusion", "SearchResult"),
+    "design.optimize.problem": ("Conclusion", "SearchResult"),
     "perf.activities": ("Communication",),
     "perf.system": ("System",),
     "report.library": ("Report", "report"),
     "services.analyze": ("AnalysisResult", "Explanation", "analyze", "analyze_files"),
     "services.build": ("BuildResult", "build", "describe"),
     "services.calibrate": ("Calibration", "calibrate"),
-    "services.calibration.values": ("CalibratedValue",),
-    "services.campaign.run": ("Outcome", "Run"),
-    "services.campaign.tables": ("write_table",),
-    "changes.change": ("Change", "parse_change"),
-    "changes.sweep": ("Sweep", "parse_sweep"),
+    "compare.calibration.values": ("CalibratedValue",),
+    "design.campaign.run": ("Outcome", "Run"),
+    "design.campaign.tables": ("write_table",),
+    "design.changes.change": ("Change", "parse_change"),
+    "design.changes.sweep": ("Sweep", "parse_sweep"),
     "services.check": ("CheckResult", "check", "check_files"),
     "services.compare": ("compare",),
-    "services.comparison.naming": ("Meaning", "Names"),
-    "services.comparison.results": ("Comparison", "ComparisonRow", "MeasuredLimit"),
+    "compare.naming": ("Meaning", "Names"),
+    "compare.results": ("Comparison", "ComparisonRow", "MeasuredLimit"),
     "services.diff": ("DiffResult", "diff"),
     "services.explain": ("explain",),
     "services.generate": ("GenerateResult", "MetaCheck", "check_colcon_meta", "generate"),
@@ -224,8 +224,8 @@ _NAMES = {
     "services.settings": ("CheckSettings",),
     "services.simulate": ("CampaignResult", "SimulationResult", "simulate", "simulate_campaign", "simulate_files"),
     "services.sweep": ("SweepResult", "sweep"),
-    "services.task_parameters": ("TaskParameters", "task"),
-    "services.taskset": ("taskset",),
+    "design.task_parameters": ("TaskParameters", "task"),
+    "design.taskset": ("taskset",),
     "services.what_if": ("WhatIf", "what_if"),
     "simulate.options": ("Mode", "Options"),
     "simulate.results": ("Simulation",),

@@ -17,7 +17,7 @@ from random import Random
 from typing import Any
 
 TESTS = Path(__file__).parents[1] / "tests"
-sys.path[:0] = [str(TESTS), str(TESTS / "optimize")]
+sys.path[:0] = [str(TESTS), str(TESTS / "design")]
 
 from design_search import cores_of, mapping_problem, offset_problem, order_problem, orders_of, problem_of  # noqa: E402
 from design_systems import DESIGN, system_of  # noqa: E402
@@ -29,12 +29,12 @@ from amalthea_uros.analyze.assignment import Outcome, propose_priorities  # noqa
 from amalthea_uros.analyze.priority_orders import with_priorities  # noqa: E402
 from amalthea_uros.analyze.results import Analysis  # noqa: E402
 from amalthea_uros.analyze.system import analyze_system  # noqa: E402
-from amalthea_uros.optimize.problem import Conclusion, Goal, SearchResult  # noqa: E402
-from amalthea_uros.optimize.solvers.annealing import solve_by_annealing  # noqa: E402
-from amalthea_uros.optimize.solvers.mapping import solve_mapping  # noqa: E402
-from amalthea_uros.optimize.solvers.offsets import solve_offsets  # noqa: E402
-from amalthea_uros.optimize.solvers.priorities import solve_priorities  # noqa: E402
-from amalthea_uros.optimize.space import Choice, Kind, Space  # noqa: E402
+from amalthea_uros.design.optimize.problem import Conclusion, Goal, SearchResult  # noqa: E402
+from amalthea_uros.design.optimize.solvers.annealing import solve_by_annealing  # noqa: E402
+from amalthea_uros.design.optimize.solvers.mapping import solve_mapping  # noqa: E402
+from amalthea_uros.design.optimize.solvers.offsets import solve_offsets  # noqa: E402
+from amalthea_uros.design.optimize.solvers.priorities import solve_priorities  # noqa: E402
+from amalthea_uros.design.optimize.space import Choice, Kind, Space  # noqa: E402
 from amalthea_uros.services.optimize import plan_optimization  # noqa: E402
 from amalthea_uros.timing.settings import Settings  # noqa: E402
 from amalthea_uros.units import MICROSECOND as US  # noqa: E402

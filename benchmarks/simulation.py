@@ -201,9 +201,9 @@ def main() -> None:
 
 def runs(system: System, repeat: int) -> None:
     """A thousand runs with different seeds, on one and on all cores."""
-    from amalthea_uros.services.campaign.campaign import run_campaign
-    from amalthea_uros.services.campaign.executors import processes, serial
-    from amalthea_uros.services.campaign.run import plan_runs
+    from amalthea_uros.design.campaign.campaign import run_campaign
+    from amalthea_uros.design.campaign.executors import processes, serial
+    from amalthea_uros.design.campaign.run import plan_runs
     from amalthea_uros.services.simulate import SimulationJob
 
     job, planned = SimulationJob(system, Options(duration=SECOND // 10)), plan_runs([], 1000, 1)

@@ -10,14 +10,14 @@ import amalthea_uros as amuros
 GROUPS = {
     "Files, and what the commands do": ("services", "report"),
     "From measurements to better designs": (
-        *("measure", "services.measure", "services.compare", "services.comparison"),
-        *("services.calibrate", "services.calibration", "optimize", "services.optimize", "services.sweep"),
+        *("measure", "services.measure", "services.compare", "compare"),
+        *("services.calibrate", "compare.calibration", "design.optimize", "services.optimize", "services.sweep"),
     ),
     "AMALTHEA models": ("xmi", "metamodel", "bridge"),
     "Descriptions": ("uros",),
     "Analysis": ("analyze",),
     "Simulation": ("simulate", "trace"),
-    "Systems": ("perf", "timing", "changes"),
+    "Systems": ("perf", "timing", "design.changes"),
 }
 OTHERS = "Findings, errors and quantities"
 

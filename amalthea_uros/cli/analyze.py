@@ -10,7 +10,6 @@ from pathlib import Path
 import click
 
 from amalthea_uros.analyze.results import EXPLAINED, Quantity
-from amalthea_uros.changes.change import EXAMPLE, Change
 from amalthea_uros.cli.failing import FAILING, fail_on_option
 from amalthea_uros.cli.files import INPUT, OUTPUT_FILE
 from amalthea_uros.cli.output import (
@@ -25,6 +24,7 @@ from amalthea_uros.cli.output import (
     write_outputs,
 )
 from amalthea_uros.cli.settings_options import analysis_options, set_option
+from amalthea_uros.design.changes.change import EXAMPLE, Change
 from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.report.closing_line import closing_line
 from amalthea_uros.services.analyze import AnalysisResult, analyze_files, chain_detail

@@ -22,8 +22,8 @@ from amalthea_uros.cli.output import (
     write_outputs,
 )
 from amalthea_uros.cli.parsed import Parsed
+from amalthea_uros.compare.calibration.options import CalibrationOptions, Form
 from amalthea_uros.services.calibrate import Calibration, calibrate_file, parse_share
-from amalthea_uros.services.calibration.options import CalibrationOptions, Form
 from amalthea_uros.services.file_changes import FilesDiff
 from amalthea_uros.services.measure import MeasureOptions, measure_file
 

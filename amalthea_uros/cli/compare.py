@@ -9,7 +9,6 @@ from pathlib import Path
 
 import click
 
-from amalthea_uros.changes.change import Change
 from amalthea_uros.cli.files import INPUT, OUTPUT_FILE
 from amalthea_uros.cli.measure_options import measure_options
 from amalthea_uros.cli.output import (
@@ -24,9 +23,10 @@ from amalthea_uros.cli.output import (
 )
 from amalthea_uros.cli.parsed import Parsed
 from amalthea_uros.cli.settings_options import Assignment, set_option, settings_options
+from amalthea_uros.compare.naming import FORM, Meaning, Names, parse_meaning
+from amalthea_uros.compare.results import Comparison, Source
+from amalthea_uros.design.changes.change import Change
 from amalthea_uros.services.compare import CompareOptions, compare_files, parse_tolerance
-from amalthea_uros.services.comparison.naming import FORM, Meaning, Names, parse_meaning
-from amalthea_uros.services.comparison.results import Comparison, Source
 from amalthea_uros.services.measure import MeasureOptions
 from amalthea_uros.timing.settings import Settings
 from amalthea_uros.units import Time, parse_duration, parse_time

@@ -21,10 +21,10 @@ from amalthea_uros.cli.output import (
     write_outputs,
 )
 from amalthea_uros.cli.settings_options import Assignment
+from amalthea_uros.compare.measured.events import chain_starts
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.measure.series import Measurement
 from amalthea_uros.services.measure import MeasureOptions, measure_file
-from amalthea_uros.services.measured_events import chain_starts
 from amalthea_uros.services.subject import system_of
 
 

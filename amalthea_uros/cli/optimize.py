@@ -10,7 +10,6 @@ from typing import Any
 
 import click
 
-from amalthea_uros.changes import sweep as sweeping
 from amalthea_uros.cli.ends import INTERRUPTED
 from amalthea_uros.cli.files import INPUT, OUTPUT_FILE
 from amalthea_uros.cli.output import (
@@ -27,9 +26,10 @@ from amalthea_uros.cli.output import (
 from amalthea_uros.cli.parsed import Parsed
 from amalthea_uros.cli.settings_options import settings_options
 from amalthea_uros.cli.workers_options import workers_options
-from amalthea_uros.optimize import limits as limiting
-from amalthea_uros.optimize.goals import GOALS
-from amalthea_uros.optimize.recorder import INTERRUPTED as ENDED_BY_USER
+from amalthea_uros.design.changes import sweep as sweeping
+from amalthea_uros.design.optimize import limits as limiting
+from amalthea_uros.design.optimize.goals import GOALS
+from amalthea_uros.design.optimize.recorder import INTERRUPTED as ENDED_BY_USER
 from amalthea_uros.report.optimized import closing_line, is_met
 from amalthea_uros.services.design_space import DEFAULT, Vary
 from amalthea_uros.services.optimize import MOST_DESIGNS, MOST_PROPOSALS, Optimization, optimize

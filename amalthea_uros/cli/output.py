@@ -28,7 +28,7 @@ from amalthea_uros.report.display import is_brief
 from amalthea_uros.report.terminal import Terminal
 
 if TYPE_CHECKING:
-    from amalthea_uros.changes.apply import Difference
+    from amalthea_uros.design.changes.apply import Difference
     from amalthea_uros.metamodel.model import Model
 
 

@@ -8,7 +8,6 @@ from pathlib import Path
 import click
 
 from amalthea_uros._internal.files import STANDARD_OUTPUT, is_standard_output
-from amalthea_uros.changes.change import Change
 from amalthea_uros.cli.failing import FAILING, fail_on_option
 from amalthea_uros.cli.files import INPUT, OUTPUT_FILE
 from amalthea_uros.cli.output import (
@@ -21,6 +20,7 @@ from amalthea_uros.cli.output import (
 )
 from amalthea_uros.cli.parsed import Parsed
 from amalthea_uros.cli.settings_options import analysis_options, set_option
+from amalthea_uros.design.changes.change import Change
 from amalthea_uros.report.closing_line import closing_line
 from amalthea_uros.report.suffixes import FORMATS, format_of
 from amalthea_uros.services.report import compile_report

@@ -10,8 +10,6 @@ from pathlib import Path
 import click
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.changes import sweep as sweeping
-from amalthea_uros.changes.change import Change
 from amalthea_uros.cli.ends import INTERRUPTED
 from amalthea_uros.cli.files import INPUT, OUTPUT_FILE, output_path
 from amalthea_uros.cli.output import (
@@ -30,8 +28,10 @@ from amalthea_uros.cli.parsed import Parsed
 from amalthea_uros.cli.pictures import Pictures
 from amalthea_uros.cli.settings_options import Assignment, set_option, settings_options
 from amalthea_uros.cli.workers_options import workers_options
-from amalthea_uros.services.campaign.run import Outcome, count_runs
-from amalthea_uros.services.campaign.tables import table_format, write_table
+from amalthea_uros.design.campaign.run import Outcome, count_runs
+from amalthea_uros.design.campaign.tables import table_format, write_table
+from amalthea_uros.design.changes import sweep as sweeping
+from amalthea_uros.design.changes.change import Change
 from amalthea_uros.services.simulate import CampaignResult, SimulationResult, plan_simulation, simulate_campaign, simulate_plan
 from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.timing.settings import Settings

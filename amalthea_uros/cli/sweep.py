@@ -8,8 +8,6 @@ from pathlib import Path
 
 import click
 
-from amalthea_uros.changes import sweep as sweeping
-from amalthea_uros.changes.change import Change
 from amalthea_uros.cli.ends import INTERRUPTED
 from amalthea_uros.cli.failing import FAILING, fail_on_option
 from amalthea_uros.cli.files import INPUT, OUTPUT_FILE, output_path
@@ -28,10 +26,12 @@ from amalthea_uros.cli.output import (
 from amalthea_uros.cli.parsed import Parsed
 from amalthea_uros.cli.settings_options import Assignment, analysis_options, set_option
 from amalthea_uros.cli.workers_options import workers_options
-from amalthea_uros.services.campaign.run import Outcome
-from amalthea_uros.services.campaign.tables import table_format, write_table
+from amalthea_uros.design.campaign.run import Outcome
+from amalthea_uros.design.campaign.sweep_plan import plan_sweep
+from amalthea_uros.design.campaign.tables import table_format, write_table
+from amalthea_uros.design.changes import sweep as sweeping
+from amalthea_uros.design.changes.change import Change
 from amalthea_uros.services.sweep import SweepResult, sweep_files
-from amalthea_uros.services.sweep_plan import plan_sweep
 from amalthea_uros.timing.settings import Settings
 
 

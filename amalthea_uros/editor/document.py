@@ -11,8 +11,8 @@ from pathlib import Path
 from lsprotocol import types
 from pygls.workspace import PositionCodec
 
+from amalthea_uros._internal.paths import is_description, is_other_yaml
 from amalthea_uros.services.files_of_model import files_of_model
-from amalthea_uros.services.paths import is_description, is_other_yaml
 
 #: The ends of lines of the protocol; `str.splitlines` knows more.
 _LINE_END = re.compile(r"\r\n|\n|\r")

@@ -7,9 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.measure.series import Kind, Measurement
-from amalthea_uros.report.simulated import duration_text
-from amalthea_uros.services.comparison.results import (
+from amalthea_uros.compare.results import (
     Agreement,
     Comparison,
     ComparisonRow,
@@ -18,6 +16,8 @@ from amalthea_uros.services.comparison.results import (
     Statistic,
     is_bound,
 )
+from amalthea_uros.measure.series import Kind, Measurement
+from amalthea_uros.report.simulated import duration_text
 from amalthea_uros.timing.chain_quantity import ChainQuantity
 from amalthea_uros.timing.job_metric import JobMetric
 from amalthea_uros.units import Rounding, rounded_time_text, time_text

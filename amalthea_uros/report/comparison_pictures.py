@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from amalthea_uros.compare.results import Agreement, Comparison, ComparisonRow, PredictionClaim, Statistic, is_bound
 from amalthea_uros.measure.series import Kind
 from amalthea_uros.report.compared import bound_tests, closing_line, deviation_text, prediction_groups, quantity_text, worst_of
 from amalthea_uros.report.pictures.compared_times import ComparedQuantity, Interval, compared_times
-from amalthea_uros.services.comparison.results import Agreement, Comparison, ComparisonRow, PredictionClaim, Statistic, is_bound
 from amalthea_uros.units import Time, time_text
 
 #: More quantities are not drawn.

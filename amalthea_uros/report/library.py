@@ -7,9 +7,9 @@ from functools import cached_property
 from io import StringIO
 from pathlib import Path
 
+from amalthea_uros._internal.paths import StrPath
 from amalthea_uros.report import formats
 from amalthea_uros.report.suffixes import format_of
-from amalthea_uros.services.paths import StrPath
 from amalthea_uros.services.report import ReportContent, compile_report, save_text
 from amalthea_uros.services.simulate import time_of
 from amalthea_uros.services.subject import Subject

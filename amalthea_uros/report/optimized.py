@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.optimize.goals import CHANGES
-from amalthea_uros.optimize.limits import Limit
-from amalthea_uros.optimize.problem import Conclusion, Feasibility, Goal
-from amalthea_uros.optimize.quantities import Dimension, dimension
-from amalthea_uros.optimize.space import Choice, Space
+from amalthea_uros.design.optimize.goals import CHANGES
+from amalthea_uros.design.optimize.limits import Limit
+from amalthea_uros.design.optimize.problem import Conclusion, Feasibility, Goal
+from amalthea_uros.design.optimize.quantities import Dimension, dimension
+from amalthea_uros.design.optimize.space import Choice, Space
 from amalthea_uros.report.load_text import load_text
 from amalthea_uros.services.optimize import Optimization
 from amalthea_uros.units import number_text, time_text

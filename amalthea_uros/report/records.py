@@ -22,6 +22,7 @@ from amalthea_uros.analyze.results import (
 )
 from amalthea_uros.analyze.sensitivity import Sensitivity
 from amalthea_uros.analyze.ways.results import Way
+from amalthea_uros.compare.results import Comparison, ComparisonRow, DistributionRow, MeasuredLimit
 from amalthea_uros.measure.series import Measurement
 from amalthea_uros.report.json import (
     analysis_result,
@@ -44,7 +45,6 @@ from amalthea_uros.services.analyze import AnalysisResult, Explanation
 from amalthea_uros.services.build import BuildResult
 from amalthea_uros.services.calibrate import Calibration
 from amalthea_uros.services.check import CheckResult
-from amalthea_uros.services.comparison.results import Comparison, ComparisonRow, DistributionRow, MeasuredLimit
 from amalthea_uros.services.diff import DiffResult
 from amalthea_uros.services.generate import GenerateResult, MetaCheck
 from amalthea_uros.services.improvements import Improvements

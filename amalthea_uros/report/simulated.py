@@ -8,7 +8,7 @@ from typing import Protocol
 
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.analyze.impact import Impact
-from amalthea_uros.changes.apply import Difference
+from amalthea_uros.design.changes.apply import Difference
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.judge.causes import distinct
 from amalthea_uros.report.closing_line import left_text

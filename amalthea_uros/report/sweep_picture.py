@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from fractions import Fraction
 
+from amalthea_uros.design.campaign.analysis_job import SCHEDULABLE
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.report.pictures.swept import SweptPicture, draw_swept
 from amalthea_uros.services.sweep import SweepResult
-from amalthea_uros.services.sweep_job import SCHEDULABLE
 
 _VERDICTS = {Schedulable.YES: Verdict.MET, Schedulable.NO: Verdict.MISSED, Schedulable.UNKNOWN: Verdict.UNKNOWN}
 

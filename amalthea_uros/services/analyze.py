@@ -7,24 +7,24 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
+from amalthea_uros._internal.paths import StrPath
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.impact import Impact, impact
 from amalthea_uros.analyze.response_times.kernel import report_machine_code
 from amalthea_uros.analyze.results import Analysis, ChainResult
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.changes.apply import Difference, apply
-from amalthea_uros.changes.change import Change
-from amalthea_uros.changes.key import Configuration
+from amalthea_uros.design.changes.apply import Difference, apply
+from amalthea_uros.design.changes.change import Change
+from amalthea_uros.design.changes.key import Configuration
+from amalthea_uros.design.changes.timing_changes import described
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.findings.suppression import unsuppressed
 from amalthea_uros.names import require
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.perf.system import System
-from amalthea_uros.services.inputs import open_system
+from amalthea_uros.services.inputs import as_paths, open_system
 from amalthea_uros.services.names import require_settings
-from amalthea_uros.services.paths import StrPath, as_paths
 from amalthea_uros.services.subject import Subject, open_subject
-from amalthea_uros.services.timing_changes import described
 from amalthea_uros.timing.settings import Settings
 from amalthea_uros.units import Time
 

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any
 
 from amalthea_uros._internal.files import STANDARD_INPUT, STANDARD_OUTPUT, is_file
 from amalthea_uros._internal.garbage import paused_garbage_collection
+from amalthea_uros._internal.paths import TEXT, StrPath, folder_of
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import AmurosError, InvalidArgumentError, ReadError, WriteError
 from amalthea_uros.findings.suppression import unsuppressed
 from amalthea_uros.perf.named import Brief
-from amalthea_uros.services.paths import StrPath, folder_of
 from amalthea_uros.uros.assemble import Assembly, assemble
 
 if TYPE_CHECKING:
@@ -22,9 +22,6 @@ if TYPE_CHECKING:
     from amalthea_uros.perf.system import System
     from amalthea_uros.spec.description import Description
     from amalthea_uros.spec.read import Draft
-
-#: What a text is called in findings that has no file.
-TEXT = Path("<text>")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

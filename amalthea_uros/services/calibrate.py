@@ -9,26 +9,25 @@ from pathlib import Path
 
 from amalthea_uros._internal.files import FileError, read_bytes, read_text, write_bytes
 from amalthea_uros._internal.limits import DESCRIPTION_SIZE
+from amalthea_uros._internal.paths import TEXT, StrPath, is_description
 from amalthea_uros._internal.shown import Shown
+from amalthea_uros.compare.calibration.execution_times import calibrated_execution_times
+from amalthea_uros.compare.calibration.executor_parts import with_executor_parts
+from amalthea_uros.compare.calibration.findings import findings_of
+from amalthea_uros.compare.calibration.options import CalibrationOptions, Form
+from amalthea_uros.compare.calibration.overheads import calibrated_overheads
+from amalthea_uros.compare.calibration.periods import calibrated_periods
+from amalthea_uros.compare.calibration.samples import Measured
+from amalthea_uros.compare.calibration.values import CalibratedValue, Outcome
+from amalthea_uros.design.description import text_edits
+from amalthea_uros.design.description.described import described
+from amalthea_uros.design.description.edit import apply_assignments
+from amalthea_uros.design.description.places import Places
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import InvalidArgumentError, ReadError, WriteError
 from amalthea_uros.measure.series import Measurement
-from amalthea_uros.services.build import TEXT
-from amalthea_uros.services.calibration.execution_times import calibrated_execution_times
-from amalthea_uros.services.calibration.executor_parts import with_executor_parts
-from amalthea_uros.services.calibration.findings import findings_of
-from amalthea_uros.services.calibration.options import CalibrationOptions, Form
-from amalthea_uros.services.calibration.overheads import calibrated_overheads
-from amalthea_uros.services.calibration.periods import calibrated_periods
-from amalthea_uros.services.calibration.samples import Measured
-from amalthea_uros.services.calibration.values import CalibratedValue, Outcome
-from amalthea_uros.services.description_edits import text_edits
-from amalthea_uros.services.description_edits.described import described
-from amalthea_uros.services.description_edits.edit import apply_assignments
-from amalthea_uros.services.description_edits.places import Places
 from amalthea_uros.services.file_changes import FileChange
 from amalthea_uros.services.measure import measure
-from amalthea_uros.services.paths import StrPath, is_description
 
 _BOM = "\ufeff"
 

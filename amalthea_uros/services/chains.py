@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+from amalthea_uros._internal.paths import StrPath, is_description
 from amalthea_uros.analyze.results import ChainResult
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.diagnostics import Finding
@@ -12,7 +13,6 @@ from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.findings.suppression import unsuppressed
 from amalthea_uros.names import require
 from amalthea_uros.services.inputs import open_system
-from amalthea_uros.services.paths import StrPath, is_description
 from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.paths import Path as ProcessPath
 from amalthea_uros.timing.dataflow.paths import paths, with_chains

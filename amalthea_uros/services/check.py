@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from amalthea_uros._internal.garbage import paused_garbage_collection
+from amalthea_uros._internal.paths import StrPath, by_model, without_other_yaml
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros._internal.similar import did_you_mean
 from amalthea_uros.diagnostics import Finding, Severity, by_place
@@ -21,8 +22,7 @@ from amalthea_uros.findings.unreadable import is_unreadable
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.perf.system import System
-from amalthea_uros.services.inputs import ModelInput, open_model
-from amalthea_uros.services.paths import StrPath, as_paths, by_model, without_other_yaml
+from amalthea_uros.services.inputs import ModelInput, as_paths, open_model
 from amalthea_uros.services.settings import CheckSettings, project_settings
 from amalthea_uros.validate import registry
 from amalthea_uros.validate.engine import run, run_system

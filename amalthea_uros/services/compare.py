@@ -7,10 +7,28 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, TypeAlias
 
+from amalthea_uros._internal.paths import StrPath
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.changes.apply import apply
-from amalthea_uros.changes.change import Change
-from amalthea_uros.changes.key import Configuration
+from amalthea_uros.compare.agreement import LEAST, Rule, compared
+from amalthea_uros.compare.distributions import distributions
+from amalthea_uros.compare.findings import assumptions_of, findings_of, open_phases
+from amalthea_uros.compare.limits import judge_limits
+from amalthea_uros.compare.measured.events import chain_starts
+from amalthea_uros.compare.naming import Names, Target, targets
+from amalthea_uros.compare.phases import analyses_in_phases, systems_in_phases
+from amalthea_uros.compare.predictions import Missing, Predictor
+from amalthea_uros.compare.results import (
+    Agreement,
+    Comparison,
+    ComparisonRow,
+    MeasuredLimit,
+    Source,
+)
+from amalthea_uros.compare.simulated import Run, simulate_measured
+from amalthea_uros.design.changes.apply import apply
+from amalthea_uros.design.changes.change import Change
+from amalthea_uros.design.changes.key import Configuration
+from amalthea_uros.design.changes.timing_changes import described
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.findings.suppression import unsuppressed
 from amalthea_uros.judge.verdict import ObservedVerdict
@@ -18,28 +36,11 @@ from amalthea_uros.measure.event_chains import BEGINS
 from amalthea_uros.measure.series import Kind, Measurement
 from amalthea_uros.names import require
 from amalthea_uros.perf.system import System
-from amalthea_uros.services.comparison.agreement import LEAST, Rule, compared
-from amalthea_uros.services.comparison.distributions import distributions
-from amalthea_uros.services.comparison.findings import assumptions_of, findings_of, open_phases
-from amalthea_uros.services.comparison.limits import judge_limits
-from amalthea_uros.services.comparison.naming import Names, Target, targets
-from amalthea_uros.services.comparison.phases import analyses_in_phases, systems_in_phases
-from amalthea_uros.services.comparison.predictions import Missing, Predictor
-from amalthea_uros.services.comparison.results import (
-    Agreement,
-    Comparison,
-    ComparisonRow,
-    MeasuredLimit,
-    Source,
-)
-from amalthea_uros.services.comparison.simulated import Run, simulate_measured
+from amalthea_uros.services.inputs import as_paths
 from amalthea_uros.services.measure import MeasureOptions, measure_file
-from amalthea_uros.services.measured_events import chain_starts
 from amalthea_uros.services.names import require_settings
-from amalthea_uros.services.paths import StrPath, as_paths
 from amalthea_uros.services.simulate import time_of
 from amalthea_uros.services.subject import Subject, open_subject, paths_of, reusable
-from amalthea_uros.services.timing_changes import described
 from amalthea_uros.services.what_if import Changes, as_changes
 from amalthea_uros.timing.overheads import processes_with_overhead
 from amalthea_uros.timing.phases import with_first_arrivals
@@ -206,7 +207,7 @@ def _measured(measured: Measured, reading: MeasureOptions, system: System) -> Me
     """What was measured, or is now: of chains what begins as in the model."""
     if isinstance(measured, Measurement):
         return measured
-    from amalthea_uros.services.comparison.traces import joined
+    from amalthea_uros.compare.traces import joined
 
     reading = replace(reading, chain_starts=chain_starts(system))
     return joined([measure_file(path, reading) for path in as_paths(measured)])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from amalthea_uros.optimize.rules import CapacityRule, PeriodRule, Rule, data_in
+from amalthea_uros.design.optimize.rules import CapacityRule, PeriodRule, Rule, data_in
 from amalthea_uros.perf.activities import Call, walk
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.system import System

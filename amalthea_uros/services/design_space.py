@@ -9,15 +9,15 @@ from enum import StrEnum
 from functools import cached_property
 from typing import NamedTuple
 
-from amalthea_uros.changes.apply import apply, check_key, describe
-from amalthea_uros.changes.change import Change
-from amalthea_uros.changes.key import UNSET, Configuration
-from amalthea_uros.changes.sweep import Sweep
+from amalthea_uros.design.changes.apply import apply, check_key, describe
+from amalthea_uros.design.changes.change import Change
+from amalthea_uros.design.changes.key import UNSET, Configuration
+from amalthea_uros.design.changes.sweep import Sweep
+from amalthea_uros.design.optimize.designs import Designs, Structure
+from amalthea_uros.design.optimize.rules import CapacityRule
+from amalthea_uros.design.optimize.space import Choice, Kind, PriorityOrder, Space
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.names import require
-from amalthea_uros.optimize.designs import Designs, Structure
-from amalthea_uros.optimize.rules import CapacityRule
-from amalthea_uros.optimize.space import Choice, Kind, PriorityOrder, Space
 from amalthea_uros.perf.activities import AccessKind, Communication, LabelAccess
 from amalthea_uros.perf.hardware import MemoryKind
 from amalthea_uros.perf.system import System

@@ -8,16 +8,16 @@ from itertools import permutations, product
 from math import prod
 from pathlib import Path
 
-from amalthea_uros.changes.change import Change
+from amalthea_uros._internal.paths import is_description
+from amalthea_uros.design.changes.change import Change
+from amalthea_uros.design.description.described import Described, described
+from amalthea_uros.design.description.edit import edit_description
+from amalthea_uros.design.optimize.candidate import Candidate
+from amalthea_uros.design.optimize.designs import Structure
+from amalthea_uros.design.optimize.space import Choice, Kind
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.optimize.candidate import Candidate
-from amalthea_uros.optimize.designs import Structure
-from amalthea_uros.optimize.space import Choice, Kind
 from amalthea_uros.perf.system import System
-from amalthea_uros.services.description_edits.described import Described, described
-from amalthea_uros.services.description_edits.edit import edit_description
 from amalthea_uros.services.inputs import SystemInput, described_input
-from amalthea_uros.services.paths import is_description
 from amalthea_uros.services.subject import Subject, paths_of
 from amalthea_uros.spec.executors import Executor
 from amalthea_uros.uros.callbacks import Callback, callbacks_of, registration_order
@@ -44,7 +44,7 @@ class DescribedCallbacks:
         """Those of what describes a system; InvalidArgumentError if it is no description."""
         from amalthea_uros._internal.files import read_text
         from amalthea_uros._internal.limits import DESCRIPTION_SIZE
-        from amalthea_uros.services.build import TEXT
+        from amalthea_uros._internal.paths import TEXT
 
         paths = paths_of(subject)
         if paths is not None and len(paths) == 1 and is_description(paths[0]):

@@ -7,8 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from amalthea_uros._internal.paths import StrPath
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.bridge.extract import extract
+from amalthea_uros.design.changes.timing_changes import TimingChange, timing_changes
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.difference.comparison import Change, difference
 from amalthea_uros.metamodel.model import Model
@@ -17,8 +19,6 @@ from amalthea_uros.perf.named import Brief
 from amalthea_uros.perf.system import System
 from amalthea_uros.services.inputs import ModelInput, open_model
 from amalthea_uros.services.migrate import migrate
-from amalthea_uros.services.paths import StrPath
-from amalthea_uros.services.timing_changes import TimingChange, timing_changes
 from amalthea_uros.xmi.migrate.load import announcements
 
 if TYPE_CHECKING:

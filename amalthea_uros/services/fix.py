@@ -6,10 +6,11 @@ from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from amalthea_uros._internal.paths import StrPath, by_model, is_description, without_other_yaml
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.services.check import selection_of
 from amalthea_uros.services.file_changes import FileChange
-from amalthea_uros.services.paths import StrPath, as_paths, by_model, is_description, without_other_yaml
+from amalthea_uros.services.inputs import as_paths
 from amalthea_uros.services.settings import CheckSettings, project_settings
 from amalthea_uros.validate import registry
 from amalthea_uros.validate.repair import repair

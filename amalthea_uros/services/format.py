@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from amalthea_uros._internal.files import STANDARD_INPUT, STANDARD_OUTPUT
+from amalthea_uros._internal.paths import StrPath
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError, WriteError
 from amalthea_uros.metamodel.versions import spelled
 from amalthea_uros.services.file_changes import FileChange
-from amalthea_uros.services.inputs import refuse_descriptions
-from amalthea_uros.services.paths import StrPath, as_paths
+from amalthea_uros.services.inputs import as_paths, refuse_descriptions
 from amalthea_uros.xmi.load import load, model_files
 from amalthea_uros.xmi.save import save
 from amalthea_uros.xmi.writer import document_text

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from amalthea_uros._internal.files import FileError, is_file, read_text
 from amalthea_uros._internal.limits import SETTINGS_SIZE
+from amalthea_uros._internal.paths import StrPath, folder_of
 from amalthea_uros._internal.resources import resource_folder
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.diagnostics import Finding, Location, Severity
@@ -16,7 +17,6 @@ from amalthea_uros.errors import ReadError, WriteError
 from amalthea_uros.findings.suppression import unsuppressed
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.services.build import describe
-from amalthea_uros.services.paths import StrPath, folder_of
 from amalthea_uros.services.waiting_messages import waiting_messages, with_analysed_storage
 from amalthea_uros.spec.application import Application, Node
 from amalthea_uros.spec.platforms import complete

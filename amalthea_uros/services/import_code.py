@@ -8,9 +8,9 @@ from os import PathLike
 from pathlib import Path
 
 from amalthea_uros._internal.files import is_stream
+from amalthea_uros._internal.paths import StrPath
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import WriteError
-from amalthea_uros.services.paths import StrPath
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

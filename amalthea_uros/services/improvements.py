@@ -11,12 +11,12 @@ from amalthea_uros.analyze.chains.explanation import ChainExplanation, explain_c
 from amalthea_uros.analyze.impact import Amount, Effect, Figure, Part, Unit, impact
 from amalthea_uros.analyze.results import EXPLAINED, Analysis, Claim, Quantity
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.changes.apply import Difference, apply, describe
-from amalthea_uros.changes.key import Configuration
+from amalthea_uros.design.changes.apply import Difference, apply, describe
+from amalthea_uros.design.changes.key import Configuration
+from amalthea_uros.design.improvement_candidates import Candidate, candidates
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.names import require
 from amalthea_uros.services.analyze import AnalysisResult, Analyzed, analysis_result
-from amalthea_uros.services.improvement_candidates import Candidate, candidates
 from amalthea_uros.timing.arrivals import nominal_period
 from amalthea_uros.timing.phases import counters
 from amalthea_uros.units import Time, time_text

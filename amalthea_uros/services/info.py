@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
+from amalthea_uros._internal.paths import StrPath
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.findings.suppression import unsuppressed
 from amalthea_uros.metamodel.summary import ModelSummary, summarise
-from amalthea_uros.services.inputs import open_model
-from amalthea_uros.services.paths import StrPath, as_paths
+from amalthea_uros.services.inputs import as_paths, open_model
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

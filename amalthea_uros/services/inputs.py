@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from amalthea_uros._internal.paths import StrPath, is_description
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.services.paths import StrPath, is_description
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
@@ -51,6 +52,19 @@ class SystemInput:
     findings: tuple[Finding, ...]
     task_periods: tuple[Time, ...] = ()
     assembly: Assembly | None = None
+
+
+def as_paths(paths: StrPath | Iterable[StrPath]) -> tuple[Path, ...]:
+    """One path or several, as a tuple.
+
+    Raises
+    ------
+    InvalidArgumentError : there is none.
+    """
+    found = (Path(paths),) if isinstance(paths, str | PathLike) else tuple(map(Path, paths))
+    if not found:
+        raise InvalidArgumentError("no path given; expected at least one file or folder")
+    return found
 
 
 def described_input(assembly: Assembly, system: System | None = None) -> SystemInput:

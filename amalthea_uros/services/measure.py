@@ -8,6 +8,12 @@ from hashlib import file_digest, sha256
 from pathlib import Path
 
 from amalthea_uros._internal.files import is_directory, is_file
+from amalthea_uros._internal.paths import StrPath
+from amalthea_uros.compare.measured.events import chain_starts, measured_events
+from amalthea_uros.compare.measured.frames import measured_frames
+from amalthea_uros.compare.measured.marker_files import counter_of, read_markers
+from amalthea_uros.compare.measured.signals import Signals
+from amalthea_uros.compare.measured.values import is_value_table, measured_values
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.measure.baselines import Baselines, names_of
@@ -16,12 +22,7 @@ from amalthea_uros.measure.markers import Marker, MarkerChain, MarkerPair, Measu
 from amalthea_uros.measure.series import Measurement, Series
 from amalthea_uros.measure.window import Window
 from amalthea_uros.names import require
-from amalthea_uros.services.marker_files import counter_of, read_markers
-from amalthea_uros.services.measured_events import chain_starts, measured_events
-from amalthea_uros.services.measured_frames import measured_frames
-from amalthea_uros.services.measured_values import is_value_table, measured_values
-from amalthea_uros.services.paths import StrPath, as_paths
-from amalthea_uros.services.signals import Signals
+from amalthea_uros.services.inputs import as_paths
 from amalthea_uros.services.simulate import time_of
 from amalthea_uros.services.subject import Subject, system_of
 from amalthea_uros.timing.job_metric import JobMetric

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from amalthea_uros._internal.garbage import paused_garbage_collection
 from amalthea_uros._internal.limits import MODEL_SIZE
+from amalthea_uros._internal.paths import StrPath
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import AmurosError, ReadError, WriteError
@@ -15,11 +16,10 @@ from amalthea_uros.metamodel.model import Model
 from amalthea_uros.metamodel.versions import newest_version
 from amalthea_uros.names import require
 from amalthea_uros.perf.named import Brief
-from amalthea_uros.services.inputs import refuse_descriptions
+from amalthea_uros.services.inputs import as_paths, refuse_descriptions
 from amalthea_uros.services.migrated_paths import Destination, given_files
 from amalthea_uros.services.migration import FileState, Kind, MigratedFile, MigrationChange
 from amalthea_uros.services.migration_writer import Writer
-from amalthea_uros.services.paths import StrPath, as_paths
 from amalthea_uros.xmi.files import FileText
 from amalthea_uros.xmi.load import SUFFIX
 from amalthea_uros.xmi.migrate.load import MigratedSet, failed, migrate_set

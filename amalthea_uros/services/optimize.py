@@ -11,26 +11,26 @@ from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.impact import Effect, Impact, ImpactRow, impact
 from amalthea_uros.analyze.results import Analysis
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.changes.apply import Difference
-from amalthea_uros.changes.change import Change
-from amalthea_uros.changes.key import Configuration
-from amalthea_uros.changes.sweep import Sweep, parse_sweep
+from amalthea_uros.design.changes.apply import Difference
+from amalthea_uros.design.changes.change import Change
+from amalthea_uros.design.changes.key import Configuration
+from amalthea_uros.design.changes.sweep import Sweep, parse_sweep
+from amalthea_uros.design.optimize.evaluation import DesignEvaluator
+from amalthea_uros.design.optimize.goals import Scale, goals_of, latency_limits, named_by
+from amalthea_uros.design.optimize.limits import Limit, check_limit, parse_limit
+from amalthea_uros.design.optimize.lower_bounds import sampled_chains
+from amalthea_uros.design.optimize.parallel_evaluation import evaluator_on
+from amalthea_uros.design.optimize.problem import Evaluation, Feasibility, Goal, Problem, SearchResult
+from amalthea_uros.design.optimize.quantities import FROM_ARRIVAL, Figures, Range, takers
+from amalthea_uros.design.optimize.recorder import Effort
+from amalthea_uros.design.optimize.search import search
+from amalthea_uros.design.optimize.space import Space
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.findings.suppression import unsuppressed
-from amalthea_uros.optimize.evaluation import DesignEvaluator
-from amalthea_uros.optimize.goals import Scale, goals_of, latency_limits, named_by
-from amalthea_uros.optimize.limits import Limit, check_limit, parse_limit
-from amalthea_uros.optimize.lower_bounds import sampled_chains
-from amalthea_uros.optimize.problem import Evaluation, Feasibility, Goal, Problem, SearchResult
-from amalthea_uros.optimize.quantities import FROM_ARRIVAL, Figures, Range, takers
-from amalthea_uros.optimize.recorder import Effort
-from amalthea_uros.optimize.search import search
-from amalthea_uros.optimize.space import Space
 from amalthea_uros.perf.system import System
 from amalthea_uros.services.design_space import DEFAULT, Vary, Wishes, design_space
 from amalthea_uros.services.names import require_settings
-from amalthea_uros.services.parallel_evaluation import evaluator_on
 from amalthea_uros.services.subject import Subject, open_subject, paths_of, reusable
 from amalthea_uros.timing.settings import Settings
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from amalthea_uros.changes.change import Change
+from amalthea_uros._internal.paths import StrPath, is_description
+from amalthea_uros.design.changes.change import Change
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.services.changed_model import write_changed
 from amalthea_uros.services.optimize import Optimization
-from amalthea_uros.services.paths import StrPath, is_description
 
 
 def write_proposal(result: Optimization, number: int, path: StrPath) -> None:
@@ -40,7 +40,7 @@ def _write_description(paths: Sequence[Path], changes: Sequence[Change], path: S
     """Write the description that was read with changes."""
     from amalthea_uros._internal.files import read_text
     from amalthea_uros._internal.limits import DESCRIPTION_SIZE
-    from amalthea_uros.services.description_edits.edit import edit_description
+    from amalthea_uros.design.description.edit import edit_description
     from amalthea_uros.xmi.files import FileText, write_text
 
     if len(paths) != 1 or not is_description(paths[0]):

@@ -9,17 +9,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.files import STANDARD_INPUT
+from amalthea_uros._internal.paths import StrPath, is_description
 from amalthea_uros.analyze.results import Analysis
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.changes.apply import Difference, apply, describe
+from amalthea_uros.design.changes.apply import Difference, apply, describe
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.findings.suppression import unsuppressed
 from amalthea_uros.perf.activities import Call, walk
 from amalthea_uros.perf.system import System
-from amalthea_uros.services.inputs import ModelInput, refuse_descriptions
+from amalthea_uros.services.inputs import ModelInput, as_paths, refuse_descriptions
 from amalthea_uros.services.names import require_settings
-from amalthea_uros.services.paths import StrPath, as_paths, is_description
 from amalthea_uros.services.simulate import SimulationResult
 from amalthea_uros.services.subject import Subject
 from amalthea_uros.services.waiting_messages import with_analysed_storage

@@ -9,24 +9,24 @@ from operator import index
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
+from amalthea_uros._internal.paths import StrPath
 from amalthea_uros._internal.shown import Shown
-from amalthea_uros.changes.apply import Difference, apply
-from amalthea_uros.changes.change import Change, parse_change
-from amalthea_uros.changes.key import Configuration
-from amalthea_uros.changes.sweep import Sweep
+from amalthea_uros.design.campaign.run import Outcome, Record, Run, plan_runs
+from amalthea_uros.design.campaign.sending import system_bytes, system_from
+from amalthea_uros.design.changes.apply import Difference, apply
+from amalthea_uros.design.changes.change import Change, parse_change
+from amalthea_uros.design.changes.key import Configuration
+from amalthea_uros.design.changes.sweep import Sweep
+from amalthea_uros.design.changes.timing_changes import described
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.findings.suppression import unsuppressed
 from amalthea_uros.judge.verdict import ObservedVerdict
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.perf.system import System
-from amalthea_uros.services.campaign.run import Outcome, Record, Run, plan_runs
-from amalthea_uros.services.campaign.sending import system_bytes, system_from
-from amalthea_uros.services.inputs import open_system
+from amalthea_uros.services.inputs import as_paths, open_system
 from amalthea_uros.services.names import require_labels, require_settings
-from amalthea_uros.services.paths import StrPath, as_paths
 from amalthea_uros.services.subject import Subject, open_subject
-from amalthea_uros.services.timing_changes import described
 from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.timing.settings import Settings
 from amalthea_uros.units import Time, parse_time
@@ -232,7 +232,7 @@ def simulate_plan(plan: SimulationPlan, trace_paths: Iterable[StrPath] = (), *, 
 
 def _impact(plan: SimulationPlan, simulation: Simulation) -> Impact:
     """What the changes do: compared with a run without them and with the same seed, of which nothing is written."""
-    from amalthea_uros.services.observed_figures import observed_impact
+    from amalthea_uros.design.observed_figures import observed_impact
 
     before = _simulated(plan.given.system, replace(plan.options, settings=plan.given.settings, traced=None))
     return observed_impact(before, simulation)
@@ -344,8 +344,8 @@ def simulate_campaign(
     ReadError : a file cannot be read, or something in a description is wrong.
     InvalidArgumentError : as for `simulate_files`; there are too many runs, or the cluster cannot be used.
     """
-    from amalthea_uros.services.campaign.campaign import finished_runs
-    from amalthea_uros.services.campaign.executors import executor_for
+    from amalthea_uros.design.campaign.campaign import finished_runs
+    from amalthea_uros.design.campaign.executors import executor_for
 
     files = as_paths(paths)
     runs = plan_runs(sweeps, repetitions, options.seed)

@@ -7,9 +7,9 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeGuard
 
+from amalthea_uros._internal.paths import StrPath
 from amalthea_uros.perf.system import System
-from amalthea_uros.services.inputs import SystemInput, described_input, open_system
-from amalthea_uros.services.paths import StrPath, as_paths
+from amalthea_uros.services.inputs import SystemInput, as_paths, described_input, open_system
 
 if TYPE_CHECKING:
     from amalthea_uros.metamodel.model import Model

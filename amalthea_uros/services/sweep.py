@@ -5,25 +5,25 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 
+from amalthea_uros._internal.paths import StrPath
 from amalthea_uros._internal.shown import Shown
-from amalthea_uros.changes.apply import Difference, apply
-from amalthea_uros.changes.change import Change
-from amalthea_uros.changes.key import Configuration
-from amalthea_uros.changes.sweep import Sweep
+from amalthea_uros.design.campaign.analysis_job import SCHEDULABLE, AnalysisJob
+from amalthea_uros.design.campaign.campaign import finished_runs
+from amalthea_uros.design.campaign.executors import executor_for
+from amalthea_uros.design.campaign.run import Outcome, Record
+from amalthea_uros.design.campaign.sweep_plan import SweepPlan, Sweeps, as_sweeps, plan_sweep
+from amalthea_uros.design.changes.apply import Difference, apply
+from amalthea_uros.design.changes.change import Change
+from amalthea_uros.design.changes.key import Configuration
+from amalthea_uros.design.changes.sweep import Sweep
+from amalthea_uros.design.changes.timing_changes import described
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.findings.suppression import unsuppressed
 from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.names import require
-from amalthea_uros.services.campaign.campaign import finished_runs
-from amalthea_uros.services.campaign.executors import executor_for
-from amalthea_uros.services.campaign.run import Outcome, Record
-from amalthea_uros.services.inputs import SystemInput, open_system
+from amalthea_uros.services.inputs import SystemInput, as_paths, open_system
 from amalthea_uros.services.names import require_settings
-from amalthea_uros.services.paths import StrPath, as_paths
 from amalthea_uros.services.subject import Subject, open_subject
-from amalthea_uros.services.sweep_job import SCHEDULABLE, AnalysisJob
-from amalthea_uros.services.sweep_plan import SweepPlan, Sweeps, as_sweeps, plan_sweep
-from amalthea_uros.services.timing_changes import described
 from amalthea_uros.services.what_if import Changes, as_changes
 from amalthea_uros.timing.settings import Settings
 

@@ -6,20 +6,20 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
+from amalthea_uros._internal.paths import StrPath
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.impact import Impact, impact
 from amalthea_uros.analyze.results import Analysis
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.changes.apply import Difference, apply
-from amalthea_uros.changes.change import EXAMPLE, FORM, Change, parse_change, split_target
-from amalthea_uros.changes.key import Configuration
+from amalthea_uros.design.changes.apply import Difference, apply
+from amalthea_uros.design.changes.change import EXAMPLE, FORM, Change, parse_change, split_target
+from amalthea_uros.design.changes.key import Configuration
+from amalthea_uros.design.changes.timing_changes import described
 from amalthea_uros.perf.system import System
 from amalthea_uros.services.changed_model import write_changed
 from amalthea_uros.services.impact_text import HEADINGS, cells, plain_table, unchanged_text
 from amalthea_uros.services.names import require_settings
-from amalthea_uros.services.paths import StrPath
 from amalthea_uros.services.subject import Subject, reusable, system_of
-from amalthea_uros.services.timing_changes import described
 from amalthea_uros.timing.settings import Settings
 
 #: Changes as callers give them: `{"Task.period": "2 ms"}` or `["Task.period=2ms"]`.

@@ -8,8 +8,8 @@ from system_strategies import systems
 
 from amalthea_uros.analyze.impact import Effect, Part, impact
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.changes.apply import apply
-from amalthea_uros.changes.change import parse_change
+from amalthea_uros.design.changes.apply import apply
+from amalthea_uros.design.changes.change import parse_change
 from amalthea_uros.services.inputs import open_system
 from amalthea_uros.timing.settings import Settings
 

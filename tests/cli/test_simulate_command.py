@@ -215,9 +215,9 @@ def test_processes_end_with_ctrl_c(tmp_path):
         textwrap.dedent("""
         import os, signal, sys, threading, time
         import campaign_jobs
-        from amalthea_uros.services.campaign.campaign import run_campaign
-        from amalthea_uros.services.campaign.executors import processes
-        from amalthea_uros.services.campaign.run import plan_runs
+        from amalthea_uros.design.campaign.campaign import run_campaign
+        from amalthea_uros.design.campaign.executors import processes
+        from amalthea_uros.design.campaign.run import plan_runs
 
         if __name__ == "__main__":
             numbers = []
@@ -237,7 +237,7 @@ def test_processes_end_with_ctrl_c(tmp_path):
         check=False,
         timeout=100,
         start_new_session=True,
-        env={"PYTHONPATH": f"{ROOT}:{ROOT / 'tests' / 'services'}", "PATH": ""},
+        env={"PYTHONPATH": f"{ROOT}:{ROOT / 'tests' / 'design'}", "PATH": ""},
     )
     assert (run.stdout, run.stderr, run.returncode) == ("[1, 2]\n", "", 0)
 

@@ -5,10 +5,10 @@ from hypothesis import strategies as st
 from traces import table
 
 from amalthea_uros import Options, task, taskset
+from amalthea_uros.compare.measured.events import chain_starts
 from amalthea_uros.measure.event_chains import ChainSteps
 from amalthea_uros.measure.jobs import JobWalk
 from amalthea_uros.measure.series import Counts
-from amalthea_uros.services.measured_events import chain_starts
 from amalthea_uros.simulate.system import simulate_system
 from amalthea_uros.timing.job_metric import JobMetric
 from amalthea_uros.trace.recorder import Recorder

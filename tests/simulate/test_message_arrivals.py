@@ -12,9 +12,9 @@ from support import ROOT
 
 from amalthea_uros import analyze_system, describe
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.changes.apply import apply
-from amalthea_uros.changes.apply import describe as describe_changes
-from amalthea_uros.changes.change import parse_change
+from amalthea_uros.design.changes.apply import apply
+from amalthea_uros.design.changes.apply import describe as describe_changes
+from amalthea_uros.design.changes.change import parse_change
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.simulate import machine_code
 from amalthea_uros.simulate.options import Mode, Options

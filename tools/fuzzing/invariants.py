@@ -13,6 +13,7 @@ from typing import NoReturn
 from lxml import etree
 from templating import ROOT
 
+from amalthea_uros._internal.paths import is_description
 from amalthea_uros.analyze.results import Analysis
 from amalthea_uros.diagnostics import Location, Severity
 from amalthea_uros.difference.comparison import ChangeKind
@@ -25,7 +26,6 @@ from amalthea_uros.services.diff import diff
 from amalthea_uros.services.fix import fix_files
 from amalthea_uros.services.format import format_files
 from amalthea_uros.services.inputs import open_system
-from amalthea_uros.services.paths import is_description
 from amalthea_uros.services.simulate import simulate_files
 from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.trace.state_charts import check_trace

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from amalthea_uros.compare.calibration.values import CalibratedValue
 from amalthea_uros.report.findings import finding_json
 from amalthea_uros.services.calibrate import Calibration
-from amalthea_uros.services.calibration.values import CalibratedValue
 
 
 def content(calibration: Calibration) -> dict[str, Any]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from amalthea_uros.changes.apply import Difference
+from amalthea_uros.design.changes.apply import Difference
 
 
 def content(differences: Iterable[Difference]) -> list[dict[str, str | bool]]:

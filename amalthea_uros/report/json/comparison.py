@@ -5,16 +5,16 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any
 
-from amalthea_uros.report.compared import closing_line
-from amalthea_uros.report.findings import finding_json
-from amalthea_uros.report.json import changes
-from amalthea_uros.services.comparison.results import (
+from amalthea_uros.compare.results import (
     Agreement,
     Comparison,
     ComparisonRow,
     DistributionRow,
     MeasuredLimit,
 )
+from amalthea_uros.report.compared import closing_line
+from amalthea_uros.report.findings import finding_json
+from amalthea_uros.report.json import changes
 
 
 def content(result: Comparison) -> dict[str, Any]:

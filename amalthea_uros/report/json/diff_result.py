@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
+from amalthea_uros.design.changes.timing_changes import TimingChange
 from amalthea_uros.difference.comparison import Change
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.report.findings import finding_json
 from amalthea_uros.report.json import changes, impact
 from amalthea_uros.services.diff import DiffResult
-from amalthea_uros.services.timing_changes import TimingChange
 
 
 def content(result: DiffResult) -> dict[str, Any]:

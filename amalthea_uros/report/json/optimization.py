@@ -6,9 +6,9 @@ from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from typing import Any
 
-from amalthea_uros.optimize.problem import Evaluation, Goal
-from amalthea_uros.optimize.quantities import Amount, Dimension, Range, dimension
-from amalthea_uros.optimize.space import Space
+from amalthea_uros.design.optimize.problem import Evaluation, Goal
+from amalthea_uros.design.optimize.quantities import Amount, Dimension, Range, dimension
+from amalthea_uros.design.optimize.space import Space
 from amalthea_uros.report.findings import finding_json, joined
 from amalthea_uros.report.json import changes, impact
 from amalthea_uros.report.json.analysis_result import requirement_json, summary_json

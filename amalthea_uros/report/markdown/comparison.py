@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from amalthea_uros.compare.results import Comparison
 from amalthea_uros.report.compared import (
     BOUNDS,
     DISTRIBUTIONS,
@@ -24,7 +25,6 @@ from amalthea_uros.report.compared import (
     subject_line,
 )
 from amalthea_uros.report.markdown_text import escaped, table
-from amalthea_uros.services.comparison.results import Comparison
 
 
 def lines(result: Comparison) -> Iterator[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from amalthea_uros.compare.results import Comparison
 from amalthea_uros.report.compared import (
     BOUNDS,
     DISTRIBUTIONS,
@@ -22,7 +23,6 @@ from amalthea_uros.report.compared import (
     subject_line,
 )
 from amalthea_uros.report.terminal import Terminal
-from amalthea_uros.services.comparison.results import Comparison
 
 
 def write(result: Comparison, terminal: Terminal) -> None:

@@ -9,9 +9,9 @@ from fractions import Fraction
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.analyze.impact import Impact, ImpactRow, Part
 from amalthea_uros.analyze.results import Analysis, RequirementResult
+from amalthea_uros.design.optimize.problem import Feasibility
+from amalthea_uros.design.optimize.quantities import Amount, Dimension, Range, dimension
 from amalthea_uros.judge.verdict import Verdict
-from amalthea_uros.optimize.problem import Feasibility
-from amalthea_uros.optimize.quantities import Amount, Dimension, Range, dimension
 from amalthea_uros.report.load_text import load_text
 from amalthea_uros.report.optimized import closing_line, count_text, goal_text, limit_text, space_lines
 from amalthea_uros.report.terminal import Terminal

@@ -1,0 +1,98 @@
+"""Deadlines, requirements and constraints, judged by what was measured.
+
+That a limit was kept is no proof that it always is. A baseline that was subtracted is added again, because a limit is one of the
+whole time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from fractions import Fraction
+
+from amalthea_uros.compare.agreement import LEAST
+from amalthea_uros.compare.naming import Target
+from amalthea_uros.compare.results import MeasuredLimit
+from amalthea_uros.judge.causes import quantity_of
+from amalthea_uros.judge.evidence import ObservedValues
+from amalthea_uros.judge.limits import (
+    Stated,
+    SystemLimit,
+    deadline_limit,
+    deadline_of,
+    is_from_period,
+    nominal_period,
+    stated_limits,
+    without_number,
+)
+from amalthea_uros.judge.verdict import not_observed, observe
+from amalthea_uros.measure.baselines import with_baseline
+from amalthea_uros.measure.series import Series
+from amalthea_uros.perf.constraints import Requirement, TimeMetric
+from amalthea_uros.perf.system import System
+from amalthea_uros.timing.context import TimingContext
+from amalthea_uros.timing.settings import Settings
+
+#: Object and quantity -> what was measured of it.
+_Measured = Mapping[tuple[str, str], Series]
+
+
+def judge_limits(system: System, settings: Settings, targets: Iterable[Target]) -> Iterator[MeasuredLimit]:
+    """The verdicts on all deadlines, requirements and constraints."""
+    measured = {
+        (target.name, target.quantity): with_baseline(target.series)
+        for target in targets
+        if target.series.statistics is not None and not target.reason and len(target.statistics) > 1
+    }
+    stated = list(stated_limits(system))
+    of_requirements = {
+        (quantity_of(limit), limit.limit) for item, limits in stated if isinstance(item, Requirement) for limit in limits
+    }
+    for limit in _deadlines(TimingContext.of_scheduling(system, settings)):
+        # A deadline that is also stated as a requirement is judged once.
+        if (quantity_of(limit), limit.limit) not in of_requirements:
+            yield _judged(limit, measured, system)
+    for item, limits in stated:
+        for limit in limits or [without_number(item)]:
+            yield _judged(limit, measured, system)
+
+
+def _deadlines(context: TimingContext) -> Iterator[SystemLimit]:
+    for name, process in context.system.processes.items():
+        deadline = deadline_of(name, context)
+        if deadline is not None:
+            yield deadline_limit(process, deadline.value, deadline.is_implicit)
+
+
+def _judged(limit: SystemLimit, measured: _Measured, system: System) -> MeasuredLimit:
+    series = measured.get((limit.object, limit.metric or ""))
+    missing = _not_measured(limit)
+    if missing or series is None:
+        what = f"the {limit.quantity} of {limit.object!r}" if isinstance(limit.item, Stated) else "its response time"
+        reason = missing or f"{what} was not measured"
+        return MeasuredLimit.of(limit, not_observed(reason), samples=0)
+    assert series.statistics is not None
+    values, samples = _values(series), series.statistics.count
+    if not limit.is_jitter:
+        return MeasuredLimit.of(limit, observe(limit, values), samples)
+    period = nominal_period(limit, system) if is_from_period(limit) else None
+    if is_from_period(limit) and period is None:
+        return MeasuredLimit.of(limit, not_observed(f"{limit.object!r} has no nominal period"), samples)
+    return MeasuredLimit.of(limit, observe(limit, values.jitter(period)), samples)
+
+
+def _not_measured(limit: SystemLimit) -> str:
+    """Why a limit is about nothing that traces show; how often jobs migrate is not measured, so the time on one core is not known."""
+    if isinstance(limit.item, Requirement):
+        metric = limit.item.limit.metric
+        is_measurable = isinstance(metric, TimeMetric) and metric is not TimeMetric.CORE_EXECUTION_TIME
+        return "" if is_measurable else f"the {metric} is not measured in traces"
+    if limit.metric is not None:
+        return ""
+    return f"what {limit.name!r} limits is not a quantity of one process, runnable or chain, so that it was not measured"
+
+
+def _values(series: Series) -> ObservedValues:
+    statistics = series.statistics
+    assert statistics is not None
+    reason = LEAST if series.is_least else ""
+    return ObservedValues(low=Fraction(statistics.min), high=Fraction(statistics.max), are_least=series.is_least, reason=reason)

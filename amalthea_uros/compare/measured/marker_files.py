@@ -1,0 +1,268 @@
+"""Files that name the objects of CAN logs and their markers; docs/measure.md describes them.
+
+Executor_Task: {start: 0x18000001, end: 0x18000002, kind: process, baseline: Empty_1kHz}
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+from amalthea_uros._internal.files import FileError, read_text
+from amalthea_uros._internal.limits import DESCRIPTION_SIZE
+from amalthea_uros._internal.similar import did_you_mean
+from amalthea_uros.compare.measured.signals import Signals, Value
+from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros.errors import ReadError
+from amalthea_uros.measure.markers import (
+    Counter,
+    Decoder,
+    Marker,
+    MarkerChain,
+    MarkerPair,
+    Measurable,
+    ReportedStatistics,
+    ReportedValue,
+    parse_marker,
+    refuse_overlap,
+)
+from amalthea_uros.measure.series import Kind
+from amalthea_uros.spec.nodes import Mapping, Node, Place, Scalar, Source, read_nodes
+from amalthea_uros.timing.job_metric import JobMetric
+from amalthea_uros.units import Time, parse_duration, parse_time
+
+_COMMON = ("kind", "quantity", "baseline")
+#: The keys of each form of object, that which tells the form first.
+_FORMS = {
+    "start": ("start", "end", "counter", "period", *_COMMON),
+    "from": ("from", "to", "counter"),
+    "value": ("value", "frame", "unit", *_COMMON),
+    "mean": ("mean", "min", "max", "deviation", "count", "frame", "unit", *_COMMON),
+}
+_QUANTITIES = ("duration", *JobMetric)
+
+
+class _WrongError(Exception):
+    """Something at a place is wrong."""
+
+    def __init__(self, place: Place, message: str, advice: str = "") -> None:
+        self.place, self.message, self.advice = place, message, advice
+
+
+def read_markers(path: Path, signals: Signals) -> tuple[Measurable, ...]:
+    """The objects of a file.
+
+    Raises
+    ------
+    ReadError : the file cannot be read, or something in it is wrong; carries a finding for each object with an error.
+    """
+    try:
+        text = read_text(path, DESCRIPTION_SIZE)
+    except FileError as error:
+        raise ReadError([Finding("MEA010", Severity.ERROR, error.reason, Location(path), error.advice)]) from None
+    node, source, findings = read_nodes(path, text)
+    reader = _Reader(source, signals, [*findings])
+    objects = reader.objects(node)
+    if reader.findings:
+        raise ReadError(reader.findings)
+    return objects
+
+
+def counter_of(text: str, signals: Signals) -> Counter:
+    """A counter in a payload.
+
+    Raises
+    ------
+    ValueError : the text names no place in a payload.
+    """
+    value = signals.value(text)
+    return Counter(decode=value.decode, modulus=1 << min(value.bits, 32))
+
+
+@dataclass(slots=True)
+class _Reader:
+    source: Source
+    signals: Signals
+    findings: list[Finding]
+    _nodes: dict[str, Node] = field(default_factory=dict)
+
+    def objects(self, node: Node) -> tuple[Measurable, ...]:
+        """All objects; those with an error are left out, and a finding is added."""
+        if not isinstance(node, Mapping) or not node.items:
+            self._add(
+                _WrongError(node.place, "a file with markers names objects", "An example: Task: {start: 0x101, end: 0x102}")
+            )
+            return ()
+        self._nodes = node.items
+        found = []
+        for name, item in node.items.items():
+            try:
+                found.append(self._object(name, item))
+            except _WrongError as error:
+                self._add(error)
+        return tuple(found)
+
+    def _add(self, error: _WrongError) -> None:
+        location = self.source.location(error.place)
+        self.findings.append(Finding("MEA010", Severity.ERROR, error.message, location, error.advice))
+
+    def _object(self, name: str, node: Node) -> Measurable:
+        if not isinstance(node, Mapping):
+            raise _WrongError(node.place, f"{name!r} must have keys", "An example: {start: 0x101, end: 0x102}")
+        form = next((form for form in _FORMS if form in node.items), None)
+        if form is None:
+            raise _WrongError(node.place, f"{name!r} has no markers", f"Add one of the keys {', '.join(_FORMS)}.")
+        for key in node.items:
+            if key not in _FORMS[form]:
+                advice = did_you_mean(key, _FORMS[form]) or f"known: {', '.join(_FORMS[form])}"
+                raise _WrongError(node.keys[key], f"{name!r} has an unknown key {key!r}", advice)
+        build: dict[str, Callable[[str, Mapping], Measurable]] = {
+            "start": self._pair,
+            "from": self._chain,
+            "value": self._value,
+            "mean": self._statistics,
+        }
+        return build[form](name, node)
+
+    # The forms of objects.
+
+    def _pair(self, name: str, node: Mapping) -> MarkerPair:
+        start, end = self._marker(name, node, "start"), self._marker(name, node, "end")
+        self._refuse_overlap(start, end, node.items["end"].place)
+        return MarkerPair(
+            name=name,
+            start=start,
+            end=end,
+            counter=self._counter(name, node),
+            period=self._period(name, node),
+            **self._common(name, node),
+        )
+
+    def _chain(self, name: str, node: Mapping) -> MarkerChain:
+        stimulus, response = self._end_of_chain(name, node, "from", "start"), self._end_of_chain(name, node, "to", "end")
+        self._refuse_overlap(stimulus, response, node.items["to"].place)
+        return MarkerChain(name=name, stimulus=stimulus, response=response, counter=self._counter(name, node))
+
+    def _refuse_overlap(self, first: Marker, second: Marker, place: Place) -> None:
+        try:
+            refuse_overlap(first, second)
+        except ValueError as error:
+            raise _WrongError(place, str(error)) from None
+
+    def _end_of_chain(self, name: str, node: Mapping, key: str, default: str) -> Marker:
+        """A marker, or that of another object: `Task`, `Task.start`, `Task.end`."""
+        text = self._text(name, node, key)
+        other, _, which = text.partition(".")
+        found = self._nodes.get(other)
+        if isinstance(found, Mapping) and (which or default) in found.items and (which or default) in ("start", "end"):
+            return self._marker(other, found, which or default)
+        try:
+            return parse_marker(text)
+        except ValueError:
+            names = [each for each, item in self._nodes.items() if isinstance(item, Mapping) and "start" in item.items]
+            advice = did_you_mean(other, names) or f"known: {', '.join(names)}"
+            message = f"{text!r} in {name!r} is neither a marker nor an object with a start and an end"
+            raise _WrongError(node.items[key].place, message, advice) from None
+
+    def _value(self, name: str, node: Mapping) -> ReportedValue:
+        (value,), marker = self._reported(name, node, ("value",))
+        assert value is not None
+        return ReportedValue(name=name, marker=marker, value=value, **self._common(name, node))
+
+    def _statistics(self, name: str, node: Mapping) -> ReportedStatistics:
+        keys = ("min", "mean", "max", "deviation", "count")
+        (low, mean, high, deviation, count), marker = self._reported(name, node, keys)
+        if low is None or mean is None or high is None:
+            raise _WrongError(node.place, f"the statistics of {name!r} need the keys min, mean and max")
+        common = self._common(name, node)
+        return ReportedStatistics(
+            name=name, marker=marker, min=low, mean=mean, max=high, deviation=deviation, count=count, **common
+        )
+
+    def _reported(self, name: str, node: Mapping, keys: Iterable[str]) -> tuple[list[Decoder | None], Marker]:
+        """What decodes the values, as picoseconds but for the count, and the frame with all of them."""
+        unit = self._unit(name, node)
+        values = [self._place(name, node, key) if key in node.items else None for key in keys]
+        markers = {value.marker for value in values if value is not None and value.marker is not None}
+        if "frame" in node.items:
+            markers.add(self._marker(name, node, "frame"))
+        if len(markers) != 1:
+            message = f"the values of {name!r} are in {len(markers)} frames" if markers else f"{name!r} names no frame"
+            raise _WrongError(node.place, message, "State the identifier of the frame that has them: frame: 0x18000100")
+        scales = [Fraction(1) if key == "count" else unit for key in keys]
+        decoders = [
+            None if value is None else _scaled(value.decode, scale) for value, scale in zip(values, scales, strict=True)
+        ]
+        return decoders, markers.pop()
+
+    # Keys.
+
+    def _common(self, name: str, node: Mapping) -> dict[str, Any]:
+        kind = self._choice(name, node, "kind", [each for each in Kind if each is not Kind.CHAIN], Kind.INTERVAL)
+        quantity = self._choice(name, node, "quantity", _QUANTITIES, "duration")
+        baseline = self._text(name, node, "baseline") if "baseline" in node.items else None
+        if baseline is not None and baseline not in self._nodes:
+            advice = did_you_mean(baseline, self._nodes) or f"known: {', '.join(self._nodes)}"
+            message = f"the baseline {baseline!r} of {name!r} is not an object of this file"
+            raise _WrongError(node.items["baseline"].place, message, advice)
+        return {"kind": Kind(kind), "quantity": quantity, "baseline": baseline}
+
+    def _choice(self, name: str, node: Mapping, key: str, choices: Iterable[str], default: str) -> str:
+        if key not in node.items:
+            return default
+        text, known = self._text(name, node, key), list(map(str, choices))
+        if text not in known:
+            advice = did_you_mean(text, known) or f"known: {', '.join(known)}"
+            raise _WrongError(node.items[key].place, f"{text!r} is no {key} of {name!r}", advice)
+        return text
+
+    def _text(self, name: str, node: Mapping, key: str) -> str:
+        value = node.items.get(key)
+        if value is None:
+            raise _WrongError(node.place, f"{name!r} has no key {key!r}")
+        if not isinstance(value, Scalar) or value.value is None or isinstance(value.value, bool):
+            raise _WrongError(value.place, f"{key!r} of {name!r} must be a text")
+        return str(value.value)
+
+    def _marker(self, name: str, node: Mapping, key: str) -> Marker:
+        found: Marker = self._parsed(name, node, key, parse_marker)
+        return found
+
+    def _place(self, name: str, node: Mapping, key: str) -> Value:
+        found: Value = self._parsed(name, node, key, self.signals.value)
+        return found
+
+    def _counter(self, name: str, node: Mapping) -> Counter | None:
+        if "counter" not in node.items:
+            return None
+        found: Counter = self._parsed(name, node, "counter", lambda text: counter_of(text, self.signals))
+        return found
+
+    def _period(self, name: str, node: Mapping) -> Time | None:
+        return None if "period" not in node.items else self._parsed(name, node, "period", parse_duration)
+
+    def _unit(self, name: str, node: Mapping) -> Fraction:
+        """The picoseconds of the unit: `us`, or `0.1 us`."""
+        if "unit" not in node.items:
+            raise _WrongError(node.place, f"{name!r} has no unit", "State the unit of the values: unit: us")
+        text = self._text(name, node, "unit")
+        time: Time = self._parsed(name, node, "unit", lambda _: parse_time(text if text[:1].isdigit() else f"1 {text}"))
+        return Fraction(time)
+
+    def _parsed(self, name: str, node: Mapping, key: str, parse: Callable[[str], Any]) -> Any:
+        text = self._text(name, node, key)
+        try:
+            return parse(text)
+        except ValueError as error:
+            raise _WrongError(node.items[key].place, f"{key!r} of {name!r}: {error}") from None
+
+
+def _scaled(decode: Decoder, scale: Fraction) -> Decoder:
+    def scaled(data: bytes) -> Fraction | None:
+        value = decode(data)
+        return None if value is None else value * scale
+
+    return scaled

@@ -1,0 +1,217 @@
+"""Which quantity of the model a measured series is: by equal names, or as the user says."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+from amalthea_uros._internal.similar import did_you_mean
+from amalthea_uros.compare.results import Statistic
+from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.measure.baselines import with_baseline
+from amalthea_uros.measure.series import Kind, Measurement, Series
+from amalthea_uros.measure.statistics import Statistics
+from amalthea_uros.names import require
+from amalthea_uros.perf.system import System
+from amalthea_uros.timing.chain_quantity import ChainQuantity
+from amalthea_uros.timing.job_metric import JobMetric
+
+#: How a meaning is written.
+FORM = "MEASURED=OBJECT.QUANTITY"
+EXAMPLE = "'executor + control=Control_Function.response_time'"
+_SUM = " + "
+#: The quantity of an interval between two markers, of which nothing else is known.
+_DURATION = "duration"
+
+
+@dataclass(frozen=True, slots=True)
+class Meaning:
+    """What a measured series, or a sum of several, is in the model.
+
+    Attributes
+    ----------
+    measured : the name of a series, of an object and its quantity such as `Task.duration`, or several of them with ` + ` between them
+    """
+
+    measured: str
+    object: str
+    quantity: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Names:
+    """How names of the trace become those of the model.
+
+    Attributes
+    ----------
+    renamed : name in the trace -> name in the model
+    """
+
+    renamed: Mapping[str, str] = field(default_factory=dict)
+    meanings: tuple[Meaning, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Target:
+    """What a measured series is compared with.
+
+    Attributes
+    ----------
+    kind, name, quantity : of what is predicted
+    statistics : those that can be compared
+    reason : why nothing can be compared, "" if something can
+    is_unknown : whether the model has nothing of the name
+    is_with_baseline : whether a baseline was subtracted and added again
+    """
+
+    series: Series
+    kind: Kind
+    name: str
+    quantity: str
+    statistics: tuple[Statistic, ...] = tuple(Statistic)
+    reason: str = ""
+    is_unknown: bool = False
+    is_with_baseline: bool = False
+
+
+def parse_meaning(text: str) -> Meaning:
+    """A meaning as it is written.
+
+    >>> parse_meaning("executor + control=Control_Function.response_time")
+    Meaning(measured='executor + control', object='Control_Function', quantity='response_time')
+
+    Raises
+    ------
+    ValueError : the text has another form.
+    """
+    measured, equals, meant = text.partition("=")
+    name, point, quantity = meant.strip().rpartition(".")
+    if not (measured.strip() and equals and name and point and quantity):
+        raise ValueError(f"{text!r} is not of the form {FORM}; an example: {EXAMPLE}")
+    return Meaning(measured.strip(), name, quantity)
+
+
+def targets(measurement: Measurement, names: Names, system: System, with_overhead: Collection[str]) -> Iterator[Target]:
+    """What each measured series is compared with, first those of which the user says it.
+
+    Parameters
+    ----------
+    with_overhead : the processes whose predicted times include an overhead, "" for all: what was subtracted as such is added again
+
+    Raises
+    ------
+    InvalidArgumentError : the user names what the trace or the model does not have, or a sum or quantity that cannot be.
+    """
+    _check(measurement, names, system)
+    for target in _targets(measurement, names, system):
+        is_included = bool({"", target.name} & set(with_overhead))
+        if is_included and target.kind is Kind.PROCESS and target.series.baseline is not None:
+            yield replace(target, series=with_baseline(target.series), is_with_baseline=True)
+        else:
+            yield target
+
+
+def _targets(measurement: Measurement, names: Names, system: System) -> Iterator[Target]:
+    used: set[tuple[Kind, str, str]] = set()
+    for meaning in names.meanings:
+        parts = _measured(meaning.measured, measurement)
+        used |= {(each.kind, each.name, each.quantity) for each in parts}
+        yield _meant(meaning, parts, system)
+    reasons = dict.fromkeys((name for _, name, _ in used), "another quantity of it is what --as says")
+    reasons |= dict.fromkeys(_baselines(measurement), "it is a baseline, which was subtracted from others")
+    for series in measurement.series:
+        if (series.kind, series.name, series.quantity) in used:
+            continue
+        target = _named(series, names.renamed.get(series.name, series.name), system)
+        if target.is_unknown and series.name in reasons:
+            target = replace(target, reason=reasons[series.name], is_unknown=False)
+        yield target
+
+
+def _baselines(measurement: Measurement) -> set[str]:
+    """The objects whose times were subtracted from those of others."""
+    subtracted = [series.baseline for series in measurement.series if series.baseline is not None]
+    return {series.name for series in measurement.series if series.statistics in subtracted}
+
+
+def _check(measurement: Measurement, names: Names, system: System) -> None:
+    require("object of the trace", names.renamed, dict.fromkeys(series.name for series in measurement.series))
+    known = dict.fromkeys((*system.processes, *system.chains, *system.runnables))
+    require("process, chain or runnable", (*names.renamed.values(), *(each.object for each in names.meanings)), known)
+
+
+def _kinds(name: str, system: System) -> list[Kind]:
+    """What the model has of a name."""
+    found = {Kind.PROCESS: system.processes, Kind.CHAIN: system.chains, Kind.RUNNABLE: system.runnables}
+    return [kind for kind, items in found.items() if name in items]
+
+
+def _named(series: Series, name: str, system: System) -> Target:
+    kinds = _kinds(name, system)
+    target = Target(series=series, kind=series.kind, name=name, quantity=series.quantity)
+    if not kinds:
+        known = dict.fromkeys((*system.processes, *system.chains, *system.runnables))
+        return replace(target, reason=f"the model has no {name!r}; {_advice(series, name, known)}", is_unknown=True)
+    if series.kind is Kind.INTERVAL:
+        if series.quantity == _DURATION:
+            example = f"--as '{series.name}={name}.{JobMetric.RESPONSE_TIME}'"
+            return replace(target, reason=f"a time between two markers can be several quantities; say which, e.g. {example}")
+        return replace(target, kind=kinds[0])
+    if series.kind not in kinds:
+        return replace(target, reason=f"{name!r} is a {series.kind} in the trace, and a {kinds[0]} in the model")
+    return target
+
+
+def _advice(series: Series, name: str, known: Mapping[str, None]) -> str:
+    near = did_you_mean(name, known)
+    if near:
+        return near
+    return f"say what it is with --map '{series.name}=NAME'"
+
+
+def _measured(text: str, measurement: Measurement) -> list[Series]:
+    """The series that a text names: one, or those of a sum."""
+    whole = _series(text, measurement)
+    if whole is not None:
+        return [whole]
+    parts = [(part.strip(), _series(part.strip(), measurement)) for part in text.split(_SUM)]
+    known = dict.fromkeys(name for series in measurement.series for name in (series.name, f"{series.name}.{series.quantity}"))
+    require("measured series", (part for part, series in parts if series is None), known)
+    return [series for _, series in parts if series is not None]
+
+
+def _series(text: str, measurement: Measurement) -> Series | None:
+    """The series of a name, with or without its quantity."""
+    exact = [each for each in measurement.series if f"{each.name}.{each.quantity}" == text]
+    named = exact or [each for each in measurement.series if each.name == text]
+    durations = [each for each in named if each.quantity == _DURATION] or named
+    if len(durations) > 1:
+        quantities = ", ".join(f"{each.name}.{each.quantity}" for each in durations)
+        raise InvalidArgumentError(f"{text!r} has several quantities; name one of them: {quantities}")
+    return durations[0] if durations else None
+
+
+def _meant(meaning: Meaning, parts: Sequence[Series], system: System) -> Target:
+    kind = _kinds(meaning.object, system)[0]
+    require("quantity", [meaning.quantity], tuple(ChainQuantity) if kind is Kind.CHAIN else tuple(JobMetric))
+    series = replace(parts[0], kind=kind)
+    target = Target(series=series, kind=kind, name=meaning.object, quantity=meaning.quantity)
+    if len(parts) == 1:
+        return target
+    # The extremes of a sum are not the sums of the extremes, which need not occur together.
+    return replace(target, series=replace(_sum(parts), kind=kind), statistics=(Statistic.MEAN,))
+
+
+def _sum(parts: Sequence[Series]) -> Series:
+    """The mean of a sum."""
+    found = [each.statistics for each in parts if each.statistics is not None]
+    total = Statistics(
+        count=min((each.count for each in found), default=0),
+        min=sum(each.min for each in found),
+        mean=sum((each.mean for each in found), start=found[0].mean * 0) if found else 0,  # type: ignore[arg-type]
+        max=sum(each.max for each in found),
+        variance=None,
+    )
+    name = _SUM.join(each.name for each in parts)
+    statistics = total if len(found) == len(parts) else None
+    return Series(kind=parts[0].kind, name=name, quantity=parts[0].quantity, statistics=statistics, method="sum of means")

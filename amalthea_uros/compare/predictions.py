@@ -1,0 +1,229 @@
+"""What the analysis and a simulation predict of each quantity that can be measured.
+
+A quantity is predicted only where its definition is that of the measured one. The mean reaction time of an analysis is that of events
+at any time, for example, but the measured one is that of the worst events, so that it has no counterpart.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from typing import NamedTuple
+
+from amalthea_uros.analyze.metrics import merged
+from amalthea_uros.analyze.results import Analysis, ChainResult, Claim, Metric, Quantity
+from amalthea_uros.compare.agreement import Prediction, measured_values
+from amalthea_uros.compare.results import PredictionClaim, Statistic
+from amalthea_uros.compare.simulated import Run
+from amalthea_uros.measure.series import Kind
+from amalthea_uros.measure.statistics import Statistics
+from amalthea_uros.simulate.results import MetricObservation, Simulation
+from amalthea_uros.timing.chain_quantity import ChainQuantity
+from amalthea_uros.timing.job_metric import JobMetric
+from amalthea_uros.units import Time, time_text
+
+#: The predictions of a quantity.
+Predictions = Mapping[Statistic, tuple[Prediction, ...]]
+
+
+class _Ends(NamedTuple):
+    """The quantities of an analysis that are the minimum, the mean and the maximum of a measured one."""
+
+    minimum: Quantity | None = None
+    mean: Quantity | None = None
+    maximum: Quantity | None = None
+
+
+_FIRST_TO_FIRST = _Ends(Quantity.MIN_FIRST_TO_FIRST, Quantity.MEAN_FIRST_TO_FIRST, Quantity.MAX_REDUCED_REACTION_TIME)
+_LAST_TO_LAST = _Ends(Quantity.MIN_LAST_TO_LAST, Quantity.MEAN_LAST_TO_LAST, Quantity.MAX_REDUCED_DATA_AGE)
+_OF_CHAINS: Mapping[str, _Ends] = {
+    ChainQuantity.REACTION_TIME: _Ends(maximum=Quantity.MAX_REACTION_TIME),
+    ChainQuantity.REDUCED_REACTION_TIME: _FIRST_TO_FIRST,
+    ChainQuantity.DATA_AGE: _Ends(maximum=Quantity.MAX_DATA_AGE),
+    ChainQuantity.REDUCED_DATA_AGE: _LAST_TO_LAST,
+    ChainQuantity.FIRST_TO_FIRST: _FIRST_TO_FIRST,
+    ChainQuantity.FIRST_TO_LAST: _Ends(maximum=Quantity.MAX_FIRST_TO_LAST),
+    ChainQuantity.LAST_TO_FIRST: _Ends(Quantity.MIN_LAST_TO_FIRST, None, Quantity.MAX_LAST_TO_FIRST),
+    ChainQuantity.LAST_TO_LAST: _LAST_TO_LAST,
+}
+#: The metrics to which an overhead is added: it is part of an execution, and not of the distance of two of them.
+_WITH_OVERHEAD = (JobMetric.NET_EXECUTION_TIME, JobMetric.GROSS_EXECUTION_TIME, JobMetric.RESPONSE_TIME)
+_ENDS = {Statistic.MIN: "minimum", Statistic.MEAN: "mean", Statistic.MAX: "maximum"}
+
+
+class Missing(Exception):  # noqa: N818 - it is no error: the text says why nothing is predicted
+    """There is no prediction."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Predictor:
+    """Looks predictions up.
+
+    Attributes
+    ----------
+    analysis : None if it is not asked
+    runs : simulations, the first one as long as the measurement; none if they are not asked
+    in_phases : the analyses that predict means, in each phase that is possible; none if simulations predict them
+    overheads : process -> what is added to its predicted times; "" stands for all others
+    """
+
+    analysis: Analysis | None
+    runs: tuple[Run, ...]
+    in_phases: tuple[Analysis, ...] = ()
+    overheads: Mapping[str, Time] = field(default_factory=dict)
+
+    def of(self, kind: Kind, name: str, quantity: str) -> Predictions:
+        """The predictions of a quantity.
+
+        Raises
+        ------
+        Missing : there is none.
+        """
+        found = [*self._analyzed(kind, name, quantity), *self._simulated(kind, name, quantity)]
+        if not found:
+            raise Missing(self._reason(kind, name, quantity))
+        return {
+            statistic: tuple(self._with_overhead(name, quantity, statistic, one) for each, one in found if each is statistic)
+            for statistic in Statistic
+        }
+
+    # The analysis.
+
+    def _analyzed(self, kind: Kind, name: str, quantity: str) -> Iterator[tuple[Statistic, Prediction]]:
+        if self.analysis is None:
+            return
+        yield from _extremes(_of(self.analysis, kind, name, quantity))
+        means = [_of(each, kind, name, quantity).get(Statistic.MEAN) for each in self.in_phases]
+        known = [each for each in means if each is not None]
+        # The bound of a mean is no prediction of it.
+        if known and len(known) == len(means) and all(each.claim is PredictionClaim.EXACT for each in known):
+            values = [each.value for each in known]
+            yield Statistic.MEAN, replace(known[0], value=min(values), high=max(values))
+
+    # The simulation.
+
+    def _simulated(self, kind: Kind, name: str, quantity: str) -> Iterator[tuple[Statistic, Prediction]]:
+        if not self.runs:
+            return
+        found = [values for run in self.runs if (values := _values(run, kind, name, quantity))]
+        first, others = self.runs[0].simulation, len(self.runs) - 1
+        phases = f", and in {others} phases" if others else ""
+        method = f"simulation of {time_text(first.duration)}, seed {first.seed}{phases}"
+        for statistic in found[0] if found else ():
+            each = [values[statistic] for values in found if statistic in values]
+            claim, count = PredictionClaim.SIMULATED, _count(self.runs[0], kind, name, quantity)
+            yield statistic, Prediction(value=min(each), high=max(each), claim=claim, method=method, count=count)
+
+    # Both.
+
+    def _with_overhead(self, name: str, quantity: str, statistic: Statistic, found: Prediction) -> Prediction:
+        overhead = overhead_of(name, quantity, self.overheads)
+        if not overhead or statistic is Statistic.JITTER:
+            return found
+        return replace(
+            found,
+            value=found.value + overhead,
+            high=None if found.high is None else found.high + overhead,
+            method=f"{found.method}, plus {time_text(overhead)} of overhead",
+        )
+
+    def _reason(self, kind: Kind, name: str, quantity: str) -> str:
+        """Why nothing is predicted."""
+        stated = next(filter(None, self._stated_reasons(kind, name)), "")
+        known = tuple(ChainQuantity) if kind is Kind.CHAIN else tuple(JobMetric)
+        if quantity not in known:
+            return f"{quantity!r} is no quantity of a {kind}; say what it is with --as '{name}.{quantity}={name}.QUANTITY'"
+        what = quantity.replace("_", " ")
+        return stated or f"neither analysis nor simulation has the {what} of {name!r}"
+
+    def _stated_reasons(self, kind: Kind, name: str) -> Iterator[str]:
+        if self.analysis is not None:
+            analysis = self.analysis
+            yield from (each.reason for each in analysis.processes if (kind, each.name) == (Kind.PROCESS, name))
+            yield from (each.reason for each in analysis.callbacks if (kind, each.name) == (Kind.RUNNABLE, name))
+            yield from (each.reason for each in analysis.chains if (kind, each.name) == (Kind.CHAIN, name))
+        if self.runs:
+            yield from (each.reason for each in self.runs[0].simulation.chains if (kind, each.name) == (Kind.CHAIN, name))
+
+
+def _of(analysis: Analysis, kind: Kind, name: str, quantity: str) -> dict[Statistic, Prediction]:
+    """What an analysis has of a quantity."""
+    if kind is Kind.CHAIN:
+        chain = next((each for each in analysis.chains if each.name == name), None)
+        return {} if chain is None else dict(_of_chain(chain, quantity))
+    metric = _metric(analysis, kind, name, quantity)
+    return {} if metric is None else dict(_of_metric(metric, quantity))
+
+
+def _extremes(found: Mapping[Statistic, Prediction]) -> Iterator[tuple[Statistic, Prediction]]:
+    yield from ((statistic, each) for statistic, each in found.items() if statistic is not Statistic.MEAN)
+
+
+def _metric(analysis: Analysis, kind: Kind, name: str, quantity: str) -> Metric | None:
+    holders = analysis.processes if kind is Kind.PROCESS else analysis.callbacks
+    variants = [each.metrics for each in holders if each.name == name]
+    found: Mapping[JobMetric, Metric] = merged(variants) if variants else {}
+    return next((metric for each, metric in found.items() if each == quantity), None)
+
+
+def _of_metric(metric: Metric, quantity: str) -> Iterator[tuple[Statistic, Prediction]]:
+    claim = PredictionClaim.EXACT if metric.claim is Claim.EXACT else PredictionClaim.BOUND
+    method = f"analysis of the {quantity.replace('_', ' ')}"
+    if metric.min is not None:
+        yield Statistic.MIN, Prediction(value=Fraction(metric.min), claim=claim, method=method)
+    if metric.max is not None:
+        yield Statistic.MAX, Prediction(value=Fraction(metric.max), claim=claim, method=method)
+    if metric.mean is not None:
+        yield Statistic.MEAN, Prediction(value=metric.mean, claim=PredictionClaim.EXACT, method=method)
+
+
+def _of_chain(chain: ChainResult, quantity: str) -> Iterator[tuple[Statistic, Prediction]]:
+    for statistic, end in _ENDS.items():
+        name = getattr(_OF_CHAINS.get(quantity, _Ends()), end)
+        value = None if name is None else chain.value(name)
+        if value is not None and value.value is not None:
+            claim = PredictionClaim.EXACT if value.claim is Claim.EXACT else PredictionClaim.BOUND
+            yield statistic, Prediction(value=Fraction(value.value), claim=claim, method=value.method)
+
+
+def _values(run: Run, kind: Kind, name: str, quantity: str) -> dict[Statistic, Fraction]:
+    """What a run has of a quantity: of all of it, and what only its trace shows."""
+    statistics = _statistics(run, kind, name, quantity)
+    values = {} if statistics is None else dict(measured_values(statistics))
+    found = _observed(run.simulation, kind, name, quantity)
+    if found is not None:
+        values |= {Statistic.MIN: found.min, Statistic.MEAN: found.mean, Statistic.MAX: found.max}
+        values[Statistic.JITTER] = found.jitter
+    return values
+
+
+def _statistics(run: Run, kind: Kind, name: str, quantity: str) -> Statistics | None:
+    """What was measured in the trace of a run."""
+    series = (each for each in run.values.series if (each.kind, each.name, each.quantity) == (kind, name, quantity))
+    return next((each.statistics for each in series), None)
+
+
+def _count(run: Run, kind: Kind, name: str, quantity: str) -> int | None:
+    """How many values a run has of a quantity."""
+    statistics = _statistics(run, kind, name, quantity)
+    found = _observed(run.simulation, kind, name, quantity)
+    return found.count if found is not None else None if statistics is None else statistics.count
+
+
+def overhead_of(name: str, quantity: str, overheads: Mapping[str, Time]) -> Time:
+    """What is added to the predicted values of a quantity."""
+    return overheads.get(name, overheads.get("", 0)) if quantity in _WITH_OVERHEAD else 0
+
+
+def _observed(simulation: Simulation, kind: Kind, name: str, quantity: str) -> MetricObservation | None:
+    """What a simulation has of a quantity."""
+    found: Iterator[Iterable[tuple[str, MetricObservation]]] = iter(())
+    match kind:
+        case Kind.PROCESS:
+            found = (each.metrics.items() for each in simulation.processes if each.name == name)
+        case Kind.RUNNABLE:
+            found = (each.metrics.items() for each in simulation.runnables if each.name == name)
+        case Kind.CHAIN:
+            found = (each.quantities.items() for each in simulation.chains if each.name == name)
+    return next((observation for items in found for each, observation in items if each == quantity), None)

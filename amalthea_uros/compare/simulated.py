@@ -1,0 +1,116 @@
+"""Simulations, and what is measured in their own traces: both sides of a comparison are measured by the same code.
+
+If the phase of something from outside is unknown, a single run says nothing about the measured system, which may have any other phase.
+Then there is a further, shorter run in each phase, and what they have together is a range.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from types import TracebackType
+from typing import Self
+
+from amalthea_uros.compare.measured.events import chain_starts
+from amalthea_uros.compare.phases import MOST_PHASES, systems_in_phases
+from amalthea_uros.measure.event_chains import ChainSteps
+from amalthea_uros.measure.jobs import JobWalk
+from amalthea_uros.measure.series import Measurement
+from amalthea_uros.perf.system import System
+from amalthea_uros.simulate.options import Options
+from amalthea_uros.simulate.results import Simulation
+from amalthea_uros.simulate.system import simulate_system
+from amalthea_uros.timing.phases import with_first_arrivals
+from amalthea_uros.timing.settings import Settings
+from amalthea_uros.trace.table import Entity, EventTable
+from amalthea_uros.units import SECOND, Time
+
+#: So many events are measured, which takes about a second; more values would hardly change a distribution.
+_MOST_EVENTS = 400_000
+#: Further runs are at least so long, unless the first one is shorter.
+_SHORTEST = SECOND
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """A simulation, with what was measured in its trace."""
+
+    simulation: Simulation
+    values: Measurement
+
+
+class _Measuring:
+    """A sink that measures the first events of a run; it is its own opener."""
+
+    def __init__(self, system: System, most_events: int) -> None:
+        self._most_events = most_events
+        self._jobs, self._chains = JobWalk(), ChainSteps(chain_starts(system))
+        self._entities: Sequence[Entity] = ()
+        self._end, self._events = 0, 0
+
+    def __call__(self, entities: Sequence[Entity]) -> Self:
+        """Open it."""
+        self._entities = entities
+        return self
+
+    def write(self, table: EventTable) -> None:
+        """Measure some events."""
+        part = table.rows(0, self._most_events - self._events)
+        if not len(part):
+            return
+        self._events += len(part)
+        self._end = int(part.time[-1])
+        self._jobs.add(part)
+        self._chains.add(part)
+
+    def close(self) -> None:
+        """Nothing is left to do."""
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None) -> None:
+        """Keep what was measured for the caller."""
+
+    def measurement(self) -> Measurement:
+        """What was measured."""
+        self._jobs.finish()
+        names = [entity.name for entity in self._entities]
+        return Measurement(
+            source="simulation",
+            format="",
+            digest="",
+            duration=self._end,
+            resolution=None,
+            series=(*self._jobs.series(names), *self._chains.series(names)),
+        )
+
+
+def simulate_measured(system: System, settings: Settings, duration: Time, seed: int) -> tuple[Run, ...]:
+    """A run of a duration, and further ones in other phases if some are unknown."""
+    first = _run(system, Options(duration=duration, seed=seed, settings=settings), _MOST_EVENTS)
+    variants = list(_phases(system, settings, seed))
+    if not variants:
+        return (first,)
+    shorter = max(duration // len(variants), min(duration, _SHORTEST))
+    events = _MOST_EVENTS // len(variants)
+    return (
+        first,
+        *(_run(each, Options(duration=shorter, seed=other, settings=settings), events) for each, other in variants),
+    )
+
+
+def _phases(system: System, settings: Settings, seed: int) -> Iterator[tuple[System, int]]:
+    """The system in each of its phases, or with other seeds if there are too many; nothing if all phases are known."""
+    variants = systems_in_phases(system, settings)
+    if variants is None:
+        known = with_first_arrivals(system, settings.phases)
+        yield from ((known, seed + number) for number in range(1, MOST_PHASES + 1))
+    else:
+        yield from ((each, seed) for each in variants)
+
+
+def _run(system: System, options: Options, most_events: int) -> Run:
+    sink = _Measuring(system, most_events)
+    simulation = simulate_system(system, replace(options, traced=(0, options.duration)), [sink])
+    return Run(simulation, sink.measurement())

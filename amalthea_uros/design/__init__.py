@@ -1,0 +1,1 @@
+"""Better designs: changes of a system, variants of it, searches, and the source with the changes."""

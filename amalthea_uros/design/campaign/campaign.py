@@ -1,0 +1,84 @@
+"""The execution of a campaign."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Generator, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, wait
+from contextlib import closing, suppress
+from itertools import islice
+
+from amalthea_uros.design.campaign.executors import Executor, Workers, serial
+from amalthea_uros.design.campaign.run import Job, Outcome, Run
+
+#: Runs are sent in chunks only if there are more than so many for each worker: an interruption loses the chunks that are not finished.
+_SINGLE_RUNS = 256
+_LARGEST_CHUNK = 16
+
+
+def run_campaign(job: Job, runs: Sequence[Run], executor: Executor = serial) -> Generator[Outcome]:
+    """Execute the runs; each outcome as soon as it is there, so not in the order of the runs.
+
+    A run that fails has an outcome, too. To stop early, close the iterator: runs that are not finished are given up.
+    """
+    with executor(job) as workers:
+        yield from execute(workers, runs)
+
+
+def execute(workers: Workers, runs: Sequence[Run]) -> Generator[Outcome]:
+    """Have workers execute runs; as `run_campaign`.
+
+    What a worker had to do when it died is executed again, one run after the other, so that nothing else is lost if one of them is the
+    cause; a run fails with which a worker dies twice.
+    """
+    chunks = _chunks(runs, workers.count)
+    again: deque[Run] = deque()
+    pending: dict[Future[list[Outcome]], Sequence[Run]] = {}
+    while True:
+        if not again:
+            for chunk in islice(chunks, workers.ahead - len(pending)):
+                pending[workers.submit(chunk)] = chunk
+        elif not pending:
+            yield from _last_try(workers, again.popleft())
+            continue
+        if not pending:
+            return
+        for future in wait(pending, return_when=FIRST_COMPLETED).done:
+            chunk = pending.pop(future)
+            try:
+                found = future.result()
+            except Exception:
+                again.extend(chunk)
+            else:
+                yield from found
+
+
+def _last_try(workers: Workers, run: Run) -> list[Outcome]:
+    """The outcome of a run, also if a worker dies again."""
+    try:
+        return workers.submit([run]).result()
+    except Exception as error:
+        return [Outcome(run, {}, f"the worker failed twice: {type(error).__name__}: {error}")]
+
+
+def finished_runs(
+    job: Job, runs: Sequence[Run], executor: Executor, on_outcome: Callable[[Outcome], None] | None = None
+) -> tuple[Outcome, ...]:
+    """Execute the runs; their outcomes in the order of the runs. Ctrl-C ends it early, with the runs that are finished.
+
+    Parameters
+    ----------
+    on_outcome : called after each run
+    """
+    outcomes: list[Outcome] = []
+    with suppress(KeyboardInterrupt), closing(run_campaign(job, runs, executor)) as finished:
+        for outcome in finished:
+            outcomes.append(outcome)
+            if on_outcome is not None:
+                on_outcome(outcome)
+    return tuple(sorted(outcomes, key=lambda outcome: outcome.run.number))
+
+
+def _chunks(runs: Sequence[Run], workers: int) -> Iterator[Sequence[Run]]:
+    size = 1 if workers == 1 else max(1, min(_LARGEST_CHUNK, len(runs) // (workers * _SINGLE_RUNS)))
+    return (runs[start : start + size] for start in range(0, len(runs), size))

@@ -1,0 +1,98 @@
+"""The runs of a campaign, and what comes out of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, TypeAlias
+
+from amalthea_uros.design.changes.change import Change
+from amalthea_uros.design.changes.sweep import Sweep, count_variants, variants
+from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.units import parse_frequency, parse_time
+
+Value: TypeAlias = int | float | str | None
+#: A row of a table: column -> value.
+Record: TypeAlias = Mapping[str, Value]
+
+#: More runs than this are a mistake rather than a plan.
+MAX_RUNS = 1_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """One run; its result depends on nothing else.
+
+    Attributes
+    ----------
+    number : from 1, in the order of the table
+    """
+
+    number: int
+    seed: int
+    changes: tuple[Change, ...] = ()
+
+    def columns(self) -> dict[str, Value]:
+        """The columns that identify it in a table."""
+        return {"run": self.number, "seed": self.seed, **dict(map(_column, self.changes))}
+
+
+#: What is done in each run; it must be possible to send it, and what it gives, to another process.
+Job: TypeAlias = Callable[[Run], Mapping[str, Any]]
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What came out of a run.
+
+    Attributes
+    ----------
+    record : what the job gave, for most jobs a row of a table; empty if the run failed
+    error : why it failed, "" if it did not
+    """
+
+    run: Run
+    record: Mapping[str, Any]
+    error: str = ""
+
+    def row(self) -> Record:
+        """The run and its results as a row of a table."""
+        return {**self.run.columns(), **self.record, **({"error": self.error} if self.error else {})}
+
+
+def plan_runs(sweeps: Sequence[Sweep], repetitions: int, seed: int) -> tuple[Run, ...]:
+    """The runs of all variants; the repetitions of each have the seeds from `seed` on.
+
+    Raises
+    ------
+    InvalidArgumentError : more than `MAX_RUNS`, no repetition, or as for `variants`.
+    """
+    count_runs(sweeps, repetitions)
+    pairs = ((changes, seed + repetition) for changes in variants(sweeps) for repetition in range(repetitions))
+    return tuple(Run(number, each, changes) for number, (changes, each) in enumerate(pairs, start=1))
+
+
+def count_runs(sweeps: Sequence[Sweep], repetitions: int) -> int:
+    """The number of runs; raises as `plan_runs`."""
+    if repetitions < 1:
+        raise InvalidArgumentError(f"{repetitions} runs of each variant are not possible; expected at least 1")
+    if (count := count_variants(sweeps) * repetitions) > MAX_RUNS:
+        raise InvalidArgumentError(f"the campaign has {count:,} runs; at most {MAX_RUNS:,} are possible")
+    return count
+
+
+def _column(change: Change) -> tuple[str, Value]:
+    """The column of a changed value: numbers in the internal unit, which the name of the column has."""
+    readings: tuple[tuple[str, Callable[[str], int | Fraction]], ...] = (
+        ("", int),
+        ("_ps", parse_time),
+        ("_hz", parse_frequency),
+    )
+    for suffix, read in readings:
+        try:
+            number = read(change.value)
+        except ValueError:
+            continue
+        return change.target + suffix, int(number) if number.denominator == 1 else float(number)
+    return change.target, change.value

@@ -1,0 +1,110 @@
+"""The mapping of processes to schedulers, interrupt controllers and cores."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from amalthea_uros.design.changes.key import ISR_ALLOCATIONS, TASK_ALLOCATIONS, UNSET, Configuration, Key, Place
+from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.names import require
+from amalthea_uros.perf.system import System
+from amalthea_uros.timing.allocation import allocated_cores, scheduler_cores
+
+
+@dataclass(frozen=True, slots=True)
+class _Dispatchers:
+    """What dispatches processes: schedulers, or interrupt controllers.
+
+    Attributes
+    ----------
+    field : of an allocation, with the name of what dispatches the process; also the name of the key
+    names : of those in a system
+    cores : those for which one is responsible
+    has_affinity : whether an allocation can select one of several cores
+    """
+
+    kind: str
+    field: str
+    place: Place
+    names: Callable[[System], Iterable[str]]
+    cores: Callable[[str, System], tuple[str, ...]]
+    has_affinity: bool
+
+    @property
+    def keys(self) -> Mapping[str, Key[str]]:
+        """The keys of the processes."""
+        return {self.field: Key(str, self._show, self._set), "core": Key(str, _show_core, self._set_core)}
+
+    def _allocations(self, system: System, process: str) -> list[str]:
+        allocations = getattr(system.mapping, self.place.collection)
+        return [getattr(each, self.field) for each in allocations if getattr(each, self.place.identifier) == process]
+
+    def _present(self, system: System, process: str) -> str:
+        """What dispatches a process."""
+        found = self._allocations(system, process)
+        if len(found) != 1:
+            mapped = f"mapped to several {self.kind}s" if found else f"not mapped to any {self.kind}"
+            raise InvalidArgumentError(f"{process!r} is {mapped}")
+        return found[0]
+
+    def _show(self, configuration: Configuration, process: str) -> str:
+        return ", ".join(self._allocations(configuration.system, process)) or UNSET
+
+    def _set(self, configuration: Configuration, process: str, name: str) -> Configuration:
+        """Map a process to something else, without a preference for one of its cores."""
+        self._present(configuration.system, process)
+        require(self.kind, [name], self.names(configuration.system))
+        return self._mapped(configuration, process, name, ())
+
+    def _set_core(self, configuration: Configuration, process: str, core: str) -> Configuration:
+        """Map a process to a core: by what dispatches it now if that is responsible for the core, otherwise by what alone is."""
+        system = configuration.system
+        present = self._present(system, process)
+        require("core", [core], system.cores)
+        responsible = [each for each in self.names(system) if self._can_select(each, core, system)]
+        name = present if present in responsible else self._only(responsible, process, core)
+        return self._mapped(configuration, process, name, (core,) if len(self.cores(name, system)) > 1 else ())
+
+    def _can_select(self, name: str, core: str, system: System) -> bool:
+        cores = self.cores(name, system)
+        return core in cores and (self.has_affinity or len(cores) == 1)
+
+    def _only(self, responsible: list[str], process: str, core: str) -> str:
+        if not responsible:
+            raise InvalidArgumentError(f"no {self.kind} is responsible for the core {core!r}")
+        if len(responsible) > 1:
+            choices = ", ".join(f"{process}.{self.field}={name}" for name in responsible)
+            raise InvalidArgumentError(f"several {self.kind}s are responsible for the core {core!r}; choose one: {choices}")
+        return responsible[0]
+
+    def _mapped(self, configuration: Configuration, process: str, name: str, cores: tuple[str, ...]) -> Configuration:
+        fields: dict[str, Any] = {self.field: name, **({"cores": cores} if self.has_affinity else {})}
+        return configuration._replace(system=self.place.with_fields(configuration.system, process, **fields))
+
+
+def _show_core(configuration: Configuration, process: str) -> str:
+    return ", ".join(sorted(allocated_cores(configuration.system).get(process, ()))) or UNSET
+
+
+def _controller_cores(controller: str, system: System) -> tuple[str, ...]:
+    return system.interrupt_controllers[controller].cores
+
+
+TASK_KEYS = _Dispatchers(
+    kind="scheduler",
+    field="scheduler",
+    place=TASK_ALLOCATIONS,
+    names=lambda system: system.schedulers,
+    cores=scheduler_cores,
+    has_affinity=True,
+).keys
+ISR_KEYS = _Dispatchers(
+    kind="interrupt controller",
+    field="controller",
+    place=ISR_ALLOCATIONS,
+    names=lambda system: system.interrupt_controllers,
+    cores=_controller_cores,
+    has_affinity=False,
+).keys

@@ -1,0 +1,168 @@
+"""Execution times of runnables and tasks, as ticks, or as time at the clock of the core that executes them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+
+from amalthea_uros.design.changes.key import ISRS, RUNNABLES, TASKS, UNSET, Configuration, Key, Place
+from amalthea_uros.design.changes.values import duration
+from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.names import listed
+from amalthea_uros.perf.activities import Activity, Call, Demand, Execute, ExecutionNeed, transformed, walk
+from amalthea_uros.perf.distributions import Boundaries, Constant, Distribution, Sampling, highest, lowest
+from amalthea_uros.perf.software import Task
+from amalthea_uros.perf.system import System
+from amalthea_uros.timing.allocation import allocated_cores
+from amalthea_uros.timing.clocks import frequency_of
+from amalthea_uros.timing.stretches import executed
+from amalthea_uros.units import Frequency, down, ticks_of_time, up
+
+_TICKS = re.compile(r"(\d{1,18})\s*ticks?", re.ASCII)
+
+
+@dataclass(frozen=True, slots=True)
+class ExecutionTime:
+    """An execution time between two values.
+
+    Attributes
+    ----------
+    lower, upper : ticks, or picoseconds
+    """
+
+    lower: int
+    upper: int
+    in_ticks: bool
+
+
+def _parse(text: str) -> ExecutionTime:
+    """One value such as "12us" or "300 ticks", or a range such as "2us..4us"."""
+    lower, separator, upper = text.partition("..")
+    ends = [_end(lower.strip()), _end((upper if separator else lower).strip())]
+    if ends[0][1] != ends[1][1]:
+        raise ValueError(f"{text!r} mixes a time and ticks")
+    if ends[0][0] > ends[1][0]:
+        raise ValueError(f"{text!r} ends before it starts")
+    return ExecutionTime(ends[0][0], ends[1][0], ends[0][1])
+
+
+def _end(text: str) -> tuple[int, bool]:
+    if match := _TICKS.fullmatch(text):
+        return int(match[1]), True
+    if text.isdecimal():
+        raise ValueError(f"{text!r} has no unit; write a time such as '12 us', or '{text} ticks'")
+    return duration(text), False
+
+
+def _distribution(time: ExecutionTime, frequency: Callable[[], Frequency]) -> Distribution[int]:
+    """The ticks of an execution time: lower bounds are rounded down, upper bounds and single values up."""
+    lower, upper = time.lower, time.upper
+    if not time.in_ticks:
+        rate = frequency()
+        lower, upper = down(ticks_of_time(time.lower, rate)), up(ticks_of_time(time.upper, rate))
+    if time.lower == time.upper:
+        return Constant(upper)
+    # A range without a distribution means in an app.yaml, too, that each value is equally probable.
+    return Boundaries(lower=lower, upper=upper, sampling=Sampling.UNIFORM)
+
+
+def _demands(activities: Iterable[Activity]) -> list[Execute | ExecutionNeed]:
+    return [activity for activity in activities if isinstance(activity, Execute | ExecutionNeed)]
+
+
+def _called(process: str, system: System) -> set[str]:
+    """The runnables that a process executes."""
+    activities = executed(system.processes[process].activities, system)
+    return {activity.runnable for activity in activities if isinstance(activity, Call)}
+
+
+def _callers(runnable: str, system: System) -> list[str]:
+    """The processes that execute a runnable."""
+    return [process for process in system.processes if runnable in _called(process, system)]
+
+
+def _show_runnable(configuration: Configuration, name: str) -> str:
+    return _text(_demands(walk(configuration.system.runnables[name].activities)))
+
+
+def _show_process(configuration: Configuration, name: str) -> str:
+    return _text(_demands(executed(configuration.system.processes[name].activities, configuration.system)))
+
+
+def _text(demands: list[Execute | ExecutionNeed]) -> str:
+    match demands:
+        case [Execute(demand=Demand(ticks=ticks))] if ticks is not None:
+            lower, upper = lowest(ticks), highest(ticks)
+            return f"{upper} ticks" if lower == upper else f"{lower}..{'' if upper is None else upper} ticks"
+    return "several values" if demands else UNSET
+
+
+def _set_runnable(configuration: Configuration, name: str, time: ExecutionTime) -> Configuration:
+    system = configuration.system
+    distribution = _distribution(time, lambda: _frequency(name, _callers(name, system), configuration))
+    return _with_demand(configuration, RUNNABLES, name, distribution)
+
+
+def _set_process(configuration: Configuration, name: str, time: ExecutionTime) -> Configuration:
+    """Change the demand of a process itself, or else of the only runnable that it executes and nobody else does.
+
+    Overheads of the operating system stay as they are.
+    """
+    system = configuration.system
+    process = system.processes[name]
+    distribution = _distribution(time, lambda: _frequency(name, [name], configuration))
+    called = _called(name, system)
+    runnables = [
+        name
+        for name, runnable in system.runnables.items()
+        if name in called and not runnable.is_overhead and _demands(_body(name, system))
+    ]
+    match _demands(walk(process.activities)), runnables:
+        case [], [runnable] if _callers(runnable, system) == [name]:
+            return _with_demand(configuration, RUNNABLES, runnable, distribution)
+        case [_, *_], []:
+            return _with_demand(configuration, TASKS if isinstance(process, Task) else ISRS, name, distribution)
+    if not runnables:
+        raise InvalidArgumentError(f"{name!r} executes nothing that has an execution time")
+    choices = listed([f"{each}.execution_time" for each in runnables])
+    raise InvalidArgumentError(f"{name!r} has no single execution time of its own; change those of its runnables: {choices}")
+
+
+def _body(runnable: str, system: System) -> Iterable[Activity]:
+    return walk(system.runnables[runnable].activities)
+
+
+def _with_demand(configuration: Configuration, place: Place, name: str, ticks: Distribution[int]) -> Configuration:
+    """The configuration in which the only demand of a process or runnable is another one."""
+    activities = place.find(configuration.system, name).activities
+    if (count := len(_demands(walk(activities)))) != 1:
+        reason = (
+            f"contains {count} execution times, so it is not clear which one to change" if count else "has no execution time"
+        )
+        raise InvalidArgumentError(f"{name!r} {reason}")
+
+    def changed(activity: Activity) -> Activity:
+        if isinstance(activity, Execute | ExecutionNeed):
+            return Execute(demand=Demand(ticks), locate=activity.locate)
+        return activity
+
+    fields = {"activities": transformed(activities, changed)}
+    return configuration._replace(system=place.with_fields(configuration.system, name, **fields))
+
+
+def _frequency(name: str, processes: Iterable[str], configuration: Configuration) -> Frequency:
+    """The frequency of all cores that execute a process or runnable."""
+    system, settings = configuration
+    cores_of = allocated_cores(system)
+    cores = {core for process in processes for core in cores_of.get(process, ()) if core in system.cores}
+    frequencies = {settings.frequencies.get(core) or frequency_of(system.cores[core].clock, system) for core in cores}
+    frequency = frequencies.pop() if len(frequencies) == 1 else None
+    if frequency is None:
+        reason = "on cores with different frequencies" if frequencies else "on a core of unknown frequency"
+        raise InvalidArgumentError(f"{name!r} is executed {reason}; write its execution time in ticks, e.g. '300 ticks'")
+    return frequency
+
+
+RUNNABLE_KEY = Key(_parse, _show_runnable, _set_runnable)
+PROCESS_KEY = Key(_parse, _show_process, _set_process)

@@ -1,0 +1,127 @@
+"""Period, offset and jitter: properties of periodic stimuli, and of the processes that they activate."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+from amalthea_uros.design.changes.key import ISRS, STIMULI, TASKS, UNSET, Configuration, Key
+from amalthea_uros.design.changes.values import duration, positive_duration
+from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.perf.distributions import Constant, Distribution, Uniform, highest
+from amalthea_uros.perf.events import StimulusEvent
+from amalthea_uros.perf.software import Process, Task
+from amalthea_uros.perf.stimuli import Burst, Periodic, RelativePeriodic, Stimulus, Synthetic
+from amalthea_uros.perf.system import System
+from amalthea_uros.units import time_text
+
+#: The classes of stimuli that have each key.
+_HOLDERS: dict[str, tuple[type[Stimulus], ...]] = {
+    "period": (Periodic, Synthetic, Burst),
+    "offset": (Periodic, RelativePeriodic, Synthetic, Burst),
+    "jitter": (Periodic,),
+}
+
+
+def _jitter(text: str) -> Distribution[int] | None:
+    """A delay from 0 to a maximum, as the jitter in an app.yaml; no jitter has no distribution."""
+    upper = duration(text)
+    return Uniform(lower=0, upper=upper) if upper else None
+
+
+def _jitter_text(jitter: Distribution[int] | None) -> str:
+    upper = 0 if jitter is None else highest(jitter)
+    return "unbounded" if upper is None else time_text(upper)
+
+
+_FIELDS: dict[str, tuple[Callable[[str], Any], Callable[[Any], str]]] = {
+    "period": (positive_duration, time_text),
+    "offset": (duration, time_text),
+    "jitter": (_jitter, _jitter_text),
+}
+
+
+def _stimulus_key(field: str, parse: Callable[[str], Any], text: Callable[[Any], str]) -> Key[Any]:
+    def show(configuration: Configuration, name: str) -> str:
+        return _shown(configuration.system.stimuli_by_name[name], field, text)
+
+    def with_value(configuration: Configuration, name: str, value: object) -> Configuration:
+        stimulus = configuration.system.stimuli_by_name[name]
+        _check_holder(stimulus, field, f"the stimulus {name!r}")
+        fields = _fields(stimulus, field, value)
+        return configuration._replace(system=STIMULI.with_fields(configuration.system, name, **fields))
+
+    return Key(parse, show, with_value)
+
+
+def _process_key(field: str, parse: Callable[[str], Any], text: Callable[[Any], str]) -> Key[Any]:
+    def show(configuration: Configuration, name: str) -> str:
+        found = _stimuli(configuration.system.processes[name], configuration.system)
+        return _shown(found[0], field, text) if len(found) == 1 else UNSET
+
+    def with_value(configuration: Configuration, name: str, value: object) -> Configuration:
+        return configuration._replace(system=_with_process_value(configuration.system, name, field, value))
+
+    return Key(parse, show, with_value)
+
+
+def _shown(stimulus: Stimulus, field: str, text: Callable[[Any], str]) -> str:
+    if field == "period" and isinstance(stimulus, RelativePeriodic) and isinstance(stimulus.distance, Constant):
+        return text(stimulus.distance.value) if stimulus.has_maximum else UNSET
+    return text(getattr(stimulus, field)) if isinstance(stimulus, _HOLDERS[field]) else UNSET
+
+
+def _is_period_of_any_phase(stimulus: Stimulus) -> bool:
+    """Whether all distances are the same, so that they are the period, but nothing is known of the phase."""
+    return isinstance(stimulus, RelativePeriodic) and isinstance(stimulus.distance, Constant) and stimulus.has_maximum
+
+
+def _fields(stimulus: Stimulus, field: str, value: object) -> dict[str, Any]:
+    """The fields that a value replaces."""
+    if field == "period" and _is_period_of_any_phase(stimulus):
+        return {"distance": Constant(value)}
+    return {field: value}
+
+
+def _stimuli(process: Process, system: System) -> list[Stimulus]:
+    return [system.stimuli_by_name[name] for name in process.stimuli if name in system.stimuli_by_name]
+
+
+def _check_holder(stimulus: Stimulus, field: str, what: str) -> None:
+    if not isinstance(stimulus, _HOLDERS[field]) and not (field == "period" and _is_period_of_any_phase(stimulus)):
+        classes = ", ".join(holder.__name__ for holder in _HOLDERS[field])
+        raise InvalidArgumentError(f"{what} is {type(stimulus).__name__}, which has no {field}; these have one: {classes}")
+
+
+def _with_process_value(system: System, name: str, field: str, value: object) -> System:
+    """The system in which the only stimulus of a process has another value; other processes keep theirs."""
+    process = system.processes[name]
+    found = _stimuli(process, system)
+    if len(found) != 1:
+        names = ", ".join(stimulus.name for stimulus in found)
+        reason = f"has several stimuli ({names}); change one of these" if found else "has no stimulus"
+        raise InvalidArgumentError(f"{name!r} {reason}")
+    stimulus = found[0]
+    _check_holder(stimulus, field, f"the stimulus {stimulus.name!r} of {name!r}")
+    fields = _fields(stimulus, field, value)
+    if sum(stimulus.name in other.stimuli for other in system.processes.values()) == 1:
+        return STIMULI.with_fields(system, stimulus.name, **fields)
+    if any(isinstance(event, StimulusEvent) and event.stimulus == stimulus.name for event in system.events.events):
+        message = f"{stimulus.name!r} activates other processes, too, and an event refers to it; change {stimulus.name}.{field}"
+        raise InvalidArgumentError(f"the stimulus {message} for all of them")
+    own = replace(stimulus, name=_unused_name(f"{stimulus.name} of {name}", system), **fields)
+    place = TASKS if isinstance(process, Task) else ISRS
+    renamed = tuple(own.name if each == stimulus.name else each for each in process.stimuli)
+    return place.with_fields(STIMULI.with_item(system, own), name, stimuli=renamed)
+
+
+def _unused_name(name: str, system: System) -> str:
+    while name in system.stimuli_by_name:
+        name += "'"
+    return name
+
+
+#: The keys of stimuli, and of processes.
+STIMULUS_KEYS = {field: _stimulus_key(field, *functions) for field, functions in _FIELDS.items()}
+PROCESS_KEYS = {field: _process_key(field, *functions) for field, functions in _FIELDS.items()}

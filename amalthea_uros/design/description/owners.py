@@ -1,0 +1,86 @@
+"""The sections of a description that have the values of a process, a runnable or a message."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import StrEnum
+
+from amalthea_uros.design.description.text_edits import Path
+from amalthea_uros.spec.application import Callback, MessageCallback, Timer
+from amalthea_uros.spec.description import Description
+from amalthea_uros.spec.executors import Executor
+from amalthea_uros.spec.section import Section
+from amalthea_uros.uros.application import body_name
+from amalthea_uros.uros.executor import spin_name
+
+_CALLBACKS = ("subscriptions", "timers", "services", "clients", "guard_conditions", "action_servers", "action_clients")
+
+
+class OwnerKind(StrEnum):
+    """What a section describes."""
+
+    EXECUTOR = "executor"
+    TIMER = "timer"
+    MESSAGE_CALLBACK = "callback"
+    BODY = "runnable of a callback"
+    TASK = "task"
+    ISR = "interrupt service routine"
+    RUNNABLE = "runnable"
+    SPIN = "runnable of the executor"
+    TAKE = "runnable that takes a message"
+    NOTIFY = "runnable that notifies a callback"
+    INTERRUPT = "interrupt of the transport"
+
+
+@dataclass(frozen=True, slots=True)
+class Owner:
+    """A section, and where it is in the text."""
+
+    name: str
+    kind: OwnerKind
+    path: Path
+    section: Section
+
+
+def owners(description: Description) -> Iterator[Owner]:
+    """All sections whose values can be changed; those of a runnable of several processes are several."""
+    for place, executor in executors(description):
+        yield Owner(executor.name, OwnerKind.EXECUTOR, place, executor)
+        yield Owner(spin_name(executor.name), OwnerKind.SPIN, place, executor)
+    for path, callback in callbacks(description):
+        kind = OwnerKind.TIMER if isinstance(callback, Timer) else OwnerKind.MESSAGE_CALLBACK
+        yield Owner(callback.name, kind, path, callback)
+        yield Owner(body_name(callback.name), OwnerKind.BODY, path, callback)
+        if isinstance(callback, MessageCallback):
+            yield Owner(f"Take_{callback.name}", OwnerKind.TAKE, path, callback)
+        else:
+            yield Owner(f"Notify_{callback.name}", OwnerKind.NOTIFY, path, callback)
+    for key, kind in (("tasks", OwnerKind.TASK), ("isrs", OwnerKind.ISR)):
+        for index, process in enumerate(getattr(description, key)):
+            yield Owner(process.name, kind, (key, index), process)
+            if not process.runnables:
+                yield Owner(f"{process.name}_Runnable", OwnerKind.RUNNABLE, (key, index), process)
+            for number, runnable in enumerate(process.runnables):
+                yield Owner(runnable.name, OwnerKind.RUNNABLE, (key, index, "runnables", number), runnable)
+    can = description.middleware.transport.can
+    if can is not None and can.interrupt is not None:
+        path = ("middleware", "transport", "can", "interrupt")
+        yield Owner(can.interrupt.name, OwnerKind.INTERRUPT, path, can.interrupt)
+        yield Owner(f"{can.interrupt.name}_Frame", OwnerKind.INTERRUPT, path, can.interrupt)
+
+
+def executors(description: Description) -> Iterator[tuple[Path, Executor]]:
+    """All executors with their places."""
+    if not description.middleware.executors:
+        yield ("middleware", "executor"), description.middleware.executor
+    for index, executor in enumerate(description.middleware.executors):
+        yield ("middleware", "executors", index), executor
+
+
+def callbacks(description: Description) -> Iterator[tuple[Path, Callback]]:
+    """All callbacks with their places."""
+    for index, node in enumerate(description.application.nodes):
+        for kind in _CALLBACKS:
+            for number, callback in enumerate(getattr(node, kind)):
+                yield ("application", "nodes", index, kind, number), callback

@@ -1,0 +1,277 @@
+"""Campaigns: every run is executed once, wherever that is, and its result depends on nothing but the run."""
+
+import csv
+import json
+import multiprocessing
+import os
+import pickle
+import sys
+import time
+from concurrent.futures import Future
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import closing
+from fractions import Fraction
+from functools import partial
+
+import campaign_jobs
+import pytest
+from support import ROOT
+
+from amalthea_uros.design.campaign import executors
+from amalthea_uros.design.campaign.campaign import run_campaign
+from amalthea_uros.design.campaign.executors import cluster, processes, serial
+from amalthea_uros.design.campaign.run import Outcome, Run, plan_runs
+from amalthea_uros.design.campaign.tables import table_format, write_table
+from amalthea_uros.design.changes.change import Change
+from amalthea_uros.design.changes.sweep import parse_sweep
+from amalthea_uros.errors import InvalidArgumentError, WriteError
+from amalthea_uros.services.inputs import open_system
+from amalthea_uros.services.simulate import SimulationJob
+from amalthea_uros.simulate.options import Options
+from amalthea_uros.timing.settings import Settings
+
+
+def runs(count):
+    return plan_runs([], count, 1) if count else ()
+
+
+def test_each_variant_is_run_with_the_same_seeds():
+    found = plan_runs([parse_sweep("A.x=1ms,2ms")], 2, 7)
+    first, second = (Change("A", "x", "1ms"),), (Change("A", "x", "2ms"),)
+    assert found == (Run(1, 7, first), Run(2, 8, first), Run(3, 7, second), Run(4, 8, second))
+
+
+@pytest.mark.parametrize(("repetitions", "message"), [(0, "expected at least 1"), (1_000_001, "has 1,000,001 runs; at most")])
+def test_the_number_of_runs_is_limited(repetitions, message):
+    with pytest.raises(InvalidArgumentError, match=message):
+        plan_runs([], repetitions, 1)
+
+
+def test_the_columns_of_a_run_have_numbers_in_internal_units():
+    changes = [Change("T", "period", "2 ms"), Change("T", "priority", "3"), Change("C", "frequency", "1.5 MHz")]
+    run = Run(4, 9, (*changes, Change("T", "execution_time", "1us..2us")))
+    assert run.columns() == {
+        "run": 4,
+        "seed": 9,
+        "T.period_ps": 2_000_000_000,
+        "T.priority": 3,
+        "C.frequency_hz": 1_500_000,
+        "T.execution_time": "1us..2us",
+    }
+
+
+@pytest.mark.parametrize("executor", [serial, processes(2)], ids=["serial", "processes"])
+@pytest.mark.parametrize("count", [0, 1, 50, 1500])
+def test_every_run_is_executed_once(executor, count):
+    outcomes = list(run_campaign(campaign_jobs.square, runs(count), executor))
+    assert sorted((outcome.run.number, outcome.record["square"]) for outcome in outcomes) == [
+        (number, number**2) for number in range(1, count + 1)
+    ]
+
+
+def test_processes_are_others_than_this_one():
+    used = {outcome.record["process"] for outcome in run_campaign(campaign_jobs.square, runs(20), processes(2))}
+    assert os.getpid() not in used
+    assert len(used) <= 2
+
+
+def test_nobody_waits_for_a_slow_run():
+    numbers = [outcome.run.number for outcome in run_campaign(campaign_jobs.slow_first, runs(20), processes(2))]
+    assert sorted(numbers) == list(range(1, 21))
+    assert numbers[0] != 1
+
+
+@pytest.mark.parametrize("executor", [serial, processes(2)], ids=["serial", "processes"])
+def test_a_run_that_fails_does_not_stop_the_others(executor):
+    outcomes = sorted(run_campaign(campaign_jobs.failing, runs(3), executor), key=lambda outcome: outcome.run.number)
+    assert [outcome.record for outcome in outcomes] == [{}, {"seed was": 2}, {}]
+    assert outcomes[0].error.startswith("KeyError: 'unexpected' (campaign_jobs.py:")
+    assert (outcomes[1].error, outcomes[2].error) == ("", "a multiple of three")
+
+
+def test_a_process_that_dies_is_replaced_and_only_the_run_that_kills_it_twice_is_lost():
+    outcomes = list(run_campaign(campaign_jobs.dying, runs(100), processes(2)))
+    assert sorted(outcome.run.number for outcome in outcomes) == list(range(1, 101))
+    assert [(outcome.run.number, "BrokenProcessPool" in outcome.error) for outcome in outcomes if outcome.error] == [(1, True)]
+
+
+def test_a_process_that_somebody_kills_loses_nothing(tmp_path):
+    job = partial(campaign_jobs.dying_once, folder=tmp_path)
+    outcomes = list(run_campaign(job, runs(60), processes(2)))
+    assert sorted(outcome.record["number"] for outcome in outcomes) == list(range(1, 61))
+
+
+class Pool:
+    """Executes in this process; the first of them breaks when it gets its second run, as if a worker was killed."""
+
+    started = 0
+
+    def __init__(self, _count, _context, *, initializer, initargs):
+        self.job = pickle.loads(initargs[0])
+        self.open = []
+        Pool.started += 1
+        self.breaks = Pool.started == 1
+
+    def submit(self, _execute, runs):
+        future = Future()
+        if self.breaks and self.open:
+            self.open[0].set_exception(BrokenProcessPool("killed"))
+            raise self.error
+        self.open.append(future)
+        if not self.breaks:
+            future.set_result([Outcome(run, dict(self.job(run))) for run in runs])
+        return future
+
+    def shutdown(self, **_options):
+        pass
+
+
+@pytest.mark.parametrize(
+    "error",
+    [
+        BrokenProcessPool("a process was terminated abruptly"),
+        # It closes its queues while another process is started that shall have them, or that process is the one that is killed.
+        OSError("handle is closed"),
+        BrokenPipeError("broken pipe"),
+        # It has noted that it accepts nothing, but not yet why.
+        RuntimeError("cannot schedule new futures after shutdown"),
+    ],
+    ids=lambda error: type(error).__name__,
+)
+def test_a_process_that_is_killed_while_another_one_starts_loses_nothing(monkeypatch, error):
+    monkeypatch.setattr(executors, "ProcessPoolExecutor", Pool)
+    monkeypatch.setattr(Pool, "started", 0)
+    monkeypatch.setattr(Pool, "error", error, raising=False)
+    outcomes = list(run_campaign(campaign_jobs.square, runs(6), processes(2)))
+    assert sorted((outcome.run.number, outcome.record["square"]) for outcome in outcomes) == [
+        (number, number**2) for number in range(1, 7)
+    ]
+    assert Pool.started == 2
+
+
+def test_a_pool_that_cannot_be_replaced_is_an_error(monkeypatch):
+    class Full(Pool):
+        def submit(self, _execute, _runs):
+            raise OSError("too many open files")
+
+    monkeypatch.setattr(executors, "ProcessPoolExecutor", Full)
+    with pytest.raises(OSError, match="too many open files"):
+        list(run_campaign(campaign_jobs.square, runs(2), processes(2)))
+
+
+def test_processes_end_when_a_campaign_is_stopped_early():
+    with closing(run_campaign(campaign_jobs.endless, runs(8), processes(2))) as outcomes:
+        assert next(outcomes).run.number in (1, 2)
+    deadline = time.monotonic() + 30
+    while multiprocessing.active_children() and time.monotonic() < deadline:
+        time.sleep(0.05)
+    assert multiprocessing.active_children() == []
+
+
+@pytest.fixture(scope="module")
+def scheduler():
+    distributed = pytest.importorskip("distributed")
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None) as found:
+        yield found.scheduler_address
+
+
+def test_a_cluster_gives_the_same_results(scheduler):
+    outcomes = list(run_campaign(campaign_jobs.square, runs(40), cluster(scheduler)))
+    assert {outcome.run.number: outcome.record["square"] for outcome in outcomes} == {n: n**2 for n in range(1, 41)}
+    assert os.getpid() not in {outcome.record["process"] for outcome in outcomes}
+
+
+def test_a_run_that_fails_on_a_cluster(scheduler):
+    outcomes = {outcome.run.seed: outcome for outcome in run_campaign(campaign_jobs.failing, runs(3), cluster(scheduler))}
+    assert [outcomes[seed].error[:8] for seed in (1, 2, 3)] == ["KeyError", "", "a multip"]
+
+
+def test_a_cluster_that_does_not_answer():
+    pytest.importorskip("distributed")
+    with pytest.raises(InvalidArgumentError, match="no Dask scheduler answers at 'nothing://here'"):
+        list(run_campaign(campaign_jobs.square, runs(1), cluster("nothing://here")))
+
+
+def test_a_cluster_without_workers():
+    distributed = pytest.importorskip("distributed")
+    with (
+        distributed.LocalCluster(n_workers=0, dashboard_address=None) as found,
+        pytest.raises(InvalidArgumentError, match="has no workers; start some with 'dask worker"),
+    ):
+        list(run_campaign(campaign_jobs.square, runs(1), cluster(found.scheduler_address)))
+
+
+def test_a_cluster_without_the_package(monkeypatch):
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(InvalidArgumentError, match=r"pip install amuros\[cluster\]"):
+        list(run_campaign(campaign_jobs.square, runs(1), cluster("tcp://127.0.0.1:1")))
+
+
+@pytest.mark.parametrize("path", [ROOT / "samples" / "drive-and-lift.amxmi", ROOT / "samples" / "drive-and-lift.yaml"])
+def test_the_job_of_a_simulation_can_be_sent_without_the_model_that_it_comes_from(path):
+    options = Options(duration=10**12, settings=Settings(scale=Fraction(1, 3)))
+    job = SimulationJob(open_system([path]).system, options, (Change("A", "x", "1ms"),))
+    data = pickle.dumps(job)
+    assert pickle.loads(data) == job
+    assert b"metamodel" not in data
+    assert len(data) < path.with_suffix(".amxmi").stat().st_size
+
+
+ROWS = [
+    Outcome(Run(1, 5), {"a": 1, "b": 0.5, "c": 'x, "y"'}).row(),
+    Outcome(Run(2, 6), {"a": 2**70, "b": None, "d": "é"}).row(),
+    Outcome(Run(3, 7), {}, "failed").row(),
+]
+COLUMNS = ["run", "seed", "a", "b", "c", "d", "error"]
+TABLE = [
+    [1, 5, 1, 0.5, 'x, "y"', None, None],
+    [2, 6, 2**70, None, None, "é", None],
+    [3, 7, None, None, None, None, "failed"],
+]
+
+
+def test_a_table_as_csv(tmp_path):
+    write_table(tmp_path / "t.csv", ROWS)
+    with (tmp_path / "t.csv").open(encoding="utf-8", newline="") as stream:
+        found = list(csv.reader(stream))
+    assert found == [COLUMNS, *([("" if value is None else str(value)) for value in row] for row in TABLE)]
+
+
+def test_a_table_as_json(tmp_path):
+    write_table(tmp_path / "t.JSON", ROWS)
+    assert json.loads((tmp_path / "t.JSON").read_text("utf-8")) == [dict(zip(COLUMNS, row, strict=True)) for row in TABLE]
+
+
+def test_a_table_as_parquet(tmp_path):
+    parquet = pytest.importorskip("pyarrow.parquet")
+    write_table(tmp_path / "t.parquet", ROWS)
+    found = parquet.read_table(tmp_path / "t.parquet").to_pydict()
+    # Numbers beyond 64 bits make a column of texts.
+    assert found == {
+        column: [value if column != "a" or value is None else str(value) for value in values]
+        for column, values in zip(COLUMNS, map(list, zip(*TABLE, strict=True)), strict=True)
+    }
+
+
+@pytest.mark.parametrize("suffix", ["csv", "json", "parquet"])
+def test_a_table_without_rows(suffix, tmp_path):
+    if suffix == "parquet":
+        pytest.importorskip("pyarrow")
+    write_table(tmp_path / f"t.{suffix}", [])
+    assert (tmp_path / f"t.{suffix}").exists()
+
+
+def test_a_table_of_an_unknown_kind(tmp_path):
+    with pytest.raises(InvalidArgumentError, match=r"expected one of \.csv, \.json, \.parquet"):
+        table_format(tmp_path / "t.xlsx")
+
+
+def test_parquet_without_its_package(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    with pytest.raises(InvalidArgumentError, match=r"pip install amuros\[pandas\]"):
+        table_format(tmp_path / "t.parquet")
+
+
+def test_a_table_that_cannot_be_written(tmp_path):
+    with pytest.raises(WriteError, match="cannot be written"):
+        write_table(tmp_path / "missing" / "t.csv", ROWS)

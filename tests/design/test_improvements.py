@@ -1,0 +1,128 @@
+"""Changes that shorten a latency, against the values of the changed systems that were played through, and against separate analyses."""
+
+from dataclasses import replace
+
+import pytest
+from effort import every
+from support import ROOT
+
+from amalthea_uros.analyze.results import Quantity
+from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.design.changes.apply import apply
+from amalthea_uros.perf.activities import Communication
+from amalthea_uros.perf.constraints import Bound, Requirement, TimeLimit, TimeMetric
+from amalthea_uros.services import improvements as improvements_module
+from amalthea_uros.services.analyze import analyze_files
+from amalthea_uros.services.explain import explain
+from amalthea_uros.services.improvements import improvements
+from amalthea_uros.timing.settings import Settings
+from amalthea_uros.units import MICROSECOND as US
+from amalthea_uros.units import MILLISECOND as MS
+
+SAMPLES = ROOT / "samples"
+CHAIN = "factor-to-output"
+
+
+@pytest.fixture(scope="module")
+def advanced():
+    return analyze_files(SAMPLES / "bodas-test-advanced.yaml")
+
+
+@pytest.fixture(scope="module")
+def shorter(advanced):
+    return improvements(advanced, CHAIN)
+
+
+def effects(found):
+    return {each.change.text: (each.before // US, each.after // US) for each in found.found}
+
+
+def test_the_changes_of_the_thesis(shorter):
+    """The values of each change over all phases of the message, found by playing the schedules through."""
+    found = effects(shorter)
+    assert found["period of Message_Factor 20 ms -> 10 ms"] == (20_029, 10_016)
+    assert found["period of Message_Factor 20 ms -> 1 ms"] == (20_029, 1_016)
+    assert found["exchange the priorities of Message_Factor and Control_Function"] == (20_029, 19_018)
+    assert found["exchange the priorities of Control_Function and Executor_Task"] == (20_029, 20_000)
+    assert found["exchange the priorities of Message_Factor and Executor_Task"] == (20_029, 20_000)
+    # Message_Factor above all others is no better than now.
+    assert "priority of Message_Factor 1 -> 4" not in found
+
+
+def test_periods_that_are_not_on_offer_in_a_description():
+    """A model does not say which periods the platform offers, so parts of the period are tried."""
+    found = effects(improvements(analyze_files(SAMPLES / "bodas-test-advanced.amxmi"), CHAIN))
+    assert found["period of Message_Factor 20 ms -> 2 ms"] == (20_029, 2_016)
+
+
+def test_the_shortest_is_the_first(shorter):
+    assert [each.after for each in shorter.found] == sorted(each.after for each in shorter.found)
+    assert all(each.after < each.before == 20_029 * US for each in shorter.found)
+
+
+def test_a_longer_period_is_no_proposal(shorter):
+    """A slower executor takes messages later, which a latency that begins at the executor does not include."""
+    changes = [change for each in shorter.found for change in each.change.changes]
+    assert "Executor_Task.period" not in {change.target for change in changes}
+
+
+@pytest.mark.parametrize("quantity", [Quantity.MAX_REDUCED_REACTION_TIME, Quantity.MAX_DATA_AGE])
+@pytest.mark.parametrize("chain", ["speed-to-torque", "height-to-log"])
+def test_each_value_is_that_of_a_separate_analysis(chain, quantity):
+    result = analyze_files(SAMPLES / "drive-and-lift.yaml")
+    for each in every(3, improvements(result, chain, quantity).found):
+        changed = apply(result.system, Settings(communication=each.change.communication), each.change.changes)
+        value = analyze_system(*changed).chains[chain].value(quantity)
+        assert (each.after, each.claim) == (value.value, value.claim)
+
+
+def test_what_a_change_breaks_is_said(advanced):
+    """Above the control function, the callback delays it: 25 for the executor, 2 for the callback and its own 4."""
+    limit = TimeLimit(metric=TimeMetric.RESPONSE_TIME, bound=Bound.UPPER, value=29 * US)
+    requirement = Requirement(name="tight", process="Control_Function", limit=limit)
+    constraints = replace(advanced.system.constraints, requirements=(requirement,))
+    system = replace(advanced.system, constraints=constraints)
+    result = replace(advanced, system=system, analysis=analyze_system(system))
+    (exchanged,) = [
+        each for each in improvements(result, CHAIN).found if each.change.text.endswith("Message_Factor and Control_Function")
+    ]
+    assert not exchanged.is_safe
+    assert ("tight", "met", "missed") in [(each.name, each.before, each.after) for each in exchanged.drawbacks]
+
+
+def test_changes_of_communication_have_an_option():
+    result = analyze_files(SAMPLES / "drive-and-lift.yaml", Settings(communication=Communication.LET))
+    found = improvements(result, "speed-to-torque").found
+    (implicit,) = [each for each in found if each.change.communication is Communication.IMPLICIT]
+    assert implicit.change.options == ("--communication", "implicit")
+    assert implicit.before == 110 * MS
+
+
+def test_no_more_analyses_than_the_limit(advanced, monkeypatch):
+    monkeypatch.setattr(improvements_module, "MAX_ANALYSES", 3)
+    found = improvements(advanced, CHAIN)
+    assert (found.tried, found.untried > 0) == (3, True)
+
+
+def test_those_of_a_chain_are_part_of_its_explanation(advanced, shorter):
+    # They are computed again here, and are the same.
+    assert explain(advanced, CHAIN).improvements == shorter
+    assert explain(advanced, "Executor_Task").improvements is None
+
+
+def test_what_bounds_a_chain_without_a_bound():
+    """Sixty times as long, everything together needs more than the core; twice as fast a clock makes it fit again."""
+    result = analyze_files(SAMPLES / "bodas-test-advanced.yaml", Settings(scale=60))
+    found = improvements(result, CHAIN).found
+    assert [each.change.text for each in found if each.before is None] == ["frequency of Core_0 1 MHz -> 2 MHz"]
+
+
+def test_other_chains_that_take_longer_are_drawbacks():
+    """After the exchange Control_Speed runs after Set_Speed, whose 30 us its own chain then waits for, too."""
+    found = improvements(analyze_files(SAMPLES / "drive-and-lift.yaml"), "speed-to-torque").found
+    (exchanged,) = [each for each in found if each.change.text == "exchange the priorities of Set_Speed and Control_Speed"]
+    assert [(each.name, each.before, each.after) for each in exchanged.drawbacks] == [
+        ("max reduced reaction time of wheel-to-torque", "15.2821 ms", "15.3121 ms"),
+        ("max reduced data age of wheel-to-torque", "25.2821 ms", "25.3121 ms"),
+    ]
+    assert exchanged.is_safe

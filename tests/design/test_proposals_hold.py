@@ -1,0 +1,90 @@
+"""Proposals hold in the simulation of their designs, and the same seed gives the same proposals."""
+
+import pickle
+from dataclasses import replace
+
+from design_systems import system_of
+from effort import examples
+from hypothesis import given
+from hypothesis import strategies as st
+
+from amalthea_uros import analyze_system, optimize, simulate
+from amalthea_uros.design.optimize.enumeration import count_with, designs_with, most_changes
+from amalthea_uros.design.optimize.problem import Conclusion
+from amalthea_uros.design.optimize.recorder import Effort
+from amalthea_uros.design.optimize.search import search
+from amalthea_uros.design.optimize.space import Choice, Kind, PriorityOrder, Space
+from amalthea_uros.services.design_space import Wishes
+from amalthea_uros.services.optimize import plan_optimization
+from amalthea_uros.units import MILLISECOND as MS
+
+
+@st.composite
+def task_sets(draw):
+    tasks = []
+    for name in "ABC":
+        period = draw(st.sampled_from((4, 5, 8, 10, 20)))
+        execution = draw(st.integers(1, max(1, period // 3)))
+        deadline = draw(st.integers(max(execution, period // 2), period))
+        tasks.append({"name": name, "C": execution, "T": period, "D": deadline, "O": draw(st.integers(0, 2))})
+    return system_of(tasks)
+
+
+@examples(9)
+@given(system=task_sets())
+def test_no_deadline_is_missed_in_the_simulation_of_a_proposal(system):
+    found = optimize(system, proposals=2)
+    for proposal in found.proposals:
+        assert proposal.analysis.summary.schedulable == "yes"
+        run = simulate(proposal.configuration.system, MS)
+        for process in proposal.analysis.processes:
+            observed = run.processes[process.name].metrics["response_time"].max
+            assert observed <= process.wcrt <= process.deadline
+    if found.search.conclusion is Conclusion.NONE:
+        assert not found.search.best
+    again = optimize(system, proposals=2)
+    assert [each.changes for each in again.proposals] == [each.changes for each in found.proposals]
+
+
+def test_what_judges_designs_can_be_sent_to_other_processes():
+    system = system_of([{"name": "A", "C": 1, "T": 4, "D": 4}, {"name": "B", "C": 2, "T": 8, "D": 8}])
+    plan = plan_optimization(system, Wishes())
+    designs = [*designs_with(plan.problem.space, 0), *designs_with(plan.problem.space, 2)]
+    sent = pickle.loads(pickle.dumps(plan.evaluator))
+    assert sent(designs) == plan.evaluator(designs)
+    assert plan.evaluator.judged((), analyze_system(system)) == plan.evaluator.evaluate(())
+
+
+def test_designs_are_counted_as_they_are_listed():
+    space = Space(
+        choices=(
+            Choice(object="A", key="period", kind=Kind.PERIOD, options=("1ms", "2ms", "4ms")),
+            Choice(object="B", key="offset", kind=Kind.OFFSET, options=("0s", "1ms")),
+        ),
+        orders=(PriorityOrder(scheduler="S", tasks=("A", "B", "C"), numbers=(3, 2, 1)),),
+    )
+    listed = [list(designs_with(space, changes)) for changes in range(most_changes(space) + 1)]
+    assert [len(each) for each in listed] == [count_with(space, changes) for changes in range(len(listed))]
+    every = [design for level in listed for design in level]
+    # 3 periods, 2 offsets, 3! orders
+    assert len(set(every)) == len(every) == space.size == 36
+    assert all(len(design) == changes for changes, level in enumerate(listed) for design in level)
+
+
+def test_an_interrupt_or_the_time_limit_ends_a_search_with_what_was_found():
+    tasks = [{"name": name, "C": 1, "T": 8, "D": 8} for name in "ABCDE"]
+    plan = plan_optimization(system_of(tasks), goals=["load"])
+    calls = []
+
+    def interrupted(candidates):
+        calls.append(candidates)
+        if len(calls) == 3:
+            raise KeyboardInterrupt
+        return plan.evaluator(candidates)
+
+    found = search(replace(plan.problem, evaluate=interrupted), Effort(is_complete=True))
+    assert found.ended == "interrupted"
+    assert found.conclusion is Conclusion.BEST_FOUND
+    assert found.tried == len(calls[0]) + len(calls[1])
+    late = search(plan.problem, Effort(ended=lambda: "the time limit was reached"))
+    assert (late.conclusion, late.tried, late.ended) == (Conclusion.NOT_FOUND, 0, "the time limit was reached")
