@@ -42,9 +42,6 @@ if TYPE_CHECKING:
     from amalthea_uros import units as units
     from amalthea_uros.analyze.assignment import Proposal as Proposal
     from amalthea_uros.analyze.assignment import propose_priorities as propose_priorities
-    from amalthea_uros.analyze.executors.results import ExecutorResult as ExecutorResult
-    from amalthea_uros.analyze.executors.results import HandleResult as HandleResult
-    from amalthea_uros.analyze.executors.results import Loss as Loss
     from amalthea_uros.analyze.impact import Effect as Effect
     from amalthea_uros.analyze.impact import Impact as Impact
     from amalthea_uros.analyze.impact import ImpactRow as ImpactRow
@@ -94,6 +91,9 @@ if TYPE_CHECKING:
     from amalthea_uros.errors import InvalidArgumentError as InvalidArgumentError
     from amalthea_uros.errors import ReadError as ReadError
     from amalthea_uros.errors import WriteError as WriteError
+    from amalthea_uros.executors.results import ExecutorResult as ExecutorResult
+    from amalthea_uros.executors.results import HandleResult as HandleResult
+    from amalthea_uros.executors.results import Loss as Loss
     from amalthea_uros.judge.summary import Schedulable as Schedulable
     from amalthea_uros.judge.summary import Summary as Summary
     from amalthea_uros.judge.verdict import Verdict as Verdict
@@ -168,7 +168,7 @@ if TYPE_CHECKING:
 
 _NAMES = {
     "analyze.assignment": ("Proposal", "propose_priorities"),
-    "analyze.executors.results": ("ExecutorResult", "HandleResult", "Loss"),
+    "executors.results": ("ExecutorResult", "HandleResult", "Hop", "HopKind", "Loss"),
     "analyze.impact": ("Effect", "Impact", "ImpactRow"),
     "analyze.results": (
         "Analysis",
@@ -188,7 +188,7 @@ _NAMES = {
     "judge.summary": ("Schedulable", "Summary"),
     "analyze.system": ("analyze_system",),
     "judge.verdict": ("Verdict",),
-    "analyze.ways.results": ("Hop", "HopKind", "Way"),
+    "analyze.ways.results": ("Way",),
     "bridge.build": ("build_model",),
     "bridge.extract": ("Extraction", "extract"),
     "diagnostics": ("Finding", "Location", "Severity"),

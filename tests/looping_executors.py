@@ -4,8 +4,9 @@ from dataclasses import replace
 
 from hand_made_systems import Proc, system, ticks
 
-from amalthea_uros.analyze.executors.evaluate import evaluate_executors
 from amalthea_uros.analyze.propagation import solve
+from amalthea_uros.executors.bounds.evaluate import evaluate_executors
+from amalthea_uros.executors.semantics.loops import timing_context
 from amalthea_uros.perf.activities import Call, Chance, ProbabilitySwitch
 from amalthea_uros.perf.distributions import Constant
 from amalthea_uros.perf.executors import (
@@ -21,7 +22,6 @@ from amalthea_uros.perf.executors import (
 )
 from amalthea_uros.perf.software import Runnable
 from amalthea_uros.perf.stimuli import Periodic, RelativePeriodic, Stimuli
-from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
 
@@ -83,7 +83,7 @@ def _parts(name, handles, loop, spin, priority):
 
 def evaluate(found, sending=None, extra_jitter=None):
     """The result of the first executor of a system."""
-    solution = solve(TimingContext.of(found))
+    solution = solve(timing_context(found))
     return evaluate_executors(solution, sending=sending or {}, extra_jitter=extra_jitter or {})[0]
 
 

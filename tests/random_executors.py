@@ -8,8 +8,9 @@ from hand_made_systems import Proc, system
 from looping_executors import combined, guard, message, timer
 from played_executors import Spans, play
 
-from amalthea_uros.analyze.executors.evaluate import evaluate_executors
 from amalthea_uros.analyze.propagation import solve
+from amalthea_uros.executors.bounds.evaluate import evaluate_executors
+from amalthea_uros.executors.semantics.loops import timing_context
 from amalthea_uros.perf.activities import Call, Chance, Demand, Execute, ProbabilitySwitch
 from amalthea_uros.perf.distributions import Boundaries, Constant
 from amalthea_uros.perf.executors import (
@@ -25,7 +26,6 @@ from amalthea_uros.perf.executors import (
 from amalthea_uros.perf.network import Span
 from amalthea_uros.perf.software import Runnable
 from amalthea_uros.perf.stimuli import Periodic, RelativePeriodic, Stimuli
-from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
 
@@ -48,7 +48,7 @@ class Application:
     priorities: dict
 
     def results(self):
-        solution = solve(TimingContext.of(self.system))
+        solution = solve(timing_context(self.system))
         sending = {name: Span(least=least, most=most) for name, (least, most) in self.sending.items()}
         return evaluate_executors(solution, sending=sending, extra_jitter=self.delays)
 

@@ -22,8 +22,9 @@ ROOMS = {
     "findings": BASE,
     "perf": BASE,
     "timing": (*BASE, "perf"),
+    "executors": (*BASE, "perf", "timing"),
     "spec": BASE,
-    "uros": (*BASE, "perf", "spec", "timing"),
+    "uros": (*BASE, "executors", "perf", "spec", "timing"),
     "source": BASE,
     "metamodel": BASE,
     "xmi": (*BASE, "metamodel"),
@@ -31,10 +32,10 @@ ROOMS = {
     "difference": (*BASE, "metamodel"),
     "validate": (*BASE, "findings", "metamodel", "perf", "timing"),
     "judge": (*BASE, "perf", "timing"),
-    "analyze": (*BASE, "judge", "perf", "timing"),
+    "analyze": (*BASE, "executors", "judge", "perf", "timing"),
     "trace": BASE,
     "measure": (*BASE, "timing", "trace"),
-    "simulate": (*BASE, "judge", "perf", "timing", "trace"),
+    "simulate": (*BASE, "executors", "judge", "perf", "timing", "trace"),
 }
 ROOMS["design"] = tuple(ROOMS)
 ROOMS["compare"] = tuple(ROOMS)

@@ -10,6 +10,7 @@ from hand_made_systems import READ, WRITE, Proc, access, chain, system, ticks
 
 from amalthea_uros.analyze.propagation import solve
 from amalthea_uros.analyze.ways.evaluate import evaluate_ways
+from amalthea_uros.executors.semantics.loops import timing_context
 from amalthea_uros.perf.activities import Call, Chance, ProbabilitySwitch
 from amalthea_uros.perf.distributions import Constant
 from amalthea_uros.perf.events import LabelChange, LabelEvent, ProcessChange, ProcessEvent, RunnableChange, RunnableEvent
@@ -18,7 +19,6 @@ from amalthea_uros.perf.network import Direction, Network, Purpose, Span, Transm
 from amalthea_uros.perf.os import Policy, Scheduler
 from amalthea_uros.perf.software import Label, Preemption, Runnable
 from amalthea_uros.perf.stimuli import RelativePeriodic
-from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
 
@@ -125,7 +125,7 @@ def board(*chains, agent=AGENT, publication=None, handles=(), wire=None, **handl
 
 def ways_of(found):
     """The ways of a system by name."""
-    return {way.name: way for way in evaluate_ways(solve(TimingContext.of(found)))[1]}
+    return {way.name: way for way in evaluate_ways(solve(timing_context(found)))[1]}
 
 
 def tick(interval=50_000, cost=200):

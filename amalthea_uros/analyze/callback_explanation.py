@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from amalthea_uros.analyze.execution_shares import ExecutionShare, execution_shares
-from amalthea_uros.analyze.executors.results import HandleResult
 from amalthea_uros.analyze.results import Analysis, CallbackResult, ProcessResult
+from amalthea_uros.executors.results import HandleResult
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -17,12 +17,12 @@ import numpy as np
 from amalthea_uros.analyze import metrics
 from amalthea_uros.analyze.chains.completed_work import times_of_completion
 from amalthea_uros.analyze.chains.core_schedule import CoreSchedule, CoreSchedules
-from amalthea_uros.analyze.executors.callbacks import callback_results
-from amalthea_uros.analyze.executors.results import ExecutorResult
+from amalthea_uros.analyze.executor_results import callback_results
 from amalthea_uros.analyze.metrics import Span
 from amalthea_uros.analyze.response_times.schedule import demand_cycle, demand_table, demands_of_jobs
 from amalthea_uros.analyze.results import CallbackResult, Claim, JobMetric, Metric, Response
 from amalthea_uros.analyze.solution import Solution
+from amalthea_uros.executors.results import ExecutorResult
 from amalthea_uros.perf.activities import Activity, Call, ServerCall, Terminate
 from amalthea_uros.perf.constraints import Bound, TimeLimit, TimeMetric
 from amalthea_uros.perf.software import Process

@@ -25,11 +25,11 @@ from amalthea_uros.analyze.results import (
     Value,
 )
 from amalthea_uros.analyze.solution import Solution
+from amalthea_uros.executors.semantics.loops import timing_context
 from amalthea_uros.judge.evidence import Ends
 from amalthea_uros.judge.limits import SystemLimit
 from amalthea_uros.judge.summary import summarize
 from amalthea_uros.judge.verdict import WORST_FIRST, prove
-from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.jitter import jitter_of
 from amalthea_uros.timing.phases import Occurrence, phase_combinations, phase_count, with_phases
 from amalthea_uros.units import Time
@@ -78,7 +78,7 @@ class Phases:
 
 def _solution(solution: Solution, combination: Mapping[Occurrence, int]) -> Solution:
     context = solution.context
-    return solve(TimingContext.of(with_phases(context.system, combination), context.settings))
+    return solve(timing_context(with_phases(context.system, combination), context.settings))
 
 
 def merged(analyses: Mapping[int, Analysis], cases: PhaseCases, solution: Solution) -> Analysis:

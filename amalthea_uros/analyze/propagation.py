@@ -15,15 +15,13 @@ from amalthea_uros.analyze.response_times.core import responses_on
 from amalthea_uros.analyze.response_times.known_offsets import tightened
 from amalthea_uros.analyze.results import Response
 from amalthea_uros.analyze.solution import Solution
+from amalthea_uros.executors.semantics.loops import sleep_of, why_dense, workload
 from amalthea_uros.perf.activities import Trigger
 from amalthea_uros.perf.software import Process
 from amalthea_uros.timing.activation import Output, UnknownActivationError
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.event_models import Delayed, EventModel, OutputEventModel, Periodic
-from amalthea_uros.timing.executors.bursts import dense_rounds
-from amalthea_uros.timing.executors.loops import least_sleep
-from amalthea_uros.timing.executors.workload import workload
 from amalthea_uros.timing.limits import MAX_INPUT
 from amalthea_uros.timing.scheduling import ScheduledProcess
 from amalthea_uros.units import Time
@@ -123,7 +121,7 @@ def _require_known_rounds(name: str, context: TimingContext) -> None:
     demand = context.demands.get(name)
     if executor is None or demand is None:
         return
-    reason = dense_rounds(executor, context.system.executors, -(-demand.worst // context.time_base(name)))
+    reason = why_dense(executor, context.system.executors, -(-demand.worst // context.time_base(name)))
     if reason and (_is_above_others(item, context) or _triggers_others(item, context)):
         raise UnknownActivationError(reason)
 
@@ -151,7 +149,7 @@ def _output(solution: Solution, responses: Mapping[str, Response]) -> Output:
             raise UnknownActivationError(f"it is triggered by {process.name!r}, which could not be analysed")
         events = activations()
         executor = context.system.executor_of_task.get(process.name)
-        if executor is not None and least_sleep(executor):
+        if executor is not None and sleep_of(executor).lower:
             # Between two rounds are the sleep and at least a whole round, from any point of the one to that of the other.
             return events
         response = responses.get(process.name)

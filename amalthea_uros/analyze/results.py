@@ -17,48 +17,14 @@ from amalthea_uros.judge.margins import margin_of
 from amalthea_uros.judge.summary import Summary
 from amalthea_uros.judge.verdict import Failure, Judgement, Verdict
 from amalthea_uros.timing.job_metric import JobMetric as JobMetric
+from amalthea_uros.timing.response import Claim as Claim
+from amalthea_uros.timing.response import Response as Response
 from amalthea_uros.units import Frequency, Time, time_text
 
 if TYPE_CHECKING:
-    from amalthea_uros.analyze.executors.results import ExecutorResult
     from amalthea_uros.analyze.solution import Solution
     from amalthea_uros.analyze.ways.results import Way
-
-
-class Claim(StrEnum):
-    """What is claimed about a value."""
-
-    EXACT = "exact"
-    BOUND = "bound"
-    OBSERVED = "observed"
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Response:
-    """The response time of a task, from its activation to its end.
-
-    Attributes
-    ----------
-    worst : None if there is no finite bound, for the `reason`
-    best : minimum response time
-    jobs : number of jobs of the busy window that were examined
-    window : length of the busy window up to the end of the worst job
-    completions : latest ends of the jobs of the busy window, from its start; empty if unknown
-    terms : the parts of the worst case: own, interference, blocking; they add up to it
-    is_overload : whether `worst` is None because, in the long run, more work is activated than can be executed
-    """
-
-    worst: Time | None
-    best: Time
-    method: str
-    source: str
-    claim: Claim = Claim.EXACT
-    jobs: int = 1
-    window: Time = 0
-    completions: tuple[Time, ...] = ()
-    terms: Mapping[str, Time] = field(default_factory=dict)
-    reason: str = ""
-    is_overload: bool = False
+    from amalthea_uros.executors.results import ExecutorResult
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

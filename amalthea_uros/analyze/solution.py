@@ -17,6 +17,7 @@ from amalthea_uros.timing.scheduling import Rank, ScheduledProcess
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
+    from amalthea_uros.analyze.executor_threads import ExecutorThread
     from amalthea_uros.analyze.response_times.schedule import ExtremeCases, PeriodicTask
 
 
@@ -35,6 +36,7 @@ class Solution:
     responses: dict[str, Response] = field(default_factory=dict)
     reasons: dict[str, str] = field(default_factory=dict)
     _schedules: dict[str, ExtremeCases | None] = field(default_factory=dict, repr=False)
+    _threads: dict[str, ExecutorThread] = field(default_factory=dict, repr=False)
 
     def schedule(self, core: str, tasks: Sequence[PeriodicTask], with_slices: bool) -> ExtremeCases | None:
         """The schedules of all tasks of a core, built once; None if they are too long or the core is overloaded.
@@ -49,6 +51,19 @@ class Solution:
         if found is None or found.tasks != tasks or (with_slices and not found.has_slices):
             found = self._schedules[core] = ExtremeCases.of(tasks, with_slices)
         return found
+
+    def processor(self, task: str) -> ExecutorThread:
+        """The processor as the thread of an executor sees it; of a solution that is complete.
+
+        Raises
+        ------
+        UnknownError : it is not scheduled, or something unknown can delay it.
+        """
+        from amalthea_uros.analyze.executor_threads import ExecutorThread
+
+        if task not in self._threads:
+            self._threads[task] = ExecutorThread.of(task, self)
+        return self._threads[task]
 
     def mark_unknown(self, name: str, reason: str) -> None:
         """Record why the response time of a process is unknown."""

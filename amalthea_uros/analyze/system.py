@@ -11,9 +11,7 @@ from amalthea_uros.analyze.chains.constraints import ConstraintEvaluator
 from amalthea_uros.analyze.chains.core_schedule import CoreSchedules
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.chains.job_chains import JobBudget
-from amalthea_uros.analyze.executors.callbacks import METRICS_OF_ROUNDS, of_rounds
-from amalthea_uros.analyze.executors.findings import note_executors
-from amalthea_uros.analyze.executors.results import ExecutorResult
+from amalthea_uros.analyze.executor_results import METRICS_OF_ROUNDS, of_rounds
 from amalthea_uros.analyze.metrics import MetricEvaluator
 from amalthea_uros.analyze.phases import Phases, merged, merged_chain
 from amalthea_uros.analyze.process_evidence import evidence_of, judged
@@ -24,6 +22,9 @@ from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.analyze.ways.chain_results import chain_result
 from amalthea_uros.analyze.ways.evaluate import evaluate_ways
 from amalthea_uros.analyze.ways.results import Way
+from amalthea_uros.executors.findings import note_executors
+from amalthea_uros.executors.results import ExecutorResult
+from amalthea_uros.executors.semantics.loops import timing_context
 from amalthea_uros.judge.limits import deadline_of
 from amalthea_uros.judge.summary import summarize
 from amalthea_uros.judge.verdict import Verdict
@@ -62,7 +63,7 @@ def analyze_system(system: System, settings: Settings | None = None) -> Analysis
         )
     settings = settings or Settings()
     system = with_stated_phases(system, settings.phases)
-    solution = solve(TimingContext.of(system, settings))
+    solution = solve(timing_context(system, settings))
     system = solution.context.system
     unknown = unknown_phases(system)
     executors, ways = evaluate_ways(solution)
@@ -236,7 +237,7 @@ def _process(name: str, solution: Solution, executor: ExecutorResult | None) -> 
     if executor is not None:
         gap = "" if name in context.demands else context.reasons.get(name, "")
         return of_rounds(found, process, executor, found.deadline, gap)
-    if response is None or name in context.following_rounds or not solution.depends_on_losses(name):
+    if response is None or name in context.with_uncertain_activations or not solution.depends_on_losses(name):
         return _judged(found, events, context)
     # Without the lost jobs, others can be earlier, but not later.
     bound = replace(found, response=replace(response, claim=Claim.BOUND, best=min(response.best, found.bcet or 0)))
@@ -249,7 +250,7 @@ def _process(name: str, solution: Solution, executor: ExecutorResult | None) -> 
 def _judged(process: ProcessResult, events: EventModel | None, context: TimingContext) -> ProcessResult:
     """The result with its verdict; what rounds of executors activate may be activated less often."""
     model = context.system.processes[process.name]
-    can_borrow, may_be_less = context.can_borrow(process.name), process.name in context.following_rounds
+    can_borrow, may_be_less = context.can_borrow(process.name), process.name in context.with_uncertain_activations
     return judged(process, model, evidence_of(process, model, events, can_borrow, may_be_less))
 
 
@@ -280,7 +281,7 @@ def _processors(solution: Solution) -> Iterator[ProcessorResult]:
     known = {core for core in context.system.cores if _is_load_known(core, solution)}
     certain: Mapping[str, Fraction] = {}
     if len(known) < len(context.system.cores):
-        uncertain = {*context.following_rounds, *suppressible(context.system, context.activations)}
+        uncertain = {*context.with_uncertain_activations, *suppressible(context.system, context.activations)}
         certain = certain_loads(allocated_cores(context.system), context.activations, context.demand_model, uncertain)
     for core in context.system.cores:
         best, mean, worst = _loads(core, solution) if core in known else (None, None, None)
@@ -329,7 +330,7 @@ def _certain_load(items: Iterable[ScheduledProcess], core: str, solution: Soluti
 
     Nor does it contain activations that conditions may suppress.
     """
-    names = (item.name for item in items if item.name not in solution.context.following_rounds)
+    names = (item.name for item in items if item.name not in solution.context.with_uncertain_activations)
     return _load(_never_suppressed(names, solution), core, solution).certain
 
 

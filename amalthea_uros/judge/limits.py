@@ -113,7 +113,7 @@ def deadline_of(process: str, context: TimingContext) -> Deadline | None:
     if stated is not None:
         return Deadline(stated, is_implicit=False)
     # The rounds of an executor, and what they activate, have no period.
-    if process in system.executor_of_task or process in context.following_rounds:
+    if process in system.executor_of_task or process in context.with_uncertain_activations:
         return None
     events = context.stated_activations(process)
     period = None if events is None else implicit_deadline(events)

@@ -10,7 +10,6 @@ from typing import Any
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros._internal.shown import Record
 from amalthea_uros.analyze.assignment import Proposal
-from amalthea_uros.analyze.executors.results import ExecutorResult, HandleResult
 from amalthea_uros.analyze.impact import Impact
 from amalthea_uros.analyze.results import (
     Analysis,
@@ -23,6 +22,7 @@ from amalthea_uros.analyze.results import (
 from amalthea_uros.analyze.sensitivity import Sensitivity
 from amalthea_uros.analyze.ways.results import Way
 from amalthea_uros.compare.results import Comparison, ComparisonRow, DistributionRow, MeasuredLimit
+from amalthea_uros.executors.results import ExecutorResult, HandleResult
 from amalthea_uros.measure.series import Measurement
 from amalthea_uros.report.json import (
     analysis_result,

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from amalthea_uros.analyze.ways.results import Hop, Part, Way
+from amalthea_uros.analyze.ways.results import Way
+from amalthea_uros.executors.results import Hop, Part
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.units import Rounding, Time, rounded_time_text, time_text
 
@@ -65,7 +66,7 @@ def write_hops_of_way(way: Way, terminal: Terminal) -> None:
                 note,
             )
         )
-        rows += [(f"  {part.name}", "", _part(part), "", part.why) for part in hop.parts]
+        rows += [(f"  {part.name}", "", part_time(part), "", part.why) for part in hop.parts]
     worst = "?" if way.delivered is None else time_text(way.delivered)
     rows.append(("sum", time_text(way.best), worst, "", ""))
     terminal.table(("hop", "best", "worst", "share", ""), rows, right=(1, 2, 3))
@@ -92,7 +93,8 @@ def _who(hop: Hop) -> str:
     return f"{hop.kind} {hop.name}"
 
 
-def _part(part: Part) -> str:
+def part_time(part: Part) -> str:
+    """The time that a part takes at most, exactly."""
     return "?" if part.most is None else time_text(part.most)
 
 

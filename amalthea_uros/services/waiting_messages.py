@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from amalthea_uros.analyze.executors.results import ExecutorResult
 from amalthea_uros.analyze.results import Analysis
 from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.executors.results import ExecutorResult
+from amalthea_uros.executors.semantics.readiness import messages
 from amalthea_uros.perf.executors import Executor
-from amalthea_uros.timing.executors.wait import messages
 from amalthea_uros.uros.assemble import Assembly
 from amalthea_uros.uros.generated_options import WaitingMessages, with_waiting_messages
 from amalthea_uros.uros.memory.entities import executors_of

@@ -19,8 +19,6 @@ from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.timing.demand import DemandModel
 from amalthea_uros.timing.event_models import EventModel
 from amalthea_uros.timing.exclusive_jobs import TriggeredTogether, triggered_together
-from amalthea_uros.timing.executors.followers import with_followers
-from amalthea_uros.timing.executors.loops import never_rests
 from amalthea_uros.timing.limits import MAX_INPUT
 from amalthea_uros.timing.multiframe import MultiframeDemand
 from amalthea_uros.timing.notes import Notes, UnknownDemandError
@@ -33,6 +31,7 @@ from amalthea_uros.timing.server_calls import with_direct_calls
 from amalthea_uros.timing.settings import Memory, Settings
 from amalthea_uros.timing.stated_demand import states_execution_time
 from amalthea_uros.timing.stretches import KeptOff, StretchWalk, UnclearLocksError
+from amalthea_uros.timing.successors import with_successors
 from amalthea_uros.timing.touching import Touching
 
 T = TypeVar("T")
@@ -60,6 +59,7 @@ class TimingContext:
     decisions : demand of scheduler decisions at activations, if the model specifies it
     reasons : why the response time of a process is unknown
     unclear_locks : why the critical sections of a process are unknown
+    unknown_demands : why the execution demand of a process does not follow from its activities
     open_semaphores : those without a ceiling, or held while waiting for one without: others than the holder delay who waits
     """
 
@@ -72,12 +72,21 @@ class TimingContext:
     decisions: dict[str, MultiframeDemand] = field(default_factory=dict)
     reasons: dict[str, str] = field(default_factory=dict)
     unclear_locks: dict[str, str] = field(default_factory=dict)
+    unknown_demands: Mapping[str, str] = field(default_factory=dict)
     open_semaphores: frozenset[str] = frozenset()
 
     @classmethod
-    def of(cls, system: System, settings: Settings | None = None) -> TimingContext:
-        """The timing context of a system."""
+    def of(
+        cls, system: System, settings: Settings | None = None, *, unknown_demands: Mapping[str, str] | None = None
+    ) -> TimingContext:
+        """The timing context of a system.
+
+        Parameters
+        ----------
+        unknown_demands : why the jobs of processes do not only execute what their activities say
+        """
         context = cls.of_scheduling(with_bounded_arrivals(system), settings)
+        context.unknown_demands = unknown_demands or {}
         for sentence in arrival_assumptions(system):
             context.notes.assume(sentence)
         context._find_demands()
@@ -187,9 +196,9 @@ class TimingContext:
         return found
 
     @cached_property
-    def following_rounds(self) -> frozenset[str]:
-        """The processes that execute rounds of executors, and those that they trigger: they may be activated less often."""
-        return with_followers(self.system, self.dataflow)
+    def with_uncertain_activations(self) -> frozenset[str]:
+        """The processes of executors in loops, and those that they trigger: they may be activated less often."""
+        return with_successors(self.system.executor_of_task, self.system, self.dataflow)
 
     def has_loops(self, core: str) -> bool:
         """Whether an executor that spins in a loop runs on a core: when its rounds begin depends on what they do."""
@@ -251,9 +260,8 @@ class TimingContext:
                 # Its scheduler decides about it, whatever its jobs do.
                 if (scheduler := self.deciding(name, scheduled.core)) is not None:
                     self.decisions[name] = model.of_decision(scheduler, scheduled.core)
-                executor = self.system.executor_of_task.get(name)
-                if executor is not None and (reason := never_rests(executor)):
-                    raise UnknownDemandError(reason)
+                if name in self.unknown_demands:
+                    raise UnknownDemandError(self.unknown_demands[name])
                 if reason := why_suspended(name, self.system, self.dataflow):
                     raise UnknownDemandError(reason)
                 demand = model.of_process(scheduled.process, scheduled.core)

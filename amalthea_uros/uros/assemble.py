@@ -30,7 +30,7 @@ from amalthea_uros.uros.chain_topics import Topics
 from amalthea_uros.uros.chains import Chains
 from amalthea_uros.uros.context import AssemblyContext
 from amalthea_uros.uros.executors.activation import is_triggered, round_trigger_name, triggered_rounds
-from amalthea_uros.uros.executors.deadlines import deadlines
+from amalthea_uros.uros.executors.handles import deadlines
 from amalthea_uros.uros.executors.serving import placement
 from amalthea_uros.uros.hardware import controller_of
 from amalthea_uros.uros.initialisation import Initialisation, initialisation

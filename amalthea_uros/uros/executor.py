@@ -24,7 +24,7 @@ from amalthea_uros.units import DataSize, Time
 from amalthea_uros.uros.activities import trigger_name
 from amalthea_uros.uros.callbacks import Callback, CallbackKind
 from amalthea_uros.uros.context import AssemblyContext
-from amalthea_uros.uros.executors.counts import handle_count
+from amalthea_uros.uros.executors.handles import handle_count
 from amalthea_uros.uros.phases import ExecutorPhases
 from amalthea_uros.uros.transports.costs import driver_costs
 

@@ -13,9 +13,9 @@ from amalthea_uros.timing.allocation import allocated_cores
 from amalthea_uros.timing.clocks import controller_of_core
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.timing.demand import DemandModel
-from amalthea_uros.timing.executors.followers import with_followers
 from amalthea_uros.timing.load import activation_rates, certain_loads, loads, suppressible
 from amalthea_uros.timing.notes import Notes
+from amalthea_uros.timing.successors import with_successors
 
 
 @dataclass
@@ -66,4 +66,6 @@ class SystemContext:
     @cached_property
     def _uncertain(self) -> frozenset[str]:
         """The processes that may be activated less often than their event models say."""
-        return with_followers(self.system, self.dataflow) | suppressible(self.system, self.activations)
+        return with_successors(self.system.executor_of_task, self.system, self.dataflow) | suppressible(
+            self.system, self.activations
+        )

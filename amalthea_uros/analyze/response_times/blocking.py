@@ -17,8 +17,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
-from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.perf.software import Preemption
 from amalthea_uros.timing.critical_sections import Protection
 from amalthea_uros.timing.demand import DemandModel
@@ -27,6 +27,9 @@ from amalthea_uros.timing.process_stretches import ProcessStretches
 from amalthea_uros.timing.scheduling import EqualPriority, Rank, ScheduledProcess, SchedulingContext
 from amalthea_uros.timing.stretches import KeptOff, Stretches
 from amalthea_uros.units import Time
+
+if TYPE_CHECKING:
+    from amalthea_uros.analyze.solution import Solution
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,9 +11,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from amalthea_uros.analyze.executors.results import ExecutorResult, HandleResult
-from amalthea_uros.analyze.ways.results import Hop, HopKind, Part
 from amalthea_uros.analyze.ways.stations import Callback
+from amalthea_uros.executors.results import ExecutorResult, HandleResult, Hop, HopKind, Part
 from amalthea_uros.perf.executors import HandleKind
 from amalthea_uros.units import Time
 

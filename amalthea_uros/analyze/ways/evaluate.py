@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
-from amalthea_uros.analyze.executors.evaluate import evaluate_executors
-from amalthea_uros.analyze.executors.results import ExecutorResult
 from amalthea_uros.analyze.solution import Solution
-from amalthea_uros.analyze.ways.arrivals import arrival_jitter
 from amalthea_uros.analyze.ways.callbacks import CallbackHops
 from amalthea_uros.analyze.ways.passages import PassageHops
-from amalthea_uros.analyze.ways.publications import sending_times
 from amalthea_uros.analyze.ways.results import Way
 from amalthea_uros.analyze.ways.walk import Walk
+from amalthea_uros.executors.bounds.evaluate import evaluate_executors
+from amalthea_uros.executors.bounds.publications import sending_times
+from amalthea_uros.executors.bounds.transmissions import arrival_jitter
+from amalthea_uros.executors.results import ExecutorResult
 from amalthea_uros.perf.constraints import LatencyConstraint
 from amalthea_uros.timing.crossing import crosses
 

@@ -15,8 +15,8 @@ from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.chains.route_latencies import RouteLatencies
 from amalthea_uros.analyze.chains.stage_timing import UnboundedStageError
 from amalthea_uros.analyze.results import Quantity, Value
-from amalthea_uros.analyze.ways.results import Hop, HopKind, Part
 from amalthea_uros.analyze.ways.stations import Passage
+from amalthea_uros.executors.results import Hop, HopKind, Part
 from amalthea_uros.perf.events import Event, ProcessChange, ProcessEvent
 from amalthea_uros.timing.awaited import awaited
 from amalthea_uros.timing.dataflow.events import UnresolvedError

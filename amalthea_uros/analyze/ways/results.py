@@ -3,64 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import StrEnum
 from fractions import Fraction
 
 from amalthea_uros._internal.shown import Shown
+from amalthea_uros.executors.results import Hop
 from amalthea_uros.units import Time, time_text
 
 #: The method of the bound, as tables and JSON call it.
 METHOD = "sum of hop bounds"
 #: Response times of the parts are added up, which needs no assumption on when their worst cases occur.
 SOURCE = "compositional analysis, K. Richter 2005"
-
-
-class HopKind(StrEnum):
-    """What takes the time of a hop."""
-
-    AGENT = "agent"
-    WIRE = "wire"
-    LINK = "link"
-    DRIVER = "driver"
-    INTERRUPT = "interrupt"
-    MIDDLEWARE = "middleware task"
-    EXECUTOR = "executor"
-    POLLING = "polling"
-    SAMPLING = "sampling"
-    TASKS = "tasks"
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Part:
-    """A part of a hop; None for a maximum that is not known."""
-
-    name: str
-    least: Time
-    most: Time | None
-    why: str = ""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Hop:
-    """A part of a way.
-
-    Attributes
-    ----------
-    name : of the object that takes the time
-    best, worst : bounds of that time; `worst` is None if it is unknown, for the `reason`
-    source : what the bounds are based on: a method, or who stated them
-    parts : what the worst case consists of; empty if it is one thing
-    remedy : what to state or change, if it is unknown
-    """
-
-    kind: HopKind
-    name: str
-    best: Time
-    worst: Time | None
-    source: str
-    parts: tuple[Part, ...] = ()
-    reason: str = ""
-    remedy: str = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -11,10 +11,11 @@ from dataclasses import dataclass, field, replace
 
 from amalthea_uros.analyze.ways.callbacks import CallbackHops
 from amalthea_uros.analyze.ways.connections import Connections
-from amalthea_uros.analyze.ways.messages import agent_hop, process_hop, received, sent
 from amalthea_uros.analyze.ways.passages import Entry, PassageHops
-from amalthea_uros.analyze.ways.results import Hop, Part, Way
+from amalthea_uros.analyze.ways.results import Way
 from amalthea_uros.analyze.ways.stations import Callback, Message, Passage, Station, UnknownWayError, name_of, stations_of
+from amalthea_uros.executors.bounds.transmissions import agent_hop, process_hop, received, sent
+from amalthea_uros.executors.results import Hop, Part
 from amalthea_uros.perf.events import EventChain, LabelEvent
 from amalthea_uros.perf.executors import Publication
 from amalthea_uros.perf.network import Direction, Span, Transmission

@@ -22,7 +22,7 @@ from amalthea_uros.spec.transports import Interrupt
 from amalthea_uros.units import SECOND, Time, data_size_text, parse_time, time_text
 from amalthea_uros.uros import callbacks as uros
 from amalthea_uros.uros.executor import message_cost, timer_count
-from amalthea_uros.uros.executors.counts import handle_count
+from amalthea_uros.uros.executors.handles import handle_count
 from amalthea_uros.uros.notes import Notes
 from amalthea_uros.uros.rtos import PriorityScale
 

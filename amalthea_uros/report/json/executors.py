@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from amalthea_uros.analyze.executors.results import ExecutorResult, HandleResult, Loss, Term
+from amalthea_uros.executors.results import ExecutorResult, HandleResult, Loss, Part
 
 
 def executor_json(executor: ExecutorResult) -> dict[str, Any]:
@@ -35,7 +35,7 @@ def handle_json(handle: HandleResult) -> dict[str, Any]:
         "source": response.source,
         "reason": response.reason,
         "lost": None if handle.lost is None else _loss_json(handle.lost),
-        "terms": [_term_json(term) for term in handle.terms],
+        "terms": [part_json(term) for term in handle.terms],
     }
 
 
@@ -43,5 +43,6 @@ def _loss_json(loss: Loss) -> dict[str, Any]:
     return {"what": loss.what, "is_certain": loss.is_certain, "most": loss.most, "sequence": loss.sequence}
 
 
-def _term_json(term: Term) -> dict[str, Any]:
-    return {"name": term.name, "min_ps": term.least, "max_ps": term.most, "why": term.why}
+def part_json(part: Part) -> dict[str, Any]:
+    """A part of a response time or of a hop."""
+    return {"name": part.name, "min_ps": part.least, "max_ps": part.most, "why": part.why}

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from amalthea_uros.analyze.ways.results import Hop, Way
+from amalthea_uros.analyze.ways.results import Way
+from amalthea_uros.executors.results import Hop
+from amalthea_uros.report.json.executors import part_json
 
 
 def way_json(way: Way) -> dict[str, Any]:
@@ -36,5 +38,5 @@ def hop_json(hop: Hop, way: Way) -> dict[str, Any]:
         "source": hop.source,
         "reason": hop.reason,
         "remedy": hop.remedy,
-        "parts": [{"name": part.name, "min_ps": part.least, "max_ps": part.most, "why": part.why} for part in hop.parts],
+        "parts": list(map(part_json, hop.parts)),
     }

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from amalthea_uros.analyze.executors.results import ExecutorResult, HandleResult
+from amalthea_uros.executors.results import ExecutorResult, HandleResult
 from amalthea_uros.report.terminal import Terminal
+from amalthea_uros.report.ways import part_time
 from amalthea_uros.units import Rounding, Time, rounded_time_text, time_text
 
 
@@ -35,7 +36,7 @@ def write_terms(terminal: Terminal, handle: HandleResult) -> None:
     """Write what the response time of a handle consists of, in the order of time."""
     if not handle.terms:
         return
-    rows = [(term.name, time_text(term.most), _share(term.most, handle), term.why) for term in handle.terms]
+    rows = [(term.name, part_time(term), _share(term.most or 0, handle), term.why) for term in handle.terms]
     terminal.table(("in the worst case", "time", "", ""), rows, right=(1, 2))
 
 

@@ -10,10 +10,10 @@ from amalthea_uros._internal.plural import counted
 from amalthea_uros.analyze.callback_explanation import CallbackExplanation
 from amalthea_uros.analyze.chains.explanation import ChainExplanation
 from amalthea_uros.analyze.execution_shares import ExecutionShare
-from amalthea_uros.analyze.executors.results import HandleResult
 from amalthea_uros.analyze.explanation import ProcessExplanation
 from amalthea_uros.analyze.results import CallbackResult, Judged, ProcessResult, Response, Value
 from amalthea_uros.analyze.unknown_origins import OriginKind
+from amalthea_uros.executors.results import HandleResult
 from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.perf.executors import HandleKind
 from amalthea_uros.perf.stimuli import Counter

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
+from amalthea_uros.executors.semantics.loops import is_paced, iterations_follow_at_once
 from amalthea_uros.perf.activities import Trigger, walk
 from amalthea_uros.perf.distributions import Boundaries, Uniform
 from amalthea_uros.perf.executors import Executor, HandleKind, Loop
@@ -25,7 +26,6 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.units import Time
 from amalthea_uros.uros.activities import trigger_name
 from amalthea_uros.uros.callbacks import Callback, CallbackKind
-from amalthea_uros.uros.executors.loops import is_paced, polls
 
 #: Rounds whose distances are stated; of more, the distances follow from these, a little too short.
 _PACED_ROUNDS = 20
@@ -43,7 +43,7 @@ def message_stimulus_name(callback: str) -> str:
 
 def is_triggered(executor: Executor) -> bool:
     """Whether the arrival of a message begins a round."""
-    return not is_paced(executor.loop) and not polls(executor)
+    return not is_paced(executor) and not iterations_follow_at_once(executor)
 
 
 def activation(executor: Executor, callbacks: Sequence[Callback], least_round: Time, offset: Time) -> Iterator[Stimulus]:
@@ -56,10 +56,10 @@ def activation(executor: Executor, callbacks: Sequence[Callback], least_round: T
     offset : time of the first round, for a period
     """
     loop, name = executor.loop, f"rounds_of_{executor.name}"
-    reason = polls(executor)
+    reason = iterations_follow_at_once(executor)
     if loop.sleep:
         yield _after_sleeps(name, loop, least_round)
-    elif loop.period is not None and is_paced(loop):
+    elif loop.period is not None and is_paced(executor):
         # A round executes when its wait ends.
         yield Periodic(name=name, period=loop.period, offset=offset, jitter=Boundaries(lower=0, upper=loop.timeout))
     elif reason:

@@ -6,9 +6,10 @@ from collections.abc import Mapping, Sequence
 
 from amalthea_uros.perf.activities import Demand, Execute
 from amalthea_uros.perf.distributions import Boundaries, lowest
-from amalthea_uros.perf.executors import Executor, Handle
+from amalthea_uros.perf.executors import Executor, Handle, Loop, LoopKind, Waiting
 from amalthea_uros.perf.software import Runnable
 from amalthea_uros.spec import executors as spec
+from amalthea_uros.spec.os import Os
 from amalthea_uros.units import SECOND, Time, down, ticks_of_time, up
 from amalthea_uros.uros.callbacks import Callback
 from amalthea_uros.uros.context import AssemblyContext
@@ -16,9 +17,9 @@ from amalthea_uros.uros.executor import ExecutorRunnables, spin_name
 from amalthea_uros.uros.executors.activation import activation
 from amalthea_uros.uros.executors.checks import check_executor
 from amalthea_uros.uros.executors.handles import handle_names, handles_of
-from amalthea_uros.uros.executors.loops import loop_of
 from amalthea_uros.uros.executors.rounds import has_one_message_per_round, polls_before_timers, round_activities
 from amalthea_uros.uros.executors.triggers import trigger_of
+from amalthea_uros.uros.rtos import slept
 from amalthea_uros.uros.tasks import PlannedTask
 
 #: Rounds are executed one after the other, however many are due.
@@ -94,7 +95,7 @@ def _executor(
         name=section.name,
         task=section.name,
         spin=spin_name(section.name),
-        loop=loop_of(section.loop, waiting, context.description.os),
+        loop=_loop(section.loop, waiting, context.description.os),
         handles=tuple(handles),
         trigger=trigger_of(section, {callback.name: handle_names(callback) for callback in callbacks}, context.notes),
         takes_first=section.semantics == "LET",
@@ -102,6 +103,28 @@ def _executor(
         session="session" if middleware.multithread else None,
         origin=section.location(),
     )
+
+
+def _loop(section: spec.Loop, waiting: Waiting, os: Os) -> Loop:
+    """The loop that a section describes, on an operating system that counts sleeps in ticks.
+
+    See ros2/rclc `rclc/src/rclc/executor.c`: `rclc_executor_spin` is an endless `spin_some`; `rclc_executor_spin_period` calls
+    `spin_some` with the timeout of the executor, whatever the period, and then sleeps until the next multiple of the period.
+    """
+    if section.spin_some is not None:
+        least, most, pace = slept(section.sleep, os)
+        return Loop(
+            kind=LoopKind.SPIN_SOME,
+            timeout=section.spin_some,
+            sleep=most,
+            sleep_early=most - least,
+            pace=pace if pace > least else 0,
+        )
+    if section.spin_period is not None:
+        timeout = section.timeout if section.timeout is not None else waiting.default_timeout
+        return Loop(kind=LoopKind.SPIN_PERIOD, timeout=timeout, period=section.spin_period)
+    assert section.spin is not None
+    return Loop(kind=LoopKind.SPIN, timeout=section.spin)
 
 
 def _poll(context: AssemblyContext, executor: Executor, core: str) -> str:

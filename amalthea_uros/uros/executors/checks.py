@@ -9,12 +9,13 @@ from collections.abc import Iterable, Sequence
 from itertools import takewhile
 
 from amalthea_uros._internal.plural import counted
+from amalthea_uros.executors.semantics.loops import is_paced, iterations_follow_at_once
+from amalthea_uros.executors.semantics.readiness import messages
 from amalthea_uros.perf.executors import Executor, Handle, HandleKind, LoopKind, TriggerKind
 from amalthea_uros.spec import executors as spec
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.units import time_text
 from amalthea_uros.uros.callbacks import Callback
-from amalthea_uros.uros.executors.loops import is_paced, polls
 from amalthea_uros.uros.notes import Notes
 
 _ACTIONS = (HandleKind.ACTION_SERVER, HandleKind.ACTION_CLIENT)
@@ -52,7 +53,7 @@ def _check_handle_limit(executor: Executor, section: spec.Executor, notes: Notes
 def _check_timeout(executor: Executor, section: spec.Executor, notes: Notes) -> None:
     """`rclc_executor_spin_one_period` waits for the timeout of the executor (1 s, though a comment in executor.h says 100 ms)."""
     loop = executor.loop
-    if loop.kind is LoopKind.SPIN_PERIOD and not is_paced(loop) and loop.period is not None and section.loop is not None:
+    if loop.kind is LoopKind.SPIN_PERIOD and not is_paced(executor) and loop.period is not None and section.loop is not None:
         message = (
             f"{executor.name!r} waits for up to {time_text(loop.timeout)} in each period of {time_text(loop.period)}: "
             "without a message or timer, a round takes as long as the timeout"
@@ -67,9 +68,9 @@ def _check_polling(executor: Executor, section: spec.Executor, notes: Notes) -> 
     Timeouts are cut to whole milliseconds (micro-ROS/rmw_microxrcedds `rmw_wait.c`); a due timer makes the timeout 0 (ros2/rcl
     `rcl/src/rcl/wait.c`), also if the trigger condition keeps it back.
     """
-    loop, resolution, reason = executor.loop, executor.waiting.resolution, polls(executor)
+    loop, resolution, reason = executor.loop, executor.waiting.resolution, iterations_follow_at_once(executor)
     where = section.loop.location() if section.loop is not None else section.location()
-    if reason and _has_messages(executor):
+    if reason and messages(executor):
         message = f"{executor.name!r} can use all the time that others leave it: {reason}"
         timeout = (
             "Use the trigger condition 'any'"
@@ -88,10 +89,6 @@ def _check_polling(executor: Executor, section: spec.Executor, notes: Notes) -> 
     elif 0 < loop.timeout < resolution:
         message = f"the timeout of {time_text(loop.timeout)} of {executor.name!r} is cut to 0: the executor does not wait"
         notes.warning("EXE003", message, where, f"Set a timeout of {time_text(resolution)} or more; or 0, if that is meant.")
-
-
-def _has_messages(executor: Executor) -> bool:
-    return any(handle.kind not in (HandleKind.TIMER, HandleKind.GUARD_CONDITION) for handle in executor.handles)
 
 
 def _check_one(executor: Executor, section: spec.Executor, notes: Notes) -> None:

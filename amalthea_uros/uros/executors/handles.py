@@ -1,15 +1,20 @@
-"""The handles of an executor: one for each callback, several for the services of parameters and of the lifecycle."""
+"""The handles of an executor: one for each callback, several for the services of parameters and of the lifecycle.
+
+How many there are: ros2/rclc `rclc/include/rclc/executor.h`, `rclc_parameter/include/rclc_parameter/rclc_parameter.h` (the constant
+`RCLC_EXECUTOR_PARAMETER_SERVER_HANDLES` is 6, and 6 services are added; the README says 5). Entities of the wait set: ros2/rcl
+`rcl_action/src/rcl_action/action_server.c` (3 services and a timer) and `action_client.c` (3 clients and 2 subscriptions).
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
-from amalthea_uros.perf.executors import Handle, HandleKind
+from amalthea_uros.perf.constraints import Requirement, TimeLimit, TimeMetric
+from amalthea_uros.perf.executors import Executor, Handle, HandleKind
 from amalthea_uros.perf.software import Runnable
 from amalthea_uros.spec.application import MessageCallback, Subscription
 from amalthea_uros.uros.callbacks import Callback, CallbackKind, transmission_name_of
-from amalthea_uros.uros.executors.counts import handle_count, source_count
 from amalthea_uros.uros.middleware.histories import depth_of
 from amalthea_uros.uros.middleware.profile import Profile
 from amalthea_uros.uros.publications import publications
@@ -26,6 +31,17 @@ _KINDS = {
     CallbackKind.PARAMETERS: HandleKind.PARAMETER_SERVICE,
     CallbackKind.LIFECYCLE: HandleKind.LIFECYCLE_SERVICE,
 }
+_PARAMETER_SERVICES = 6
+_SOURCES = {CallbackKind.ACTION_SERVER: 4, CallbackKind.ACTION_CLIENT: 5}
+
+
+def handle_count(callback: Callback) -> int:
+    """The number of handles that a callback has in its executor."""
+    if callback.kind is CallbackKind.PARAMETERS:
+        return _PARAMETER_SERVICES
+    if callback.kind is CallbackKind.LIFECYCLE:
+        return 0 if callback.node.lifecycle is None else callback.node.lifecycle.services
+    return 1
 
 
 def handle_names(callback: Callback) -> tuple[str, ...]:
@@ -64,9 +80,23 @@ def handles_of(callback: Callback, take: Runnable | None, body: Runnable, profil
         depth=depth_of(section),
         overwrites=not isinstance(section, MessageCallback) or section.history == "keep-last",
         reliable=reliable,
-        sources=source_count(callback),
+        sources=_SOURCES.get(callback.kind, 1),
         publications=publications(callback, profile) if callback.in_executor else (),
         origin=callback.origin,
     )
     for name in handle_names(callback):
         yield replace(handle, name=name)
+
+
+def deadlines(executors: Iterable[Executor], callbacks: Sequence[Callback]) -> Iterator[Requirement]:
+    """The deadlines of callbacks in executors with loops as requirements on their runnables: the task has none for each of them."""
+    runnables = {handle.name: handle.runnable for executor in executors for handle in executor.handles}
+    for callback in callbacks:
+        deadline = callback.section.deadline
+        if callback.in_executor and callback.name in runnables and deadline is not None:
+            yield Requirement(
+                name=f"{callback.name}_deadline",
+                runnable=runnables[callback.name],
+                limit=TimeLimit(metric=TimeMetric.RESPONSE_TIME, value=deadline),
+                origin=callback.section.location("deadline"),
+            )

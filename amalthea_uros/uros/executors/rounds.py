@@ -12,10 +12,10 @@ from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import chain, takewhile
 
+from amalthea_uros.executors.semantics.loops import is_paced
+from amalthea_uros.executors.semantics.readiness import can_defer, timers, waits_for_acknowledgements
 from amalthea_uros.perf.activities import Activity, Call, Chance, ProbabilitySwitch
 from amalthea_uros.perf.executors import Executor, Handle, HandleKind, TriggerKind
-from amalthea_uros.timing.executors.readiness import keeps_back
-from amalthea_uros.uros.executors.loops import is_paced
 
 #: What only the message of its own service, client or subscription can make ready.
 _BY_ONE_MESSAGE = frozenset(
@@ -42,8 +42,8 @@ def has_one_message_per_round(executor: Executor, is_alone: bool) -> bool:
     ----------
     is_alone : whether no other thread waits or sends
     """
-    waits = any(publication.waits for handle in executor.handles for publication in handle.publications)
-    return executor.waiting.messages_per_wait == 1 and is_alone and not waits and not keeps_back(executor)
+    can_store = can_defer(executor) or waits_for_acknowledgements(executor)
+    return executor.waiting.messages_per_wait == 1 and is_alone and not can_store
 
 
 def round_activities(executor: Executor, *, exclusive: bool, poll: str | None) -> Activities:
@@ -61,8 +61,7 @@ def round_activities(executor: Executor, *, exclusive: bool, poll: str | None) -
 
 def polls_before_timers(executor: Executor) -> bool:
     """Whether rounds follow each other at once before a timer is due: the wait is cut to whole multiples of its resolution."""
-    has_timer = any(handle.kind is HandleKind.TIMER for handle in executor.handles)
-    return has_timer and executor.waiting.resolution > 0 and not is_paced(executor.loop)
+    return bool(timers(executor)) and executor.waiting.resolution > 0 and not is_paced(executor)
 
 
 @dataclass(frozen=True, slots=True)

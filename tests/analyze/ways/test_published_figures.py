@@ -22,7 +22,7 @@ import pytest
 
 from amalthea_uros import describe
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.analyze.ways.results import HopKind
+from amalthea_uros.executors.results import HopKind
 from amalthea_uros.units import MILLISECOND as MS
 
 

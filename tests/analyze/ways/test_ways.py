@@ -10,14 +10,15 @@ import pytest
 from hand_made_systems import ticks
 from ways_by_hand import ACK, CMD, MS, ODOM, US, Publication, Span, Wire, WireKind, board, tick, ways_of
 
-from amalthea_uros.analyze.executors.unread import Arriving, most_unread
 from amalthea_uros.analyze.propagation import solve
 from amalthea_uros.analyze.results import Quantity
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.analyze.ways.arrivals import arrival_jitter
 from amalthea_uros.analyze.ways.evaluate import evaluate_ways
-from amalthea_uros.analyze.ways.publications import sending_times
-from amalthea_uros.analyze.ways.results import HopKind
+from amalthea_uros.executors.bounds.backlog import Arriving, max_backlog
+from amalthea_uros.executors.bounds.publications import sending_times
+from amalthea_uros.executors.bounds.transmissions import arrival_jitter
+from amalthea_uros.executors.results import HopKind
+from amalthea_uros.executors.semantics.loops import timing_context
 from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.perf.activities import Trigger
 from amalthea_uros.perf.constraints import Constraints, LatencyConstraint, LatencyKind
@@ -26,7 +27,6 @@ from amalthea_uros.perf.executors import HandleKind
 from amalthea_uros.perf.network import Purpose
 from amalthea_uros.perf.os import Policy, Scheduler
 from amalthea_uros.perf.stimuli import InterProcess, Periodic
-from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.event_models import Sporadic
 
 TO_PWM = ("to pwm", "cmd_published", "on_cmd_end", "speed_written", "pwm_end")
@@ -39,7 +39,7 @@ RELIABLE = Publication(
 
 
 def solution(found):
-    return solve(TimingContext.of(found))
+    return solve(timing_context(found))
 
 
 def with_sender(found, task, transmission):
@@ -268,7 +268,7 @@ def test_another_sender_on_the_wire_is_waited_for():
     ],
 )
 def test_messages_that_come_late_lie_unread_together(parts, unread):
-    assert most_unread([Arriving(events=Sporadic(10 * MS), jitter=40 * MS, parts=parts)], 6 * MS) == unread
+    assert max_backlog([Arriving(events=Sporadic(10 * MS), jitter=40 * MS, parts=parts)], 6 * MS) == unread
 
 
 def with_answers(found, interval, write):

@@ -21,10 +21,10 @@ from amalthea_uros.design.optimize.problem import Problem, SearchResult
 from amalthea_uros.design.optimize.quantities import FROM_ARRIVAL, JITTER, LOAD
 from amalthea_uros.design.optimize.solvers.judged import Judged
 from amalthea_uros.design.optimize.space import Choice, Kind
+from amalthea_uros.executors.semantics.loops import timing_context
 from amalthea_uros.perf.constraints import LatencyConstraint, TimeLimit, TimeMetric
 from amalthea_uros.perf.stimuli import RelativePeriodic
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.critical_sections import Protection
 from amalthea_uros.timing.phases import unknown_phases
 from amalthea_uros.timing.preemption import is_preemptive
@@ -88,7 +88,7 @@ def _can_be_shifted(configuration: Configuration) -> bool:
         return False
     if any(not _is_shiftable(process, system) for process in system.processes):
         return False
-    context = TimingContext.of(system, settings)
+    context = timing_context(system, settings)
     if len(context.demands) < len(system.processes):
         return False
     return all(frame.is_always for demand in context.demands.values() for frame in demand.frames)
@@ -108,7 +108,7 @@ def _depends_on_start(problem: Problem) -> bool:
         return True
     if any(quantity not in _LASTING for _, quantity in problem.named) or any(goal.name == JITTER for goal in problem.goals):
         return True
-    context = TimingContext.of(system, settings)
+    context = timing_context(system, settings)
     return not all(
         is_preemptive(item) and item.equal_priority is EqualPriority.FIFO and context.protection[item.name] == Protection()
         for item in context.scheduled.values()

@@ -20,11 +20,11 @@ from amalthea_uros.design.optimize.candidate import Candidate
 from amalthea_uros.design.optimize.problem import Problem
 from amalthea_uros.design.optimize.space import Choice, Kind
 from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.executors.semantics.loops import timing_context
 from amalthea_uros.judge.verdict import FAILURES, Verdict
 from amalthea_uros.perf.stimuli import EventTriggered, InterProcess
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.allocation import allocated_cores
-from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.critical_sections import Protection
 from amalthea_uros.timing.preemption import is_preemptive
 from amalthea_uros.timing.scheduling import EqualPriority
@@ -195,7 +195,7 @@ def _is_separable(problem: Problem) -> bool:
     stimuli = [system.stimuli_by_name.get(name) for process in system.processes.values() for name in process.stimuli]
     if any(isinstance(stimulus, InterProcess | EventTriggered) for stimulus in stimuli):
         return False
-    context = TimingContext.of(system, settings)
+    context = timing_context(system, settings)
     return len(context.scheduled) == len(system.processes) and all(
         is_preemptive(item)
         and item.server is None

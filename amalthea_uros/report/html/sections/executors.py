@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from amalthea_uros.analyze.executors.results import ExecutorResult, HandleResult
+from amalthea_uros.executors.results import ExecutorResult, HandleResult
 from amalthea_uros.report.html.blocks import Block, Cell, Folded, Section, Table, table
 from amalthea_uros.report.html.times import at_least, at_most
+from amalthea_uros.report.ways import part_time
 from amalthea_uros.services.report import ReportContent
 from amalthea_uros.units import time_text
 
@@ -43,6 +44,6 @@ def _row(handle: HandleResult) -> tuple[Cell, ...]:
 
 
 def _terms(handle: HandleResult) -> Folded:
-    rows = [(term.name, time_text(term.most), term.why) for term in handle.terms]
+    rows = [(term.name, part_time(term), term.why) for term in handle.terms]
     terms = table(f"Worst response time of {handle.name}, in the order of time", ("part", ">time", "why"), rows)
     return Folded(f"What {handle.name} waits for", [terms])

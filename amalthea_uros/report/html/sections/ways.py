@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from amalthea_uros.analyze.ways.results import Hop, Way
+from amalthea_uros.analyze.ways.results import Way
+from amalthea_uros.executors.results import Hop
 from amalthea_uros.report.html.blocks import Block, Cell, Folded, Section, Sentences, table
 from amalthea_uros.report.html.times import at_least, at_most
-from amalthea_uros.report.ways import HEADINGS, RIGHT, latency_row
+from amalthea_uros.report.ways import HEADINGS, RIGHT, latency_row, part_time
 from amalthea_uros.services.report import ReportContent
-from amalthea_uros.units import time_text
 
 
 def section(content: ReportContent) -> Section | None:
@@ -27,7 +27,7 @@ def _hops(way: Way) -> Folded:
         rows.append(
             (f"{hop.kind}: {hop.name}", at_least(hop.best), at_most(hop.worst), _share(way, hop), hop.reason or hop.source)
         )
-        rows += [(f"- {part.name}", "", "?" if part.most is None else time_text(part.most), "", part.why) for part in hop.parts]
+        rows += [(f"- {part.name}", "", part_time(part), "", part.why) for part in hop.parts]
     blocks: list[Block] = [table(f"Hops of {way.name}", ("hop", ">best", ">worst", ">share", "why"), rows)]
     notes = [*(hop.remedy for hop in way.hops if hop.worst is None and hop.remedy), *way.assumptions]
     if notes:

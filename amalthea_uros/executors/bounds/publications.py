@@ -9,7 +9,7 @@ it waits up to the timeout: a lost frame is sent again after a heartbeat, which 
 
 While it waits, it reads everything in the order of arrival (`uxr_run_session_until_confirm_delivery`, same file), answers each reliable
 message and heartbeat, and writes heartbeats of its own. Let R be the round trip without this, and Q the greatest age of an unread
-message (`analyze.executors.unread`). What it reads before the acknowledgement came at most Q before the message was written, and before
+message (`executors.bounds.backlog`). What it reads before the acknowledgement came at most Q before the message was written, and before
 the end of the wait. So the wait is at most the least w with
 
     w = R + sum over the answers of write * eta(Q + w) + heartbeats * write
@@ -26,19 +26,20 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from amalthea_uros.analyze.executors.cycle import Cycle, UnknownCycleError
-from amalthea_uros.analyze.executors.unread import DUE, Arriving, answered, is_behind, publications
-from amalthea_uros.analyze.solution import Solution
-from amalthea_uros.analyze.ways.messages import agent_hop, received, sent, wire_hop
-from amalthea_uros.analyze.ways.results import Hop
+from amalthea_uros.errors import UnknownError
+from amalthea_uros.executors.bounds.backlog import DUE, Arriving, acknowledged, has_unacknowledged, publications
+from amalthea_uros.executors.bounds.cycle import Cycle
+from amalthea_uros.executors.bounds.solved_system import SolvedSystem
+from amalthea_uros.executors.bounds.transmissions import agent_hop, received, sent, wire_hop
+from amalthea_uros.executors.results import Hop
+from amalthea_uros.executors.semantics.protocol import acknowledgements, heartbeats
 from amalthea_uros.perf.executors import Executor, Publication
 from amalthea_uros.perf.network import Span, Transmission
-from amalthea_uros.timing.executors.answers import answers, heartbeats
 from amalthea_uros.units import Time
 
 #: After which times are considered unbounded.
 _STEPS = 1000
-_ROUNDS = 100
+_ITERATIONS = 100
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -47,41 +48,43 @@ class _Session:
 
     Attributes
     ----------
-    unread : the greatest age of an unread message; None if it has no bound
+    backlog_age : the greatest age of an unread message; None if it has no bound
     cycle : the longest cycle; None if it has no bound
-    is_behind : whether something sent earlier can still have no acknowledgement
+    has_unacknowledged : whether something sent earlier can still have no acknowledgement
     """
 
-    unread: Time | None = 0
+    backlog_age: Time | None = 0
     cycle: Time | None = 0
-    is_behind: bool = False
+    has_unacknowledged: bool = False
 
 
-def sending_times(solution: Solution) -> Mapping[str, Span]:
+def sending_times(solved: SolvedSystem) -> Mapping[str, Span]:
     """How long a thread is held up by each message that it sends, by the names of transmissions.
 
     Besides the messages of callbacks, these are the acknowledgements and heartbeats that it sends.
     """
-    system = solution.context.system
-    arrivals = answered(solution)
+    system = solved.context.system
+    arrivals = acknowledged(solved)
     sessions = {each.name: _Session() for each in system.executors}
-    for _ in range(_ROUNDS):
-        sending = _times(sessions, arrivals, solution)
-        found = {each.name: _session(each, sending, solution) for each in system.executors}
+    for _ in range(_ITERATIONS):
+        sending = _times(sessions, arrivals, solved)
+        found = {each.name: _session(each, sending, solved) for each in system.executors}
         if found == sessions or not any(each.waits for each in publications(system)):
             return sending
         sessions = found
-    unknown = _Session(unread=None, cycle=None, is_behind=True)
-    return _times(dict.fromkeys(sessions, unknown), arrivals, solution)
+    unknown = _Session(backlog_age=None, cycle=None, has_unacknowledged=True)
+    return _times(dict.fromkeys(sessions, unknown), arrivals, solved)
 
 
-def _times(sessions: Mapping[str, _Session], arrivals: Mapping[str, Arriving | None], solution: Solution) -> Mapping[str, Span]:
-    system = solution.context.system
-    own = (*answers(system), *heartbeats(system))
-    return {each.name: _until_written(each, solution) for each in own} | {
-        publication.transmission: _until_acknowledged(publication, sessions[executor.name], arrivals, solution)
+def _times(
+    sessions: Mapping[str, _Session], arrivals: Mapping[str, Arriving | None], solved: SolvedSystem
+) -> Mapping[str, Span]:
+    system = solved.context.system
+    own = (*acknowledgements(system), *heartbeats(system))
+    return {each.name: _until_written(each, solved) for each in own} | {
+        publication.transmission: _until_acknowledged(publication, sessions[executor.name], arrivals, solved)
         if publication.waits
-        else _until_written(system.transmissions.get(publication.transmission), solution)
+        else _until_written(system.transmissions.get(publication.transmission), solved)
         for executor in system.executors
         for handle in executor.handles
         for publication in handle.publications
@@ -89,38 +92,40 @@ def _times(sessions: Mapping[str, _Session], arrivals: Mapping[str, Arriving | N
     }
 
 
-def _session(executor: Executor, sending: Mapping[str, Span], solution: Solution) -> _Session:
+def _session(executor: Executor, sending: Mapping[str, Span], solved: SolvedSystem) -> _Session:
     """What the publications of an executor can meet, if they take such times."""
-    behind = is_behind(sending, solution)
+    behind = has_unacknowledged(sending, solved)
     try:
-        cycle = Cycle.of(executor, solution, sending)
-    except UnknownCycleError:
-        return _Session(unread=None, cycle=None, is_behind=behind)
-    return _Session(unread=cycle.unread, cycle=cycle.longest, is_behind=behind)
+        cycle = Cycle.of(executor, solved, sending)
+    except UnknownError:
+        return _Session(backlog_age=None, cycle=None, has_unacknowledged=behind)
+    return _Session(backlog_age=cycle.backlog_age, cycle=cycle.longest, has_unacknowledged=behind)
 
 
-def _until_written(message: Transmission | None, solution: Solution) -> Span:
+def _until_written(message: Transmission | None, solved: SolvedSystem) -> Span:
     """A driver can return at once, or when the message is on the wire."""
-    return Span(most=None) if message is None else Span(most=wire_hop(message, solution).worst)
+    return Span(most=None) if message is None else Span(most=wire_hop(message, solved).worst)
 
 
 def _until_acknowledged(
-    publication: Publication, session: _Session, arrivals: Mapping[str, Arriving | None], solution: Solution
+    publication: Publication, session: _Session, arrivals: Mapping[str, Arriving | None], solved: SolvedSystem
 ) -> Span:
-    hops = list(_round_trip(publication, solution))
+    hops = list(_round_trip(publication, solved))
     least = sum(hop.best for hop in hops)
     times = [hop.worst for hop in hops]
-    known = None if not hops or None in times or _can_lose(publication, solution) else sum(filter(None, times))
-    most = _least(None if known is None else _with_writes(known, session, arrivals, solution), _gives_up(publication, solution))
+    known = None if not hops or None in times or _can_lose(publication, solved) else sum(filter(None, times))
+    most = _lesser(
+        None if known is None else _with_writes(known, session, arrivals, solved), _until_timeout(publication, solved)
+    )
     return Span(least=least if most is None else min(least, most), most=most)
 
 
-def _with_writes(time: Time, session: _Session, arrivals: Mapping[str, Arriving | None], solution: Solution) -> Time | None:
+def _with_writes(time: Time, session: _Session, arrivals: Mapping[str, Arriving | None], solved: SolvedSystem) -> Time | None:
     """The time of a round trip with what is written meanwhile; None if it has no bound."""
     whole = time
     for _ in range(_STEPS):
-        answering = _answering(whole, session, arrivals, solution)
-        beating = _beating(whole, session, solution)
+        answering = _time_to_acknowledge(whole, session, arrivals, solved)
+        beating = _time_for_heartbeats(whole, session, solved)
         if answering is None or beating is None:
             return None
         if time + answering + beating == whole:
@@ -129,29 +134,31 @@ def _with_writes(time: Time, session: _Session, arrivals: Mapping[str, Arriving 
     return None
 
 
-def _answering(wait: Time, session: _Session, arrivals: Mapping[str, Arriving | None], solution: Solution) -> Time | None:
+def _time_to_acknowledge(
+    wait: Time, session: _Session, arrivals: Mapping[str, Arriving | None], solved: SolvedSystem
+) -> Time | None:
     """The time to answer all that is read in a wait; None if it has no bound."""
     total: Time = 0
     for name, arriving in arrivals.items():
-        write = _until_written(solution.context.system.transmissions[name], solution).most
-        if write is None or arriving is None or session.unread is None:
+        write = _until_written(solved.context.system.transmissions[name], solved).most
+        if write is None or arriving is None or session.backlog_age is None:
             return None
-        total += write * arriving.most(session.unread + wait)
+        total += write * arriving.most(session.backlog_age + wait)
     return total
 
 
-def _beating(wait: Time, session: _Session, solution: Solution) -> Time | None:
+def _time_for_heartbeats(wait: Time, session: _Session, solved: SolvedSystem) -> Time | None:
     """The time to write the heartbeats of a wait; None if it has no bound."""
-    if not heartbeats(solution.context.system):
+    if not heartbeats(solved.context.system):
         return 0
-    return None if session.cycle is None else _heartbeats(session.cycle + wait, int(session.is_behind), solution)
+    return None if session.cycle is None else _heartbeat_time(session.cycle + wait, int(session.has_unacknowledged), solved)
 
 
-def _heartbeats(time: Time, first: int, solution: Solution) -> Time | None:
+def _heartbeat_time(time: Time, first: int, solved: SolvedSystem) -> Time | None:
     """The time to write some heartbeats and those that follow in some time; None if it has no bound."""
     total: Time = 0
-    for each in heartbeats(solution.context.system):
-        events, write = solution.event_models.get(each.name), _until_written(each, solution).most
+    for each in heartbeats(solved.context.system):
+        events, write = solved.event_models.get(each.name), _until_written(each, solved).most
         if events is None or not (interval := events.delta_min(2)):
             return None
         count = first + time // interval
@@ -161,34 +168,34 @@ def _heartbeats(time: Time, first: int, solution: Solution) -> Time | None:
     return total
 
 
-def _gives_up(publication: Publication, solution: Solution) -> Time | None:
+def _until_timeout(publication: Publication, solved: SolvedSystem) -> Time | None:
     """When a publication gives up; None if it does not, or what it writes has no bound."""
-    transmissions = solution.context.system.transmissions
-    written = _until_written(transmissions.get(publication.transmission or ""), solution).most
-    answering = [_until_written(each, solution).most for each in answers(solution.context.system)]
+    transmissions = solved.context.system.transmissions
+    written = _until_written(transmissions.get(publication.transmission or ""), solved).most
+    answering = [_until_written(each, solved).most for each in acknowledgements(solved.context.system)]
     if publication.timeout is None or written is None or None in answering:
         return None
-    beating = _heartbeats(publication.timeout, DUE, solution)
+    beating = _heartbeat_time(publication.timeout, DUE, solved)
     return None if beating is None else written + publication.timeout + max(filter(None, answering), default=0) + beating
 
 
-def _round_trip(publication: Publication, solution: Solution) -> Iterator[Hop]:
+def _round_trip(publication: Publication, solved: SolvedSystem) -> Iterator[Hop]:
     """The hops of a message and of its acknowledgement; none if a wire is not described."""
-    transmissions = solution.context.system.transmissions
+    transmissions = solved.context.system.transmissions
     message, answer = (transmissions.get(name or "") for name in (publication.transmission, publication.acknowledgement))
     if message is not None and answer is not None:
-        yield from sent(message, solution)
-        yield agent_hop(answer, solution)
-        yield from received(answer, solution)
+        yield from sent(message, solved)
+        yield agent_hop(answer, solved)
+        yield from received(answer, solved)
 
 
-def _can_lose(publication: Publication, solution: Solution) -> bool:
+def _can_lose(publication: Publication, solved: SolvedSystem) -> bool:
     """Whether frames can be lost on the wire of a message."""
-    network = solution.context.system.network
-    message = solution.context.system.transmissions.get(publication.transmission or "")
+    network = solved.context.system.network
+    message = solved.context.system.transmissions.get(publication.transmission or "")
     return any(wire.loses_messages for wire in network.wires if message is not None and wire.name == message.wire)
 
 
-def _least(one: Time | None, other: Time | None) -> Time | None:
+def _lesser(one: Time | None, other: Time | None) -> Time | None:
     known = [time for time in (one, other) if time is not None]
     return min(known) if known else None

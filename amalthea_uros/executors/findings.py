@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
 
-from amalthea_uros.analyze.executors.results import ExecutorResult, HandleResult
-from amalthea_uros.analyze.solution import Solution
+from amalthea_uros.executors.bounds.solved_system import SolvedSystem
+from amalthea_uros.executors.results import ExecutorResult, HandleResult
+from amalthea_uros.executors.semantics.arrivals import certain_rate
+from amalthea_uros.executors.semantics.loops import busy_polls, longest_wait, min_pace, sleep_of
+from amalthea_uros.executors.semantics.readiness import can_defer, has_backlog, messages, shares_session, timers
+from amalthea_uros.executors.semantics.suspension import SESSION_ASSUMPTION
 from amalthea_uros.perf.executors import Executor, HandleKind, LoopKind
-from amalthea_uros.timing.executors.arrivals import certain_rate
-from amalthea_uros.timing.executors.loops import least_pace, longest_sleep, never_rests
-from amalthea_uros.timing.executors.readiness import keeps_back, shares_session, stores
-from amalthea_uros.timing.executors.sessions import ASSUMPTION as SESSION_ASSUMPTION
-from amalthea_uros.timing.executors.wait import greatest_wait, messages, timers
 from amalthea_uros.timing.notes import Notes
 from amalthea_uros.units import SECOND, Rounding, Time, rounded_time_text, time_text
 
@@ -22,9 +21,9 @@ LATE = Fraction(1, 10)
 NEAR_CAPACITY = Fraction(1, 2)
 
 
-def note_executors(results: Iterable[ExecutorResult], solution: Solution) -> None:
+def note_executors(results: Iterable[ExecutorResult], solved: SolvedSystem) -> None:
     """Report what goes wrong in executors, and the assumptions."""
-    notes, executors = solution.context.notes, solution.context.system.executors
+    notes, executors = solved.context.notes, solved.context.system.executors
     for executor, result in zip(executors, results, strict=True):
         _assume(executor, executors, notes)
         _note_loop(executor, executors, result, notes)
@@ -43,7 +42,7 @@ def _assume(executor: Executor, others: Sequence[Executor], notes: Notes) -> Non
     notes.assume(f"executors: {on_time} end on time, whatever the ticks of the operating system are")
     if executor.loop.kind is LoopKind.SPIN_PERIOD:
         notes.assume("executors: the real-time clock, by which spin_period sleeps, is not set while it spins")
-    if stores(executor, others):
+    if has_backlog(executor, others):
         notes.assume("executors: stored messages have different time stamps; with equal ones, they come out in reverse order")
     if shares_session(executor, others):
         notes.assume(f"executors: {SESSION_ASSUMPTION}")
@@ -52,12 +51,12 @@ def _assume(executor: Executor, others: Sequence[Executor], notes: Notes) -> Non
 def _note_loop(executor: Executor, executors: Sequence[Executor], result: ExecutorResult, notes: Notes) -> None:
     growing = next((handle for handle in result.handles if handle.response.is_overload), None)
     if growing is not None:
-        age = "" if stores(executor, executors) else _age_after(60 * SECOND, executor, result)
+        age = "" if has_backlog(executor, executors) else _age_after(60 * SECOND, executor, result)
         why = growing.response.reason.removeprefix("overload: ").removesuffix(", so that messages wait longer and longer")
         message = f"messages wait longer and longer in {executor.name!r}: {why}{age}"
         notes.error("EXE012", message, executor)
-    elif executor.waiting.messages_per_wait == 1 and messages(executor) and least_pace(executor):
-        most, arriving = Fraction(1, least_pace(executor)), certain_rate(executor)
+    elif executor.waiting.messages_per_wait == 1 and messages(executor) and min_pace(executor):
+        most, arriving = Fraction(1, min_pace(executor)), certain_rate(executor)
         if arriving > most * NEAR_CAPACITY:
             message = (
                 f"{executor.name!r} takes at most one message per round, so at most {float(most * SECOND):.4g} messages/s "
@@ -65,7 +64,7 @@ def _note_loop(executor: Executor, executors: Sequence[Executor], result: Execut
             )
             notes.warning("EXE013", message, executor)
     period = executor.loop.period
-    if period is not None and (result.round.most is None or greatest_wait(executor) + result.round.most > period):
+    if period is not None and (result.round.most is None or longest_wait(executor) + result.round.most > period):
         longest = "an unknown time" if result.loop.most is None else rounded_time_text(result.loop.most, Rounding.UP)
         message = (
             f"a round of {executor.name!r} can take {longest} with its wait, more than the period of {time_text(period)}; "
@@ -82,18 +81,18 @@ def _age_after(time: Time, executor: Executor, result: ExecutorResult) -> str:
 
 
 def _note_waiting(executor: Executor, others: Sequence[Executor], notes: Notes) -> None:
-    waiting, wait = executor.waiting, time_text(greatest_wait(executor))
+    waiting, wait = executor.waiting, time_text(longest_wait(executor))
     guards = [handle.name for handle in executor.handles if handle.kind is HandleKind.GUARD_CONDITION]
-    if guards and not waiting.guard_conditions_end_wait and greatest_wait(executor):
+    if guards and not waiting.guard_conditions_end_wait and longest_wait(executor):
         names = ", ".join(map(repr, guards))
         message = f"{names} does not wake {executor.name!r}: a trigger is seen after the wait, which lasts up to {wait}"
         notes.warning("EXE018", message, executor)
     # Where something that is kept back ends each wait, no wait is long while a message is stored.
-    is_awaited = messages(executor) and greatest_wait(executor) and not never_rests(executor)
-    if is_awaited and stores(executor, others) and not waiting.stored_data_ends_wait:
+    is_awaited = messages(executor) and longest_wait(executor) and not busy_polls(executor)
+    if is_awaited and has_backlog(executor, others) and not waiting.stored_data_ends_wait:
         message = f"a message for {executor.name!r} that is stored already does not end its wait, which lasts up to {wait}"
         notes.warning("EXE017", message, executor)
-    if keeps_back(executor) and timers(executor):
+    if can_defer(executor) and timers(executor):
         waited_for = frozenset[str]().union(*executor.trigger.sets)
         kept = [timer.name for timer in timers(executor) if frozenset((timer.name,)) not in executor.trigger.sets]
         if kept and (waited_for - {*kept} or not executor.trigger.sets):
@@ -104,7 +103,7 @@ def _note_waiting(executor: Executor, others: Sequence[Executor], notes: Notes) 
             notes.warning("EXE016", message, executor)
     if shares_session(executor, others):
         sharing = [each.name for each in others if each.session == executor.session and each.name != executor.name]
-        longest = max(greatest_wait(each) for each in others if each.name in sharing)
+        longest = max(longest_wait(each) for each in others if each.name in sharing)
         publishers = [handle.name for handle in executor.handles if handle.publications]
         if publishers and longest:
             message = (
@@ -118,7 +117,7 @@ def _note_handle(handle: HandleResult, executor: Executor, notes: Notes) -> None
     lost = handle.lost
     model = next(each for each in executor.handles if each.name == handle.name)
     if lost is None:
-        sleep = longest_sleep(executor)
+        sleep = sleep_of(executor).upper
         if handle.lateness is not None and handle.interval and sleep > handle.interval * LATE:
             most = handle.lateness.most
             late = "an unknown time" if most is None else rounded_time_text(most, Rounding.UP)

@@ -5,14 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from fractions import Fraction
 
+from amalthea_uros.errors import UnknownError
+from amalthea_uros.executors.semantics.readiness import messages
 from amalthea_uros.perf.executors import Executor, Handle
 from amalthea_uros.timing.event_models import EventModel, Periodic, Sporadic
-from amalthea_uros.timing.executors.wait import messages
 from amalthea_uros.units import Time
-
-
-class UnknownArrivalsError(Exception):
-    """It is not known how many messages a handle can receive in a time; the text says why."""
 
 
 def arrivals(handle: Handle, extra_jitter: Mapping[str, Time | None]) -> EventModel:
@@ -24,14 +21,14 @@ def arrivals(handle: Handle, extra_jitter: Mapping[str, Time | None]) -> EventMo
 
     Raises
     ------
-    UnknownArrivalsError : the interval or a jitter is not known.
+    UnknownError : the interval or a jitter is not known.
     """
     if not handle.interval:
-        raise UnknownArrivalsError(f"the minimum time between two messages for {handle.name!r} is not stated")
+        raise UnknownError(f"the minimum time between two messages for {handle.name!r} is not stated")
     extra = extra_jitter.get(handle.name, None if handle.transmission is not None else 0)
     if extra is None:
         way = "" if handle.transmission is None else f", see {handle.transmission!r}"
-        raise UnknownArrivalsError(f"the jitter of the messages for {handle.name!r} on their way is not known{way}")
+        raise UnknownError(f"the jitter of the messages for {handle.name!r} on their way is not known{way}")
     kind = Periodic if handle.is_periodic else Sporadic
     return kind(handle.interval, handle.jitter + extra)
 

@@ -1,6 +1,8 @@
-"""The processes whose activations depend on rounds of executors: how often they are really activated is not known for certain."""
+"""Processes and those that they trigger."""
 
 from __future__ import annotations
+
+from collections.abc import Iterable
 
 from amalthea_uros.perf.activities import Trigger
 from amalthea_uros.perf.stimuli import InterProcess
@@ -9,10 +11,10 @@ from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.links import Dataflow
 
 
-def with_followers(system: System, dataflow: Dataflow) -> frozenset[str]:
-    """The processes that execute rounds, and those that they trigger, directly or by others."""
+def with_successors(processes: Iterable[str], system: System, dataflow: Dataflow) -> frozenset[str]:
+    """Some processes, and those that they trigger, directly or by others."""
     found = set[str]()
-    reached = [name for name in system.executor_of_task if name in system.processes]
+    reached = [name for name in processes if name in system.processes]
     while reached:
         name = reached.pop()
         if name in found:

@@ -1,20 +1,21 @@
-"""The results for an executor that spins in a loop."""
+"""The results for executors, and the hops of messages outside them."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import StrEnum
 
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros._internal.shown import Shown
-from amalthea_uros.analyze.results import Response
 from amalthea_uros.perf.executors import HandleKind
 from amalthea_uros.perf.network import Span
+from amalthea_uros.timing.response import Response
 from amalthea_uros.units import Time, time_text
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Term:
-    """A part of a response time.
+class Part:
+    """A part of a response time or of a hop; None for a maximum that is not known.
 
     Attributes
     ----------
@@ -23,8 +24,46 @@ class Term:
 
     name: str
     least: Time
-    most: Time
+    most: Time | None
     why: str = ""
+
+
+class HopKind(StrEnum):
+    """What takes the time of a hop."""
+
+    AGENT = "agent"
+    WIRE = "wire"
+    LINK = "link"
+    DRIVER = "driver"
+    INTERRUPT = "interrupt"
+    MIDDLEWARE = "middleware task"
+    EXECUTOR = "executor"
+    POLLING = "polling"
+    SAMPLING = "sampling"
+    TASKS = "tasks"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Hop:
+    """A part of a chain that crosses wires, the agent or executors in loops.
+
+    Attributes
+    ----------
+    name : of the object that takes the time
+    best, worst : bounds of that time; `worst` is None if it is unknown, for the `reason`
+    source : what the bounds are based on: a method, or who stated them
+    parts : what the worst case consists of; empty if it is one thing
+    remedy : what to state or change, if it is unknown
+    """
+
+    kind: HopKind
+    name: str
+    best: Time
+    worst: Time | None
+    source: str = ""
+    parts: tuple[Part, ...] = ()
+    reason: str = ""
+    remedy: str = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -58,8 +97,7 @@ class HandleResult(Shown):
     runnable : the callback
     interval : minimum time between two messages or triggers, or the period of a timer; None if it is not known
     response : from the release to the end of the callback; the release is when a message has arrived at the controller, a timer is
-    due, or
-        a guard condition is triggered; `worst` is None if there is no finite bound, for the `reason`
+        due, or a guard condition is triggered; `worst` is None if there is no finite bound, for the `reason`
     lateness : from when a timer is due to the start of its call; None for others
     lost : None if nothing can be lost
     terms : the parts of the worst response time; they add up to it
@@ -72,7 +110,7 @@ class HandleResult(Shown):
     response: Response
     lateness: Span | None = None
     lost: Loss | None = None
-    terms: tuple[Term, ...] = ()
+    terms: tuple[Part, ...] = ()
 
     def __repr__(self) -> str:
         worst = "unknown" if self.response.worst is None else time_text(self.response.worst)
@@ -85,8 +123,8 @@ class ExecutorResult(Shown):
 
     Attributes
     ----------
-    round : least and greatest time from the end of a wait to the end of the last callback of the round
-    loop : least and greatest time from the end of a wait to that of the next one
+    round : bounds of the time from the end of a wait to the end of the last callback of the iteration
+    loop : bounds of the time from the end of a wait to that of the next one
     handles : in the order in which they are called
     reason : why nothing is known of it
     slots_needed : slots with which no message of the executors that share them finds none free; None if no number is known to be enough

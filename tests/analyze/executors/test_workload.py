@@ -4,10 +4,9 @@ from itertools import product
 
 import pytest
 
+from amalthea_uros.executors.semantics.loops import lost_periods, next_expiration, workload
 from amalthea_uros.perf.executors import Executor, Loop, LoopKind
 from amalthea_uros.timing.event_models import Periodic
-from amalthea_uros.timing.executors.timers import lost_periods, next_expiration
-from amalthea_uros.timing.executors.workload import workload
 
 LONGEST = 3
 

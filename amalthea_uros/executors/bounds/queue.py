@@ -11,7 +11,7 @@ the message that the wait took, or, if it took none, the oldest of its handle. I
 of the same handle delay each other.
 
 A wait that cannot wait any longer reads only what comes first: when a timer is due or nearly due, the timeout is cut to 0, and answers
-that are written while it reads use it up. That can also be an acknowledgement, a heartbeat, or a part of a message (`unread`), so that
+that are written while it reads use it up. That can also be an acknowledgement, a heartbeat, or a part of a message (`backlog`), so that
 these count like messages.
 
 Executors of one session read from the same buffer: the messages of the others are also before it, and what the others read only makes
@@ -24,15 +24,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
-from amalthea_uros.analyze.executors.cycle import Cycle
-from amalthea_uros.analyze.executors.unread import besides_data
+from amalthea_uros.errors import UnknownError
+from amalthea_uros.executors.bounds.backlog import protocol_overhead
+from amalthea_uros.executors.bounds.cycle import Cycle
+from amalthea_uros.executors.semantics.arrivals import arrivals, certain_rate
+from amalthea_uros.executors.semantics.protocol import acknowledgements, parts
+from amalthea_uros.executors.semantics.readiness import messages, sharing
 from amalthea_uros.perf.executors import Handle
 from amalthea_uros.timing.event_models import EventModel, aggregated
 from amalthea_uros.timing.event_models.aggregated import Multiplied
-from amalthea_uros.timing.executors.answers import answers, parts
-from amalthea_uros.timing.executors.arrivals import UnknownArrivalsError, arrivals, certain_rate
-from amalthea_uros.timing.executors.readiness import sharing
-from amalthea_uros.timing.executors.wait import messages
 from amalthea_uros.units import SECOND, Time
 
 #: A busy period with more messages is considered unbounded: rounds are then hardly faster than messages.
@@ -61,39 +61,26 @@ def competing(handle: Handle, cycle: Cycle, extra_jitter: Mapping[str, Time | No
 
     Raises
     ------
-    UnknownArrivalsError : it is unknown how many there are.
+    UnknownError : it is unknown how many there are.
     """
     if cycle.executor.waiting.messages_per_wait is None:
         return arrivals(handle, extra_jitter)
-    data = [_parts(each, arrivals(each, extra_jitter), cycle) for each in _before_pool(cycle)]
-    return aggregated((*data, *_besides_data(cycle)))
+    # All executors of a session read from the same buffer.
+    executors = sharing(cycle.executor, cycle.solved.context.system.executors)
+    handles = [each for executor in executors for each in messages(executor)]
+    data = [_parts(each, arrivals(each, extra_jitter), cycle) for each in handles]
+    overhead = [] if cycle.longest is None else protocol_overhead(cycle.longest, cycle.sending, cycle.solved)
+    known = [each.as_events for each in overhead if each is not None]
+    if len(known) < len(overhead):
+        raise UnknownError("how many acknowledgements and heartbeats arrive is not known")
+    return aggregated((*data, *known))
 
 
 def _parts(handle: Handle, events: EventModel, cycle: Cycle) -> EventModel:
     """The messages of a handle, with all parts of each."""
-    system = cycle.solution.context.system
-    count = next((parts(each, system) for each in answers(system) if each.callback == handle.name), 1)
+    system = cycle.solved.context.system
+    count = next((parts(each, system) for each in acknowledgements(system) if each.callback == handle.name), 1)
     return events if count == 1 else Multiplied(events, count)
-
-
-def _besides_data(cycle: Cycle) -> list[EventModel]:
-    """What else waits can read.
-
-    Raises
-    ------
-    UnknownArrivalsError : it is unknown how much there is.
-    """
-    found = [] if cycle.longest is None else besides_data(cycle.longest, cycle.sending, cycle.solution)
-    known = [each.as_events for each in found if each is not None]
-    if len(known) < len(found):
-        raise UnknownArrivalsError("how many acknowledgements and heartbeats arrive is not known")
-    return known
-
-
-def _before_pool(cycle: Cycle) -> list[Handle]:
-    """The handles whose messages wait in the same buffer: those of all executors of its session."""
-    executors = cycle.solution.context.system.executors
-    return [handle for each in sharing(cycle.executor, executors) for handle in messages(each)]
 
 
 def delay_of(handle: Handle, cycle: Cycle, length: Time, extra_jitter: Mapping[str, Time | None]) -> Delay:
@@ -108,7 +95,7 @@ def delay_of(handle: Handle, cycle: Cycle, length: Time, extra_jitter: Mapping[s
         return overload
     try:
         events = competing(handle, cycle, extra_jitter)
-    except UnknownArrivalsError as error:
+    except UnknownError as error:
         return Delay(cycles=None, reason=str(error))
     if events.rate * length >= 1:
         rate, served = _per_second(events.rate), _per_second(Fraction(1, length))

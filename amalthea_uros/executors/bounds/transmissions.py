@@ -7,41 +7,43 @@ time from its activation.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
-from amalthea_uros.analyze.solution import Solution
-from amalthea_uros.analyze.ways.results import Hop, HopKind
+from amalthea_uros.executors.bounds.solved_system import SolvedSystem
+from amalthea_uros.executors.results import Hop, HopKind
 from amalthea_uros.perf.network import Direction, Purpose, Span, Transmission
 from amalthea_uros.perf.software import Isr, Task
 from amalthea_uros.units import Time
 
 _STATED = "stated"
+#: Why an unknown latency of the agent does not make arrivals unknown, if the description states the jitter of messages.
+_STATED_JITTER = "where the latency of the agent is not stated, the stated jitter is that of the messages that enter the wire"
 
 #: The key of a latency of the agent, by what is sent where.
 _AGENT_KEYS = {Direction.TO_CONTROLLER: "to_controller", Direction.TO_AGENT: "to_host"}
 
 
-def received(transmission: Transmission, solution: Solution) -> Iterator[Hop]:
+def received(transmission: Transmission, solved: SolvedSystem) -> Iterator[Hop]:
     """From the first byte of a message on the wire until the executor, or the process that takes it, can see it."""
-    yield wire_hop(transmission, solution)
+    yield wire_hop(transmission, solved)
     yield from _link(transmission)
     yield from _driver(transmission)
     for name in transmission.processes:
-        yield process_hop(name, solution)
+        yield process_hop(name, solved)
 
 
-def sent(transmission: Transmission, solution: Solution) -> Iterator[Hop]:
+def sent(transmission: Transmission, solved: SolvedSystem) -> Iterator[Hop]:
     """From the end of the callback that sends a message to its last byte at the agent."""
     yield from _driver(transmission)
-    yield wire_hop(transmission, solution)
+    yield wire_hop(transmission, solved)
     yield from _link(transmission)
 
 
-def agent_hop(transmission: Transmission, solution: Solution) -> Hop:
+def agent_hop(transmission: Transmission, solved: SolvedSystem) -> Hop:
     """From the host to the wire, from the wire to the host, or from a message to its acknowledgement."""
     is_answer = transmission.purpose is Purpose.ACKNOWLEDGEMENT
     key = "acknowledgement" if is_answer else _AGENT_KEYS[transmission.direction]
-    agent = solution.context.system.network.agent
+    agent = solved.context.system.network.agent
     return _of_span(
         HopKind.AGENT,
         agent,
@@ -51,24 +53,24 @@ def agent_hop(transmission: Transmission, solution: Solution) -> Hop:
     )
 
 
-def wire_hop(transmission: Transmission, solution: Solution) -> Hop:
+def wire_hop(transmission: Transmission, solved: SolvedSystem) -> Hop:
     """Waiting for the wire and the transmission of all frames of a message."""
-    response = solution.responses.get(transmission.name)
+    response = solved.responses.get(transmission.name)
     if response is None or response.worst is None:
-        why = response.reason if response is not None else solution.reasons.get(transmission.name, "it was not analysed")
+        why = response.reason if response is not None else solved.reasons.get(transmission.name, "it was not analysed")
         reason = f"the time of {transmission.name!r} on {transmission.wire!r} has no bound: {why}"
-        best = response.best if response is not None else solution.bcet(transmission.name)
+        best = response.best if response is not None else solved.bcet(transmission.name)
         remedy = f"See the results of {transmission.name!r}."
         if response is not None and response.is_overload:
             remedy = f"Increase the rate of {transmission.wire!r}, send less often, or without acknowledgements."
-        return Hop(kind=HopKind.WIRE, name=transmission.wire, best=best, worst=None, source="", reason=reason, remedy=remedy)
-    if (sender := _only_sender(transmission, solution)) is not None:
-        solution.context.notes.assume(f"a write to {transmission.wire} returns when the message is on the wire, not before")
+        return Hop(kind=HopKind.WIRE, name=transmission.wire, best=best, worst=None, reason=reason, remedy=remedy)
+    if (sender := _only_sender(transmission, solved)) is not None:
+        solved.context.notes.assume(f"a write to {transmission.wire} returns when the message is on the wire, not before")
         return Hop(
             kind=HopKind.WIRE,
             name=transmission.wire,
             best=response.best,
-            worst=min(response.worst, _longest(transmission, solution)),
+            worst=min(response.worst, _longest(transmission, solved)),
             source=f"only {sender} sends there, and a write returns when the message is on the wire, so that no message waits",
         )
     return Hop(
@@ -80,12 +82,12 @@ def wire_hop(transmission: Transmission, solution: Solution) -> Hop:
     )
 
 
-def _only_sender(transmission: Transmission, solution: Solution) -> str | None:
+def _only_sender(transmission: Transmission, solved: SolvedSystem) -> str | None:
     """The executor that alone sends in the direction of a message, where the driver keeps it until each message is on the wire.
 
     One of its messages never waits for another one, however close to each other the task model has to assume them.
     """
-    system = solution.context.system
+    system = solved.context.system
     wire = next((each for each in system.network.wires if each.name == transmission.wire), None)
     if wire is None or not wire.keeps_sender or wire.loses_messages or len(wire.cores) < len(Direction):
         return None
@@ -107,23 +109,21 @@ def _only_sender(transmission: Transmission, solution: Solution) -> str | None:
     return None
 
 
-def _longest(transmission: Transmission, solution: Solution) -> Time:
+def _longest(transmission: Transmission, solved: SolvedSystem) -> Time:
     """The longest time of a message on its wire, without waiting for it; its response time is known, so its demand is, too."""
     name = transmission.name
-    return -(-solution.context.demands[name].worst // solution.context.time_base(name))
+    return -(-solved.context.demands[name].worst // solved.context.time_base(name))
 
 
-def process_hop(name: str, solution: Solution) -> Hop:
+def process_hop(name: str, solved: SolvedSystem) -> Hop:
     """From the activation of a process that a message passes to its end."""
-    kind = HopKind.INTERRUPT if isinstance(solution.context.system.processes.get(name), Isr) else HopKind.MIDDLEWARE
-    response = solution.responses.get(name)
-    best = response.best if response is not None else solution.bcet(name)
-    if response is None or response.worst is None or solution.depends_on_losses(name):
-        why = response.reason if response is not None else solution.reasons.get(name, "it was not analysed")
+    kind = HopKind.INTERRUPT if isinstance(solved.context.system.processes.get(name), Isr) else HopKind.MIDDLEWARE
+    response = solved.responses.get(name)
+    best = response.best if response is not None else solved.bcet(name)
+    if response is None or response.worst is None or solved.depends_on_losses(name):
+        why = response.reason if response is not None else solved.reasons.get(name, "it was not analysed")
         reason = f"the response time of {name!r} has no bound: {why or 'it can lose activations'}"
-        return Hop(
-            kind=kind, name=name, best=best, worst=None, source="", reason=reason, remedy=f"See the results of {name!r}."
-        )
+        return Hop(kind=kind, name=name, best=best, worst=None, reason=reason, remedy=f"See the results of {name!r}.")
     return Hop(kind=kind, name=name, best=best, worst=response.worst, source=f"response time by {response.method}")
 
 
@@ -131,6 +131,26 @@ def variation(hops: Sequence[Hop]) -> Time | None:
     """How much the time of hops varies; None if that is unknown."""
     times = [hop.worst - hop.best for hop in hops if hop.worst is not None]
     return sum(times) if len(times) == len(hops) else None
+
+
+def arrival_jitter(solved: SolvedSystem) -> Mapping[str, Time | None]:
+    """How far the arrivals at handles vary, besides the jitter that is stated, by the names of handles; None if a hop has no bound.
+
+    Each hop before can take its best or its worst time (K. Richter 2005).
+    """
+    found: dict[str, Time | None] = {}
+    for executor in solved.context.system.executors:
+        for handle in executor.handles:
+            transmission = solved.context.system.transmissions.get(handle.transmission or "")
+            if transmission is None:
+                continue
+            agent = agent_hop(transmission, solved)
+            # Otherwise, nothing activates what stands for the message on the wire, which has no bound then.
+            stated = [] if agent.worst is None else [agent]
+            jitter = found[handle.name] = variation([*stated, *received(transmission, solved)])
+            if agent.worst is None and jitter is not None:
+                solved.context.notes.assume(_STATED_JITTER)
+    return found
 
 
 def _link(transmission: Transmission) -> Iterator[Hop]:
@@ -157,5 +177,5 @@ def _driver(transmission: Transmission) -> Iterator[Hop]:
 
 def _of_span(kind: HopKind, name: str, span: Span, reason: str, remedy: str) -> Hop:
     if span.most is None:
-        return Hop(kind=kind, name=name, best=span.least, worst=None, source="", reason=reason, remedy=remedy)
+        return Hop(kind=kind, name=name, best=span.least, worst=None, reason=reason, remedy=remedy)
     return Hop(kind=kind, name=name, best=span.least, worst=span.most, source=_STATED)

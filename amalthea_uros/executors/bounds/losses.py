@@ -11,15 +11,23 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.analyze.executors.cycle import Cycle
-from amalthea_uros.analyze.executors.results import HandleResult, Loss
+from amalthea_uros.errors import UnknownError
+from amalthea_uros.executors.bounds.cycle import Cycle
+from amalthea_uros.executors.results import HandleResult, Loss
+from amalthea_uros.executors.semantics.arrivals import arrivals
+from amalthea_uros.executors.semantics.loops import lost_periods, next_expiration
+from amalthea_uros.executors.semantics.readiness import (
+    LIFESPAN,
+    can_defer,
+    can_exceed_depth,
+    is_message,
+    messages,
+    sharing,
+    slots_needed,
+    takes_one_message,
+)
 from amalthea_uros.perf.executors import Executor, Handle
 from amalthea_uros.perf.network import Span
-from amalthea_uros.timing.executors.arrivals import UnknownArrivalsError, arrivals
-from amalthea_uros.timing.executors.readiness import keeps_back, sharing, stores
-from amalthea_uros.timing.executors.slots import LIFESPAN, can_exceed_depth, slots_needed
-from amalthea_uros.timing.executors.timers import lost_periods, next_expiration
-from amalthea_uros.timing.executors.wait import is_message, messages
 from amalthea_uros.units import Rounding, Time, rounded_time_text, time_text
 
 
@@ -52,7 +60,7 @@ def loss_of_triggers(
     handle: Handle, cycle: Cycle, seen_after: Time | None, extra_jitter: Mapping[str, Time | None]
 ) -> Loss | None:
     """The triggers of a guard condition that can be lost: it is a flag that is cleared when it is seen."""
-    if keeps_back(cycle.executor):
+    if can_defer(cycle.executor):
         sequence = (
             f"{handle.name} is triggered; the next round sees and clears it, but the trigger condition of the executor is false"
         )
@@ -64,7 +72,7 @@ def loss_of_triggers(
     try:
         # The first one sets the flag; the others come until it is seen, at the last moment, too.
         lost = arrivals(handle, extra_jitter).eta_plus(seen_after + 1) - 1
-    except UnknownArrivalsError:
+    except UnknownError:
         sequence = (
             f"{handle.name} is triggered twice within {_text(seen_after)}, until the executor sees it, and it calls it once; "
             "nobody states how often it is triggered"
@@ -94,8 +102,8 @@ def with_lost_messages(
     stored : the messages of each handle that can wait at the same time
     needed : the slots for those of all executors that share them
     """
-    executor, everyone = cycle.executor, cycle.solution.context.system.executors
-    if executor.waiting.slots != 0 and all(_is_taken_at_once(each, everyone) for each in sharing(executor, everyone)):
+    executor, everyone = cycle.executor, cycle.solved.context.system.executors
+    if executor.waiting.slots != 0 and all(takes_one_message(each, everyone) for each in sharing(executor, everyone)):
         return list(results)
     return [
         replace(result, lost=_lost(handle, result, cycle, stored[handle.name], needed)) if is_message(handle) else result
@@ -118,14 +126,9 @@ def stored_messages(
 def slots_of_pool(executors: Sequence[Executor], everyone: Sequence[Executor], stored: Mapping[str, int | None]) -> int | None:
     """The slots that executors need that share them; None if a number of messages is not known, and nothing limits it."""
     handles = [handle for each in executors for handle in messages(each)]
-    if all(_is_taken_at_once(each, everyone) for each in executors):
+    if all(takes_one_message(each, everyone) for each in executors):
         return min(len(handles), 1)
     return slots_needed(handles, stored)
-
-
-def _is_taken_at_once(executor: Executor, others: Sequence[Executor]) -> bool:
-    """Whether each round calls the message that its wait took."""
-    return executor.waiting.messages_per_wait == 1 and not stores(executor, others)
 
 
 def _stored(handle: Handle, result: HandleResult, extra_jitter: Mapping[str, Time | None]) -> int | None:
@@ -134,7 +137,7 @@ def _stored(handle: Handle, result: HandleResult, extra_jitter: Mapping[str, Tim
         return None
     try:
         return arrivals(handle, extra_jitter).eta_plus(result.response.worst)
-    except UnknownArrivalsError:
+    except UnknownError:
         return None
 
 
@@ -170,7 +173,7 @@ def _lost(handle: Handle, result: HandleResult, cycle: Cycle, stored: int | None
 
 def _while_nothing_is_taken(cycle: Cycle) -> str:
     """What happens while messages are stored and none is taken."""
-    if keeps_back(cycle.executor):
+    if can_defer(cycle.executor):
         return "while the trigger condition is false, "
     if cycle.whole.suspension.why:
         return f"while {cycle.whole.suspension.why}, "

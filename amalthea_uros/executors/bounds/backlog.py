@@ -12,11 +12,11 @@ are unread, and what arrives is read at most N L later: its age is at most Q = N
 those that came in the last Q, at most its eta(Q).
 
 Publications that wait read all messages up to their acknowledgement. It is read by them, and does not add to the others, unless they
-can give up before it comes.
+can time out before it comes.
 
-L contains the times of publications and of answers, which contain the unread messages. That the least solution of these equations
-holds is shown by induction over time: until some time was longer than in it, no cycle was longer than L, so that no more messages
-were unread than counted, and this time was not longer either. Nothing is unread when the first round begins.
+L contains the times of publications and of acknowledgements, which contain the unread messages. That the least solution of these
+equations holds is shown by induction over time: until some time was longer than in it, no cycle was longer than L, so that no more
+messages were unread than counted, and this time was not longer either. Nothing is unread when the first iteration begins.
 """
 
 from __future__ import annotations
@@ -24,22 +24,22 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from amalthea_uros.analyze.solution import Solution
-from amalthea_uros.analyze.ways.messages import received, variation
+from amalthea_uros.executors.bounds.solved_system import SolvedSystem
+from amalthea_uros.executors.bounds.transmissions import received, variation
+from amalthea_uros.executors.semantics.protocol import acknowledgements, heartbeats, parts
 from amalthea_uros.perf.executors import Publication
 from amalthea_uros.perf.network import Direction, Purpose, Span, Transmission
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.event_models import EventModel
 from amalthea_uros.timing.event_models.aggregated import Multiplied
 from amalthea_uros.timing.event_models.output import Delayed
-from amalthea_uros.timing.executors.answers import answers, heartbeats, parts
 from amalthea_uros.units import Time
 
 #: More unread messages are considered unbounded: rounds are then hardly faster than messages.
-MAX_UNREAD = 10_000
+MAX_BACKLOG = 10_000
+_ACKNOWLEDGEMENT = "_acknowledgement"
 #: Heartbeats that can be due besides those at intervals: when a timeout begins, and when its last reading does.
 DUE = 2
-_ACKNOWLEDGEMENT = "_acknowledgement"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -67,23 +67,23 @@ class Arriving:
         return self.parts * self.events.eta_plus(window + self.jitter + 1)
 
 
-def arriving(message: Transmission, solution: Solution, parts: int = 1) -> Arriving | None:
+def arriving(message: Transmission, solved: SolvedSystem, parts: int = 1) -> Arriving | None:
     """The arrivals of a message; None if they are unknown."""
-    events, jitter = solution.event_models.get(message.name), variation(list(received(message, solution)))
+    events, jitter = solved.event_models.get(message.name), variation(list(received(message, solved)))
     return None if events is None or jitter is None else Arriving(events=events, jitter=jitter, parts=parts)
 
 
-def answered(solution: Solution) -> Mapping[str, Arriving | None]:
-    """What the client answers, by the names of the answers; None if its arrivals are unknown."""
-    system = solution.context.system
+def acknowledged(solved: SolvedSystem) -> Mapping[str, Arriving | None]:
+    """What the client acknowledges, by the names of the acknowledgements; None if its arrivals are unknown."""
+    system = solved.context.system
     found: dict[str, Arriving | None] = {}
-    for answer in answers(system):
+    for answer in acknowledgements(system):
         message = system.transmissions.get(answer.name.removesuffix(_ACKNOWLEDGEMENT))
-        found[answer.name] = None if message is None else arriving(message, solution, parts(answer, system))
+        found[answer.name] = None if message is None else arriving(message, solved, parts(answer, system))
     return found
 
 
-def longest_unread(length: Time | None, sending: Mapping[str, Span], solution: Solution) -> Time | None:
+def backlog_age(length: Time | None, sending: Mapping[str, Span], solved: SolvedSystem) -> Time | None:
     """The greatest age of an unread message; None if there is no bound.
 
     Parameters
@@ -92,15 +92,15 @@ def longest_unread(length: Time | None, sending: Mapping[str, Span], solution: S
     """
     if length is None:
         return None
-    kinds = [found for _, found in _read_in_rounds(length, sending, solution)]
+    kinds = [found for _, found in _read_in_iterations(length, sending, solved)]
     known = [each for each in kinds if each is not None]
     if len(known) < len(kinds):
         return None
-    most = most_unread(known, length)
+    most = max_backlog(known, length)
     return None if most is None else most * length
 
 
-def most_unread(kinds: Sequence[Arriving], length: Time) -> int | None:
+def max_backlog(kinds: Sequence[Arriving], length: Time) -> int | None:
     """The most messages that can be unread; None if there is no bound.
 
     Parameters
@@ -110,7 +110,7 @@ def most_unread(kinds: Sequence[Arriving], length: Time) -> int | None:
     if sum(each.parts * each.events.rate for each in kinds) * length >= 1:
         return None
     most = 1
-    for count in range(1, MAX_UNREAD):
+    for count in range(1, MAX_BACKLOG):
         arrived = sum(each.most(count * length) for each in kinds)
         most = max(most, arrived - count + 1)
         if arrived <= count:
@@ -118,7 +118,7 @@ def most_unread(kinds: Sequence[Arriving], length: Time) -> int | None:
     return None
 
 
-def can_give_up(publication: Publication, sending: Mapping[str, Span]) -> bool:
+def times_out(publication: Publication, sending: Mapping[str, Span]) -> bool:
     """Whether a publication can end before it is acknowledged; its timeout begins after it is written."""
     most = sending.get(publication.transmission or "", Span()).most
     return not publication.waits or most is None or publication.timeout is None or most > publication.timeout
@@ -129,53 +129,53 @@ def publications(system: System) -> list[Publication]:
     return [each for executor in system.executors for handle in executor.handles for each in handle.publications]
 
 
-def is_behind(sending: Mapping[str, Span], solution: Solution) -> bool:
+def has_unacknowledged(sending: Mapping[str, Span], solved: SolvedSystem) -> bool:
     """Whether something can be sent and not be acknowledged when a round or a publication begins."""
-    return any(each.reliable and can_give_up(each, sending) for each in publications(solution.context.system))
+    return any(each.reliable and times_out(each, sending) for each in publications(solved.context.system))
 
 
-def most_heartbeats(timeout: Time, solution: Solution) -> int | None:
+def max_heartbeats(timeout: Time, solved: SolvedSystem) -> int | None:
     """The most heartbeats that the client writes before a timeout ends; None if that is unknown.
 
     They follow at intervals: of the clock until the last reading, and of its own timeout in that.
     """
-    intervals = _intervals(solution)
+    intervals = _intervals(solved)
     return sum(DUE + timeout // each for each in intervals if each) if all(intervals) else None
 
 
-def _intervals(solution: Solution) -> list[Time | None]:
+def _intervals(solved: SolvedSystem) -> list[Time | None]:
     """The intervals of the heartbeats of the client."""
-    events = [solution.event_models.get(each.name) for each in heartbeats(solution.context.system)]
+    events = [solved.event_models.get(each.name) for each in heartbeats(solved.context.system)]
     return [None if each is None else each.delta_min(2) for each in events]
 
 
-def besides_data(length: Time, sending: Mapping[str, Span], solution: Solution) -> list[Arriving | None]:
+def protocol_overhead(length: Time, sending: Mapping[str, Span], solved: SolvedSystem) -> list[Arriving | None]:
     """The acknowledgements and heartbeats that waits of rounds can read; None for one whose arrivals are unknown.
 
     Parameters
     ----------
     length : of a cycle without a wait
     """
-    return [found for each, found in _read_in_rounds(length, sending, solution) if each.purpose is not Purpose.DATA]
+    return [found for each, found in _read_in_iterations(length, sending, solved) if each.purpose is not Purpose.DATA]
 
 
-def _read_in_rounds(
-    length: Time, sending: Mapping[str, Span], solution: Solution
+def _read_in_iterations(
+    length: Time, sending: Mapping[str, Span], solved: SolvedSystem
 ) -> Iterator[tuple[Transmission, Arriving | None]]:
-    system = solution.context.system
-    read_before = {each.acknowledgement for each in publications(system) if not can_give_up(each, sending)}
-    by_answer = answered(solution)
+    system = solved.context.system
+    read_before = {each.acknowledgement for each in publications(system) if not times_out(each, sending)}
+    by_acknowledgement = acknowledged(solved)
     # Each publication ends in the cycle in which it begins: before the first heartbeat.
-    is_silent = not is_behind(sending, solution) and all(each and each > length for each in _intervals(solution))
+    is_silent = not has_unacknowledged(sending, solved) and all(each and each > length for each in _intervals(solved))
     for each in system.transmissions.values():
         if each.direction is Direction.TO_AGENT or each.purpose is Purpose.FOREIGN or each.name in read_before:
             continue
-        if is_silent and _answers_heartbeat(each, system):
+        if is_silent and _acknowledges_heartbeat(each, system):
             continue
         name = f"{each.name}{_ACKNOWLEDGEMENT}"
-        yield each, by_answer[name] if name in by_answer else arriving(each, solution)
+        yield each, by_acknowledgement[name] if name in by_acknowledgement else arriving(each, solved)
 
 
-def _answers_heartbeat(answer: Transmission, system: System) -> bool:
-    """Whether an acknowledgement answers a heartbeat of the client."""
+def _acknowledges_heartbeat(answer: Transmission, system: System) -> bool:
+    """Whether an acknowledgement is that of a heartbeat of the client."""
     return answer.name.removesuffix(_ACKNOWLEDGEMENT) in {each.name for each in heartbeats(system)}

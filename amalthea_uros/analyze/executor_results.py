@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
-from amalthea_uros.analyze.executors.results import ExecutorResult, HandleResult
-from amalthea_uros.analyze.executors.window import METHOD
 from amalthea_uros.analyze.process_evidence import judged, worst_response
 from amalthea_uros.analyze.results import CallbackResult, Claim, JobMetric, Metric, ProcessResult, Response
+from amalthea_uros.executors.bounds.solved_system import METHOD
+from amalthea_uros.executors.results import ExecutorResult, HandleResult
 from amalthea_uros.judge.evidence import ProcessEvidence, ProvedLoss
 from amalthea_uros.perf.software import Process
 from amalthea_uros.units import Time

@@ -15,24 +15,22 @@ what it still executed before it was suspended can delay them, and then count as
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from amalthea_uros.analyze.response_times.blocking import Blocking
 from amalthea_uros.analyze.response_times.busy_window import Interference
 from amalthea_uros.analyze.response_times.task import Task
-from amalthea_uros.analyze.solution import Solution
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.timing.event_models import rescaled
 from amalthea_uros.timing.scheduling import ScheduledProcess
 from amalthea_uros.units import Time
 
-METHOD = "busy window of the rounds of an executor"
-
-
-class NoWindowError(Exception):
-    """Nothing is known of when a thread executes; the text says why."""
+if TYPE_CHECKING:
+    from amalthea_uros.analyze.solution import Solution
 
 
 @dataclass(frozen=True, slots=True)
-class Window:
+class ExecutorThread:
     """The processor as the thread of an executor sees it; execution demands are in its time base, times in picoseconds."""
 
     others: Interference
@@ -40,21 +38,21 @@ class Window:
     time_base: int
 
     @classmethod
-    def of(cls, task: str, solution: Solution) -> Window:
-        """The window of a task.
+    def of(cls, task: str, solution: Solution) -> ExecutorThread:
+        """The processor as the thread of a task sees it.
 
         Raises
         ------
-        NoWindowError : it is not scheduled, or something unknown can delay it.
+        UnknownError : it is not scheduled, or something unknown can delay it.
         """
         context = solution.context
         scheduled = context.scheduled.get(task)
         if scheduled is None:
-            raise NoWindowError(context.reasons.get(task, "its task is not allocated to a scheduler"))
+            raise UnknownError(context.reasons.get(task, "its task is not allocated to a scheduler"))
         here = context.served(scheduled.core, scheduled.server)
         processes = [item for item in here if isinstance(item, ScheduledProcess)]
         if scheduled.server is not None or len(processes) < len(here):
-            raise NoWindowError("its core is shared by servers with budgets, which is not supported for executors in loops")
+            raise UnknownError("its core is shared by servers with budgets, which is not supported for executors in loops")
         blocking = Blocking.of(processes, solution)
         level = blocking.level(scheduled)
         above = [item for item in processes if item.rank >= level.rank and item.name != task]
@@ -62,9 +60,9 @@ class Window:
             (item.name for item in above if not solution.is_analysable(item.name)), ""
         )
         if unknown:
-            raise NoWindowError(f"{unknown!r}, which could not be analysed, can preempt it")
+            raise UnknownError(f"{unknown!r}, which could not be analysed, can preempt it")
         if blocking.unknown and (keeping := blocking.obstacle(scheduled)):
-            raise NoWindowError(f"{keeping!r}, which could not be analysed, can block it")
+            raise UnknownError(f"{keeping!r}, which could not be analysed, can block it")
         own = (
             context.demand_model.of_process(scheduled.process, scheduled.core).worst
             if blocking.keeps_off_others(scheduled)

@@ -1,0 +1,1 @@
+"""Bounds of what executors do: response times of callbacks, messages that are lost, times of publications."""

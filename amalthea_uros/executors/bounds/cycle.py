@@ -1,0 +1,290 @@
+"""The cycle of an executor: from the moment when it has fixed what is ready, after a wait, to the same moment of the next round.
+
+Without the wait, a cycle consists of the rest of the round, what the loop does between two waits, and the beginning of the next round:
+
+- `spin_some` with a sleep D: D + the time to execute a round
+- `spin`: the time to execute a round
+- `spin_period` with a period P: the invocation time is never later than the moment when the round began, and the thread sleeps until
+  one period after it, or not at all. So it is at most the greater of P and the time to execute a round. As sleeps are cut to whole
+  milliseconds, a round can begin up to 1 ms before its invocation time, which makes it 1 ms more.
+
+A round executes the overhead of the executor once. Which part of it comes before the wait is unknown, so that its part after the
+sleep can be all of it; the time of a cycle with a sleep is the lesser of two bounds: the sleep in the middle of one window, and two
+windows.
+
+A wait answers the heartbeats that are unread, whose number depends on the cycle: the least number that is consistent is the bound
+(`backlog`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+from amalthea_uros.errors import UnknownError
+from amalthea_uros.executors.bounds.backlog import acknowledged, backlog_age, has_unacknowledged, max_heartbeats
+from amalthea_uros.executors.bounds.solved_system import SolvedSystem, ThreadProcessor
+from amalthea_uros.executors.semantics.demand import IterationDemand
+from amalthea_uros.executors.semantics.loops import SLEEP_RESOLUTION, longest_wait, min_pace, sleep_of
+from amalthea_uros.executors.semantics.protocol import (
+    ProtocolWrites,
+    acknowledgements,
+    heartbeats,
+    session_wait,
+    writing_in_wait,
+)
+from amalthea_uros.executors.semantics.readiness import (
+    can_defer,
+    has_backlog,
+    independent_handles,
+    is_message,
+    messages,
+    takes_one_message,
+)
+from amalthea_uros.executors.semantics.suspension import NONE, Suspension, in_sequence, longest_of, suspension_of
+from amalthea_uros.perf.executors import Executor, Handle, LoopKind
+from amalthea_uros.perf.network import Span
+from amalthea_uros.timing.notes import UnknownDemandError
+from amalthea_uros.units import Time
+
+#: After which the number of heartbeats in a wait is considered unbounded.
+_STEPS = 1000
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Section:
+    """A part of an iteration of a thread: execution in the time base of the core, suspensions in picoseconds."""
+
+    demand: Time
+    suspension: Suspension
+
+    @property
+    def resumed(self) -> int:
+        """How often the thread becomes ready in it."""
+        return 1 + self.suspension.times
+
+
+@dataclass(frozen=True)
+class Cycle:
+    """The iterations of an executor.
+
+    Attributes
+    ----------
+    sending : times of publications, by the names of transmissions
+    takes_one : whether at most one handle that receives messages is ready in an iteration
+    session_wait : how long others can keep the session when it is needed
+    writing : how long a wait is extended by acknowledgements of what it reads, and heartbeats
+    backlog_age : how long a message can lie unread; None if that has no bound, or nothing is acknowledged
+    """
+
+    executor: Executor
+    solved: SolvedSystem
+    processor: ThreadProcessor
+    demand: IterationDemand
+    sending: Mapping[str, Span]
+    takes_one: bool
+    session_wait: Time | None = 0
+    writing: Suspension = NONE
+    backlog_age: Time | None = None
+
+    @classmethod
+    def of(cls, executor: Executor, solved: SolvedSystem, sending: Mapping[str, Span]) -> Cycle:
+        """The iterations of an executor.
+
+        Raises
+        ------
+        UnknownError : its execution demand, or what can preempt it, is unknown.
+        """
+        processor = solved.processor(executor.task)
+        try:
+            demand = IterationDemand.of(executor, solved.context)
+        except UnknownDemandError as error:
+            raise UnknownError(str(error)) from None
+        takes_one = takes_one_message(executor, solved.context.system.executors)
+        return cls(executor, solved, processor, demand, sending, takes_one)._consistent()
+
+    def _consistent(self) -> Cycle:
+        """The cycle with the least number of messages that its wait writes."""
+        writes = ProtocolWrites()
+        for _ in range(_STEPS):
+            cycle = self._with(writes)
+            again = cycle._writes()
+            if again == writes:
+                return cycle
+            writes = again
+        return self._with(ProtocolWrites(acknowledgements=None, heartbeats=None))
+
+    def _with(self, writes: ProtocolWrites) -> Cycle:
+        system = self.solved.context.system
+        cycle = replace(
+            self,
+            session_wait=session_wait(self.executor, system, self.sending, writes),
+            writing=writing_in_wait(self.executor, system, self.sending, writes),
+        )
+        if not acknowledgements(system):
+            return cycle
+        return replace(cycle, backlog_age=backlog_age(cycle.longest, self.sending, self.solved))
+
+    def _writes(self) -> ProtocolWrites:
+        """How often a wait writes, if the cycle is like this."""
+        system = self.solved.context.system
+        asked = [each for name, each in acknowledged(self.solved).items() if system.transmissions[name].callback is None]
+        unread = [None if each is None or self.backlog_age is None else each.most(self.backlog_age) for each in asked]
+        count = None if None in unread else sum(filter(None, unread)) + 1
+        return ProtocolWrites(acknowledgements=count, heartbeats=self._heartbeats)
+
+    @property
+    def _heartbeats(self) -> int | None:
+        """The heartbeats of the client in a wait: only if something can be sent and not be acknowledged then.
+
+        They are an interval apart, and the timeout includes them, but for the last reading of it, whose time counts from its beginning.
+        """
+        if not heartbeats(self.solved.context.system) or not has_unacknowledged(self.sending, self.solved):
+            return 0
+        return max_heartbeats(longest_wait(self.executor), self.solved)
+
+    @property
+    def time_base(self) -> int:
+        """Time units per picosecond on the core."""
+        return self.processor.time_base
+
+    @cached_property
+    def has_backlog(self) -> bool:
+        """Whether messages can be stored before an iteration that takes them."""
+        return has_backlog(self.executor, self.solved.context.system.executors)
+
+    @property
+    def wait(self) -> Time:
+        """The longest wait."""
+        return longest_wait(self.executor)
+
+    @property
+    def sleep(self) -> Time:
+        """The sleep after each round."""
+        return sleep_of(self.executor).upper
+
+    def suspension(self, handle: Handle) -> Suspension:
+        """The suspension of a callback."""
+        return suspension_of(handle, self.solved.context.system, self.sending, self.session_wait)
+
+    @cached_property
+    def whole(self) -> Section:
+        """The longest round: its overhead, and all callbacks that one round can call."""
+        always = independent_handles(self.executor)
+        excluded = [handle for handle in self.executor.handles if handle not in always]
+        return self._part(always, excluded, self.demand.spin.upper)
+
+    def _part(self, always: Sequence[Handle], excluded: Sequence[Handle], demand: Time) -> Section:
+        """The demand of some handles; of those that exclude each other, the longest."""
+        if not self.takes_one:
+            always, excluded = (*always, *excluded), ()
+        demand += sum(self.demand.of_handle(handle).upper for handle in always)
+        demand += max((self.demand.of_handle(handle).upper for handle in excluded), default=0)
+        longest = longest_of([self.suspension(handle) for handle in excluded])
+        return Section(demand=demand, suspension=in_sequence([*map(self.suspension, always), longest]))
+
+    def before(self, handle: Handle) -> Section:
+        """What a round does before a callback, after it has fixed what is ready; the take of its message included."""
+        at = self.executor.handles.index(handle)
+        earlier, later = self.executor.handles[:at], self.executor.handles[at + 1 :]
+        found = self._part(*self._possible_with(handle, earlier), self.demand.spin.upper + self.demand.takes[handle.name].upper)
+        if not self.executor.takes_first:
+            return found
+        always, excluded = self._possible_with(handle, later)
+        takes = sum(self.demand.takes[each.name].upper for each in always)
+        takes += max((self.demand.takes[each.name].upper for each in excluded), default=0)
+        return Section(demand=found.demand + takes, suspension=found.suspension)
+
+    def _possible_with(self, handle: Handle, others: Sequence[Handle]) -> tuple[Sequence[Handle], Sequence[Handle]]:
+        """Of some handles those that can all be ready together with another one, and those of which one can be."""
+        always = independent_handles(self.executor)
+        excluded = [each for each in others if each not in always]
+        if not self.takes_one:
+            return others, ()
+        return [each for each in others if each in always], [] if is_message(handle) else excluded
+
+    def until_start(self, handle: Handle) -> Time | None:
+        """The longest time from when it is fixed what is ready to the start of a callback."""
+        part = self.before(handle)
+        return self.processor.time(part.demand, part.suspension.most, part.resumed)
+
+    def until_end(self, handle: Handle) -> Time | None:
+        """The longest time from when it is fixed what is ready to the end of a callback."""
+        part, own = self.before(handle), self.suspension(handle)
+        suspension = in_sequence([part.suspension, own])
+        demand = part.demand + self.demand.callbacks[handle.name].upper
+        return self.processor.time(demand, suspension.most, 1 + suspension.times)
+
+    @cached_property
+    def busy(self) -> Time | None:
+        """The longest time to execute a round; None if it is not bounded."""
+        return self.processor.time(self.whole.demand, self.whole.suspension.most, self.whole.resumed)
+
+    @cached_property
+    def longest(self) -> Time | None:
+        """The longest cycle without a wait; None if it is not bounded."""
+        return self.longest_with(0)
+
+    @cached_property
+    def longest_with_wait(self) -> Time | None:
+        """The longest cycle with a wait that nothing ends before its timeout; None if it is not bounded."""
+        return self.longest_with(self.wait)
+
+    def longest_with(self, wait: Time) -> Time | None:
+        """The longest cycle with some wait, after which the thread has to get its core again; None if it is not bounded."""
+        part, session, writing = self.whole, self.session_wait, self.writing
+        if session is None or writing.most is None or part.suspension.most is None or self.busy is None:
+            return None
+        suspended = session + writing.most + wait
+        resumed = (1 if session else 0) + writing.times + (1 if wait else 0)
+        beginning = self.processor.time(self.demand.spin.upper, suspended, 1 + resumed)
+        if beginning is None:
+            return None
+        together = part.suspension.most + suspended
+        match self.executor.loop.kind:
+            case LoopKind.SPIN_PERIOD:
+                unslept = self.processor.time(part.demand, together, part.resumed + resumed)
+                slept = (self.executor.loop.period or 0) + SLEEP_RESOLUTION + beginning
+                return None if unslept is None else max(unslept, slept)
+            case LoopKind.SPIN_SOME if self.sleep:
+                found = [self.sleep + self.busy + beginning]
+                joint = self.processor.time(part.demand, together + self.sleep, part.resumed + 1 + resumed)
+                return min([*found, *([] if joint is None else [joint])])
+        return self.processor.time(part.demand, together, part.resumed + resumed)
+
+    @cached_property
+    def shortest(self) -> Time:
+        """The shortest cycle: nothing is called."""
+        return sleep_of(self.executor).lower + self.demand.spin.lower // self.time_base
+
+    @property
+    def least_average(self) -> Time:
+        """The time per cycle that a loop takes at least in the long run: one that catches up keeps its period on average."""
+        return max(self.shortest, min_pace(self.executor), self.executor.loop.period or 0)
+
+    @cached_property
+    def shortest_with_message(self) -> Time:
+        """The shortest cycle of a round that calls a callback for a message."""
+        costs = [self.demand.of_handle(handle).lower for handle in self.executor.handles if is_message(handle)]
+        return sleep_of(self.executor).lower + (self.demand.spin.lower + min(costs, default=0)) // self.time_base
+
+    @property
+    def most_served(self) -> int | None:
+        """The most messages that a round calls callbacks for; None if a wait takes all that are there, or the trigger keeps them.
+
+        A publication that waits reads all messages before its acknowledgement, and stores them: then each handle can have one.
+        """
+        if self.executor.waiting.messages_per_wait != 1 or can_defer(self.executor):
+            return None
+        return len(messages(self.executor)) if self.has_backlog else 1
+
+    @property
+    def unbounded(self) -> str:
+        """Why the longest cycle is not bounded."""
+        if self.session_wait is None or self.whole.suspension.most is None:
+            why = self.whole.suspension.why or "how long others of its session keep it is unknown"
+            return f"a round can be suspended without a bound: {why}"
+        if self.writing.most is None:
+            return f"a wait has no bound: {self.writing.why}"
+        return "the processes that preempt it need nearly all of the core"

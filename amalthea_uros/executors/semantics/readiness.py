@@ -1,0 +1,102 @@
+"""Which callbacks an iteration calls, and how many messages are stored meanwhile.
+
+What is ready is fixed once, after the wait; then the trigger decides whether anything is called (ros2/rclc, rclc/src/rclc/executor.c).
+A handle takes one message in an iteration, whatever is stored for it.
+
+All subscriptions, services and clients of a process share one pool of slots, whatever their executor. A message for a handle that has
+`depth` messages overwrites the oldest of them, or is dropped itself if all are to be kept. Below that depth, a message for which the
+pool has no slot is dropped (micro-ROS/rmw_microxrcedds, src/callbacks.c, src/types.c).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+from amalthea_uros.perf.executors import Executor, Handle, HandleKind, TriggerKind
+from amalthea_uros.units import SECOND
+
+#: A stored message is removed when it is older than the lifespan of its QoS, by default 30 s.
+LIFESPAN = 30 * SECOND
+
+
+def is_message(handle: Handle) -> bool:
+    """Whether a handle receives messages: all do but timers and guard conditions."""
+    return handle.kind not in (HandleKind.TIMER, HandleKind.GUARD_CONDITION)
+
+
+def timers(executor: Executor) -> tuple[Handle, ...]:
+    """The timers of an executor."""
+    return tuple(handle for handle in executor.handles if handle.kind is HandleKind.TIMER)
+
+
+def messages(executor: Executor) -> tuple[Handle, ...]:
+    """The handles of an executor that receive messages."""
+    return tuple(handle for handle in executor.handles if is_message(handle))
+
+
+def takes_one_message(executor: Executor, executors: Sequence[Executor]) -> bool:
+    """Whether at most one of the handles that receive messages is ready in an iteration.
+
+    A wait takes one message, and it is called in the same iteration. Nothing is stored for later if no publication waits for an
+    acknowledgement, the trigger defers nothing, and no other executor receives from the same buffer.
+    """
+    return executor.waiting.messages_per_wait == 1 and not has_backlog(executor, executors)
+
+
+def has_backlog(executor: Executor, executors: Sequence[Executor]) -> bool:
+    """Whether messages can be stored before an iteration that takes them: see `takes_one_message`."""
+    return can_defer(executor) or len(sharing(executor, executors)) > 1 or waits_for_acknowledgements(executor)
+
+
+def waits_for_acknowledgements(executor: Executor) -> bool:
+    """Whether a callback of an executor waits until a message is acknowledged."""
+    return any(publication.waits for handle in executor.handles for publication in handle.publications)
+
+
+def can_defer(executor: Executor) -> bool:
+    """Whether the trigger condition can prevent that what is ready is called."""
+    return executor.trigger.kind not in (TriggerKind.ANY, TriggerKind.ALWAYS)
+
+
+def starts_alone(handle: Handle, executor: Executor) -> bool:
+    """Whether a handle is called in the next iteration once it is ready, whatever the others are."""
+    return not can_defer(executor) or frozenset((handle.name,)) in executor.trigger.sets
+
+
+def shares_session(executor: Executor, executors: Iterable[Executor]) -> bool:
+    """Whether another executor uses the same session, so that they exclude each other."""
+    return executor.session is not None and len(sharing(executor, executors)) > 1
+
+
+def sharing(executor: Executor, executors: Iterable[Executor]) -> list[Executor]:
+    """The executors that use the same buffers and slots for messages, itself included; without a session, all that have none."""
+    return [each for each in executors if each.session == executor.session]
+
+
+def independent_handles(executor: Executor) -> tuple[Handle, ...]:
+    """The handles that can be ready besides a message that excludes others; an action server also has a timer."""
+    return tuple(
+        handle
+        for handle in executor.handles
+        if handle.always or not is_message(handle) or handle.kind is HandleKind.ACTION_SERVER
+    )
+
+
+def can_exceed_depth(handle: Handle, stored: int) -> bool:
+    """Whether so many messages are more than a handle keeps."""
+    return handle.depth is not None and stored > handle.depth
+
+
+def slots_needed(handles: Iterable[Handle], stored: Mapping[str, int | None]) -> int | None:
+    """The slots for the messages of all handles, by their names; None if a number of messages is not known, and nothing limits it."""
+    kept = [_kept(handle, stored[handle.name]) for handle in handles]
+    return None if None in kept else sum(filter(None, kept))
+
+
+def _kept(handle: Handle, stored: int | None) -> int | None:
+    """How many messages of a handle can occupy slots."""
+    # Each entity behind an action keeps as many; of a server's, one is a timer.
+    entities = handle.sources - (handle.kind is HandleKind.ACTION_SERVER and handle.sources > 1)
+    depth = None if handle.depth is None else handle.depth * entities
+    known = [number for number in (depth, stored) if number is not None]
+    return min(known) if known else None
