@@ -60,8 +60,6 @@ if TYPE_CHECKING:
     from amalthea_uros.analyze.sensitivity import Sensitivity as Sensitivity
     from amalthea_uros.analyze.sensitivity import sensitivity as sensitivity
     from amalthea_uros.analyze.system import analyze_system as analyze_system
-    from amalthea_uros.analyze.ways.results import Hop as Hop
-    from amalthea_uros.analyze.ways.results import HopKind as HopKind
     from amalthea_uros.analyze.ways.results import Way as Way
     from amalthea_uros.bridge.build import build_model as build_model
     from amalthea_uros.bridge.extract import Extraction as Extraction
@@ -93,6 +91,8 @@ if TYPE_CHECKING:
     from amalthea_uros.errors import WriteError as WriteError
     from amalthea_uros.executors.results import ExecutorResult as ExecutorResult
     from amalthea_uros.executors.results import HandleResult as HandleResult
+    from amalthea_uros.executors.results import Hop as Hop
+    from amalthea_uros.executors.results import HopKind as HopKind
     from amalthea_uros.executors.results import Loss as Loss
     from amalthea_uros.judge.summary import Schedulable as Schedulable
     from amalthea_uros.judge.summary import Summary as Summary
