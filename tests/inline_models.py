@@ -42,10 +42,10 @@ def damaged(content, values, seed):
 # Checks
 
 
-def check_step(folder, source, target, before, after, official=False):
+def check_step(folder, source, target, before, after):
     """Assert what one file or several become, and give the notes of it."""
     before, after = ([texts] if isinstance(texts, str) else texts for texts in (before, after))
-    models, notes = migrated(written(folder, source, *before), target, official)
+    models, notes = migrated(written(folder, source, *before), target)
     assert meaning(models) == meaning(opened(*written(folder, target, *after)))
     return notes
 
@@ -63,7 +63,7 @@ def check_twice(folder, source, target, content):
     expected = meaning(models)
     models.trees[0].version = source
     notes = Notes()
-    take_on(models, target, notes, official=False)
+    take_on(models, target, notes)
     assert meaning(models) == expected
     assert notes.all == []
 
@@ -97,9 +97,9 @@ class Migrated:
         return [message for found, message, _ in self.notes if found == kind]
 
 
-def migrate(folder, source, target, *contents, official=False, root="Amalthea"):
+def migrate(folder, source, target, *contents, root="Amalthea"):
     """Migrate the contents of one or more files."""
-    return Migrated(*migrated(written(folder, source, *contents, root=root), target, official))
+    return Migrated(*migrated(written(folder, source, *contents, root=root), target))
 
 
 class InlineModels:
@@ -120,9 +120,9 @@ class InlineModels:
         folder.mkdir(exist_ok=True)
         return written(folder, version, *contents)
 
-    def migrate(self, source, target, *contents, official=False):
+    def migrate(self, source, target, *contents):
         """The meaning of files after migration."""
-        models, self.notes = migrated(self.files("before", source, *contents), target, official)
+        models, self.notes = migrated(self.files("before", source, *contents), target)
         return meaning(models)
 
     def read(self, version, *contents):

@@ -43,7 +43,7 @@ def twice(models, step):
     """The meaning of a set before and after a step is taken once more."""
     before = meaning(models)
     models.begin_step(models.trees[0].version)
-    step.change(models, Notes(), False)
+    step.change(models, Notes())
     return before, meaning(models)
 
 

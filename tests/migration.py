@@ -26,11 +26,11 @@ def opened(*paths):
     return read_set([(path, read_text(path)) for path in paths], MAX_SIZE, Notes())
 
 
-def migrated(paths, target, official=False):
+def migrated(paths, target):
     """The nodes of some files after migration, and the notes of it."""
     notes = Notes()
     models = read_set([(path, read_text(path)) for path in paths], MAX_SIZE, notes)
-    migrate(models, target, notes, official)
+    migrate(models, target, notes)
     return models, notes.all
 
 

@@ -38,7 +38,6 @@ def _with_progress(items: Sequence[T]) -> Iterator[T]:
 @click.option("--in-place", is_flag=True, help="Replace the old files.")
 @click.option("--force", is_flag=True, help="Overwrite files that exist.")
 @click.option("--dry-run", "is_dry_run", is_flag=True, help="Write no model; only report what would be converted.")
-@click.option("--official", is_flag=True, help="Convert as the converters of APP4MC do, including their errors.")
 @click.option("--compress/--no-compress", default=None, help="Write ZIPs, or plain files; default: as the old files.")
 @output_option(MigrationResult)
 def command(
@@ -48,7 +47,6 @@ def command(
     in_place: bool,
     force: bool,
     is_dry_run: bool,
-    official: bool,
     compress: bool | None,
     outputs: tuple[Output, ...],
 ) -> None:
@@ -72,7 +70,6 @@ def command(
         in_place=in_place,
         force=force,
         compress=compress,
-        official=official,
         is_dry_run=is_dry_run,
         track=_with_progress,
     )

@@ -105,14 +105,13 @@ class MigrationResult(Brief, Shown):
         return replace(self, files=tuple(files))
 
 
-def migrate(source: Model | StrPath | Iterable[StrPath], to: str | None = None, *, official: bool = False) -> MigrationResult:
+def migrate(source: Model | StrPath | Iterable[StrPath], to: str | None = None) -> MigrationResult:
     """Migrate models to another AMALTHEA version; nothing is written before `save` of the result.
 
     Parameters
     ----------
     source : a model, or files and folders
     to : the version, such as "2.0.0" or "ITEA 1.3.0"; the newest one if none is given
-    official : do what the official converter does, also where it loses or damages something
 
     Raises
     ------
@@ -131,7 +130,7 @@ def migrate(source: Model | StrPath | Iterable[StrPath], to: str | None = None, 
         wrong = [finding for files in sets for file in files for finding in file.findings]
         if wrong:
             raise ReadError(wrong)
-        migrated = [_migrate(files, version, official) for files in sets]
+        migrated = [_migrate(files, version) for files in sets]
     return MigrationResult(
         version=version,
         files=tuple(file for one in migrated for file in _files(one, FileState.MIGRATED)),
@@ -150,7 +149,6 @@ def migrate_files(
     in_place: bool = False,
     force: bool = False,
     compress: bool | None = None,
-    official: bool = False,
     is_dry_run: bool = False,
     track: Callable[[Sequence[tuple[InputFile, ...]]], Iterable[tuple[InputFile, ...]]] = iter,
 ) -> MigrationResult:
@@ -158,7 +156,7 @@ def migrate_files(
 
     Parameters
     ----------
-    to, official : as for `migrate`
+    to : as for `migrate`
     target, in_place, force, compress : as for `MigrationResult.save`
     is_dry_run : write nothing
     track : wraps the iteration over the sets, for example to show progress
@@ -185,7 +183,7 @@ def migrate_files(
                 wrong = [finding for file in files for finding in file.findings]
                 if wrong:
                     raise ReadError(wrong)
-                migrated = _migrate(files, version, official)
+                migrated = _migrate(files, version)
                 # Before the changes: nothing is lost from files that are not written.
                 done += writer.write(migrated)
                 changes += _changes(migrated)
@@ -219,9 +217,9 @@ def _of_model(model: Model, version: str) -> Iterable[InputFile]:
         yield InputFile.of(path, None, FileText(document_text(document), zip_entry=zip_entry), version)
 
 
-def _migrate(files: Sequence[InputFile], version: str, official: bool) -> MigratedSet:
+def _migrate(files: Sequence[InputFile], version: str) -> MigratedSet:
     contents = [(file.path, file.content) for file in files if file.content is not None]
-    migrated = migrate_set(contents, version, MODEL_SIZE, official)
+    migrated = migrate_set(contents, version, MODEL_SIZE)
     lost = losses_of_going_back(migrated)
     if lost:
         raise WriteError(lost)

@@ -303,7 +303,7 @@ class TestSets:
         assert not (tmp_path / "models-3.3.0").exists()
 
     def test_too_little_memory_is_no_error_of_ours(self, tmp_path, monkeypatch):
-        def large(models, notes, official):
+        def large(models, notes):
             raise MemoryError
 
         monkeypatch.setitem(_UP, "0.9.8", Step("0.9.8", "0.9.9", large))
@@ -312,7 +312,7 @@ class TestSets:
         assert (finding.rule, finding.message) == ("XMI105", "there is not enough memory for the migration")
 
     def test_an_error_in_a_step_is_a_finding(self, tmp_path, monkeypatch):
-        def broken(models, notes, official):
+        def broken(models, notes):
             if models.nodes("tasks"):
                 raise AttributeError("'NoneType' object has no attribute 'get'")
 
@@ -326,7 +326,7 @@ class TestSets:
         assert versions(tmp_path / "models-3.3.0") == {"b.amxmi": "3.3.0"}
 
     def test_a_file_with_the_version_follows_what_it_refers_to(self, tmp_path, monkeypatch):
-        def rename(models, notes, official):
+        def rename(models, notes):
             for node in models.nodes("stimuli"):
                 node.attributes["name"] = "Other"
                 notes.renamed(node, "renamed")
@@ -366,7 +366,7 @@ class TestVersions:
             amuros.migrate(tmp_path, to)
 
     def test_a_file_between_versions_takes_the_step_again(self, tmp_path, monkeypatch):
-        def convert(models, notes, official):
+        def convert(models, notes):
             for node in models.nodes("oldLabels"):
                 node.tag = "labels"
                 notes.renamed(node, "oldLabels -> labels")
@@ -415,7 +415,7 @@ class TestWhatIsLost:
 
     @pytest.mark.parametrize(("number", "more"), [(30, " (and 10 more of this kind)"), (20, "")])
     def test_a_step_back_that_loses_something_is_an_error(self, number, more, tmp_path, monkeypatch):
-        def lose(models, notes, official):
+        def lose(models, notes):
             for node in models.nodes("labels"):
                 notes.lost(node, "has no place", node.name, "name")
 

@@ -17,12 +17,8 @@ _DOWN = {step.source: step for step in DOWN}
 _BEHIND = 2
 
 
-def migrate(models: ModelSet, target: str, notes: Notes, official: bool) -> None:
+def migrate(models: ModelSet, target: str, notes: Notes) -> None:
     """Take all files of a set to a version; each joins the others at its own.
-
-    Parameters
-    ----------
-    official : do what the official converter does, also where it loses or damages something
 
     Raises
     ------
@@ -33,10 +29,10 @@ def migrate(models: ModelSet, target: str, notes: Notes, official: bool) -> None
     goal = position(target)
     lowest = min(models.trees, key=lambda tree: position(tree.version)).version
     while position(lowest) < goal:
-        lowest = _take(models, _UP[lowest], notes, official)
+        lowest = _take(models, _UP[lowest], notes)
     highest = max(models.trees, key=lambda tree: position(tree.version)).version
     while position(highest) > goal:
-        highest = _take(models, _DOWN[highest], notes, official)
+        highest = _take(models, _DOWN[highest], notes)
     give_up(models.postponed, notes)
     for (node, name), targets in models.set_aside.items():
         lost = ", ".join(repr(target.name) for target in targets)
@@ -44,12 +40,12 @@ def migrate(models: ModelSet, target: str, notes: Notes, official: bool) -> None
     drop_dangling(models, notes)
 
 
-def _take(models: ModelSet, step: Step, notes: Notes, official: bool) -> str:
+def _take(models: ModelSet, step: Step, notes: Notes) -> str:
     if step.change is not None:
         models.begin_step(step.source)
         notes.version = step.target
         bring_back(models.postponed, step.target, notes)
-        step.change(models, notes, official)
+        step.change(models, notes)
     for tree in models.trees:
         if tree.version == step.source:
             tree.version = step.target

@@ -18,7 +18,6 @@ from amalthea_uros.xmi.migrate.model_set import ModelSet, Origins
 from amalthea_uros.xmi.migrate.node import Node, proxy
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.parse import Href, Parsed
-from amalthea_uros.xmi.migrate.versions import ITEA
 
 #: Attributes that are text in all classes of all versions, whatever they look like.
 _TEXT = frozenset(
@@ -193,8 +192,6 @@ class _Linker:
                 found = fitting[0] if len(fitting) == 1 else next((n for n in fitting if n.root is one.tree.root), fitting[0])
                 if not found.type:
                     found.target_class = class_name
-                if ":" not in class_name and one.tree.version in ITEA:
-                    self.models.stated[found] = text
                 return found
         return None
 
@@ -223,7 +220,6 @@ class _Linker:
                 return None
             node = siblings[place]
         self.by_identity[node] = None
-        self.models.stated[node] = text
         return node
 
     def proxy(self, text: str) -> Node:

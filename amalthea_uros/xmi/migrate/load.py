@@ -107,14 +107,12 @@ def migrate_set(
     files: Sequence[tuple[Path, FileText]],
     target: str,
     max_size: int,
-    official: bool = False,
     elsewhere: Collection[Path] = (),
 ) -> MigratedSet:
     """Migrate files, and those to which they refer by file names.
 
     Parameters
     ----------
-    official : do what the official converter does, also where it loses or damages something
     elsewhere : files that are read in another way, and that do not become part of the set
 
     Raises
@@ -133,7 +131,7 @@ def migrate_set(
     versions = [tree.version for tree in models.trees]
     begin = [version_of_content(tree, target) for tree in models.trees]
     try:
-        migrate(models, target, notes, official)
+        migrate(models, target, notes)
     except Exception as error:
         raise ReadError([failed(models.trees[0].path, error)]) from error
     refused = [finding for tree in models.trees for finding in _fragment(tree, models, target)]

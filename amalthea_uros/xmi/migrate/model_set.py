@@ -98,8 +98,6 @@ class ModelSet:
     set_aside : targets of references that the versions in between cannot express, by object and name; the step to the version that
         can do so again takes them back (`pop`), and what is left in the end is lost
     postponed : content that belongs to the result from a later version on
-    stated : text of a reference to an object, where it was its position or, in ITEA versions, lacked the package of the class:
-        such references are what official converters lose
     """
 
     def __init__(self, trees: list[Tree], origins: Origins) -> None:
@@ -108,7 +106,6 @@ class ModelSet:
         self.proxies: list[Node] = []
         self.set_aside: dict[tuple[Node, str], list[Node]] = {}
         self.postponed: list[Postponed] = []
-        self.stated: dict[Node, str] = {}
         self._index = NodeIndex()
         self._is_current = False
         self._active: list[Tree] = trees

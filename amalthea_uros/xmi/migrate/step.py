@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.notes import Notes
 
-#: Changes the active files of the set. True: do what the official converter does where it loses or damages something.
-Change = Callable[[ModelSet, Notes, bool], None]
+#: Changes the active files of the set.
+Change = Callable[[ModelSet, Notes], None]
 
 
 @dataclass(frozen=True)

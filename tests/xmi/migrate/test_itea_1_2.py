@@ -9,8 +9,8 @@ from amalthea_uros.xmi.migrate.steps.itea_1_2 import STEP
 TARGET = "ITEA 1.2.0"
 
 
-def step(folder, official=False, **files):
-    return migrated(write(folder, "1.1.0", **files), TARGET, official)
+def step(folder, **files):
+    return migrated(write(folder, "1.1.0", **files), TARGET)
 
 
 def test_schedulers_move_into_one_operating_system_where_the_first_was(tmp_path):
@@ -61,25 +61,10 @@ def test_the_statistic_that_fits_the_access_is_kept(tmp_path, kind, value, misse
     assert len(messages(notes, "lost")) == 2
 
 
-def test_officially_the_misses_of_writing_stay_and_those_of_reading_are_taken(tmp_path):
-    models, _ = step(tmp_path, official=True, m__amxmi=accesses('access="write"', STATISTICS))
-    [statistic] = all_of(models, "statistic")
-    assert {part.tag: part.get("value") for part in statistic.children} == {
-        "value": "2",
-        "cacheMisses": "3",
-        "writeCacheMisses": "4",
-    }
-
-
 def test_a_statistic_of_the_other_kind_alone_is_lost(tmp_path):
     models, notes = step(tmp_path, m__amxmi=accesses("", '<write value="2"/>'))
     assert all_of(models, "statistic")[0].children == []
     assert len(messages(notes, "lost")) == 1
-
-
-def test_officially_a_statistic_of_the_other_kind_alone_stays(tmp_path):
-    models, _ = step(tmp_path, official=True, m__amxmi=accesses("", '<write value="2"/>'))
-    assert [part.tag for part in all_of(models, "statistic")[0].children] == ["write"]
 
 
 SOFTWARE = '<swModel><isrs xmi:id="_i1" name="I 1"/><isrs xmi:id="_i2" name="I2"/><tasks xmi:id="_t" name="T"/></swModel>'
@@ -116,18 +101,13 @@ def test_files_refer_to_each_other_by_position(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("kind", "official", "tag"),
-    [
-        ('xsi:type="mapping:RunnableAllocation"', False, "runnableAllocation"),
-        ('xsi:type="mapping:RunnableAllocation"', True, "runnableAllocation"),
-        ("", False, "runnableAllocation"),
-        ("", True, "executableAllocation"),
-    ],
+    ("kind", "tag"),
+    [('xsi:type="mapping:RunnableAllocation"', "runnableAllocation"), ("", "runnableAllocation")],
 )
-def test_allocations_of_runnables(tmp_path, kind, official, tag):
+def test_allocations_of_runnables(tmp_path, kind, tag):
     content = f"""<swModel><runnables xmi:id="_r" name="R"/></swModel><mappingModel>
         <executableAllocation {kind} entity="_r"/></mappingModel>"""
-    models, _ = step(tmp_path, official, m__amxmi=content)
+    models, _ = step(tmp_path, m__amxmi=content)
     [made] = only(models, "mappingModel").children
     assert (made.tag, made.target("entity").name) == (tag, "R")
 
@@ -162,13 +142,6 @@ def test_the_class_of_a_process_in_a_missing_file_is_that_of_the_reference(tmp_p
     )
     assert [node.type for node in all_of(models, "processAllocation")] == ["mapping:ISRAllocation", "mapping:TaskAllocation"]
     assert messages(notes, "defaulted") == ["allocation of a process that is in no file: taken as one of a task"]
-
-
-def test_officially_the_allocation_of_a_process_in_a_missing_file_keeps_its_class(tmp_path):
-    content = f"""{SCHEDULERS}<mappingModel><executableAllocation xsi:type="mapping:ProcessAllocation" scheduler="_s">
-        <process xsi:type="sw:ISR" href="sw.amxmi#_x"/></executableAllocation></mappingModel>"""
-    models, _ = step(tmp_path, official=True, m__amxmi=content)
-    assert [node.type for node in all_of(models, "processAllocation")] == ["mapping:ProcessAllocation"]
 
 
 @pytest.mark.parametrize(

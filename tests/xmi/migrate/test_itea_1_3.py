@@ -9,8 +9,8 @@ from amalthea_uros.xmi.migrate.steps.itea_1_3 import STEP
 TARGET = "ITEA 1.3.0"
 
 
-def step(folder, official=False, **files):
-    return migrated(write(folder, "1.2.0", **files), TARGET, official)
+def step(folder, **files):
+    return migrated(write(folder, "1.2.0", **files), TARGET)
 
 
 #: What is written: content of the model, path of tags, attributes that are added.
@@ -84,10 +84,9 @@ DEFAULTS = [
 ]
 
 
-@pytest.mark.parametrize("official", [False, True])
 @pytest.mark.parametrize(("content", "tag", "written"), DEFAULTS)
-def test_what_was_the_default_is_written(tmp_path, content, tag, written, official):
-    models, notes = step(tmp_path, official, m__amxmi=content)
+def test_what_was_the_default_is_written(tmp_path, content, tag, written):
+    models, notes = step(tmp_path, m__amxmi=content)
     [node] = all_of(models, tag)
     assert node.attributes == written
     about = {note.attribute for note in notes if note.kind == "defaulted" and note.origin == node.origin}
@@ -126,10 +125,9 @@ TIMES = [
 ]
 
 
-@pytest.mark.parametrize("official", [False, True])
 @pytest.mark.parametrize(("content", "tag"), [case[1:] for case in TIMES], ids=[case[0] for case in TIMES])
-def test_times_without_unit_are_picoseconds(tmp_path, content, tag, official):
-    models, _ = step(tmp_path, official, m__amxmi=content)
+def test_times_without_unit_are_picoseconds(tmp_path, content, tag):
+    models, _ = step(tmp_path, m__amxmi=content)
     assert all_of(models, tag)[0].get("unit") == "ps"
 
 
@@ -139,38 +137,11 @@ LIMIT = (
 )
 
 
-@pytest.mark.parametrize(("official", "unit"), [(False, "ps"), (True, "")])
-def test_officially_the_unit_of_a_limit_is_forgotten(tmp_path, official, unit):
-    models, _ = step(tmp_path, official, m__amxmi=LIMIT)
-    assert all_of(models, "limitValue")[0].get("unit") == unit
-
-
-@pytest.mark.parametrize(("official", "access"), [(False, "R"), (True, "")])
-def test_a_latency_without_kind_of_access_is_one_of_reading(tmp_path, official, access):
+@pytest.mark.parametrize("access", ["R"])
+def test_a_latency_without_kind_of_access_is_one_of_reading(tmp_path, access):
     content = '<hwModel><accessPaths xsi:type="hw:LatencyAccessPath"><latencies xsi:type="hw:LatencyConstant"/></accessPaths></hwModel>'
-    models, _ = step(tmp_path, official, m__amxmi=content)
+    models, _ = step(tmp_path, m__amxmi=content)
     assert all_of(models, "latencies")[0].get("accessType") == access
-
-
-@pytest.mark.parametrize(("official", "order"), [(False, "successor"), (True, "")])
-def test_officially_constraints_in_a_file_of_their_own_are_forgotten(tmp_path, official, order):
-    text = model("1.2.0", "<runnableSequencingConstraints/>", "constraints:ConstraintsModel")
-    models, _ = step(tmp_path, official, c__amxmi_constraints=text)
-    assert only(models, "runnableSequencingConstraints").get("orderType") == order
-
-
-@pytest.mark.parametrize(
-    ("root", "written"),
-    [
-        ("hw:ComplexPin", {"direction": "R", "type": "ANALOG"}),
-        ("hw:Bus", {"busType": "CAN"}),
-        ("hw:MemType", {"type": "RAM"}),
-        ("mapping:MappingModel", {"addressMappingType": "none"}),
-    ],
-)
-def test_officially_the_object_that_is_a_file_stays_the_root(tmp_path, root, written):
-    models, _ = step(tmp_path, official=True, x__amxmi_hw=model("1.2.0", "", root))
-    assert models.trees[0].root.attributes == written
 
 
 @pytest.mark.parametrize(
@@ -224,13 +195,6 @@ def test_attributes_that_were_misspelt(tmp_path):
     assert messages(notes, "renamed") == ["maximumCyle is maximumCycle"]
 
 
-@pytest.mark.parametrize(("official", "name"), [(False, "h w"), (True, "")])
-def test_officially_tags_of_the_hardware_keep_their_attribute(tmp_path, official, name):
-    content = '<swModel><tags tagName="s"/></swModel><hwModel><tags tagName="h w"/></hwModel>'
-    models, _ = step(tmp_path, official, m__amxmi=content)
-    assert [tag.name for tag in all_of(models, "tags")] == ["s", name]
-
-
 def test_the_scheduling_unit_is_of_the_operating_system(tmp_path):
     content = """<osModel><operatingSystems><taskSchedulers><schedulingUnit xsi:type="sw:SchedulingSWUnit"/></taskSchedulers>
         </operatingSystems></osModel>"""
@@ -258,12 +222,6 @@ def test_parts_of_components_are_told_apart_and_references_follow(tmp_path):
     assert source.target("port") is component.child("ports")
     assert component.type == instance.type == ""
     assert component.get("kind") == ""
-
-
-def test_officially_positions_of_components_stay_as_they_were(tmp_path):
-    models, _ = step(tmp_path, official=True, m__amxmi=COMPONENTS)
-    instance = only(models, "componentsModel", "systems", "componentInstances")
-    assert instance.target("type").get("path") == "//@componentsModel/@elements.0"
 
 
 # Modes
@@ -302,15 +260,13 @@ def test_switches_in_several_files_share_the_mode_label_of_a_label(tmp_path):
     models, _ = step(tmp_path, a__amxmi=own, b__amxmi=other)
     assert len(all_of(models, "modeLabels")) == 1
     assert [mode.name for mode in all_of(models, "modes")] == [f"mode_sw_{n}_migration_generated" for n in (0, 1)]
-    official, _ = step(tmp_path, official=True, a__amxmi=own, b__amxmi=other)
-    assert len(all_of(official, "modeLabels")) == 2
 
 
-@pytest.mark.parametrize(("official", "kind"), [(False, "sw:ModeSwitch"), (True, "sw:LabelSwitch")])
-def test_a_switch_without_label(tmp_path, official, kind):
+@pytest.mark.parametrize("kind", ["sw:ModeSwitch"])
+def test_a_switch_without_label(tmp_path, kind):
     content = """<swModel><tasks><callGraph><graphEntries xsi:type="sw:LabelSwitch"><entries value="1"/></graphEntries></callGraph>
         </tasks></swModel>"""
-    models, _ = step(tmp_path, official, m__amxmi=content)
+    models, _ = step(tmp_path, m__amxmi=content)
     assert all_of(models, "graphEntries")[0].type == kind
 
 
@@ -342,24 +298,22 @@ def test_a_switch_uses_the_mode_label_that_a_stimulus_needs(tmp_path):
     stimulus = STIMULUS.format('valueProvider="_l"')
     content = f"""<swModel><tasks>{SWITCH}</tasks><labels xmi:id="_l" name="L"/></swModel>
         <stimuliModel>{stimulus}</stimuliModel>"""
-    for official in (False, True):
-        models, _ = step(tmp_path, official, m__amxmi=content)
-        [mode_label] = all_of(models, "modeLabels")
-        assert all_of(models, "graphEntries")[0].target("valueProvider") is mode_label
+    models, _ = step(tmp_path, m__amxmi=content)
+    [mode_label] = all_of(models, "modeLabels")
+    assert all_of(models, "graphEntries")[0].target("valueProvider") is mode_label
 
 
-def split_stimuli(folder, official):
+def split_stimuli(folder):
     stimulus = STIMULUS.format("").replace("<entries ", '<entries><valueProvider href="sw.amxmi-sw#_l"/></entries><entries ', 1)
     return step(
         folder,
-        official,
         sw__amxmi_sw=model("1.2.0", '<labels xmi:id="_l" name="L"/>', "sw:SWModel"),
         st__amxmi_stimuli=model("1.2.0", stimulus, "stimuli:StimuliModel"),
     )
 
 
 def test_a_stimuli_file_puts_its_mode_where_the_labels_are(tmp_path):
-    models, _ = split_stimuli(tmp_path, official=False)
+    models, _ = split_stimuli(tmp_path)
     [mode] = all_of(models, "modes")
     assert mode.parent.tag == "SWModel"
     assert all(entry.target("value").parent is mode for entry in all_of(models, "entries"))
@@ -372,12 +326,6 @@ def test_a_model_without_software_gets_a_software_model_for_its_mode(tmp_path):
         b__amxmi='<swModel><labels xmi:id="_l" name="L"/></swModel>',
     )
     assert [mode.root for mode in all_of(models, "modes")] == [models.trees[0].root]
-
-
-def test_officially_a_stimuli_file_without_software_model_keeps_the_values(tmp_path):
-    models, _ = split_stimuli(tmp_path, official=True)
-    assert all_of(models, "modes") == []
-    assert [entry.get("value") for entry in all_of(models, "entries")] == ["", "3", "", "3"]
 
 
 def test_a_stimuli_file_alone_becomes_a_model_that_can_hold_the_mode(tmp_path):
@@ -419,9 +367,6 @@ def test_deadlines_in_a_file_of_the_software_model(tmp_path):
     models, _ = step(tmp_path, sw__amxmi_sw=text)
     assert len(only(models, "constraintsModel").children) == 3
     assert len(only(models, "swModel").children) == 3
-    official, _ = step(tmp_path, official=True, sw__amxmi_sw=text)
-    assert len(all_of(official, "deadline")) == 3
-    assert official.trees[0].root.tag == "SWModel"
 
 
 def test_deadlines_of_runnables_stay(tmp_path):

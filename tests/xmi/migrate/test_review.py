@@ -12,9 +12,9 @@ from amalthea_uros.xmi.migrate.notes import Kind
 # Clocks
 
 
-def clocks_of(tmp_path, target, clocks, official=False):
+def clocks_of(tmp_path, target, clocks):
     paths = written(tmp_path, "0.9.4", f"<stimuliModel>{clocks}</stimuliModel>")
-    models, notes = migrated(paths, target, official)
+    models, notes = migrated(paths, target)
     return models.parts("stimuliModel", "clocks"), notes
 
 
@@ -32,7 +32,7 @@ TRIANGLE = '<clocks xsi:type="am:ClockTriangleFunction" name="c" max="3.0" min="
         ('<clocks xsi:type="am:ClockSinusFunction" name="c"/>', {}),
     ],
 )
-def test_the_curve_of_a_clock_is_stated_beyond_the_official_conversions(tmp_path, clock, expected):
+def test_the_curve_of_a_clock_is_stated_beyond_the_published_conversions(tmp_path, clock, expected):
     [found], notes = clocks_of(tmp_path, "3.3.0", clock)
     parts = [part for part in found.children if part.tag != "customProperties"]
     assert {part.tag: part.get("value") for part in parts} == expected
@@ -40,9 +40,9 @@ def test_the_curve_of_a_clock_is_stated_beyond_the_official_conversions(tmp_path
     assert len(of_kind(notes, Kind.TO_CHECK)) == bool(expected)
 
 
-@pytest.mark.parametrize(("target", "official"), [("0.9.5", False), ("3.3.0", True)])
-def test_until_then_the_curve_of_a_clock_is_a_text(tmp_path, target, official):
-    [found], notes = clocks_of(tmp_path, target, SINE, official)
+@pytest.mark.parametrize("target", ["0.9.5"])
+def test_until_then_the_curve_of_a_clock_is_a_text(tmp_path, target):
+    [found], notes = clocks_of(tmp_path, target, SINE)
     assert [part.tag for part in found.children] == ["customProperties"]
     assert of_kind(notes, Kind.LOST) == []
 
@@ -59,15 +59,15 @@ DEFINITION = '<definitions xsi:type="am:ProcessingUnitDefinition" name="{}" feat
 
 
 @pytest.mark.parametrize(
-    ("target", "official", "expected"),
-    [("3.3.0", False, ["5.0", "10.0"]), ("0.9.5", False, ["10", "20"]), ("3.3.0", True, ["10"])],
+    ("target", "expected"),
+    [("3.3.0", ["5.0", "10.0"]), ("0.9.5", ["10", "20"])],
 )
-def test_the_standard_deviation_is_divided_like_the_mean(tmp_path, target, official, expected):
+def test_the_standard_deviation_is_divided_like_the_mean(tmp_path, target, expected):
     default = f'<default key="Instructions">{GAUSS.format(20)}</default>'
     need = NEED.format(default=default, value=GAUSS.format(10))
     hardware = CORES.format(definitions=DEFINITION.format("P") + DEFINITION.format("Q"))
     content = f'<swModel><runnables name="R">{need}</runnables></swModel>{hardware}'
-    models, notes = migrated(written(tmp_path, "0.9.2", content), target, official)
+    models, notes = migrated(written(tmp_path, "0.9.2", content), target)
     values = [node for tree in models.trees for node in tree.root.walk() if node.tag == "value" and "sd" in node.attributes]
     assert [node.get("sd") for node in values] == expected
     assert {node.get("mean") for node in values} == {"50"}
@@ -80,15 +80,15 @@ UNEVEN = """<value xsi:type="am:NeedDeviation"><deviation><lowerBound xsi:type="
 
 
 @pytest.mark.parametrize(
-    ("target", "official", "expected"),
-    [("3.3.0", False, ["1", "0 3 1.5"]), ("0.9.5", False, ["0", "0 2 1"]), ("3.3.0", True, ["0", "0 2 1"])],
+    ("target", "expected"),
+    [("3.3.0", ["1", "0 3 1.5"]), ("0.9.5", ["0", "0 2 1"])],
 )
-def test_ticks_are_never_less_than_the_instructions_take(tmp_path, target, official, expected):
+def test_ticks_are_never_less_than_the_instructions_take(tmp_path, target, expected):
     """Otherwise runnables of one instruction each would take no time on a core that executes two per cycle."""
     needs = [NEED.format(default="", value=value) for value in ('<value xsi:type="am:NeedConstant" value="1"/>', UNEVEN)]
     hardware = CORES.format(definitions=DEFINITION.format("P"))
     content = f'<swModel><runnables name="R">{"".join(needs)}</runnables></swModel>{hardware}'
-    models, notes = migrated(written(tmp_path, "0.9.2", content), target, official)
+    models, notes = migrated(written(tmp_path, "0.9.2", content), target)
     values = [node for tree in models.trees for node in tree.root.walk() if node.type.startswith("DiscreteValue")]
     names = ("value", "lowerBound", "upperBound", "mean")
     assert [" ".join(node.get(name) for name in names if node.get(name)) for node in values] == expected
@@ -106,8 +106,8 @@ def test_decimals_are_divided_exactly(tmp_path):
     ] == ["10"]
 
 
-@pytest.mark.parametrize(("target", "official"), [("0.9.5", False), ("3.3.0", False), ("3.3.0", True)])
-def test_an_upper_bound_that_is_not_stated_is_left_open(tmp_path, target, official):
+@pytest.mark.parametrize("target", ["0.9.5", "3.3.0"])
+def test_an_upper_bound_that_is_not_stated_is_left_open(tmp_path, target):
     """Execution times of 0 would be a result, where the older model has a gap."""
     uniform = """<value xsi:type="am:NeedDeviation"><deviation><lowerBound xsi:type="am:LongObject" value="6"/>
         <distribution xsi:type="am:UniformDistribution"/></deviation></value>"""
@@ -117,14 +117,14 @@ def test_an_upper_bound_that_is_not_stated_is_left_open(tmp_path, target, offici
     rate = """<stimuliModel><stimuli xsi:type="am:VariableRateStimulus" name="V"><occurrencesPerStep>
         <distribution xsi:type="am:UniformDistribution"/></occurrencesPerStep></stimuli></stimuliModel>"""
     content = f'<swModel><runnables name="R">{need}</runnables></swModel>{hardware}{rate}'
-    models, notes = migrated(written(tmp_path, "0.9.2", content), target, official)
+    models, notes = migrated(written(tmp_path, "0.9.2", content), target)
     found = [node for tree in models.trees for node in tree.root.walk() if "lowerBound" in node.attributes]
     assert [(node.get("lowerBound"), node.get("upperBound")) for node in found] == [
-        ("6", "0" * official),
-        *[("3", "0" * official)] * (1 if official else 2),
-        ("0.0", "0.0" * official),
+        ("6", ""),
+        *[("3", "")] * 2,
+        ("0.0", ""),
     ]
-    assert len(of_kind(notes, Kind.TO_CHECK)) == (0 if official else 3)
+    assert len(of_kind(notes, Kind.TO_CHECK)) == 3
 
 
 def test_execution_times_without_upper_bound_are_no_execution_times(tmp_path):
@@ -168,18 +168,17 @@ def test_a_jitter_without_bounds_is_unknown_and_not_none(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("kind", "target", "official", "memory_type", "kept"),
+    ("kind", "target", "memory_type", "kept"),
     [
-        ("FLASH_EXT", "3.3.0", False, "FLASH", ["FLASH_EXT"]),
-        ("FLASH_EXT", "0.9.5", False, "", ["FLASH_EXT"]),
-        ("FLASH_EXT", "3.3.0", True, "", []),
-        ("RAM", "3.3.0", False, "", []),
-        ("_undefined_", "3.3.0", False, "", []),
+        ("FLASH_EXT", "3.3.0", "FLASH", ["FLASH_EXT"]),
+        ("FLASH_EXT", "0.9.5", "", ["FLASH_EXT"]),
+        ("RAM", "3.3.0", "", []),
+        ("_undefined_", "3.3.0", "", []),
     ],
 )
-def test_the_kind_of_a_memory_comes_back(tmp_path, kind, target, official, memory_type, kept):
+def test_the_kind_of_a_memory_comes_back(tmp_path, kind, target, memory_type, kept):
     content = f'<hwModel><memoryTypes name="M" type="{kind}"/></hwModel>'
-    models, notes = migrated(written(tmp_path, "0.8.3", content), target, official)
+    models, notes = migrated(written(tmp_path, "0.8.3", content), target)
     [definition] = models.parts("hwModel", "definitions")
     assert definition.get("memoryType") == memory_type
     assert [value.get("value") for value in definition.find("customProperties", "value")] == kept
@@ -210,14 +209,14 @@ ISR = """<swModel><isrs xmi:id="_i" name="I"/><isrs xmi:id="_j" name="J"/></swMo
     <executableAllocation xsi:type="mapping:ProcessAllocation" process="_j" scheduler="_s"/></mappingModel>"""
 
 
-@pytest.mark.parametrize(("target", "official"), [("3.3.0", False), ("0.7.0", False), ("3.3.0", True)])
-def test_isrs_without_interrupt_controllers_stay_on_their_cores(tmp_path, target, official):
-    models, _ = migrated(itea.write(tmp_path, "1.1.0", m__amxmi=ISR), target, official)
+@pytest.mark.parametrize("target", ["3.3.0", "0.7.0"])
+def test_isrs_without_interrupt_controllers_stay_on_their_cores(tmp_path, target):
+    models, _ = migrated(itea.write(tmp_path, "1.1.0", m__amxmi=ISR), target)
     allocations = models.parts("mappingModel", "schedulerAllocation") or models.parts("mappingModel", "coreAllocation")
     cores = "core" if target == "0.7.0" else "responsibility"
     found = [(node.target("scheduler").name, node.target(cores).name) for node in allocations]
     expected = [("X", "C"), ("interruptController1_migration_generated", "C"), ("Y", "D")]
-    assert found == (expected if (target, official) == ("3.3.0", False) else [expected[0], expected[2]])
+    assert found == (expected if target == "3.3.0" else [expected[0], expected[2]])
 
 
 # Constraints
@@ -238,20 +237,19 @@ def test_the_labels_of_a_pairing_constraint_can_be_read(tmp_path, version, tag):
 
 
 @pytest.mark.parametrize(
-    ("text", "default", "official"),
+    ("text", "expected"),
     [
-        ("P+1?type=Periodic", "P+1?type=PeriodicStimulus", "P+1?type=PeriodicStimulus"),
-        ("mode=Single", "mode=Single", "mode=SingleStimulus"),
-        ("a=b=Single", "a=b=Single", "a=b=Single"),
-        ("x?type=InterProcessActivation", "x?type=InterProcessActivation", "x?type=InterProcessActivation"),
+        ("P+1?type=Periodic", "P+1?type=PeriodicStimulus"),
+        ("mode=Single", "mode=Single"),
+        ("a=b=Single", "a=b=Single"),
+        ("x?type=InterProcessActivation", "x?type=InterProcessActivation"),
     ],
 )
-def test_texts_that_are_references_to_stimuli_follow(tmp_path, text, default, official):
+def test_texts_that_are_references_to_stimuli_follow(tmp_path, text, expected):
     value = f'<{{}} xsi:type="am:StringObject" value="{text}"/>'
     values = f'<value xsi:type="am:ListObject">{value.format("values")}</value>'
     content = f"""<swModel><tasks name="T"><customProperties key="k">{value.format("value")}</customProperties>
         <customProperties key="l">{values}</customProperties></tasks></swModel>"""
-    for is_official, expected in ((False, default), (True, official)):
-        models, _ = migrated(written(tmp_path, "0.8.0", content), "0.8.1", is_official)
-        found = [node.get("value") for tree in models.trees for node in tree.root.walk() if "value" in node.attributes]
-        assert found == [expected, expected]
+    models, _ = migrated(written(tmp_path, "0.8.0", content), "0.8.1")
+    found = [node.get("value") for tree in models.trees for node in tree.root.walk() if "value" in node.attributes]
+    assert found == [expected, expected]

@@ -37,7 +37,7 @@ def taken(path, version):
     """The model of a file in another version, and what was lost."""
     notes = Notes()
     models = read_set([(path, read_text(path))], MAX_SIZE, notes)
-    migrate(models, version, notes, official=False)
+    migrate(models, version, notes)
     results, linked = read_trees(models, [version])
     model = Model(result.document for result in results)
     model.findings = tuple(resolve(results, linked))

@@ -10,8 +10,8 @@ from amalthea_uros.xmi.migrate.write import tree_text
 TARGET = "0.7.0"
 
 
-def step(folder, official=False, **files):
-    return migrated(write(folder, "1.3.0", **files), TARGET, official)
+def step(folder, **files):
+    return migrated(write(folder, "1.3.0", **files), TARGET)
 
 
 #: Content of the model, tag, class afterwards.
@@ -43,12 +43,11 @@ REFERENCES = [
 ]
 
 
-@pytest.mark.parametrize("official", [False, True])
 @pytest.mark.parametrize(("content", "text", "after"), REFERENCES)
-def test_references_name_the_new_class(tmp_path, content, text, after, official):
+def test_references_name_the_new_class(tmp_path, content, text, after):
     holder = f"""<configModel><customProperties key="k"><value xsi:type="common:ReferenceObject" value="{text}"/>
         </customProperties></configModel>"""
-    models, _ = step(tmp_path, official, m__amxmi=content + holder)
+    models, _ = step(tmp_path, m__amxmi=content + holder)
     assert after in tree_text(models.trees[0])
 
 
@@ -76,10 +75,9 @@ ATTRIBUTES = [
 ]
 
 
-@pytest.mark.parametrize("official", [False, True])
 @pytest.mark.parametrize(("content", "tag", "attribute"), ATTRIBUTES)
-def test_attributes_are_renamed(tmp_path, content, tag, attribute, official):
-    models, notes = step(tmp_path, official, m__amxmi=content)
+def test_attributes_are_renamed(tmp_path, content, tag, attribute):
+    models, notes = step(tmp_path, m__amxmi=content)
     assert list(all_of(models, tag)[0].attributes) == [attribute]
     assert len(messages(notes, "renamed")) == 1
 
@@ -122,25 +120,12 @@ ALLOCATION = """<processAllocation {} process="{}" scheduler="S?type=os.TaskSche
     </processAllocation>"""
 
 
-@pytest.mark.parametrize(("official", "kept"), [(False, {"priority": "3"}), (True, {})])
-def test_officially_an_allocation_keeps_its_references_only(tmp_path, official, kept):
-    content = MAPPING.format(ALLOCATION.format('xsi:type="mapping:TaskAllocation"', "T?type=sw.Task"))
-    models, notes = step(tmp_path, official, m__amxmi=content)
-    allocation = only(models, "mappingModel", "taskAllocation")
-    assert allocation.target("task").name == "T"
-    assert allocation.target("scheduler").name == "S"
-    assert allocation.attributes == kept
-    assert "customProperties of an allocation" in messages(notes, "lost")
-
-
 def test_an_allocation_without_class_is_that_of_its_process(tmp_path):
     content = MAPPING.format(ALLOCATION.format("", "I?type=sw.ISR") + ALLOCATION.format("", "T?type=sw.Task"))
     models, _ = step(tmp_path, m__amxmi=content)
     assert only(models, "mappingModel", "isrAllocation").target("isr").name == "I"
     assert only(models, "mappingModel", "isrAllocation").target("controller").name == "S"
     assert only(models, "mappingModel", "taskAllocation").type == ""
-    official, _ = step(tmp_path, official=True, m__amxmi=content)
-    assert len(all_of(official, "processAllocation")) == 2
 
 
 # Hardware
@@ -181,9 +166,9 @@ def test_values_of_hardware_are_custom_properties(tmp_path, value, key, class_na
     assert "kept as custom property" in {note.kind for note in notes}
 
 
-@pytest.mark.parametrize(("official", "key"), [(False, "attribute"), (True, "attribute#null")])
-def test_a_value_without_name(tmp_path, official, key):
-    models, _ = step(tmp_path, official, m__amxmi=hardware('<attribute xsi:type="hw:IntValue" value="1"/>'))
+@pytest.mark.parametrize("key", ["attribute"])
+def test_a_value_without_name(tmp_path, key):
+    models, _ = step(tmp_path, m__amxmi=hardware('<attribute xsi:type="hw:IntValue" value="1"/>'))
     assert all_of(models, "customProperties")[1].get("key") == key
 
 
@@ -193,40 +178,21 @@ def test_attributes_come_before_features(tmp_path):
     assert [made.get("key") for made in all_of(models, "customProperties")] == ["old", "attribute#a", "feature#f"]
 
 
-@pytest.mark.parametrize(("official", "second"), [(False, "attribute#a 2"), (True, "attribute#a")])
-def test_attributes_of_one_name_stay_apart(tmp_path, official, second):
+@pytest.mark.parametrize("second", ["attribute#a 2"])
+def test_attributes_of_one_name_stay_apart(tmp_path, second):
     values = '<attribute xsi:type="hw:IntValue" name="a"/><attribute xsi:type="hw:StrValue" name="a"/>'
-    models, _ = step(tmp_path, official, m__amxmi=hardware(values))
+    models, _ = step(tmp_path, m__amxmi=hardware(values))
     assert [made.get("key") for made in all_of(models, "customProperties")] == ["old", "attribute#a", second]
-
-
-@pytest.mark.parametrize(("official", "left"), [(False, 0), (True, 1)])
-def test_officially_hardware_types_of_property_constraints_are_forgotten(tmp_path, official, left):
-    content = """<propertyConstraintsModel><coreTypeDefinitions><attribute xsi:type="hw:IntValue" name="a"/></coreTypeDefinitions>
-        </propertyConstraintsModel>"""
-    models, _ = step(tmp_path, official, m__amxmi=content)
-    assert len(all_of(models, "attribute")) == left
 
 
 # Mixed and early files
 
 
-def test_a_reference_without_package_is_lost_officially(tmp_path):
+def test_a_reference_without_package_is_followed(tmp_path):
     content = """<swModel><labels name="L"/><runnables><runnableItems xsi:type="sw:LabelAccess" data="L?type=Label"/></runnables>
         </swModel>"""
     models, _ = step(tmp_path, m__amxmi=content)
     assert all_of(models, "runnableItems")[0].target("data").name == "L"
-    official, notes = step(tmp_path, official=True, m__amxmi=content)
-    assert all_of(official, "runnableItems")[0].references == {}
-    assert messages(notes, "lost") == ["reference of which the class has no package"]
-
-
-@pytest.mark.parametrize(("official", "after"), [(False, "a=b.c  L?type=sw.Label"), (True, "a=c L?type=Label")])
-def test_officially_texts_are_taken_for_references(tmp_path, official, after):
-    content = """<swModel><customProperties key="k"><value xsi:type="common:StringObject" value="a=b.c  L?type=sw.Label"/>
-        </customProperties></swModel>"""
-    models, _ = step(tmp_path, official, m__amxmi=content)
-    assert all_of(models, "value")[0].get("value") == after
 
 
 def test_the_step_leaves_what_is_already_converted(tmp_path):

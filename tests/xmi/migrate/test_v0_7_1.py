@@ -8,8 +8,8 @@ from amalthea_uros.xmi.migrate.steps.v0_7_1 import java_double
 
 @pytest.fixture
 def up(tmp_path):
-    def run(*contents, official=False, root="Amalthea", source="0.7.0"):
-        return migrate(tmp_path, source, "0.7.1", *contents, official=official, root=root)
+    def run(*contents, root="Amalthea", source="0.7.0"):
+        return migrate(tmp_path, source, "0.7.1", *contents, root=root)
 
     return run
 
@@ -112,12 +112,6 @@ def test_the_mapping_of_a_section_is_kept(up):
     assert result.of("LOST") == ["mapping of a section"]
 
 
-def test_the_official_converter_deletes_mappings_of_sections(up):
-    result = up(MAPPED, official=True)
-    assert "Section" not in result.text
-    assert result.of("LOST") == ["mapping of a section"] * 2
-
-
 SECTION_CONSTRAINTS = """
 <propertyConstraintsModel>
   <mappingConstraints t="SectionMappingConstraint" section="s?type=Section">
@@ -137,8 +131,6 @@ def test_constraints_of_sections_are_kept_as_text_if_they_constrain_anything(up)
     )
     assert '<memory name="m" />' in result.text
     assert result.of("KEPT") == result.of("LOST") == ["constraint for the mapping of a section"]
-    assert "propertyConstraintsModel" in up(SECTION_CONSTRAINTS, official=True).lines
-    assert "customProperties" not in up(SECTION_CONSTRAINTS, official=True).text
 
 
 SWITCH = """
@@ -167,8 +159,6 @@ def test_only_true_makes_an_entry_the_default_one(up):
     assert up(text).of("LOST") == ["second default entry of a mode switch: it is an ordinary entry now"]
     text = SWITCH.format(process="tasks", first='default="false"', second='default="false"')
     assert up(text).lines.count("defaultEntry") == 1
-    assert up(text, official=True).lines.count("defaultEntry") == 2
-    assert "default=" not in up(text).text + up(text, official=True).text
 
 
 def test_entries_of_anything_else_are_not_those_of_switches(up):
@@ -194,9 +184,8 @@ CONSTRAINTS = """
 """
 
 
-@pytest.mark.parametrize("official", [False, True])
-def test_timing_constraints_get_new_classes(up, official):
-    result = up(CONSTRAINTS, official=official)
+def test_timing_constraints_get_new_classes(up):
+    result = up(CONSTRAINTS)
     constraint = "timingConstraints [EventChainLatencyConstraint]"
     assert f"{constraint} name='age' type='Age' scope -> /constraintsModel.0/eventChains.0" in result.lines
     assert f"{constraint} name='reaction' type='Reaction'" in result.lines
@@ -204,8 +193,8 @@ def test_timing_constraints_get_new_classes(up, official):
     assert "timingConstraints [EventSynchronizationConstraint] name='sync' events -> /eventModel.0/events.0" in result.lines
     assert "[OrderConstraint]" not in result.text
     assert not any(line.startswith("affinityConstraints") for line in result.lines)
-    assert len(result.of("LOST" if official else "KEPT")) == 3
-    assert ("customProperties" in result.text) is not official
+    assert len(result.of("KEPT")) == 3
+    assert "customProperties" in result.text
 
 
 def test_removed_constraints_are_kept_with_the_names_of_what_they_mean(up):
@@ -238,9 +227,6 @@ def test_scopes_that_differ_and_groupings_are_lost(up):
     result = up(SEQUENCE.format(grouping="atLeastOneOfThem", scope=""))
     assert "runnableSequencingConstraints name='s'" in result.lines
     assert sorted(message.split(" ")[0] for message in result.of("LOST")) == ["grouping", "scopes"]
-    assert up(SEQUENCE.format(grouping="allOfThem", scope=' processScope="p?type=ProcessPrototype"'), official=True).of(
-        "LOST"
-    ) == ["scopes of single runnables in a sequencing constraint"]
 
 
 SCOPED = """
@@ -281,8 +267,7 @@ def test_a_file_of_the_next_version_with_old_constraints_takes_the_step_and_keep
     assert "timingConstraints [EventChainLatencyConstraint] name='reaction' type='Reaction'" in result.lines
 
 
-@pytest.mark.parametrize("official", [False, True])
-def test_damaged_files_are_no_problem(up, official):
+def test_damaged_files_are_no_problem(up):
     up(
         '<swModel><sections labels="x"/><sections labels="s?type=Section" runEntities="t?type=Task"/><tasks name="t"><callGraph>'
         '<graphEntries t="ModeSwitch"><entries value="x" default=""/><entries/></graphEntries><entries value="1"/>'
@@ -293,5 +278,4 @@ def test_damaged_files_are_no_problem(up, official):
         '<entries runnable="x"/>'
         '<entries processScope="y"><z/></entries></runnableGroups></runnableSequencingConstraints></constraintsModel>'
         '<timingConstraints t="OrderConstraint"/>',
-        official=official,
     )

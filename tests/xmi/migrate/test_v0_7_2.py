@@ -6,8 +6,8 @@ from inline_models import migrate
 
 @pytest.fixture
 def up(tmp_path):
-    def run(*contents, official=False, root="Amalthea", source="0.7.1"):
-        return migrate(tmp_path, source, "0.7.2", *contents, official=official, root=root)
+    def run(*contents, root="Amalthea", source="0.7.1"):
+        return migrate(tmp_path, source, "0.7.2", *contents, root=root)
 
     return run
 
@@ -23,10 +23,6 @@ def test_labels_from_itea_files_have_a_boolean(up):
     assert "labels dataStability='customProtection' name='a'" in result.lines
     assert "labels dataStability='noProtection' name='b'" in result.lines
     assert "labels dataStability='odd' name='c'" in result.lines
-    assert (
-        "labels dataStability='true' name='a'"
-        in up('<swModel><labels name="a" buffered="true"/></swModel>', official=True).lines
-    )
 
 
 def test_two_mappings_of_a_section_to_one_memory_have_different_names(tmp_path):
@@ -57,7 +53,6 @@ def test_one_level_of_buffering_is_kept(up, levels, level):
     assert f"dataStability accessMultiplicity='multipleAccesses' enabled='true' level='{level}'" in result.lines
     assert "customProperties key='k'" in result.lines
     assert len(result.of("LOST")) == levels.count("true") - 1
-    assert "algorithm=''" in up(text, official=True).text
 
 
 def test_no_level_of_buffering_means_no_protection(up):
@@ -117,29 +112,6 @@ OFFICIAL_ITEMS = (
 )
 
 
-def test_the_official_converter_forgets_some_instructions(up):
-    assert up(runnable(OFFICIAL_ITEMS), official=True).lines[5:] == [
-        "runnableItems [RunnableInstructions]",
-        "customProperties key='k'",
-        "default [InstructionsConstant] value='1'",
-        "fetchStatistic",
-        "runnableItems [RunnableInstructions]",
-        "default [InstructionsDeviation]",
-        "customProperties key='k'",
-        "deviation",
-        "runnableItems [RunnableModeSwitch]",
-        "entries",
-        "items [InstructionsConstant] value='3'",
-        "items [LabelAccess] buffered='buffered'",
-        "runnableItems [Group]",
-        "items [LabelAccess] dataStability='customProtection'",
-    ]
-    result = up(runnable(OFFICIAL_ITEMS))
-    assert result.text.count("customProperties") == 2
-    assert result.text.count("[RunnableInstructions]") == 3
-    assert "buffered" not in result.text
-
-
 def test_new_runnable_items_stay(up):
     items = (
         '<runnableItems t="RunnableInstructions"><default t="InstructionsConstant" value="1"/></runnableItems>'
@@ -179,7 +151,6 @@ def test_what_is_around_items_of_groups_is_not_lost_silently(up):
         "deviation of an item of a group",
         "lowerBound (value=4)",
     )
-    assert "key='w'" not in up(text, official=True).text
 
 
 DEVIATION = (
@@ -189,19 +160,18 @@ DEVIATION = (
 
 
 @pytest.mark.parametrize(
-    ("distribution", "kept", "officially_kept"),
+    ("distribution", "kept"),
     [
-        ('<distribution t="Boundaries"/>', True, True),
-        ('<distribution t="UniformDistribution"/>', False, False),
-        ("", True, False),
-        ("<distribution/>", False, False),
+        ('<distribution t="Boundaries"/>', True),
+        ('<distribution t="UniformDistribution"/>', False),
+        ("", True),
+        ("<distribution/>", False),
     ],
 )
-def test_a_sampling_type_needs_boundaries(up, distribution, kept, officially_kept):
-    for official, expected in ((False, kept), (True, officially_kept)):
-        result = up(DEVIATION.format(distribution), official=official)
-        assert ("distribution [Boundaries] samplingType='WorstCase'" in result.lines) is expected
-        assert bool(result.of("LOST")) is not expected
+def test_a_sampling_type_needs_boundaries(up, distribution, kept):
+    result = up(DEVIATION.format(distribution))
+    assert ("distribution [Boundaries] samplingType='WorstCase'" in result.lines) is kept
+    assert bool(result.of("LOST")) is not kept
 
 
 def test_instructions_of_the_operating_system_get_the_classes_of_runnables(up):
@@ -247,7 +217,6 @@ def test_pairing_constraints_have_a_group(up):
         "target [TargetCore]",
     ]
     assert [detail for kind, _, detail in result.notes if kind == "LOST"] == ["processes=x", "callSequences=c"]
-    assert up(AFFINITY, official=True).lines.count("runnables [RunnableEntityGroup]") == 1
 
 
 def test_tags_of_one_name_are_one(up):
@@ -261,12 +230,6 @@ def test_tags_of_one_name_are_one(up):
     assert "runnables name='r' tags -> /commonElements.0/tags.1" in result.lines
     assert "components [Component] name='c' tags -> /commonElements.0/tags.1 /commonElements.0/tags.0" in result.lines
     assert result.of("LOST") == ["a tag differs from another one of the same name, which is kept"]
-
-
-def test_the_official_converter_keeps_tags_of_one_name_apart(up):
-    text = '<swModel><tags name="t"/></swModel><hwModel><tags name="t"/></hwModel>'
-    assert up(text, official=True).lines.count("tags name='t'") == 2
-    assert up(text).lines.count("tags name='t'") == 1
 
 
 def test_every_file_keeps_its_tags(up):
@@ -299,13 +262,6 @@ def test_traced_events_move_to_the_event_model(up):
     assert result.of("LOST") == []
 
 
-def test_the_official_converter_removes_what_contained_a_traced_event(up):
-    result = up(EVENTS, official=True)
-    assert "name='own'" not in result.text
-    assert "events [LabelEvent] name='e'" in result.lines
-    assert result.of("LOST") == ["configuration of a traced event"]
-
-
 CONDITIONS = """
 <propertyConstraintsModel>
   <allocationConstraints t="ProcessAllocationConstraint"><hwConstraint t="HwCoreConjunction">
@@ -332,15 +288,6 @@ def test_new_hardware_of_constraints_moves_to_the_hardware_model(up):
     assert "cores name='c 1' coreType -> /hwModel.0/coreTypes.0" in result.lines
     assert "ecus name='migration_gen_ecu'" in result.lines
     assert result.of("LOST") == []
-
-
-def test_the_official_converter_keeps_only_the_names_of_memories(up):
-    text = CONDITIONS.format(core="c").replace(
-        '<memory name="inner"/>', '<memory name="new" type="ct?type=MemoryType"><quartzes name="q"/></memory>'
-    )
-    assert "memories name='new'" in up(text, official=True).lines
-    assert "quartzes name='q'" not in up(text, official=True).lines
-    assert "quartzes name='q'" in up(text).lines
 
 
 def test_known_hardware_of_constraints_is_referred_to(up):
@@ -370,8 +317,7 @@ def test_a_condition_without_name_means_nothing(up):
     assert len([message for message in result.of("LOST") if message.startswith("unnamed core")]) == 2
 
 
-@pytest.mark.parametrize("official", [False, True])
-def test_damaged_files_are_no_problem(up, official):
+def test_damaged_files_are_no_problem(up):
     up(
         '<osModel><osBuffering/><osBuffering/></osModel><osModel/><target t="TargetProcess"/><core/><core name="x"/><tags/>'
         '<swModel><tags/><tags/><runnables><runnableItems t="Group"><items><runnableItem/><runnableItem/></items></runnableItems>'
@@ -381,5 +327,4 @@ def test_damaged_files_are_no_problem(up, official):
         "</allocationConstraints>"
         '</propertyConstraintsModel><configModel><eventsToTrace/><eventsToTrace t="EventConfigElement" event="x"/></configModel>'
         '<constraintsModel><affinityConstraints/><affinityConstraints t="DataPairingConstraint"/></constraintsModel>',
-        official=official,
     )

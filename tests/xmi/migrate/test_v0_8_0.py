@@ -8,8 +8,8 @@ KEY = "hwConstraint (element removed during Migration of Model to 0.8.0 version)
 
 @pytest.fixture
 def up(tmp_path):
-    def run(*contents, official=False, root="Amalthea", source="0.7.2", target="0.8.0"):
-        return migrate(tmp_path, source, target, *contents, official=official, root=root)
+    def run(*contents, root="Amalthea", source="0.7.2", target="0.8.0"):
+        return migrate(tmp_path, source, target, *contents, root=root)
 
     return run
 
@@ -41,7 +41,6 @@ def test_all_units_of_data_are_renamed(up):
     assert "chunkSize unit='Kibit' value='1'" in result.lines
     assert "rate unit='BPerSecond' value='1'" in result.lines
     assert "rate unit='KibitPerSecond' value='1'" in result.lines
-    assert "rate unit='bytePerSecond' value='1'" in up(UNITS, official=True).lines
 
 
 TIMES = """
@@ -60,11 +59,6 @@ def test_signed_times_are_times_everywhere(up):
     assert "Signed" not in result.text
     assert "value [TimeObject] value='1'" in result.lines
     assert "limitValue [Time] value='4'" in result.lines
-    official = up(TIMES, official=True)
-    assert "value [TimeObject] value='1'" in official.lines
-    assert "lowerBound [Time] value='2'" in official.lines
-    assert "shift [SignedTime] value='3'" in official.lines
-    assert "limitValue [SignedTime] value='4'" in official.lines
 
 
 MODES = """
@@ -79,9 +73,6 @@ def test_a_mode_without_initial_value_is_set_aside_for_later_versions(up):
     [((label, name), [mode])] = result.models.set_aside.items()
     assert (label.name, name, mode.name) == ("y", "mode", "m")
     assert result.of("LOST") == ["reference 'mode': this version has no place for it"]
-    official = up(MODES, official=True)
-    assert official.models.set_aside == {}
-    assert official.of("LOST") == ["mode of a mode label without initial value"]
 
 
 def test_a_mode_that_is_not_that_of_the_initial_value_is_lost(up):
@@ -129,15 +120,13 @@ def test_consistency_that_no_operating_system_takes_is_lost(up):
     assert [note[:2] for note in result.notes] == [("LOST", "osDataConsistency: every operating system has its own")]
 
 
-@pytest.mark.parametrize("official", [False, True])
-def test_conditions_for_hardware_are_kept_as_text(up, official):
+def test_conditions_for_hardware_are_kept_as_text(up):
     result = up(
         '<hwModel><system name="s"><memories name="a 1"/></system></hwModel><propertyConstraintsModel>'
         '<mappingConstraints t="AbstractElementMappingConstraint"><customProperties key="first"/>'
         '<hwConstraint t="HwMemoryProperty" comparator="equal" memory="a+1?type=Memory"/></mappingConstraints>'
         '<allocationConstraints t="ProcessAllocationConstraint"><hwConstraint t="HwCoreConjunction" conjunction="and">'
         '<firstConstraint t="HwCoreProperty"/></hwConstraint></allocationConstraints></propertyConstraintsModel>',
-        official=official,
     )
     xsi = 'xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"'
     [[first, condition], [conjunction]] = [
@@ -181,15 +170,13 @@ def test_a_file_of_the_new_version_stays_as_it_is(up):
     ]
 
 
-@pytest.mark.parametrize("official", [False, True])
-def test_damaged_files_are_no_problem(up, official):
+def test_damaged_files_are_no_problem(up):
     up(
         '<mappingModel><mapping t="Unknown"/><mapping/></mappingModel><swModel><modeLabels mode="x"/>'
         '<modeLabels mode="y" initialValue="z"/></swModel>'
         "<osModel><osDataConsistency/><osDataConsistency/><operatingSystems/></osModel>"
         "<propertyConstraintsModel><mappingConstraints/><allocationConstraints><hwConstraint/><hwConstraint/></allocationConstraints>"
         "</propertyConstraintsModel>",
-        official=official,
     )
 
 

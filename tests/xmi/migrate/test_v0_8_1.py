@@ -89,16 +89,6 @@ def test_what_becomes_of_priorities_and_groups_is_noted(files):
     ]
 
 
-def test_the_official_converter_loses_priority_0(same):
-    notes = same(
-        TWO_TASKS.format('priority="0"', 'priority="2"', '<taskAllocation task="B?type=Task" priority="0"/>'),
-        f'<swModel><tasks name="A"/><tasks name="B">{text_property("priority", 2)}</tasks></swModel>'
-        '<mappingModel><taskAllocation task="B?type=Task"/></mappingModel>',
-        official=True,
-    )
-    assert len(of_kind(notes, Kind.LOST)) == 2
-
-
 def test_the_task_may_be_in_another_file(same):
     same(
         [
@@ -141,7 +131,6 @@ def test_a_default_of_the_allocation_does_not_hide_the_priority_of_its_isr(same)
     allocations += '<isrAllocation isr="K?type=ISR" priority="8"/><isrAllocation isr="L?type=ISR"/></mappingModel>'
     before = f"<swModel>{before}{allocations.format(0)}"
     same(before, f"<swModel>{after}{allocations.format(9)}")
-    same(before, f"<swModel>{after}{allocations.format(0)}", official=True)
 
 
 def test_process_prototypes_have_priorities_and_custom_properties_come_first(files):
@@ -177,11 +166,6 @@ def test_a_custom_property_that_was_there_is_not_taken_for_what_the_task_states(
     assert f"{attribute} 2" in dict(reversed(pair) for pair in of_kind(notes, Kind.RENAMED))
 
 
-def test_officially_the_custom_property_of_a_task_keeps_its_key(same):
-    model = f'<swModel><tasks name="T"{{}}>{text_property("priority", 7)}{{}}</tasks></swModel>'
-    same(model.format(' priority="5"', ""), model.format("", text_property("priority", 5)), official=True)
-
-
 # Stimuli
 
 CALLS = '<callGraph><graphEntries xsi:type="am:CallSequence"><calls xsi:type="am:{}"{}</graphEntries></callGraph>'
@@ -192,16 +176,11 @@ def test_a_trigger_of_another_kind_of_stimulus_keeps_it_as_custom_property(same,
     stimuli = '<stimuliModel><stimuli xsi:type="am:Single{}" name="S"/></stimuliModel>'
     before = CALLS.format("InterProcessActivation", ' stimulus="S?type=Single"/>')
     kept = '<customProperties key="stimulus"><value xsi:type="am:ReferenceObject" value="S?type=SingleStimulus"/></customProperties>'
-    calls = {
-        False: CALLS.format("InterProcessTrigger", f">{kept}</calls>"),
-        True: CALLS.format("InterProcessTrigger", "/>"),
-    }
-    for official, after in calls.items():
-        same(
-            f'<swModel><{tag} name="T">{before}</{tag}></swModel>{stimuli.format("")}',
-            f'<swModel><{tag} name="T">{after}</{tag}></swModel>{stimuli.format("Stimulus")}',
-            official,
-        )
+    after = CALLS.format("InterProcessTrigger", f">{kept}</calls>")
+    same(
+        f'<swModel><{tag} name="T">{before}</{tag}></swModel>{stimuli.format("")}',
+        f'<swModel><{tag} name="T">{after}</{tag}></swModel>{stimuli.format("Stimulus")}',
+    )
 
 
 def test_every_class_of_stimuli_is_renamed_also_in_references_to_no_file(same):
@@ -216,8 +195,7 @@ def test_every_class_of_stimuli_is_renamed_also_in_references_to_no_file(same):
     )
 
 
-@pytest.mark.parametrize("official", [False, True])
-def test_mode_value_lists(same, official):
+def test_mode_value_lists(same):
     entry = '<entries{} valueProvider="L?type=ModeLabel" value="M/a?type=ModeLiteral"/>'
     model = '<swModel><modes name="M"><literals name="a"/></modes><modeLabels name="L"/></swModel><stimuliModel>'
     model += '<stimuli xsi:type="am:CustomStimulus" name="S">{}</stimuli></stimuliModel>'
@@ -226,11 +204,11 @@ def test_mode_value_lists(same, official):
     def stimulus(typed):
         return model.format("".join(f"<{name}>{entry.format(typed)}</{name}>" for name in lists))
 
-    same(stimulus(""), stimulus(' xsi:type="am:ModeValue"'), official)
+    same(stimulus(""), stimulus(' xsi:type="am:ModeValue"'))
     conjunction = model.format(
         '<enablingModeValueList><entries xsi:type="am:ModeValueConjunction"><entries/></entries></enablingModeValueList>'
     )
-    same(conjunction, conjunction, official)
+    same(conjunction, conjunction)
 
 
 # Software
@@ -240,8 +218,7 @@ ACTIVATION = (
 )
 
 
-@pytest.mark.parametrize("official", [False, True])
-def test_activations(same, official):
+def test_activations(same):
     same(
         ACTIVATION.format("activation") + '<deadline value="3" unit="ms"/></activations>'
         '<activations xsi:type="am:EventActivation" name="E" trigger="e?type=ProcessEvent"/></swModel>'
@@ -250,7 +227,6 @@ def test_activations(same, official):
         + '<customProperties key="deadline"><value xsi:type="am:TimeObject" value="3" unit="ms"/></customProperties></activations>'
         '<activations xsi:type="am:EventActivation" name="E" triggeringEvents="e?type=ProcessEvent"/></swModel>'
         '<eventModel><events xsi:type="am:ProcessEvent" name="e"/></eventModel>',
-        official,
     )
 
 
@@ -278,9 +254,8 @@ def test_the_activation_of_a_process_prototype_keeps_its_name(same):
 SYSTEM = '<osModel><operatingSystems name="OS">{}</operatingSystems></osModel>'
 
 
-@pytest.mark.parametrize("official", [False, True])
 @pytest.mark.parametrize("tag", ["taskSchedulers", "interruptControllers"])
-def test_scheduling_units(same, tag, official):
+def test_scheduling_units(same, tag):
     notes = same(
         SYSTEM.format(
             f'<{tag} name="S" scheduleUnitPriority="0"><schedulingUnit xsi:type="am:SchedulingSWUnit" priority="0" '
@@ -295,7 +270,6 @@ def test_scheduling_units(same, tag, official):
             f'</computationItems></{tag}><{tag} name="H">{text_property("SchedulingHWUnit_CustomProperty__k", "v")}</{tag}>'
             '<interruptControllers name="C"/>'
         ),
-        official,
     )
     assert of_kind(notes, Kind.LOST) == [("interrupt controller of a scheduling unit", "C?type=InterruptController")]
 
@@ -365,8 +339,7 @@ def test_allocations_of_cores_in_another_file(same):
     )
 
 
-@pytest.mark.parametrize("official", [False, True])
-def test_quartzes_are_collected_in_order_and_lose_their_parts(same, official):
+def test_quartzes_are_collected_in_order_and_lose_their_parts(same):
     notes = same(
         '<hwModel><memoryTypes name="T" xAccessPattern="3-1-1"/><system name="S">'
         '<memories name="m"><prescaler quartz="q2?type=Quartz"/><quartzes name="q1"><frequency value="1"/>'
@@ -375,7 +348,6 @@ def test_quartzes_are_collected_in_order_and_lose_their_parts(same, official):
         '<hwModel><memoryTypes name="T"/><system name="S"><memories name="m"><prescaler quartz="q2?type=Quartz"/></memories>'
         '<quartzes name="q1"><frequency value="1"/></quartzes><quartzes name="q2"/><quartzes name="q3"/><quartzes name="q4"/>'
         "</system></hwModel>",
-        official,
     )
     assert of_kind(notes, Kind.LOST) == [
         ("access pattern of a memory type", "3-1-1"),
@@ -418,7 +390,6 @@ def test_a_chain_in_no_file_may_be_an_outer_one(same):
     model += "</constraintsModel>"
     reference = '<eventChain href="amlt:/#b?type=EventChain"/>'
     same(model.format(reference), model.format(reference))
-    same(model.format(reference), model.format(text_property("eventChain", "amlt:/#b?type=EventChain")), official=True)
 
 
 def test_references_to_inner_chains_are_noted(files):
@@ -432,11 +403,10 @@ def test_references_to_inner_chains_are_noted(files):
     ]
 
 
-@pytest.mark.parametrize("official", [False, True])
-def test_the_name_of_an_inner_chain_means_the_outer_one_that_shares_it(files, official):
+def test_the_name_of_an_inner_chain_means_the_outer_one_that_shares_it(files):
     model = '<constraintsModel><eventChains name="a"><segments xsi:type="am:SubEventChain"><eventChain name="b"/></segments>'
     model += '<segments xsi:type="am:EventChainReference" eventChain="b?type=EventChain"/></eventChains><eventChains name="b"/>'
-    models, _ = migrated(files("0.8.0", model + "</constraintsModel>"), "0.8.1", official)
+    models, _ = migrated(files("0.8.0", model + "</constraintsModel>"), "0.8.1")
     first, second = models.trees[0].root.find("constraintsModel", "eventChains")
     assert first.children[1].references == {"eventChain": [second]}
 
@@ -474,8 +444,7 @@ def test_the_step_leaves_alone_what_is_converted(tmp_path):
     check_twice(tmp_path, "0.8.0", "0.8.1", EVERYTHING)
 
 
-@pytest.mark.parametrize("official", [False, True])
-def test_damaged_files_are_migrated(files, official):
+def test_damaged_files_are_migrated(files):
     values = ["", "0", "x", "T?type=Task", "inner?type=EventChain", "gone?type=Periodic gone?type=Core"]
     for text in damaged(EVERYTHING, values, seed=8):
-        migrated(files("0.8.0", text), "0.8.3", official)
+        migrated(files("0.8.0", text), "0.8.3")

@@ -17,8 +17,8 @@ def write(path, content, version="0.8.3"):
 def convert(tmp_path):
     """One file of 0.8.3 with that content -> the root after the step, and its notes."""
 
-    def converted(content, target="0.9.0", official=False, version="0.8.3"):
-        models, notes = migrated([write(tmp_path / "model.amxmi", content, version)], target, official)
+    def converted(content, target="0.9.0", version="0.8.3"):
+        models, notes = migrated([write(tmp_path / "model.amxmi", content, version)], target)
         return models.trees[0].root, notes
 
     return converted
@@ -66,25 +66,17 @@ class TestClocks:
         _, notes = convert(self.prescaled('clockRatio="0.0"'))
         assert [note.detail for note in notes if note.kind is Kind.DEFAULTED] == ["0.0"]
 
-    @pytest.mark.parametrize(
-        ("ratio", "name", "value"), [("1", "Q__1", "100.0"), ("0.0", "Q__0.0", "0.0"), ("2.5", "Q__2.5", "250.0")]
-    )
-    def test_official_takes_the_ratio_as_text(self, convert, ratio, name, value):
-        root, _ = convert(self.prescaled(f'clockRatio="{ratio}"'), official=True)
-        assert domain_of(root) == (name, value, "MHz")
-
     def test_modules_with_the_same_ratio_share_a_domain(self, convert):
         prescaler = '<prescaler clockRatio="2.0" quartz="Q?type=Quartz"/>'
         root, _ = convert(on_chip(f'<cores name="C">{prescaler}</cores><memories name="R">{prescaler}</memories>'))
         assert module(root, "C").target("frequencyDomain") is module(root, "R").target("frequencyDomain")
         assert [node.name for node in root.find("hwModel", "domains")] == ["Q", "Q__2.0"]
 
-    @pytest.mark.parametrize("official", [False, True])
-    def test_a_domain_has_a_name_of_its_own(self, convert, official):
+    def test_a_domain_has_a_name_of_its_own(self, convert):
         """Otherwise a reference by that name would mean the quartz that had it already, and its frequency."""
         quartzes = QUARTZ + '<quartzes name="Q__0.5"><frequency value="7.0" unit="MHz"/></quartzes>'
-        root, _ = convert(self.prescaled('clockRatio="0.5"', quartzes), official=official)
-        assert domain_of(root) == ("Q__0.5" if official else "Q__0.5 2", "50.0", "MHz")
+        root, _ = convert(self.prescaled('clockRatio="0.5"', quartzes))
+        assert domain_of(root) == ("Q__0.5 2", "50.0", "MHz")
 
     def test_large_frequencies_are_written_as_java_does(self, convert):
         quartz = '<quartzes name="Q"><frequency value="2.0E8"/></quartzes>'
@@ -101,16 +93,6 @@ class TestClocks:
         root, notes = convert(self.prescaled('clockRatio="-0.5"'))
         assert module(root, "C").target("frequencyDomain").child("defaultValue") is None
         assert "frequency behind a prescaler: negative" in lost(notes)
-        root, _ = convert(self.prescaled('clockRatio="-0.5"'), official=True)
-        assert domain_of(root) == ("Q__-0.5", "-50.0", "MHz")
-
-    @pytest.mark.parametrize("official", [False, True])
-    def test_official_encodes_the_name_of_the_quartz(self, convert, official):
-        content = on_chip('<cores name="C"><prescaler clockRatio="0.5" quartz="My+Q?type=Quartz"/></cores>').replace(
-            '"Q"', '"My Q"'
-        )
-        root, _ = convert(content, official=official)
-        assert domain_of(root)[0] == ("My+Q__0.5" if official else "My Q__0.5")
 
     def test_a_quartz_that_is_in_no_file(self, convert):
         content = '<cores name="C{0}"><prescaler clockRatio="{0}"><quartz href="amlt:/#X?type=Quartz"/></prescaler></cores>'
@@ -129,7 +111,7 @@ class TestClocks:
         _, notes = convert(on_chip('<prescaler clockRatio="2.0" quartz="Q?type=Quartz"/>'))
         assert [note.detail for note in notes if note.kind is Kind.LOST] == ["clockRatio=2.0, quartz=Q"]
 
-    def test_the_unit_is_stated_after_the_last_version_with_known_official_results(self, convert):
+    def test_the_unit_is_stated_after_the_last_version_with_known_results_of_app4mc(self, convert):
         quartz = '<quartzes name="Q"><frequency value="2.0E8"/></quartzes>'
         content = self.prescaled('clockRatio="0.5"', quartz).replace(
             "<hwModel>", '<hwModel><memoryTypes name="T"><size value="32768"/></memoryTypes>'
@@ -218,24 +200,22 @@ def meaning_of_hardware(root):
 
 
 class TestStructures:
-    def test_memories_and_networks_are_lifted_in_the_official_order(self, convert):
+    def test_memories_and_networks_are_lifted_in_the_order_of_app4mc(self, convert):
         content = (
             '<memories name="m1"><memories name="m2"><networks name="n1"/></memories></memories>'
             '<networks name="n2"><components name="c"><networks name="n3"/><memories name="m3"/></components></networks>'
             '<components name="d"><nestedComponents name="e"><memories name="m4"/><networks name="n4"/></nestedComponents></components>'
             '<cores name="C"><memories name="m5"/><networks name="n5"/></cores><memories name="m6"/>'
         )
-        for official in (False, True):
-            root, notes = convert(on_chip(content), official=official)
-            expected = ["m1", "m6", "m2", "m3", "m4", "n2", "n3", "n1", "n4", "C", "m5", "n5"]
-            assert [node.name for node in chip(root).all("modules")] == expected
-            assert "'components' of systems, ECUs and microcontrollers" in lost(notes)
+        root, notes = convert(on_chip(content))
+        expected = ["m1", "m6", "m2", "m3", "m4", "n2", "n3", "n1", "n4", "C", "m5", "n5"]
+        assert [node.name for node in chip(root).all("modules")] == expected
+        assert "'components' of systems, ECUs and microcontrollers" in lost(notes)
 
     def test_cores_keep_their_order(self, convert):
         content = on_chip('<cores name="e200z6"/><cores name="e200z0"/>')
-        for official, names in ((False, ["e200z6", "e200z0"]), (True, ["e200z0", "e200z6"])):
-            root, _ = convert(content, official=official)
-            assert [node.name for node in chip(root).all("modules")] == names
+        root, _ = convert(content)
+        assert [node.name for node in chip(root).all("modules")] == ["e200z6", "e200z0"]
 
     def test_a_cache_in_a_core_with_port_and_clock(self, convert):
         cache = (
@@ -253,10 +233,6 @@ class TestStructures:
         assert (found.type, found.target("definition").type, domain_of(root, "$")[0]) == ("Cache", "CacheDefinition", "Q")
         assert [node.name for node in found.children] == ["p"]
         assert "'memory': caches cannot be referred to" in lost(notes)
-        root, _ = convert(content, official=True)
-        assert [(node.name, node.type) for node in chip(root).all("modules")][1] == ("$", "Memory")
-        assert len(chip(root).find("modules", "caches")) == 1
-        assert root.find("mappingModel", "memoryMapping")[0].target("memory").type == "Memory"
 
     def test_custom_properties_and_tags_stay(self, convert):
         own = '<customProperties key="k"><value xsi:type="am:StringObject" value="v"/></customProperties>'
@@ -267,10 +243,6 @@ class TestStructures:
         assert properties(core) == {"k": "v", "lockstepGroup": "2"}
         assert core.target("tags").name == "t"
         assert properties(root.child("hwModel")) == {"k": "v"}
-        root, notes = convert(content, official=True)
-        assert not module(root, "C").children
-        assert not module(root, "C").references
-        assert "'customProperties' of cores" in lost(notes)
 
     def test_ports(self, convert):
         cycles = 'readCycles="8" writeCycles="0" baseAddress="0x0" addressRange="0x100" schedValue="2" direction="R"'
@@ -300,8 +272,6 @@ class TestStructures:
         assert {"'readCycles' of initiator ports", "'addressRange' of initiator ports", "'pins' of initiator ports"} <= lost(
             notes
         )
-        root, _ = convert(content, official=True)
-        assert not any(node.all("customProperties") for node in chip(root).walk())
 
 
 def path(latencies, source="C?type=Core", target="R?type=Memory", name="p"):
@@ -320,9 +290,8 @@ class TestAccessPaths:
 
     def test_access_types(self, convert):
         paths = path(constant(1, "R") + constant(2, "W")) + path(constant(3, "W"), name="q")
-        for official in (False, True):
-            root, _ = convert(on_chip('<cores name="C"/><memories name="R"/>', paths), official=official)
-            assert self.costs(root) == [{"readLatency": "1", "writeLatency": "2"}, {"writeLatency": "3"}]
+        root, _ = convert(on_chip('<cores name="C"/><memories name="R"/>', paths))
+        assert self.costs(root) == [{"readLatency": "1", "writeLatency": "2"}, {"writeLatency": "3"}]
 
     def test_a_path_to_a_core(self, convert):
         root, _ = convert(on_chip('<cores name="C"/><cores name="D"/>', path(constant(1), target="D?type=Core")))
@@ -346,12 +315,6 @@ class TestAccessPaths:
         _, notes = convert(on_chip('<memories name="R"/>', path(constant(1), source="gone?type=Core")))
         assert lost(notes) == {"access path from something in no file"}
 
-    def test_official_refers_to_a_cache_as_memory(self, convert):
-        content = on_chip('<cores name="C"/><memories name="L2" type="T?type=MemoryType"/>', path("", target="L2?type=Memory"))
-        root, _ = convert(content.replace("<hwModel>", '<hwModel><memoryTypes name="T" type="CACHE"/>'), official=True)
-        target = module(root, "C").child("accessElements").target("destination")
-        assert (target.is_proxy, target.get("path"), target.target_class) == (True, "L2", "Memory")
-
     def test_without_access_type_both_directions_are_meant(self, convert):
         latency = '<latencies xsi:type="am:LatencyConstant" value="4"/>'
         root, notes = convert(on_chip('<cores name="C"/><memories name="R"/>', path(latency)))
@@ -372,16 +335,13 @@ class TestAccessPaths:
         latency = module(root, "C").all("accessElements")[1].children[0]
         assert [node.get("value") for node in latency.find("cycles")[0].children] == ["1", "14"]
         assert any("cycles of a quartz" in note.message for note in notes)
-        root, _ = convert(on_chip(core, paths), official=True)
-        assert self.costs(root)[0] == {"readLatency": "9", "writeLatency": "9"}
 
     def test_latencies_without_quartz_are_assumed_to_be_in_cycles_of_the_core(self, convert):
         content = on_chip('<cores name="C"/><memories name="R"/>', path(constant(9)))
-        for official in (False, True):
-            root, notes = convert(content, official=official)
-            assert self.costs(root) == [{"readLatency": "9", "writeLatency": "9"}]
-            assumed = [note.detail for note in notes if note.kind is Kind.DEFAULTED]
-            assert assumed == ([] if official else ["9"])
+        root, notes = convert(content)
+        assert self.costs(root) == [{"readLatency": "9", "writeLatency": "9"}]
+        assumed = [note.detail for note in notes if note.kind is Kind.DEFAULTED]
+        assert assumed == (["9"])
 
     def test_latencies_of_a_quartz_without_frequency(self, convert):
         more = 'quartz="P?type=Quartz"'
@@ -485,11 +445,10 @@ class TestReferences:
             '<taskAllocation><coreAffinity href="amlt:/#Core+0?type=Core"/></taskAllocation>'
             '<memoryMapping abstractElement="L?type=Label"><memory href="amlt:/#R?type=Memory"/></memoryMapping></mappingModel>',
         )
-        for official in (False, True):
-            models, _ = migrated([rest, hardware], "0.9.0", official)
-            mapping = models.trees[0].root.child("mappingModel")
-            assert mapping.child("taskAllocation").target("affinity").type == "ProcessingUnit"
-            assert mapping.child("memoryMapping").target("memory").type == "Memory"
+        models, _ = migrated([rest, hardware], "0.9.0")
+        mapping = models.trees[0].root.child("mappingModel")
+        assert mapping.child("taskAllocation").target("affinity").type == "ProcessingUnit"
+        assert mapping.child("memoryMapping").target("memory").type == "Memory"
 
     CONSTRAINTS = (
         '<constraintsModel><affinityConstraints xsi:type="am:RunnablePairingConstraint"><target xsi:type="am:TargetCore">'
@@ -504,33 +463,29 @@ class TestReferences:
     def test_hardware_in_no_file(self, convert):
         kinds = ("ProcessEvent", "ProcessChainEvent", "RunnableEvent", "SemaphoreEvent")
         content = self.CONSTRAINTS.format("".join(f'<events xsi:type="am:{kind}" core="c1?type=Core"/>' for kind in kinds))
-        for official in (False, True):
-            root, notes = convert(content, official=official)
-            targets = root.find("constraintsModel", "affinityConstraints", "target")
-            assert targets[0].target("cores").target_class == "ProcessingUnit"
-            assert [node.target("processingUnit").target_class for node in root.find("eventModel", "events")] == [
-                "ProcessingUnit"
-            ] * 4
-            memories = [
-                targets[1].target("memories"),
-                root.find("constraintsModel", "physicalSectionConstraints")[0].target("memories"),
-            ]
-            memories.append(root.find("mappingModel", "physicalSectionMapping")[0].target("memory"))
-            # The official converter only knows memories that it has converted.
-            assert [each is None for each in memories] == [official] * 3
-            assert all("in no file" in message for message in lost(notes))
-            assert bool(lost(notes)) == official
+        root, notes = convert(content)
+        targets = root.find("constraintsModel", "affinityConstraints", "target")
+        assert targets[0].target("cores").target_class == "ProcessingUnit"
+        assert [node.target("processingUnit").target_class for node in root.find("eventModel", "events")] == [
+            "ProcessingUnit"
+        ] * 4
+        memories = [
+            targets[1].target("memories"),
+            root.find("constraintsModel", "physicalSectionConstraints")[0].target("memories"),
+        ]
+        memories.append(root.find("mappingModel", "physicalSectionMapping")[0].target("memory"))
+        assert None not in memories
+        assert not lost(notes)
 
-    @pytest.mark.parametrize("official", [False, True])
-    def test_references_to_memories_beside_those_to_caches(self, convert, official):
+    def test_references_to_memories_beside_those_to_caches(self, convert):
         memories = '<memories name="e200z6"/><memories name="e200z0"/><memories name="L2" type="T?type=MemoryType"/>'
         constraint = '<physicalSectionConstraints name="{}" memories="{}"/>'
         names = "e200z6?type=Memory L2?type=Memory e200z0?type=Memory"
         constraints = constraint.format("p", names) + constraint.format("q", "L2?type=Memory")
         content = on_chip(memories, before='<memoryTypes name="T" type="CACHE"/>')
-        root, notes = convert(f"{content}<constraintsModel>{constraints}</constraintsModel>", official=official)
+        root, notes = convert(f"{content}<constraintsModel>{constraints}</constraintsModel>")
         some, none = root.find("constraintsModel", "physicalSectionConstraints")
-        expected = ["e200z0", "e200z6"] if official else ["e200z6", "e200z0"]
+        expected = ["e200z6", "e200z0"]
         assert [node.name for node in some.references["memories"]] == expected
         assert "memories" not in none.references
         details = [note.detail for note in notes if note.message.startswith("'memories': caches")]
@@ -553,23 +508,16 @@ class TestReferences:
     def test_order_of_references(self, convert):
         cores = on_chip('<cores name="e200z6"/><cores name="e200z0"/>')
         mapping = '<mappingModel><schedulerAllocation responsibility="e200z6?type=Core e200z0?type=Core"/></mappingModel>'
-        for official, names in ((False, ["e200z6", "e200z0"]), (True, ["e200z0", "e200z6"])):
-            root, _ = convert(cores + mapping, official=official)
-            assert [
-                node.name for node in root.find("mappingModel", "schedulerAllocation")[0].references["responsibility"]
-            ] == names
+        root, _ = convert(cores + mapping)
+        (allocation,) = root.find("mappingModel", "schedulerAllocation")
+        assert [node.name for node in allocation.references["responsibility"]] == ["e200z6", "e200z0"]
 
     def test_custom_properties(self, convert):
         value = '<customProperties key="{0}"><value xsi:type="am:ReferenceObject" value="{0}"/></customProperties>'
-        targets = {
-            "C?type=Core": ("C", "ProcessingUnitDefinition"),
-            "T?type=CoreType": ("T", "ProcessingUnit"),
-            "N?type=Network": ("N", "ConnectionHandlerDefinition"),
-            "B?type=Bus": ("B", "Bus"),
-            "M?type=Microcontroller": ("M", "HwStructure"),
-            "Q?type=Quartz": ("Q", "FrequencyDomain"),
-            "x?type=Task": ("x", "Task"),
-        }
+        targets = [
+            *("C?type=Core", "T?type=CoreType", "N?type=Network", "B?type=Bus", "M?type=Microcontroller", "Q?type=Quartz"),
+            "x?type=Task",
+        ]
         content = on_chip(
             '<cores name="C"/><networks name="N"/>', before='<coreTypes name="T"/><networkTypes xsi:type="am:Bus" name="B"/>'
         )
@@ -578,11 +526,6 @@ class TestReferences:
         kept = [node.children[0].target("value") for node in root.find("swModel", "tasks", "customProperties")]
         assert [node.name for node in kept] == ["C", "T", "N", "B", "M", "Q", "x"]
         assert not any(node.is_proxy for node in kept)
-        root, _ = convert(content, official=True)
-        found = [node.children[0].target("value") for node in root.find("swModel", "tasks", "customProperties")]
-        assert [(node.get("path") or node.name, node.target_class) for node in found if node.is_proxy] == list(
-            targets.values()
-        )[:4]
 
 
 def test_old_content_under_the_new_namespace_is_converted(convert):
@@ -612,7 +555,6 @@ def test_new_content_stays(tmp_path):
     assert len(models.trees[0].root.find("hwModel", "featureCategories", "features")) == 1
 
 
-@pytest.mark.parametrize("official", [False, True])
 @pytest.mark.parametrize(
     "content",
     [
@@ -632,6 +574,6 @@ def test_new_content_stays(tmp_path):
         "<customProperties/></tasks></swModel>",
     ],
 )
-def test_damaged_files(convert, content, official):
-    convert(content, official=official)
-    convert(content, "0.9.2", official=official)
+def test_damaged_files(convert, content):
+    convert(content)
+    convert(content, "0.9.2")

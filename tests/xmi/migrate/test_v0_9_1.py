@@ -24,10 +24,3 @@ def test_times_everywhere(tmp_path, version, target):
     path.write_text(TEXT.format(version))
     models, _ = migrated([path], target)
     assert {node.type for node in models.trees[0].root.walk() if node.get("unit")} == {"Time"}
-
-
-def test_official_only_in_custom_properties(tmp_path):
-    path = tmp_path / "model.amxmi"
-    path.write_text(TEXT.format("0.9.0"))
-    models, _ = migrated([path], "0.9.1", official=True)
-    assert [node.type for node in models.trees[0].root.walk() if node.get("unit")] == ["Time", "TimeObject"]

@@ -95,11 +95,6 @@ def test_definitions_without_need_stay_without(same):
     same(runnable(need(extended("P", 90))) + units, runnable(ticks(of_definition("P", constant(45, "value")))) + units)
 
 
-def test_the_official_converter_does_not_divide_the_default(same):
-    units = hardware(("P", "2.0"))
-    same(runnable(need(default(101))) + units, runnable(ticks(constant(101))) + units, official=True)
-
-
 def test_hardware_in_another_file_counts(same):
     units = hardware(("P", "2"))
     same([runnable(need(default(10))), units], [runnable(ticks(constant(10), of_definition("P", constant(5, "value")))), units])
@@ -173,17 +168,15 @@ def test_needs_of_other_keys_are_an_item_behind_the_ticks(same):
 
 def test_needs_without_instructions_are_no_ticks(same):
     kept = f'<runnableItems xsi:type="am:ExecutionNeed"><needs key="FLOP">{constant(7, "value")}</needs></runnableItems>'
-    for official in (False, True):
-        notes = same(runnable(need(default(7, "FLOP"), extended("P", 3, "FLOP"))), runnable(kept), official=official)
-        message = "execution needs of definitions have no keys other than instructions any more"
-        assert (message, "FLOP value=3") in of_kind(notes, Kind.LOST)
+    notes = same(runnable(need(default(7, "FLOP"), extended("P", 3, "FLOP"))), runnable(kept))
+    message = "execution needs of definitions have no keys other than instructions any more"
+    assert (message, "FLOP value=3") in of_kind(notes, Kind.LOST)
 
 
 def test_a_need_that_cannot_be_said_is_unknown_and_not_none(same):
     given = runnable(need(extended("P", 3, "FLOP")))
     notes = same(given, runnable(ticks()))
     assert len(of_kind(notes, Kind.TO_CHECK)) == len(of_kind(notes, Kind.LOST)) == 1
-    same(given, runnable(""), official=True)
 
 
 def test_needs_in_groups_and_switches_are_found(same):
@@ -268,18 +261,14 @@ def test_the_deviation_of_a_sporadic_activation_is_its_occurrence(same):
     content = bound("lowerBound", 1, "Time", ' unit="ms"') + bound("upperBound", 2, "Time", ' unit="ms"')
     uniform = '<distribution xsi:type="am:UniformDistribution"/>'
     times = '<lowerBound value="1" unit="ms"/><upperBound value="2" unit="ms"/>'
-    for official in (False, True):
-        same(
-            activation("SporadicActivation", f"<activationDeviation>{content}{uniform}</activationDeviation>"),
-            activation("SporadicActivation", f'<occurrence xsi:type="am:TimeUniformDistribution">{times}</occurrence>'),
-            official=official,
-        )
-        # The official converter fails here.
-        same(
-            activation("SporadicActivation", f"<activationDeviation>{content}</activationDeviation>"),
-            activation("SporadicActivation", f'<occurrence xsi:type="am:TimeBoundaries">{times}</occurrence>'),
-            official=official,
-        )
+    same(
+        activation("SporadicActivation", f"<activationDeviation>{content}{uniform}</activationDeviation>"),
+        activation("SporadicActivation", f'<occurrence xsi:type="am:TimeUniformDistribution">{times}</occurrence>'),
+    )
+    same(
+        activation("SporadicActivation", f"<activationDeviation>{content}</activationDeviation>"),
+        activation("SporadicActivation", f'<occurrence xsi:type="am:TimeBoundaries">{times}</occurrence>'),
+    )
 
 
 def test_occurrences_of_an_activation_are_numbers(same):
@@ -312,7 +301,6 @@ def test_weibull_parameters_are_kept_as_text(same):
     bounds = '<default xsi:type="am:DiscreteValueBoundaries" lowerBound="10" upperBound="20"/>'
     kept = text_property("WeibullParameters", "kappa=5.0 lambda=6.0")
     same(runnable(need(deviation(given))), runnable(ticks(kept, bounds)))
-    same(runnable(need(deviation(given))), runnable(ticks()), official=True)
     without_bounds = same(runnable(need(deviation(weibull))), runnable(ticks(kept)))
     assert of_kind(without_bounds, Kind.LOST) == [("states neither a value nor bounds", "")]
 
@@ -324,7 +312,6 @@ def test_bounds_are_kept_where_no_distribution_is_stated(same):
     given = f"<nextOccurrence>{bound('upperBound', 20, 'Time')}</nextOccurrence>"
     kept = '<nextOccurrence xsi:type="am:TimeBoundaries"><upperBound value="20"/></nextOccurrence>'
     same(stimulus(given), stimulus(kept))
-    same(stimulus(given), stimulus(""), official=True)
 
 
 @pytest.mark.parametrize("name", ["lowerBound", "upperBound"])
@@ -356,32 +343,17 @@ def test_comments_inside_deviations_stay(tmp_path):
     assert sorted(found.comments or ()) == ["<!-- a -->", "<!-- b -->"]
 
 
-def test_the_official_converter_states_every_bound_of_a_time(same):
-    def stimulus(content):
-        return f'<stimuliModel><stimuli xsi:type="am:RelativePeriodicStimulus" name="S">{content}</stimuli></stimuliModel>'
-
-    uniform = '<distribution xsi:type="am:UniformDistribution"/>'
-    given = f'<nextOccurrence><lowerBound xsi:type="am:Time" unit="ms"/>{uniform}</nextOccurrence>'
-    result = '<nextOccurrence xsi:type="am:TimeUniformDistribution">{}</nextOccurrence>'
-    same(stimulus(given), stimulus(result.format('<lowerBound unit="ms"/>')))
-    stated = '<lowerBound unit="ms" value="0"/><upperBound value="0"/>'
-    same(stimulus(given), stimulus(result.format(stated)), official=True)
-
-
 def test_a_missing_bound_of_a_number_is_0(same):
     given = deviation(bound("upperBound", 20) + '<distribution xsi:type="am:UniformDistribution"/>')
     result = '<default xsi:type="am:DiscreteValueUniformDistribution" lowerBound="0" upperBound="20"/>'
-    for official in (False, True):
-        notes = same(runnable(need(given)), runnable(ticks(result)), official=official)
-        assert ("a bound that is not stated is 0", "lowerBound") in of_kind(notes, Kind.DEFAULTED)
+    notes = same(runnable(need(given)), runnable(ticks(result)))
+    assert ("a bound that is not stated is 0", "lowerBound") in of_kind(notes, Kind.DEFAULTED)
 
 
 def test_a_gauss_distribution_without_bounds_is_not_cut_off(same):
     gauss = f'<distribution xsi:type="am:GaussDistribution">{bound("mean", 5)}{bound("sd", 1)}</distribution>'
     plain = '<default xsi:type="am:DiscreteValueGaussDistribution" mean="5" sd="1"/>'
     same(runnable(need(deviation(gauss))), runnable(ticks(plain)))
-    cut = plain.replace("mean", 'lowerBound="0" upperBound="0" mean')
-    same(runnable(need(deviation(gauss))), runnable(ticks(cut)), official=True)
 
 
 def test_a_constant_without_a_value_and_a_deviation_without_content(same):
@@ -424,7 +396,6 @@ def test_latencies(same):
     )
     lost = f'<writeLatency xsi:type="am:LatencyDeviation"><cycles>{given}</cycles></writeLatency>'
     same(access(lost), access('<writeLatency xsi:type="am:DiscreteValueBoundaries" lowerBound="1" upperBound="4"/>'))
-    same(access(lost), access(""), official=True)
     memory = '<hwModel><definitions xsi:type="am:MemoryDefinition" name="M">{}</definitions></hwModel>'
     same(
         memory.format('<accessLatency xsi:type="am:LatencyConstant" cycles="3"/>'),
@@ -460,10 +431,9 @@ def test_overheads_of_operating_systems(same):
         f"<isrCategory2Overhead><postExecutionOverhead>{constant(7)}</postExecutionOverhead></isrCategory2Overhead>"
     )
     not_stated = '<default xsi:type="am:DiscreteValueConstant"/>'
-    for official, number in ((False, not_stated), (True, constant(0))):
-        notes = same(overheads(given), overheads(result.format(number)), official=official)
-        lost = ("fetch statistics of instructions have no successor", "count(value=3)")
-        assert lost in of_kind(notes, Kind.LOST)
+    notes = same(overheads(given), overheads(result.format(not_stated)))
+    lost = ("fetch statistics of instructions have no successor", "count(value=3)")
+    assert lost in of_kind(notes, Kind.LOST)
 
 
 def test_overheads_are_ticks_of_each_definition(same):
@@ -471,8 +441,6 @@ def test_overheads_are_ticks_of_each_definition(same):
     given = '<apiOverhead><apiSetEvent xsi:type="am:InstructionsConstant" value="9"/></apiOverhead>'
     result = constant(9) + of_definition("P", constant(4, "value"))
     same(overheads(given) + units, overheads(f"<apiOverhead><apiSetEvent>{result}</apiSetEvent></apiOverhead>") + units)
-    plain = f"<apiOverhead><apiSetEvent>{constant(9)}</apiSetEvent></apiOverhead>"
-    same(overheads(given) + units, overheads(plain) + units, official=True)
     nothing = '<apiOverhead><apiSetEvent xsi:type="am:InstructionsDeviation"/></apiOverhead>'
     same(overheads(nothing) + units, overheads("<apiOverhead><apiSetEvent/></apiOverhead>") + units)
 
@@ -488,12 +456,10 @@ def test_overheads_with_bounds_beside_custom_properties(same, kind):
 
 def test_references_to_overheads_follow_also_into_files_that_are_missing(same):
     system = '<operatingSystems overhead="{}?type={}"/>'
-    for official in (False, True):
-        same(
-            overheads("", system.format("o+1", "OsInstructions") + system.format("gone", "OsInstructions")),
-            overheads("", system.format("o+1", "OsOverhead") + system.format("gone", "OsOverhead")),
-            official=official,
-        )
+    same(
+        overheads("", system.format("o+1", "OsInstructions") + system.format("gone", "OsInstructions")),
+        overheads("", system.format("o+1", "OsOverhead") + system.format("gone", "OsOverhead")),
+    )
 
 
 # Snapshots of the development, damaged files, large files
@@ -515,7 +481,6 @@ def test_jitter_of_constraints_is_a_time(same):
     same(content, content)
 
 
-@pytest.mark.parametrize("official", [False, True])
 @pytest.mark.parametrize(
     "content",
     [
@@ -534,12 +499,11 @@ def test_jitter_of_constraints_is_a_time(same):
         '<hwModel><definitions><accessLatency xsi:type="am:LatencyDeviation"/></definitions></hwModel>',
     ],
 )
-def test_damaged_content_is_survived(tmp_path, content, official):
-    migrated(written(tmp_path, "0.9.2", content), "0.9.3", official)
+def test_damaged_content_is_survived(tmp_path, content):
+    migrated(written(tmp_path, "0.9.2", content), "0.9.3")
 
 
-@pytest.mark.parametrize("official", [False, True])
-def test_a_root_that_states_a_class_of_parts_is_survived(tmp_path, official):
+def test_a_root_that_states_a_class_of_parts_is_survived(tmp_path):
     (path,) = written(tmp_path, "0.9.2", "")
     path.write_text(path.read_text("utf-8").replace("<am:Amalthea ", '<am:Amalthea xsi:type="am:LatencyConstant" '), "utf-8")
-    migrated([path], "0.9.3", official)
+    migrated([path], "0.9.3")

@@ -33,12 +33,10 @@ def test_deadlines_join_the_requirements_that_are_there(same):
     )
     given = runnables.format('<deadline value="2" unit="ms"/>', '<deadline value="3" unit="us"/>')
     required = other + deadline_of("A", 'value="2" unit="ms"') + deadline_of("C%2B+1", 'value="3" unit="us"')
-    for official in (False, True):
-        same(
-            f"<constraintsModel>{other}</constraintsModel>{given}",
-            f"<constraintsModel>{required}</constraintsModel>{runnables.format('', '')}",
-            official=official,
-        )
+    same(
+        f"<constraintsModel>{other}</constraintsModel>{given}",
+        f"<constraintsModel>{required}</constraintsModel>{runnables.format('', '')}",
+    )
 
 
 def test_deadlines_are_requirements_in_their_files(same):
@@ -70,12 +68,10 @@ def test_a_deadline_without_value_is_no_requirement_for_0(tmp_path, target, left
 
 def test_aliases_need_not_be_complete(same):
     types = '<swModel><typeDefinitions xsi:type="am:BaseTypeDefinition" name="t">{}</typeDefinitions></swModel>'
-    for official in (False, True):
-        same(
-            types.format('<dataMapping platformType="int"/><dataMapping platformName="C" platformType="long"/>'),
-            types.format('<aliases alias="int"/><aliases target="C" alias="long"/>'),
-            official=official,
-        )
+    same(
+        types.format('<dataMapping platformType="int"/><dataMapping platformName="C" platformType="long"/>'),
+        types.format('<aliases alias="int"/><aliases target="C" alias="long"/>'),
+    )
 
 
 def test_ports_of_modules(same):
@@ -99,28 +95,24 @@ def software(content, old=True):
 
 
 def test_modes_in_another_file(same):
-    for official in (False, True):
-        same(
-            [
-                software(""),
-                '<swModel><modeLabels name="l"><initialValue href="amlt:/#m+1/on+x?type=ModeLiteral"/></modeLabels></swModel>',
-            ],
-            [
-                software("", old=False),
-                '<swModel><modeLabels name="l" initialValue="on x"><mode href="amlt:/#m+1?type=EnumMode"/></modeLabels></swModel>',
-            ],
-            official=official,
-        )
+    same(
+        [
+            software(""),
+            '<swModel><modeLabels name="l"><initialValue href="amlt:/#m+1/on+x?type=ModeLiteral"/></modeLabels></swModel>',
+        ],
+        [
+            software("", old=False),
+            '<swModel><modeLabels name="l" initialValue="on x"><mode href="amlt:/#m+1?type=EnumMode"/></modeLabels></swModel>',
+        ],
+    )
 
 
 def test_modes_in_no_file(same):
     label = '<swModel><modeLabels name="{}" {}/></swModel>'
-    for official in (False, True):
-        same(
-            label.format("l", 'initialValue="a+%2B+b/letter+%3CA%3E?type=ModeLiteral"'),
-            label.format("l", 'mode="a+%2B+b?type=EnumMode" initialValue="letter &lt;A>"'),
-            official=official,
-        )
+    same(
+        label.format("l", 'initialValue="a+%2B+b/letter+%3CA%3E?type=ModeLiteral"'),
+        label.format("l", 'mode="a+%2B+b?type=EnumMode" initialValue="letter &lt;A>"'),
+    )
 
 
 def test_literals_that_their_mode_lacks(same):
@@ -159,8 +151,6 @@ def test_a_label_without_initial_value_has_the_only_mode_of_its_uses(same):
     assert of_kind(notes, Kind.DEFAULTED) == [(message, "m 1")]
     message = "mode label without initial value: its mode, which is mandatory now, is not known"
     assert of_kind(notes, Kind.TO_CHECK) == [(message, "m 1, n"), (message, "")]
-    without = with_mode.replace(' mode="m+1?type=EnumMode"', "")
-    same(given, model(without, items, old=False), official=True)
 
 
 def test_a_label_without_initial_value_has_the_mode_of_conditions_and_assignments(same):
@@ -192,7 +182,7 @@ def test_a_label_without_initial_value_has_the_mode_that_an_older_version_stated
     models, notes = opened(*paths), Notes()
     (label,), mode = models.parts("swModel", "modeLabels"), models.parts("swModel", "modes")[1]
     models.set_aside[label, "mode"] = [mode]
-    migrate(models, "0.9.4", notes, official=False)
+    migrate(models, "0.9.4", notes)
     assert label.references == {"mode": [mode]}
     assert not models.set_aside
     assert not of_kind(notes.all, Kind.LOST)
@@ -201,7 +191,7 @@ def test_a_label_without_initial_value_has_the_mode_that_an_older_version_stated
 # Conditions
 
 
-def test_mode_switches_of_interrupts_are_forgotten_by_the_official_converter_only(same):
+def test_mode_switches_of_tasks_and_interrupts(same):
     def model(process, condition, old):
         switch = f'<graphEntries xsi:type="am:ModeSwitch"><entries name="e"><condition>{condition}</condition></entries></graphEntries>'
         labels = '<modeLabels name="l" {}/>'
@@ -212,8 +202,6 @@ def test_mode_switches_of_interrupts_are_forgotten_by_the_official_converter_onl
     result = '<entries xsi:type="am:ModeCondition" label="l?type=ModeLabel" value="off" relation="EQUAL"/>'
     for process in ("tasks", "isrs"):
         same(model(process, given, old=True), model(process, result, old=False))
-    same(model("tasks", given, old=True), model("tasks", result, old=False), official=True)
-    same(model("isrs", given, old=True), model("isrs", given, old=False), official=True)
 
 
 def stimulus(content):
@@ -247,8 +235,8 @@ def conditions(*entries):
 def becomes(tmp_path):
     """Assert what the lists of a stimulus become, apart from the modes of the labels."""
 
-    def check(given, expected, official=False):
-        models, notes = migrated(written(tmp_path, "0.9.3", stimulus(given)), "0.9.4", official)
+    def check(given, expected):
+        models, notes = migrated(written(tmp_path, "0.9.3", stimulus(given)), "0.9.4")
         for label in models.parts("swModel", "modeLabels"):
             label.drop("mode")
         assert meaning(models) == meaning(opened(*written(tmp_path, "0.9.4", stimulus(expected))))
@@ -317,24 +305,10 @@ def test_a_conjunction_that_disables_is_kept_as_text(becomes):
     text = "c == 3 OR (a == 1 AND b == 2)"
     notes = becomes(given, text_property("disablingModeValueList", text))
     assert len(of_kind(notes, Kind.KEPT)) == 1
-    notes = becomes(given, "", official=True)
-    assert of_kind(notes, Kind.LOST) == [("disablingModeValueList is lost", text)]
 
 
 def test_an_empty_list_disables_nothing(becomes):
     becomes(old_list("disabling"), "")
-
-
-def test_abstract_classes_are_left_by_the_official_converter(becomes):
-    given = f"<setModeValueList>{value('a', '1')}</setModeValueList>" + old_list("enabling", all_of(value("a", "1")))
-
-    def expected(kind):
-        entry = f'<entries {kind} label="a?type=ModeLabel" value="1"'
-        alternative = all_of(f'{entry} relation="EQUAL"/>', kind="ModeConditionConjunction")
-        return f"<setModeValueList>{entry}/></setModeValueList>{conditions(alternative)}"
-
-    becomes(given, expected(""))
-    becomes(given, expected('xsi:type="am:ModeValue"'), official=True)
 
 
 # Snapshots of the development, damaged files, large files
@@ -354,7 +328,6 @@ def test_what_is_new_already_is_left_alone(tmp_path):
     assert not of_kind(notes, Kind.CONVERTED)
 
 
-@pytest.mark.parametrize("official", [False, True])
 @pytest.mark.parametrize(
     "content",
     [
@@ -367,5 +340,5 @@ def test_what_is_new_already_is_left_alone(tmp_path):
         "<swModel><typeDefinitions><dataMapping/></typeDefinitions></swModel>",
     ],
 )
-def test_damaged_content_is_survived(tmp_path, content, official):
-    migrated(written(tmp_path, "0.9.3", content), "0.9.4", official)
+def test_damaged_content_is_survived(tmp_path, content):
+    migrated(written(tmp_path, "0.9.3", content), "0.9.4")

@@ -64,27 +64,22 @@ def test_call_graphs_of_processes(same, tag):
         + group('name="CallSequence"', "")
     )
     same(process(tag, given), process(tag, result))
-    same(process(tag, given), process(tag, given if tag == "isrs" else result), official=True)
 
 
 def test_custom_properties_of_a_sequence_are_no_calls(same):
-    for official in (False, True):
-        same(
-            process("tasks", sequence('name="s"', text_property("k", "v") + old_call())),
-            process("tasks", group('name="s"', text_property("k", "v") + new_call())),
-            official=official,
-        )
+    same(
+        process("tasks", sequence('name="s"', text_property("k", "v") + old_call())),
+        process("tasks", group('name="s"', text_property("k", "v") + new_call())),
+    )
 
 
 def test_calls_keep_counters_and_statistics(same):
     statistic = '<statistic><statistic xsi:type="am:SingleValueStatistic" value="3"/></statistic>'
     content = f'<counter prescaler="2"/>{statistic}'
-    for official in (False, True):
-        same(
-            process("tasks", sequence('name="s"', old_call(content))),
-            process("tasks", group('name="s"', new_call(content))),
-            official=official,
-        )
+    same(
+        process("tasks", sequence('name="s"', old_call(content))),
+        process("tasks", group('name="s"', new_call(content))),
+    )
 
 
 @pytest.mark.parametrize("name", ["SchedulePoint", "EnforcedMigration"])
@@ -98,13 +93,6 @@ def test_steps_without_a_counter_keep_it_as_text(same, name):
         ),
     )
     assert of_kind(notes, Kind.KEPT) == [(f"{name} has no counter any more", "prescaler=2 offset=1")]
-
-
-@pytest.mark.parametrize("tag", ["tasks", "isrs"])
-def test_the_official_converter_leaves_counters_where_they_are(same, tag):
-    given = process(tag, sequence('name="s"', '<calls xsi:type="am:SchedulePoint"><counter prescaler="2"/></calls>'))
-    result = process(tag, group('name="s"', '<items xsi:type="am:SchedulePoint"><counter prescaler="2"/></items>'))
-    same(given, given if tag == "isrs" else result, official=True)
 
 
 def test_items_of_runnables_keep_their_order_and_the_rest_of_the_runnable(same):
@@ -138,54 +126,20 @@ def scenario(clock, kind):
 
 def test_triangles_and_lists_keep_their_definition_as_text(same):
     times = '<shift value="5" unit="ms"/><period value="1" unit="s"/>'
-    for official in (False, True):
-        same(
-            stimuli(
-                clock("t 1", "ClockTriangleFunction", 'max="3" min="-1"', times)
-                + clock("l", "ClockMultiplierList", "", '<entries multiplier="1.5"/><entries multiplier="2"/>')
-            ),
-            stimuli(
-                clock("t 1", "ClockFunction", 'curveType="triangle"', text_property(KEY, "max=3 min=-1 shift=5ms period=1s"))
-                + clock(
-                    "l",
-                    "ClockStepList",
-                    "",
-                    f"<entries>{text_property(KEY, 'multiplier=1.5')}</entries><entries>{text_property(KEY, 'multiplier=2')}</entries>",
-                )
-            ),
-            official=official,
-        )
-
-
-def test_the_official_converter_repeats_texts_within_a_kind_and_a_file(same):
-    def file(number, texts=None):
-        kinds = ("ClockTriangleFunction", 'max="{0}" min="0"'), ("ClockSinusFunction", 'amplitude="{0}" yOffset="0"')
-        if texts is None:
-            return stimuli(
-                "".join(clock(f"{kind}{n}", kind, more.format(n)) for n in (number, number + 1) for kind, more in kinds)
-            )
-        curves = {"ClockTriangleFunction": "triangle", "ClockSinusFunction": "sine"}
-        return stimuli(
-            "".join(
-                clock(f"{kind}{n}", "ClockFunction", f'curveType="{curves[kind]}"', text_property(KEY, texts.pop(0)))
-                for n in (number, number + 1)
-                for kind, _ in kinds
-            )
-        )
-
-    first = ["max=1 min=0", "amplitude=1 yOffset=0"]
-    second = ["max=2 min=0", "amplitude=2 yOffset=0"]
-    third = ["max=5 min=0", "amplitude=5 yOffset=0"]
-    fourth = ["max=6 min=0", "amplitude=6 yOffset=0"]
-
-    def joined(before, after):
-        return [f"{one} {other}" for one, other in zip(before, after, strict=True)]
-
-    same([file(1), file(5)], [file(1, first + second), file(5, third + fourth)])
     same(
-        [file(1), file(5)],
-        [file(1, first + joined(first, second)), file(5, third + joined(third, fourth))],
-        official=True,
+        stimuli(
+            clock("t 1", "ClockTriangleFunction", 'max="3" min="-1"', times)
+            + clock("l", "ClockMultiplierList", "", '<entries multiplier="1.5"/><entries multiplier="2"/>')
+        ),
+        stimuli(
+            clock("t 1", "ClockFunction", 'curveType="triangle"', text_property(KEY, "max=3 min=-1 shift=5ms period=1s"))
+            + clock(
+                "l",
+                "ClockStepList",
+                "",
+                f"<entries>{text_property(KEY, 'multiplier=1.5')}</entries><entries>{text_property(KEY, 'multiplier=2')}</entries>",
+            )
+        ),
     )
 
 
@@ -199,7 +153,6 @@ def test_references_to_clocks_follow(same):
     )
     result = scenario("t+1", "ClockFunction") + scenario("l", "ClockStepList") + scenario("gone", "ClockFunction")
     same(stimuli(given + clocks), stimuli(result + kept))
-    same(stimuli(given + clocks), stimuli(given + kept), official=True)
 
 
 def test_clocks_in_another_file(same):
@@ -213,7 +166,7 @@ def test_clocks_in_another_file(same):
     )
 
 
-def test_clocks_without_numbers_make_the_official_converter_fail(same):
+def test_clocks_without_numbers(same):
     given = (
         scenario("c", "ClockSinusFunction")
         + clock("c", "ClockSinusFunction", 'amplitude="3"')
@@ -224,8 +177,7 @@ def test_clocks_without_numbers_make_the_official_converter_fail(same):
         + clock("c", "ClockFunction", 'curveType="sine"', text_property(KEY, "amplitude=3"))
         + clock("d", "ClockFunction", 'curveType="sine"')
     )
-    for official in (False, True):
-        same(stimuli(given), stimuli(result), official=official)
+    same(stimuli(given), stimuli(result))
 
 
 def test_properties_that_are_there_stay(same):
@@ -235,13 +187,6 @@ def test_properties_that_are_there_stay(same):
     stimulus = '<stimuli xsi:type="am:VariableRateStimulus">{}</stimuli>'
     notes = same(stimuli(stimulus.format(given)), stimuli(stimulus.format(result)))
     assert of_kind(notes, Kind.KEPT) == [("the recurrence of a scenario has no successor", "recurrence=10")]
-
-
-def test_what_is_missing_is_null_for_the_official_converter(same):
-    stimulus = '<stimuli xsi:type="am:VariableRateStimulus"><scenario>{}</scenario></stimuli>'
-    given = stimulus.format('<recurrence value="10"/>')
-    same(stimuli(given), stimuli(stimulus.format(text_property(KEY, "recurrence=10"))))
-    same(stimuli(given), stimuli(stimulus.format(text_property(KEY, "recurrence=10null"))), official=True)
 
 
 # Snapshots of the development, damaged files, large files
@@ -257,7 +202,6 @@ def test_what_is_new_already_is_left_alone(tmp_path):
     assert not of_kind(notes, Kind.LOST)
 
 
-@pytest.mark.parametrize("official", [False, True])
 @pytest.mark.parametrize(
     "content",
     [
@@ -269,5 +213,5 @@ def test_what_is_new_already_is_left_alone(tmp_path):
         stimuli('<clocks xsi:type="am:ClockTriangleFunction" max="1" min="2"/>' + scenario("", "ClockTriangleFunction")),
     ],
 )
-def test_damaged_content_is_survived(tmp_path, content, official):
-    migrated(written(tmp_path, "0.9.4", content), "0.9.5", official)
+def test_damaged_content_is_survived(tmp_path, content):
+    migrated(written(tmp_path, "0.9.4", content), "0.9.5")

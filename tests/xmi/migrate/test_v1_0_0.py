@@ -48,12 +48,6 @@ def test_measurements_of_event_chains_and_notes_on_all_of_them_stay(models):
     assert models.messages(Kind.LOST) == []
 
 
-def test_the_official_converter_removes_them(models):
-    assert models.migrate("0.9.9", "1.0.0", measured("", MEASUREMENT), official=True) == models.read("1.0.0", measured("", ""))
-    [lost] = [note for note in models.notes if note.kind == Kind.LOST]
-    assert "custom property 'tool'" in lost.detail
-
-
 def test_measurements_of_nothing_are_lost_with_a_note(models):
     content = """<measurementModel><measurements xsi:type="am:TaskMeasurement"/>
       <measurements xsi:type="am:RunnableMeasurement" runnable="X?type=Runnable"/></measurementModel>"""

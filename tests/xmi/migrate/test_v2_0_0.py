@@ -67,7 +67,6 @@ def tasks(*contents):
     return "<swModel>" + "".join(f'<tasks name="T {n}">{content}</tasks>' for n, content in enumerate(contents)) + "</swModel>"
 
 
-@pytest.mark.parametrize("official", [False, True])
 @pytest.mark.parametrize(
     "algorithm",
     [
@@ -75,9 +74,9 @@ def tasks(*contents):
         *("PriorityBasedRoundRobin", "SporadicServer", "PollingPeriodicServer", "ConstantBandwidthServerWithCASH"),
     ],
 )
-def test_other_algorithms_are_definitions_of_the_same_name(models, algorithm, official):
+def test_other_algorithms_are_definitions_of_the_same_name(models, algorithm):
     after = new_os(f'<schedulerDefinitions name="{algorithm}"/>', algorithm, algorithm)
-    assert models.migrate("1.2.0", "2.0.0", old_os(algorithm, algorithm), official=official) == models.read("2.0.0", after)
+    assert models.migrate("1.2.0", "2.0.0", old_os(algorithm, algorithm)) == models.read("2.0.0", after)
     assert models.messages(Kind.LOST) == []
 
 
@@ -102,8 +101,6 @@ def test_interrupt_controllers_and_priorities_of_isrs(models):
     given = software.format(property_("priority", "7"), property_("priority", "3")) + before + mapping.format("")
     better = software.format("", property_("priority", "3")) + after + mapping.format('priority="7"')
     assert models.migrate("1.2.0", "2.0.0", given) == models.read("2.0.0", better)
-    official = software.format(property_("priority", "7"), property_("priority", "3")) + after + mapping.format("")
-    assert models.migrate("1.2.0", "2.0.0", given, official=True) == models.read("2.0.0", official)
 
 
 @pytest.mark.parametrize("algorithm", ["PfairPD2", "PartlyPFairPD2", "EarlyReleaseFairPD2", "PartlyEarlyReleaseFairPD2"])
@@ -263,16 +260,6 @@ def test_budgets_of_a_task(models):
     assert models.migrate("1.2.0", "2.0.0", before) == models.read(
         "2.0.0", tasks("") + new_os(definitions, algorithm) + allocated(given)
     )
-
-
-def test_the_official_converter_drops_a_priority_of_0_and_keeps_budgets(models):
-    text = '<schedulingParameters priority="0"><maxBudget value="2" unit="ms"/></schedulingParameters>'
-    found = models.migrate("1.2.0", "2.0.0", tasks("") + old_os("Grouping") + allocated(text), official=True)
-    definitions = '<schedulerDefinitions name="Grouping"/><schedulingParameterDefinitions name="maxBudget" type="Time" '
-    after = new_os(definitions + 'many="false" mandatory="false"/>', "Grouping")
-    budget = parameter("maxBudget", 'xsi:type="am:Time" value="2" unit="ms"')
-    assert found == models.read("2.0.0", tasks("") + after + allocated(budget))
-    assert models.messages(Kind.LOST) == ["priority 0"]
 
 
 def test_priorities_in_custom_properties_become_parameters(models):

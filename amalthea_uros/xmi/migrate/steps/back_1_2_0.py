@@ -20,7 +20,7 @@ _RENAMED = {
 }
 
 
-def change(models: ModelSet, notes: Notes, official: bool) -> None:
+def change(models: ModelSet, notes: Notes) -> None:
     """Change the content of the files of AMALTHEA 2.0.0."""
     refuse_stale(models, notes, "2.0.0")
     _change_conditions(models, notes)

@@ -24,7 +24,7 @@ _LOST_TAGS = {
 _NEW_RELATIONS = {"LESS_THAN_OR_EQUAL", "GREATER_THAN_OR_EQUAL"}
 
 
-def change(models: ModelSet, notes: Notes, official: bool) -> None:
+def change(models: ModelSet, notes: Notes) -> None:
     """Change the content of the files of AMALTHEA 2.1.0."""
     lost = []
     for node in models.walk():

@@ -13,7 +13,7 @@ from amalthea_uros.xmi.migrate.steps.restored import OWNERSHIP
 _TYPED = {"labels": "dataType", "channels": "elementType"}
 
 
-def change(models: ModelSet, notes: Notes, official: bool) -> None:
+def change(models: ModelSet, notes: Notes) -> None:
     """Change the content of the files of AMALTHEA 3.0.0."""
     refuse_stale(models, notes, "3.0.0")
     for node in models.of_type("TypeRef"):

@@ -15,7 +15,7 @@ from amalthea_uros.xmi.migrate.steps.itea_tools import is_isr, sub_models
 from amalthea_uros.xmi.migrate.steps.later import BEYOND_ITEA
 
 
-def change(models: ModelSet, notes: Notes, official: bool) -> None:
+def change(models: ModelSet, notes: Notes) -> None:
     """Change the content of the files of AMALTHEA ITEA 1.1.0."""
     for node in models.rename_classes({"os:DeadlineMonotinic": "os:DeadlineMonotonic"}):
         notes.renamed(node, "class DeadlineMonotinic is DeadlineMonotonic")
@@ -23,8 +23,8 @@ def change(models: ModelSet, notes: Notes, official: bool) -> None:
         _move_schedulers(model, notes)
     for access in models.nodes("runnableItems", "runnableItem"):
         if access.children and local_name(access.type) == "LabelAccess":
-            _keep_fitting_statistics(access, notes, official)
-    _Allocations(notes, official).split(models)
+            _keep_fitting_statistics(access, notes)
+    _Allocations(notes).split(models)
 
 
 def _move_schedulers(model: Node, notes: Notes) -> None:
@@ -38,24 +38,20 @@ def _move_schedulers(model: Node, notes: Notes) -> None:
         notes.moved(scheduler, "scheduler of the OS model is a task scheduler of an operating system", scheduler.name)
 
 
-def _keep_fitting_statistics(access: Node, notes: Notes, official: bool) -> None:
+def _keep_fitting_statistics(access: Node, notes: Notes) -> None:
     """One value in the place of those of reading and writing: the one that fits the kind of access."""
     kind = access.get("access", "read")
     for statistic in access.all("statistic"):
         found = {part.tag: part for part in statistic.children}
         value = found.get(kind) if kind in ("read", "write") else None
         misses = found.get("readCacheMisses")
-        if not official and kind == "write":
+        if kind == "write":
             misses = found.get("writeCacheMisses", misses)
         for part, tag in ((value, "value"), (misses, "cacheMisses")):
             if part is not None:
                 notes.renamed(part, f"statistic {part.tag!r} of a label access is {tag!r}")
                 part.tag = tag
-        if official and value is None:
-            # The official converter removes the other value only where there is a fitting one; it leaves `writeCacheMisses`.
-            continue
-        unfit = ("read", "write") if official else ("read", "write", "readCacheMisses", "writeCacheMisses")
-        for part in statistic.all(*unfit):
+        for part in statistic.all("read", "write", "readCacheMisses", "writeCacheMisses"):
             notes.lost(part, f"statistic {part.tag!r}: the label access is of the other kind", _statistic_text(part))
             part.remove()
 
@@ -67,8 +63,8 @@ def _statistic_text(part: Node) -> str:
 class _Allocations:
     """`executableAllocation` -> `processAllocation` of tasks and ISRs, `runnableAllocation`."""
 
-    def __init__(self, notes: Notes, official: bool) -> None:
-        self.notes, self.official = notes, official
+    def __init__(self, notes: Notes) -> None:
+        self.notes = notes
         #: The interrupt controller for the ISRs of an operating system that had none.
         self.controllers: dict[Node, Node] = {}
         #: The schedulers that an interrupt controller takes the place of.
@@ -78,12 +74,10 @@ class _Allocations:
         """Convert all allocations."""
         for allocation in models.nodes("executableAllocation"):
             kind = local_name(allocation.type)
-            if kind == "RunnableAllocation" or (
-                not self.official and kind != "ProcessAllocation" and "entity" in allocation.references
-            ):
+            if kind == "RunnableAllocation" or (kind != "ProcessAllocation" and "entity" in allocation.references):
                 allocation.tag, allocation.type = "runnableAllocation", "mapping:RunnableAllocation"
                 self.notes.renamed(allocation, "allocation of a runnable has a feature of its own")
-            elif kind == "ProcessAllocation" or not self.official:
+            else:
                 allocation.tag = "processAllocation"
                 self.split_process(allocation)
         for controller, schedulers in self.replaced.items():
@@ -95,8 +89,6 @@ class _Allocations:
     def split_process(self, allocation: Node) -> None:
         """Make an allocation of a process one of a task or of an ISR."""
         process, scheduler = allocation.target("process"), allocation.target("scheduler")
-        if self.official and _is_unresolved(process, scheduler):
-            return
         if process is not None and is_isr(process):
             allocation.type = "mapping:ISRAllocation"
             self.notes.converted(allocation, "allocation of a process is one of an ISR", process.name)
@@ -113,7 +105,7 @@ class _Allocations:
 
     def give_controller(self, allocation: Node, scheduler: Node) -> None:
         """Let an interrupt controller take the place of the scheduler of an ISR; all ISRs of an operating system share one."""
-        if scheduler.tag == "interruptControllers" and not self.official:
+        if scheduler.tag == "interruptControllers":
             return
         system = scheduler.parent
         if scheduler.is_proxy or system is None:
@@ -129,8 +121,7 @@ class _Allocations:
             controller.target_class = "os:InterruptController"
             self.controllers[system] = controller
         allocation.references["scheduler"] = [controller]
-        if not self.official:
-            self.replaced.setdefault(controller, {})[scheduler] = None
+        self.replaced.setdefault(controller, {})[scheduler] = None
         self.notes.lost(
             allocation,
             "scheduler of an ISR: ISRs have interrupt controllers now, and a new one takes its place",
@@ -148,11 +139,6 @@ def _allocate(controller: Node, schedulers: Sequence[Node], models: ModelSet) ->
         made = holder.add("coreAllocation", at=holder.children.index(allocation) + 1, like=allocation)
         made.refer("scheduler", controller)
         made.refer("core", *allocation.references["core"])
-
-
-def _is_unresolved(process: Node | None, scheduler: Node | None) -> bool:
-    """Whether the official converter leaves the class of an allocation: what it refers to is in no file, or it refers to nothing."""
-    return (process is None and scheduler is None) or any(node is not None and node.is_proxy for node in (process, scheduler))
 
 
 STEP = Step("ITEA 1.1.0", "ITEA 1.2.0", change, frozenset({"executableAllocation", "os:DeadlineMonotinic"}))

@@ -14,13 +14,11 @@ from amalthea_uros.xmi.migrate.steps.file_roots import wrap_objects
 from amalthea_uros.xmi.migrate.steps.itea_defaults import write_defaults
 from amalthea_uros.xmi.migrate.steps.itea_modes import convert_label_values
 from amalthea_uros.xmi.migrate.steps.itea_tools import (
-    SUB_MODELS,
     by_root,
-    lose_positions,
     sub_model_or_new,
     trees_of,
 )
-from amalthea_uros.xmi.migrate.steps.later import BEYOND_ITEA, lose_for_now
+from amalthea_uros.xmi.migrate.steps.later import BEYOND_ITEA
 from amalthea_uros.xmi.migrate.steps.properties import add_property
 
 #: Parts of component models, by class -> tag, and whether the class is still stated.
@@ -34,37 +32,28 @@ _COMPONENT_PARTS = {
 
 _PROCESSES = ("isrs", "tasks", "processPrototypes")
 
-#: Sub-models of which the official converter knows the tags.
-_WITH_TAGS = ("swModel", "componentsModel")
 
-
-def change(models: ModelSet, notes: Notes, official: bool) -> None:
+def change(models: ModelSet, notes: Notes) -> None:
     """Change the content of the files of AMALTHEA ITEA 1.2.0."""
-    if not official:
-        # The official converter looks for what it changes in sub-models only, and so leaves most of a file of one object as it is.
-        wrap_objects(models, notes)
-    write_defaults(models, notes, official)
+    wrap_objects(models, notes)
+    write_defaults(models, notes)
     for node in models.rename_classes({"sw:SchedulingSWUnit": "os:SchedulingSWUnit"}):
         notes.renamed(node, "class SchedulingSWUnit moves from package sw to os")
-    _rename_attributes(models, notes, official)
+    _rename_attributes(models, notes)
     _remove_unspecified(models, notes)
     _split_components(models, notes)
-    if official:
-        lose_positions(models, "/@elements")
-    convert_label_values(models, notes, official)
-    _convert_deadlines(models, notes, official)
+    convert_label_values(models, notes)
+    _convert_deadlines(models, notes)
     for label in models.nodes("labels"):
         value = label.attributes.pop("initialValue", None)
         if value is not None:
             keep = partial(add_property, label, "initialValue", value)
             what = ("initial value of a label", f"{label.name}: {value}", "initialValue")
-            lose_for_now(models, notes, official, Postponed(BEYOND_ITEA, keep, Kind.KEPT, label, *what))
+            models.postponed.append(Postponed(BEYOND_ITEA, keep, Kind.KEPT, label, *what))
 
 
-def _rename_attributes(models: ModelSet, notes: Notes, official: bool) -> None:
+def _rename_attributes(models: ModelSet, notes: Notes) -> None:
     for tag in models.nodes("tags"):
-        if official and (tag.parent is None or SUB_MODELS.get(tag.parent.tag, tag.parent.tag) not in _WITH_TAGS):
-            continue
         if tag.rename("tagName", "name"):
             notes.renamed(tag, "tagName is name", attribute="tagName")
     for age in models.nodes("dataAge"):
@@ -92,24 +81,21 @@ def _split_components(models: ModelSet, notes: Notes) -> None:
         notes.renamed(node, f"elements of component models: {node.tag}", node.name)
 
 
-def _convert_deadlines(models: ModelSet, notes: Notes, official: bool) -> None:
+def _convert_deadlines(models: ModelSet, notes: Notes) -> None:
     """Deadlines of tasks, ISRs and prototypes -> requirements."""
     trees = trees_of(models)
     holders = [node for node in models.nodes(*_PROCESSES) if node.children and node.child("deadline") is not None]
     holders.sort(key=lambda node: node.origin)
     for root, processes in by_root(holders).items():
-        if official and root.tag != "AMALTHEA" and root.child("constraintsModel") is None:
-            # It has no place for the requirement, and leaves the deadline.
-            continue
         for process in processes:
             deadlines = process.all("deadline")
-            for deadline in deadlines[:1] if official else deadlines:
+            for deadline in deadlines:
                 requirement = _require(sub_model_or_new(trees[root], "constraintsModel"), process, deadline, notes)
-                if "value" not in deadline.attributes and not official:
+                if "value" not in deadline.attributes:
                     message = "a deadline without value is no requirement"
                     drop = requirement.remove
                     models.postponed.append(Postponed(BEYOND_ITEA, drop, Kind.CONVERTED, deadline, message, is_kept=True))
-            remove_all(deadlines[:1] if official else deadlines)
+            remove_all(deadlines)
 
 
 def _require(model: Node, process: Node, deadline: Node, notes: Notes) -> Node:

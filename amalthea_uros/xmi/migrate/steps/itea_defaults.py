@@ -12,7 +12,7 @@ from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node
 from amalthea_uros.xmi.migrate.notes import Kind, Notes
 from amalthea_uros.xmi.migrate.postponed import Postponed
-from amalthea_uros.xmi.migrate.steps.later import BEYOND_ITEA, lose_for_now
+from amalthea_uros.xmi.migrate.steps.later import BEYOND_ITEA
 
 _EQUAL = (
     ("HwCoreProperty", "comparator", "equal"),
@@ -32,6 +32,7 @@ _DEFAULTS: dict[str, tuple[tuple[str, str, str], ...]] = {
     "features": _FEATURE,
     "firstConstraint": _EQUAL,
     "hwConstraint": _EQUAL,
+    "latencies": (("", "accessType", "R"),),
     "mappingModel": (("", "addressMappingType", "none"),),
     "memTypeDefinitions": (("", "type", "RAM"),),
     "memoryTypes": (("", "type", "RAM"),),
@@ -66,6 +67,7 @@ _TIMES: dict[str, dict[str, tuple[str, ...]]] = {
     "deadline": {"activations": ("Periodic",), "runnables": ("",), "runnable": ("",), "Runnable": ("",)},
     "delay": {"schedulingUnit": ("SchedulingHWUnit",)},
     "jitter": {"timingConstraints": ("RepetitionConstraint",)},
+    "limitValue": {"limit": ("TimeRequirementLimit",)},
     "lower": {"timingConstraints": ("DelayConstraint", "RepetitionConstraint")},
     "lowerTimeBorder": _ENTRY,
     "max": _ACTIVATION,
@@ -84,56 +86,36 @@ _TIMES: dict[str, dict[str, tuple[str, ...]]] = {
     "upperTimeBorder": _ENTRY,
 }
 
-#: More of them, which the official converter is not known to write.
-_MORE_DEFAULTS = {"latencies": (("", "accessType", "R"),)}
-
-#: Times that the official converter leaves without unit.
-_MORE_TIMES: dict[str, dict[str, tuple[str, ...]]] = {"limitValue": {"limit": ("TimeRequirementLimit",)}}
-
 _COOPERATIVE = "preemption of a task: 'cooperative' was the default, and the file does not state it"
 
 _TIME_CLASSES = ("SignedTime", "Time", "SignedTimeObject", "TimeObject")
 
 
-def write_defaults(models: ModelSet, notes: Notes, official: bool) -> None:
+def write_defaults(models: ModelSet, notes: Notes) -> None:
     """Write what the files do not state, but what they mean."""
-    for tag, rules in (_DEFAULTS if official else _DEFAULTS | _MORE_DEFAULTS).items():
+    for tag, rules in _DEFAULTS.items():
         for node in models.nodes(tag):
-            if official and _is_overlooked(node):
-                continue
             for class_name, attribute, value in rules:
                 if not class_name or local_name(node.type) == class_name:
                     _write(node, attribute, value, notes)
-    _write_preemption(models, notes, official)
-    for tag, containers in (_TIMES if official else _TIMES | _MORE_TIMES).items():
+    _write_preemption(models, notes)
+    for tag, containers in _TIMES.items():
         for node in models.nodes(tag):
             if _is_in(node, containers):
                 _write(node, "unit", "ps", notes)
-    for node in _times_by_class(models, official):
+    for node in _times_by_class(models):
         if local_name(node.type) in _TIME_CLASSES:
             _write(node, "unit", "ps", notes)
 
 
-def _is_overlooked(node: Node) -> bool:
-    """Whether the official converter does not look there."""
-    if node.tag == "attribute":
-        return True
-    holder = node.parent
-    if node.tag == "runnableGroups" and holder is not None:
-        holder = holder.parent
-    return node.tag in ("runnableGroups", "runnableSequencingConstraints") and (
-        holder is None or holder.tag != "constraintsModel"
-    )
-
-
-def _write_preemption(models: ModelSet, notes: Notes, official: bool) -> None:
+def _write_preemption(models: ModelSet, notes: Notes) -> None:
     for task in models.nodes("tasks"):
         if task.parent is not None and task.parent.tag == "swModel":
             _write(task, "preemption", "cooperative", notes)
         elif "preemption" not in task.attributes:
             # The published conversions leave it unstated in files that hold nothing but the software model.
             write = partial(task.attributes.setdefault, "preemption", "cooperative")
-            lose_for_now(models, notes, official, Postponed(BEYOND_ITEA, write, Kind.DEFAULTED, task, _COOPERATIVE, task.name))
+            models.postponed.append(Postponed(BEYOND_ITEA, write, Kind.DEFAULTED, task, _COOPERATIVE, task.name))
 
 
 def _is_in(node: Node, containers: dict[str, tuple[str, ...]]) -> bool:
@@ -144,13 +126,12 @@ def _is_in(node: Node, containers: dict[str, tuple[str, ...]]) -> bool:
     return "" in classes or local_name(holder.type) in classes
 
 
-def _times_by_class(models: ModelSet, official: bool) -> list[Node]:
+def _times_by_class(models: ModelSet) -> list[Node]:
     """What is a time only if its `xsi:type` says so: the values of deviations, and of custom properties."""
     deviations = models.nodes("stimulusDeviation")
     found = [part for deviation in deviations for part in deviation.all("lowerBound", "upperBound")]
     found += [part for deviation in deviations for part in deviation.find("distribution") for part in part.children]
-    if not official:
-        found += models.nodes("value", "values")
+    found += models.nodes("value", "values")
     return found
 
 

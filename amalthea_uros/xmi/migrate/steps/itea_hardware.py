@@ -6,7 +6,7 @@ from amalthea_uros.xmi.migrate.classes import local_name
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node, remove_all
 from amalthea_uros.xmi.migrate.notes import Notes
-from amalthea_uros.xmi.migrate.steps.properties import add_value, put_property
+from amalthea_uros.xmi.migrate.steps.properties import add_value
 
 #: Classes of values -> those of custom properties.
 _VALUES = {
@@ -22,44 +22,38 @@ _VALUES = {
 #: Tags -> what the keys of their custom properties begin with.
 _PREFIXES = {"attribute": "attribute#", "features": "feature#"}
 
-_MODELS = ("hwModel", "HWModel")
 
-
-def convert_values(models: ModelSet, notes: Notes, official: bool) -> None:
+def convert_values(models: ModelSet, notes: Notes) -> None:
     """Make the attributes and features of all hardware nodes custom properties."""
     converted = []
     for tag, prefix in _PREFIXES.items():
         for value in models.nodes(tag):
             holder = value.parent
-            if holder is None or _is_overlooked(value, official):
+            if holder is None or not _is_value(value):
                 continue
-            key, text = _key(value, prefix, official), value.attributes.get("value")
+            key, text = _key(value, prefix), value.attributes.get("value")
             if local_name(value.type) == "CharValue" and text is not None:
                 text = _character(text, value, notes)
             value_class = _VALUES.get(local_name(value.type), "StringObject")
             content = Node("value", value_class, {} if text is None else {"value": text}, value.origin)
-            made = (put_property if official else add_value)(holder, key, content)
+            made = add_value(holder, key, content)
             made.comments = value.comments
             notes.kept(value, f"{tag} of a hardware node: custom property", f"{made.get('key')}={text}")
             converted.append(value)
     remove_all(converted)
 
 
-def _is_overlooked(value: Node, official: bool) -> bool:
-    """Whether this is nothing of that kind, or the official converter does not look there."""
-    is_known = local_name(value.type) in _VALUES
-    if official:
-        return not is_known or value.enclosing(*_MODELS) is None
-    # Hardware types of property constraints have attributes, too.
-    return not is_known and (value.tag != "attribute" or bool(value.children))
+def _is_value(value: Node) -> bool:
+    """Whether an element is an attribute or feature of hardware: others have the same tags."""
+    return local_name(value.type) in _VALUES or (value.tag == "attribute" and not value.children)
 
 
-def _key(value: Node, prefix: str, official: bool) -> str:
+def _key(value: Node, prefix: str) -> str:
     if local_name(value.type) == "FeatureTypes":
         prefix += "FeatureTypes#"
     name = value.attributes.get("name")
     if name is None:
-        return f"{prefix}null" if official else prefix.removesuffix("#")
+        return prefix.removesuffix("#")
     return prefix + name
 
 

@@ -17,18 +17,18 @@ _LISTS = {
 }
 
 
-def convert_label_values(models: ModelSet, notes: Notes, official: bool) -> None:
+def convert_label_values(models: ModelSet, notes: Notes) -> None:
     """Make labels that select something mode labels, and their values literals of modes."""
-    converter = _Converter(models, notes, official)
+    converter = _Converter(models, notes)
     converter.convert_stimuli()
     converter.convert_switches()
 
 
 class _Converter:
-    def __init__(self, models: ModelSet, notes: Notes, official: bool) -> None:
-        self.models, self.notes, self.official = models, notes, official
-        #: The mode labels that take the place of labels. The official converter makes one for each file that refers to the label.
-        self.made: dict[tuple[Node | None, Node], Node] = {}
+    def __init__(self, models: ModelSet, notes: Notes) -> None:
+        self.models, self.notes = models, notes
+        #: The mode labels that take the place of labels.
+        self.made: dict[Node, Node] = {}
         #: Mode labels by name and the root of their file.
         self.known: dict[tuple[Node, str], Node] = {}
         for node in models.nodes("modeLabels"):
@@ -47,17 +47,11 @@ class _Converter:
 
     def convert_switches(self) -> None:
         """Make label switches mode switches."""
-        if self.official:
-            # Mode labels of the stimuli are used again, those of switches in other files are not.
-            self.known |= {(label.root, made.name): made for (_, label), made in self.made.items()}
-            self.made = {}
         switches = []
         for switch in self.models.nodes("graphEntries"):
             if local_name(switch.type) != "LabelSwitch":
                 continue
             label = switch.target("label")
-            if self.official and (label is None or label.is_proxy):
-                continue
             self.provide(switch, "label")
             switch.rename("label", "valueProvider")
             switch.type = "sw:ModeSwitch"
@@ -85,14 +79,13 @@ class _Converter:
             if label.is_proxy:
                 self.notes.lost(source, "mode label of a label that is in no file", label.get("path"))
             return label
-        key = (source if self.official else None, label)
-        found = self.made.get(key) or (self.known.get((label.root, label.name)) if label.name else None)
+        found = self.made.get(label) or (self.known.get((label.root, label.name)) if label.name else None)
         if found is None:
             found = holder.add("modeLabels", like=label)
             found.attributes |= {"name": label.name} if "name" in label.attributes else {}
             found.target_class = "sw:ModeLabel"
             self.notes.converted(label, "label that selects something: a mode label of the same name is added", label.name)
-        self.made[key] = found
+        self.made[label] = found
         return found
 
     # Values
@@ -134,8 +127,7 @@ class _Converter:
     def model_for(self, tree: Tree, entries: Sequence[Node], reference: str) -> Node | None:
         """The software model that the mode of a file belongs to: its own; a new one, or that of the labels if the file has no place."""
         own = tree.root if tree.root.tag == "SWModel" else tree.root.child("swModel")
-        if own is not None or self.official:
-            # Without one, the official converter leaves the values as they are.
+        if own is not None:
             return own
         for entry in entries if tree.root.tag in SUB_MODELS else ():
             label = entry.target(reference)

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from amalthea_uros.xmi.migrate.classes import local_name
 from amalthea_uros.xmi.migrate.model_set import ModelSet, Tree
-from amalthea_uros.xmi.migrate.node import Node, proxy
+from amalthea_uros.xmi.migrate.node import Node
 
 #: Sub-models by the class that is the root of a file which holds nothing else.
 SUB_MODELS = {
@@ -46,24 +46,6 @@ def sub_model_or_new(tree: Tree, tag: str) -> Node:
 def is_isr(process: Node) -> bool:
     """Whether a process is an ISR, as far as that is known of one that is in no file."""
     return process.tag == "isrs" or local_name(process.type or process.get("class")) == "ISR"
-
-
-def lose_positions(models: ModelSet, part: str) -> None:
-    """Do as the official converters, which leave positions in references as they are where a feature of the path is renamed.
-
-    Parameters
-    ----------
-    part : what a position contains if it is no longer right, such as "/@elements"
-    """
-    stale = {node: text for node, text in models.stated.items() if part in text}
-    if not stale:
-        return
-    made = {text: proxy(text, "") for text in stale.values()}
-    models.proxies += made.values()
-    for node in models.walk():
-        for name, targets in node.references.items():
-            if not stale.keys().isdisjoint(targets):
-                node.references[name] = [made[stale[target]] if target in stale else target for target in targets]
 
 
 def trees_of(models: ModelSet) -> dict[Node, Tree]:

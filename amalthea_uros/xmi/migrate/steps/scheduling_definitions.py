@@ -20,7 +20,7 @@ EXTENDED = "extended: "
 
 USER_SPECIFIC = "UserSpecificSchedulingAlgorithm"
 
-#: Parameters of each process, for the algorithms of which the official definitions are known.
+#: Parameters of each process, for the algorithms of which APP4MC has definitions.
 _OF_PROCESSES: dict[str, tuple[str, ...]] = {
     "FixedPriorityPreemptive": (PRIORITY,),
     "OSEK": (PRIORITY, TASK_GROUP),

@@ -72,25 +72,22 @@ def _convert_quantum(scheduler: Node, algorithm: Node, definitions: Definitions,
             notes.converted(scheduler, "size of the quantum is now a scheduling parameter", f"{text} ns")
 
 
-def convert_parameters(models: ModelSet, definitions: Definitions, notes: Notes, official: bool) -> None:
+def convert_parameters(models: ModelSet, definitions: Definitions, notes: Notes) -> None:
     """Give allocations and associations their parameters by definitions."""
     for holder in models.nodes("taskAllocation", "parentAssociation"):
         for parameters in holder.all(_TAG):
             if not (parameters.references.get("key") or "key" in parameters.attributes or parameters.child("value")):
                 parameters.remove()
                 keep_comments(parameters, holder)
-                _convert_fixed(holder, parameters, definitions, notes, official)
+                _convert_fixed(holder, parameters, definitions, notes)
         for extension in holder.all("parameterExtensions"):
             _convert_extension(holder, extension, definitions, notes)
 
 
-def _convert_fixed(holder: Node, old: Node, definitions: Definitions, notes: Notes, official: bool) -> None:
+def _convert_fixed(holder: Node, old: Node, definitions: Definitions, notes: Notes) -> None:
     """Convert the parameters that had features of their own."""
     priority = old.attributes.pop(PRIORITY, None)
-    if priority is not None and official and whole_number(priority) == 0:
-        # The official converter takes 0 for the absence of a priority.
-        notes.lost(holder, "priority 0", "", _TAG)
-    elif priority is not None:
+    if priority is not None:
         add_parameter(holder, PRIORITY, definitions, "IntegerObject", value=priority)
         notes.converted(holder, "priority is now a scheduling parameter with a definition", priority)
     for name in BUDGETS:

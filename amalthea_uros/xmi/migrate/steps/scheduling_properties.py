@@ -1,6 +1,6 @@
 """Priorities and task groups that were attributes until 0.8.0, and have been texts in custom properties since.
 
-The official converters leave them there, so that the scheduling of the migrated model is not defined.
+The converters of APP4MC leave them there, so that the scheduling of the migrated model is not defined.
 """
 
 from __future__ import annotations

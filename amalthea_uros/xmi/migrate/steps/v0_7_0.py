@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from functools import partial
 
-from amalthea_uros.metamodel.naming import TYPE_MARK
 from amalthea_uros.xmi.migrate.classes import local_name
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node, remove_all
@@ -12,8 +11,8 @@ from amalthea_uros.xmi.migrate.notes import Kind, Notes
 from amalthea_uros.xmi.migrate.postponed import Postponed
 from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.itea_hardware import convert_values
-from amalthea_uros.xmi.migrate.steps.itea_tools import is_isr, lose_positions
-from amalthea_uros.xmi.migrate.steps.later import BEYOND_ITEA, lose_for_now
+from amalthea_uros.xmi.migrate.steps.itea_tools import is_isr
+from amalthea_uros.xmi.migrate.steps.later import BEYOND_ITEA
 from amalthea_uros.xmi.migrate.steps.properties import add_property
 
 #: Classes that did not only lose their package.
@@ -53,20 +52,17 @@ _ISR_ALLOCATION = ("isrAllocation", {"process": "isr", "scheduler": "controller"
 _ALLOCATIONS = {"TaskAllocation": _TASK_ALLOCATION, "ISRAllocation": _ISR_ALLOCATION}
 
 
-def change(models: ModelSet, notes: Notes, official: bool) -> None:
+def change(models: ModelSet, notes: Notes) -> None:
     """Change the content of the files of AMALTHEA ITEA 1.3.0."""
-    convert_values(models, notes, official)
+    convert_values(models, notes)
     for port in models.nodes("ports"):
         if local_name(port.type) == "FInterfacePort":
             _convert_interface(port, notes)
     for allocation in models.nodes("processAllocation"):
-        _split_allocation(models, allocation, notes, official)
+        _split_allocation(models, allocation, notes)
     for definition in models.nodes("memTypeDefinitions"):
         definition.tag = "memoryTypeDefinitions"
         notes.renamed(definition, "memTypeDefinitions is memoryTypeDefinitions", definition.name)
-    if official:
-        lose_positions(models, "/@memTypeDefinitions")
-        _mistreat_texts(models, notes)
     _rename(models, notes)
 
 
@@ -109,12 +105,10 @@ def _convert_interface(port: Node, notes: Notes) -> None:
         notes.kept(port, "reference to a Franca interface: custom property 'Franca interface'", text)
 
 
-def _split_allocation(models: ModelSet, allocation: Node, notes: Notes, official: bool) -> None:
+def _split_allocation(models: ModelSet, allocation: Node, notes: Notes) -> None:
     """`processAllocation` -> one of a task, or of an ISR."""
     known = _ALLOCATIONS.get(local_name(allocation.type))
     if known is None:
-        if official:
-            return
         process = allocation.target("process")
         known = _ISR_ALLOCATION if process is not None and is_isr(process) else _TASK_ALLOCATION
     allocation.tag, renamed = known
@@ -122,24 +116,16 @@ def _split_allocation(models: ModelSet, allocation: Node, notes: Notes, official
     for old, name in renamed.items():
         allocation.rename(old, name)
     notes.renamed(allocation, f"processAllocation is {allocation.tag}")
-    _keep_references(models, allocation, notes, official)
+    _postpone_properties(models, allocation)
 
 
-def _keep_references(models: ModelSet, allocation: Node, notes: Notes, official: bool) -> None:
-    """Leave away what conversions leave away: custom properties; the official one all but the two references."""
-    lost = list(allocation.children) if official else allocation.all("customProperties")
-    for part in lost:
+def _postpone_properties(models: ModelSet, allocation: Node) -> None:
+    """Leave the custom properties out, as the published conversions do."""
+    properties = allocation.all("customProperties")
+    for part in properties:
         what = (part, f"{part.tag} of an allocation", part.get("key"))
-        restore = partial(_put_back, part, allocation)
-        lose_for_now(models, notes, official, Postponed(BEYOND_ITEA, restore, Kind.MOVED, *what))
-    remove_all(lost)
-    if not official:
-        return
-    for name, text in allocation.attributes.items():
-        notes.lost(allocation, "attribute of an allocation", f"{name}={text}", name)
-    allocation.attributes.clear()
-    kept = ("task", "isr", "scheduler", "controller")
-    allocation.references = {name: nodes for name, nodes in allocation.references.items() if name in kept}
+        models.postponed.append(Postponed(BEYOND_ITEA, partial(_put_back, part, allocation), Kind.MOVED, *what))
+    remove_all(properties)
 
 
 def _put_back(properties: Node, allocation: Node) -> None:
@@ -147,31 +133,6 @@ def _put_back(properties: Node, allocation: Node) -> None:
     for node in properties.walk():
         node.type = local_name(node.type)
     allocation.insert(properties, len(allocation.all("customProperties")))
-
-
-def _mistreat_texts(models: ModelSet, notes: Notes) -> None:
-    """Do as the official converter, which takes each text with `?type=` for references, and drops those without package."""
-    bare = {node for node, text in models.stated.items() if TYPE_MARK in text}
-    for node in models.walk():
-        for name, text in node.attributes.items():
-            if TYPE_MARK in text:
-                node.attributes[name] = " ".join(filter(None, map(_without_package, text.split())))
-        for name, targets in list(node.references.items()) if bare else ():
-            kept = [target for target in targets if target not in bare]
-            if len(kept) < len(targets):
-                notes.lost(node, "reference of which the class has no package", name, name)
-                node.references[name] = kept
-                if not kept:
-                    del node.references[name]
-                    node.attributes[name] = ""
-
-
-def _without_package(text: str) -> str:
-    path, _, class_name = text.partition("=")
-    if class_name.replace(".", ":") in _CLASSES:
-        return f"{path}={_CLASSES[class_name.replace('.', ':')]}"
-    _, mark, local = class_name.partition(".")
-    return f"{path}={local}" if mark else ""
 
 
 STEP = Step("ITEA 1.3.0", "0.7.0", change, frozenset({"processAllocation", "memTypeDefinitions", "OSEvent", "MemType"}))

@@ -20,19 +20,19 @@ _SWITCHES = frozenset({"ModeSwitch", "ProbabiltitySwitch"})
 _TRUE = frozenset({"true", "1"})
 
 
-def change(models: ModelSet, notes: Notes, official: bool) -> None:
+def change(models: ModelSet, notes: Notes) -> None:
     """Change the content of the files of AMALTHEA 0.7.0."""
     wrap_roots(models, notes)
-    change_sections(models, notes, official)
+    change_sections(models, notes)
     _state_units(models.nodes("size"), notes)
     _make_element(models.nodes("memoryTypes", "memoryTypeDefinitions"), "size", notes)
     for quartz in models.nodes("quartzes"):
         if "frequency" in quartz.attributes:
-            # The official converter writes the integer as Java writes a double.
+            # As in APP4MC, which writes the integer as Java writes a double.
             quartz.attributes["frequency"] = java_double(quartz.attributes["frequency"])
     _make_element(models.nodes("quartzes"), "frequency", notes)
-    _change_switches(models, notes, official)
-    change_constraints(models, notes, official)
+    _change_switches(models, notes)
+    change_constraints(models, notes)
 
 
 def _state_units(sizes: Iterable[Node], notes: Notes) -> None:
@@ -72,7 +72,7 @@ def java_double(text: str) -> str:
     return f"{'-' * sign}{first}.{''.join(rest) or '0'}E{int(exponent) + len(rest)}"
 
 
-def _change_switches(models: ModelSet, notes: Notes, official: bool) -> None:
+def _change_switches(models: ModelSet, notes: Notes) -> None:
     """Entries of switches in call graphs."""
     for switch in models.nodes("graphEntries", "items"):
         if switch.type not in _SWITCHES:
@@ -87,16 +87,15 @@ def _change_switches(models: ModelSet, notes: Notes, official: bool) -> None:
             if entry.rename("value", "values"):
                 notes.renamed(entry, "value of a switch entry -> values", attribute="value")
         if switch.type == "ModeSwitch":
-            _find_default(switch, entries, notes, official)
+            _find_default(switch, entries, notes)
 
 
-def _find_default(switch: Node, entries: Iterable[Node], notes: Notes, official: bool) -> None:
+def _find_default(switch: Node, entries: Iterable[Node], notes: Notes) -> None:
     """The first default entry of a mode switch gets an element of its own."""
     found = switch.child("defaultEntry")
     for entry in entries:
         stated = entry.attributes.pop("default", None)
-        # For the official converter the attribute as such makes an entry the default one, also if it is "false".
-        if stated is None or not (official or stated in _TRUE):
+        if stated not in _TRUE:
             continue
         if found is not None:
             notes.lost(entry, "second default entry of a mode switch: it is an ordinary entry now")

@@ -20,12 +20,12 @@ REMOVED_CONSTRAINTS = frozenset({"OrderConstraint", "SchedulerPairingConstraint"
 _LATENCY_TYPES = {"AgeConstraint": "Age", "ReactionConstraint": "Reaction"}
 
 
-def change_constraints(models: ModelSet, notes: Notes, official: bool) -> None:
+def change_constraints(models: ModelSet, notes: Notes) -> None:
     """Change everything below constraintsModel."""
     _rename(models, notes)
-    _remove(models, notes, official)
+    _remove(models, notes)
     for constraint in models.nodes("runnableSequencingConstraints"):
-        _change_groups(constraint, notes, official)
+        _change_groups(constraint, notes)
 
 
 def _rename(models: ModelSet, notes: Notes) -> None:
@@ -42,21 +42,15 @@ def _rename(models: ModelSet, notes: Notes) -> None:
     models.rename_classes(RENAMED_CONSTRAINTS)
 
 
-def _remove(models: ModelSet, notes: Notes, official: bool) -> None:
+def _remove(models: ModelSet, notes: Notes) -> None:
     removed = [node for node in models.nodes("timingConstraints", "affinityConstraints") if node.type in REMOVED_CONSTRAINTS]
     for constraint in removed:
         message = f"{constraint.type}: there is no successor"
-        if official:
-            notes.lost(constraint, message, content_of(constraint))
-        else:
-            notes.kept(constraint, message, constraint.name)
-    if official:
-        remove_all(removed)
-    else:
-        remove_and_keep(removed, "0.7.1")
+        notes.kept(constraint, message, constraint.name)
+    remove_and_keep(removed, "0.7.1")
 
 
-def _change_groups(constraint: Node, notes: Notes, official: bool) -> None:
+def _change_groups(constraint: Node, notes: Notes) -> None:
     entries = []
     for group in constraint.all("runnableGroups"):
         grouping = group.attributes.pop("groupingType", "")
@@ -75,13 +69,13 @@ def _change_groups(constraint: Node, notes: Notes, official: bool) -> None:
             group.refer("runnables", *runnables)
             notes.converted(group, "entries of a group of runnables -> references", names_of(runnables))
     remove_all(entries)
-    _move_scope(constraint, entries, notes, official)
+    _move_scope(constraint, entries, notes)
 
 
-def _move_scope(constraint: Node, entries: list[Node], notes: Notes, official: bool) -> None:
+def _move_scope(constraint: Node, entries: list[Node], notes: Notes) -> None:
     """The scope of all entries can be that of the constraint; scopes that differ have no place any more."""
     scopes = {tuple(entry.references.pop("processScope", ())) for entry in entries}
-    if not official and len(scopes) == 1 and "processScope" not in constraint.references and (scope := next(iter(scopes))):
+    if len(scopes) == 1 and "processScope" not in constraint.references and (scope := next(iter(scopes))):
         constraint.refer("processScope", *scope)
         notes.moved(
             constraint, "processScope of all entries -> processScope of the constraint", names_of(scope), "processScope"

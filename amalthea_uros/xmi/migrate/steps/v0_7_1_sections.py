@@ -12,7 +12,7 @@ from amalthea_uros.xmi.migrate.steps.v0_7_tools import content_of, names_of, rem
 _MEMBERS = {"labels": "labels", "runEntities": "runnables"}
 
 
-def change_sections(models: ModelSet, notes: Notes, official: bool) -> None:
+def change_sections(models: ModelSet, notes: Notes) -> None:
     """Give labels and runnables their section, and map sections to memories in the new way."""
     for section in models.nodes("sections"):
         for reference, tag in _MEMBERS.items():
@@ -24,8 +24,8 @@ def change_sections(models: ModelSet, notes: Notes, official: bool) -> None:
         remove_all(sizes)
         for size in sizes:
             notes.lost(section, "size of a section", content_of(size))
-    _change_mappings(models, notes, official)
-    _remove_constraints(models, notes, official)
+    _change_mappings(models, notes)
+    _remove_constraints(models, notes)
 
 
 def _place(member: Node, tag: str, section: Node, notes: Notes) -> None:
@@ -41,13 +41,12 @@ def _place(member: Node, tag: str, section: Node, notes: Notes) -> None:
         notes.lost(member, "another section of a label or runnable: only the first is kept", section.name)
 
 
-def _change_mappings(models: ModelSet, notes: Notes, official: bool) -> None:
+def _change_mappings(models: ModelSet, notes: Notes) -> None:
     lost = []
     for mapping in models.nodes("mapping"):
         if mapping.type != "SectionMapping":
             continue
-        # The official converter deletes all of them.
-        if official or "section" not in mapping.references or "memory" not in mapping.references:
+        if "section" not in mapping.references or "memory" not in mapping.references:
             notes.lost(mapping, "mapping of a section", content_of(mapping))
             lost.append(mapping)
             continue
@@ -58,10 +57,10 @@ def _change_mappings(models: ModelSet, notes: Notes, official: bool) -> None:
     remove_all(lost)
 
 
-def _remove_constraints(models: ModelSet, notes: Notes, official: bool) -> None:
+def _remove_constraints(models: ModelSet, notes: Notes) -> None:
     constraints = [node for node in models.nodes("mappingConstraints") if node.type == "SectionMappingConstraint"]
     # Without a condition for the memory a constraint says nothing.
-    kept = [node for node in constraints if not official and node.child("hwConstraint") is not None]
+    kept = [node for node in constraints if node.child("hwConstraint") is not None]
     for constraint in kept:
         notes.kept(constraint, "constraint for the mapping of a section", names_of(constraint.references.get("section", ())))
     remove_and_keep(kept, "0.7.1")

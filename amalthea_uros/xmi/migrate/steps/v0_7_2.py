@@ -10,12 +10,15 @@ from amalthea_uros.xmi.migrate.steps.file_roots import wrap_roots
 from amalthea_uros.xmi.migrate.steps.v0_7_1_sections import name_mappings
 from amalthea_uros.xmi.migrate.steps.v0_7_2_hardware import move_hardware
 from amalthea_uros.xmi.migrate.steps.v0_7_2_runnables import change_runnable_items
-from amalthea_uros.xmi.migrate.steps.v0_7_tools import content_of, names_of, relink
+from amalthea_uros.xmi.migrate.steps.v0_7_tools import content_of, relink
 
-_STABILITY = {"buffered": "customProtection", "notBuffered": "noProtection"}
-
-#: Files that came from ITEA versions have the boolean of those, which the official converter keeps as it is.
-_STABILITY_OF_BOOLEANS = {"true": "customProtection", "false": "noProtection"}
+#: Files that came from ITEA versions have the boolean of those.
+_STABILITY = {
+    "buffered": "customProtection",
+    "notBuffered": "noProtection",
+    "true": "customProtection",
+    "false": "noProtection",
+}
 
 _RENAMED_CLASSES = {
     "OsExecutionInstructions": "Instructions",
@@ -30,38 +33,36 @@ _REMOVED_TARGETS = frozenset({"TargetProcess", "TargetCallSequence"})
 #: Class of a constraint -> the old tag of its group.
 _GROUPS = {"DataPairingConstraint": "labels", "ProcessPairingConstraint": "processes", "RunnablePairingConstraint": "runnables"}
 
-#: Attribute of OsBuffering -> level of DataStability. Only one is possible; the official converter takes the first of these.
+#: Attribute of OsBuffering -> level of DataStability. Only one is possible: the first.
 _LEVELS = {"processLevel": "process", "runnableLevel": "runnable", "scheduleSectionLevel": "scheduleSection"}
 
 
-def change(models: ModelSet, notes: Notes, official: bool) -> None:
+def change(models: ModelSet, notes: Notes) -> None:
     """Change the content of the files of AMALTHEA 0.7.1."""
     wrap_roots(models, notes)
-    _change_attributes(models, notes, official)
-    change_runnable_items(models, notes, official)
+    _change_attributes(models, notes)
+    change_runnable_items(models, notes)
     for found in models.rename_classes(_RENAMED_CLASSES):
         notes.renamed(found, f"instructions of the operating system -> {found.type}")
     for curve in models.nodes("arrivalCurveEntries"):
         curve.tag = "entries"
         notes.renamed(curve, "arrivalCurveEntries -> entries")
-    _change_constraints(models, notes, official)
+    _change_constraints(models, notes)
     for os_model in models.parts("osModel"):
-        _change_buffering(os_model, notes, official)
-    _move_tags(models, notes, official)
+        _change_buffering(os_model, notes)
+    _move_tags(models, notes)
     name_mappings(models, notes)
-    move_hardware(models, notes, official)
-    _change_traced_events(models, notes, official)
+    move_hardware(models, notes)
+    _change_traced_events(models, notes)
 
 
-def _change_attributes(models: ModelSet, notes: Notes, official: bool) -> None:
+def _change_attributes(models: ModelSet, notes: Notes) -> None:
     """Attributes that several classes have."""
-    stability = _STABILITY if official else _STABILITY | _STABILITY_OF_BOOLEANS
     for node in models.walk():
         attributes = node.attributes
-        # The official converter forgets the items of switches.
-        if "buffered" in attributes and not (node.tag == "items" if official else node.type.startswith("SenderReceiver")):
+        if "buffered" in attributes and not node.type.startswith("SenderReceiver"):
             old = attributes.pop("buffered")
-            attributes["dataStability"] = stability.get(old, old)
+            attributes["dataStability"] = _STABILITY.get(old, old)
             notes.converted(node, "buffered -> dataStability", f"{old} -> {attributes['dataStability']}", "buffered")
         if "initalValue" in attributes:
             attributes["initialValue"] = attributes.pop("initalValue")
@@ -70,36 +71,35 @@ def _change_attributes(models: ModelSet, notes: Notes, official: bool) -> None:
             del attributes["preemption"]
             notes.converted(node, "preemption 'unknown' -> not stated", attribute="preemption")
         if "samplingType" in attributes and node.tag != "distribution":
-            _move_sampling(node, attributes.pop("samplingType"), notes, official)
+            _move_sampling(node, attributes.pop("samplingType"), notes)
 
 
-def _move_sampling(deviation: Node, sampling: str, notes: Notes, official: bool) -> None:
+def _move_sampling(deviation: Node, sampling: str, notes: Notes) -> None:
     """Only the distribution Boundaries has a sampling type now."""
     distribution = deviation.child("distribution")
-    # Without a distribution, the bounds are all that there is to sample. The official converter drops the sampling type.
-    if distribution is None and not official:
+    # Without a distribution, the bounds are all that there is to sample.
+    if distribution is None:
         distribution = deviation.add("distribution", "Boundaries")
-    if distribution is not None and distribution.type == "Boundaries":
+    if distribution.type == "Boundaries":
         distribution.attributes["samplingType"] = sampling
         notes.moved(deviation, "samplingType of a deviation -> samplingType of its Boundaries", sampling, "samplingType")
     else:
         notes.lost(deviation, "samplingType of a deviation: only the distribution Boundaries has one", sampling, "samplingType")
 
 
-def _change_constraints(models: ModelSet, notes: Notes, official: bool) -> None:
+def _change_constraints(models: ModelSet, notes: Notes) -> None:
     removed = [node for node in models.nodes("target") if node.type in _REMOVED_TARGETS]
     for target in removed:
         notes.lost(target, f"{target.type}: targets of runnable constraints are schedulers or cores", content_of(target))
     remove_all(removed)
     for constraint in models.nodes("affinityConstraints"):
         groups = constraint.all(_GROUPS[constraint.type]) if constraint.type in _GROUPS else []
-        # The official converter renames only the first.
-        for group in groups[:1] if official else groups:
+        for group in groups:
             notes.renamed(constraint, f"{group.tag} of a {constraint.type} -> group")
             group.tag = "group"
 
 
-def _change_buffering(os_model: Node, notes: Notes, official: bool) -> None:
+def _change_buffering(os_model: Node, notes: Notes) -> None:
     buffering, consistency = os_model.child("osBuffering"), os_model.child("osDataConsistency")
     if buffering is None:
         if consistency is None and not os_model.find("operatingSystems", "osDataConsistency"):
@@ -116,23 +116,23 @@ def _change_buffering(os_model: Node, notes: Notes, official: bool) -> None:
     notes.converted(buffering, "osBuffering -> osDataConsistency", ", ".join(levels) or "no level")
     if levels:
         stability = buffering.add("dataStability", enabled="true", accessMultiplicity="multipleAccesses", level=levels[0])
-        if algorithm is not None or official:
-            stability.attributes["algorithm"] = algorithm or ""
+        if algorithm is not None:
+            stability.attributes["algorithm"] = algorithm
     elif algorithm:
         notes.lost(buffering, "algorithm of osBuffering, which has no level", algorithm, "bufferingAlgorithm")
     if levels[1:]:
         notes.lost(buffering, "level of osBuffering: data stability has only one", ", ".join(levels[1:]))
 
 
-def _move_tags(models: ModelSet, notes: Notes, official: bool) -> None:
-    """Tags of all models are common elements; those of the same name in a file become one, except for the official converter."""
+def _move_tags(models: ModelSet, notes: Notes) -> None:
+    """Tags of all models are common elements; those of the same name in a file become one."""
     replaced: dict[Node, Node] = {}
     for root in models.roots:
         moved = [tag for model in root.all(*_MODELS_WITH_TAGS) for tag in model.all("tags")]
         if not moved:
             continue
         common = root.child_or_new("commonElements")
-        known = [] if official else [*common.all("tags"), *moved]
+        known = [*common.all("tags"), *moved]
         first = {tag.name: tag for tag in reversed(known) if tag.name}
         for tag in moved:
             same = first.get(tag.name, tag)
@@ -149,10 +149,9 @@ def _move_tags(models: ModelSet, notes: Notes, official: bool) -> None:
     relink(models, replaced)
 
 
-def _change_traced_events(models: ModelSet, notes: Notes, official: bool) -> None:
+def _change_traced_events(models: ModelSet, notes: Notes) -> None:
     """Configurations of traces refer to events; those that contain one move it to the event model."""
     moved: dict[Node, list[Node]] = {}
-    removed = []
     for config in models.nodes("eventsToTrace"):
         if config.type not in ("EventConfigElement", "EventConfigLink"):
             continue
@@ -163,18 +162,11 @@ def _change_traced_events(models: ModelSet, notes: Notes, official: bool) -> Non
         moved.setdefault(config.root, []).extend(events)
         notes.renamed(config, f"{config.type} -> EventConfig")
         config.type = ""
-        if not events:
-            continue
-        if official:
-            # The official converter moves the event, and removes the configuration.
-            removed.append(config)
-            notes.lost(config, "configuration of a traced event", names_of(events))
-        else:
+        if events:
             config.refer("event", *events)
     for root, events in moved.items():
-        if events or official:
+        if events:
             root.child_or_new("eventModel").take(events)
-    remove_all(removed)
 
 
 STEP = Step(

@@ -10,7 +10,7 @@ from amalthea_uros.xmi.migrate.steps.v0_7_tools import content_of, relink
 #: Element of propertyConstraintsModel -> element of hwModel.
 _DEFINITIONS = {"coreTypeDefinitions": "coreTypes", "memoryTypeDefinitions": "memoryTypes"}
 
-#: The containers of new cores and memories, with the names that the official converter gives those that it generates.
+#: The containers of new cores and memories, with the names that APP4MC generates.
 _SYSTEM = ("system", "migration_gen_system")
 _MICROCONTROLLER = (_SYSTEM, ("ecus", "migration_gen_ecu"), ("microcontrollers", "migration_gen_microcontroller"))
 
@@ -18,22 +18,18 @@ _MICROCONTROLLER = (_SYSTEM, ("ecus", "migration_gen_ecu"), ("microcontrollers",
 _PARTS = {"core": ("HwCoreProperty", "cores", _MICROCONTROLLER), "memory": ("HwMemoryProperty", "memories", (_SYSTEM,))}
 
 
-def move_hardware(models: ModelSet, notes: Notes, official: bool) -> None:
+def move_hardware(models: ModelSet, notes: Notes) -> None:
     """Move what has a new name to the hardware model, and let the rest mean the hardware of the same name."""
     mover = _Mover(models, notes)
     for tag, new_tag in _DEFINITIONS.items():
         for definition in models.parts("propertyConstraintsModel", tag):
-            mover.move(definition, new_tag, (), True)
+            mover.move(definition, new_tag, ())
     for tag, (condition_class, new_tag, containers) in _PARTS.items():
         for part in models.nodes(tag):
             condition = part.parent
             if condition is None or condition.type != condition_class:
                 continue
-            if official and tag == "memory":
-                # The official converter makes a new memory, of which only the name is known.
-                _keep_name(part, notes)
-            # For the official converter, what is inside of a moved core is not known by its name.
-            meant = mover.move(part, new_tag, containers, not official)
+            meant = mover.move(part, new_tag, containers)
             if meant is not None:
                 condition.references[tag] = [meant]
     mover.finish()
@@ -65,7 +61,7 @@ class _Mover:
             if node.name:
                 self.known.setdefault((node.tag, node.name), node)
 
-    def move(self, node: Node, tag: str, containers: tuple[tuple[str, str], ...], with_parts: bool) -> Node | None:
+    def move(self, node: Node, tag: str, containers: tuple[tuple[str, str], ...]) -> Node | None:
         """Move hardware to a place below the hardware model, unless there is such a thing; what is meant by it now."""
         if not node.name:
             self.removed.append(node)
@@ -83,8 +79,7 @@ class _Mover:
         self.moved.setdefault(holder, []).append(node)
         node.tag = tag
         self.known[tag, node.name] = node
-        if with_parts:
-            self.register(node)
+        self.register(node)
         return node
 
     def replace(self, node: Node, known: Node) -> None:
@@ -100,7 +95,7 @@ class _Mover:
             self.notes.converted(node, message, node.name)
 
     def hardware_model(self) -> Node:
-        """The first hardware model, else a new one in the first file, as with the official converter."""
+        """The first hardware model, else a new one in the first file, as in APP4MC."""
         roots = [tree.root for tree in sorted(self.models.active, key=lambda tree: tree.path)]
         models = [model for root in roots for model in root.all("hwModel")]
         return models[0] if models else roots[0].add("hwModel")
@@ -111,16 +106,6 @@ class _Mover:
             holder.take(nodes)
         remove_all(self.removed)
         relink(self.models, self.replaced)
-
-
-def _keep_name(node: Node, notes: Notes) -> None:
-    name = node.name
-    node.attributes.pop("name", None)
-    if content := content_of(node):
-        notes.lost(node, f"content of a {node.tag} of a property constraint", content)
-    node.attributes = {"name": name} if name else {}
-    node.references = {}
-    remove_all(list(node.children))
 
 
 def _part(holder: Node, tag: str, name: str) -> Node:

@@ -12,36 +12,32 @@ _ITEMS = ("runnableItems", "runnableItem", "items")
 _INSTRUCTIONS = frozenset({"InstructionsConstant", "InstructionsDeviation"})
 
 
-def change_runnable_items(models: ModelSet, notes: Notes, official: bool) -> None:
+def change_runnable_items(models: ModelSet, notes: Notes) -> None:
     """Change all items of runnables, however deep they are."""
     items = models.nodes(*_ITEMS)
     for item in items:
-        # The official converter forgets the items of switches.
-        if item.type in _INSTRUCTIONS and not (official and item.tag == "items"):
-            _wrap_instructions(item, notes, official)
+        if item.type in _INSTRUCTIONS:
+            _wrap_instructions(item, notes)
     for item in items:
         if item.type == "ProbabilityGroup":
             _make_switch(item, notes)
         elif item.type == "Group":
-            _unwrap_items(item, notes, official)
+            _unwrap_items(item, notes)
 
 
-def _wrap_instructions(item: Node, notes: Notes, official: bool) -> None:
+def _wrap_instructions(item: Node, notes: Notes) -> None:
     """The item stays, and what it said becomes a part of it."""
     default = Node("default", item.type, item.attributes, item.origin)
     default.references = item.references
-    # Instructions have no custom properties any more; the official converter moves all parts, or none if they are constant.
-    if official:
-        moved = [] if item.type == "InstructionsConstant" else list(item.children)
-    else:
-        moved = [child for child in item.children if child.tag != "customProperties"]
+    # Instructions have no custom properties any more.
+    moved = [child for child in item.children if child.tag != "customProperties"]
     default.take(moved)
     item.insert(default)
     item.type, item.attributes, item.references = "RunnableInstructions", {}, {}
     notes.converted(item, f"{default.type} -> RunnableInstructions with default")
 
 
-def _unwrap_items(group: Node, notes: Notes, official: bool) -> None:
+def _unwrap_items(group: Node, notes: Notes) -> None:
     """Items of groups without the deviation around each of them."""
     children: list[Node] = []
     wrappers = []
@@ -50,15 +46,15 @@ def _unwrap_items(group: Node, notes: Notes, official: bool) -> None:
             children.append(child)
             continue
         wrappers.append(child)
-        children += _unwrapped(child, notes, official)
+        children += _unwrapped(child, notes)
     if wrappers:
         remove_all(wrappers)
         group.set_children(children)
 
 
-def _unwrapped(wrapper: Node, notes: Notes, official: bool) -> list[Node]:
+def _unwrapped(wrapper: Node, notes: Notes) -> list[Node]:
     items = wrapper.all("runnableItem")
-    properties = [] if official or not items else wrapper.all("customProperties")
+    properties = wrapper.all("customProperties") if items else []
     remove_all([*items, *properties])
     if items:
         items[0].set_children([*properties, *items[0].children])

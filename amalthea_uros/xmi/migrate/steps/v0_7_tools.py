@@ -39,12 +39,12 @@ def remove_and_keep(nodes: Iterable[Node], version: str) -> None:
 
 
 def removed_key(what: str, version: str) -> str:
-    """The key of the custom property that keeps an element, as the official converter to 0.8.0 writes it for one of its cases."""
+    """The key of the custom property that keeps an element, as APP4MC writes it in 0.8.0."""
     return f"{what} (element removed during Migration of Model to {version} version)"
 
 
 def xml_text(node: Node) -> str:
-    """An element with everything in it as the official converters write it into custom properties: as it is in the file."""
+    """An element with everything in it as APP4MC writes it into custom properties: as it is in the file."""
     depth = 0
     holder = node.parent
     while holder is not None:
@@ -69,7 +69,7 @@ def _xml_text(node: Node, root: Node, depth: int, declaration: str) -> str:
 
 
 def _line(depth: int) -> str:
-    """A new line, with the line ends of the official converters."""
+    """A new line, with the line ends of APP4MC."""
     return "\r\n" + "  " * depth
 
 

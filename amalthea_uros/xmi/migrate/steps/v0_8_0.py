@@ -15,9 +15,7 @@ from amalthea_uros.xmi.migrate.steps.v0_7_tools import (
     xml_text,
 )
 
-_SIZE_UNITS = {"kibit": "Kibit", "byte": "B"}
-#: The official converter does not touch those.
-_RATE_UNITS = {"kibitPerSecond": "KibitPerSecond", "bytePerSecond": "BPerSecond"}
+_UNITS = {"kibit": "Kibit", "byte": "B", "kibitPerSecond": "KibitPerSecond", "bytePerSecond": "BPerSecond"}
 
 _TIMES = {"SignedTime": "Time", "SignedTimeObject": "TimeObject"}
 
@@ -25,16 +23,16 @@ _TIMES = {"SignedTime": "Time", "SignedTimeObject": "TimeObject"}
 _RENAMED_CLASSES = {"AllocationConstraint": "CoreAllocationConstraint", "MappingConstraint": "MemoryMappingConstraint"}
 
 
-def change(models: ModelSet, notes: Notes, official: bool) -> None:
+def change(models: ModelSet, notes: Notes) -> None:
     """Change the content of the files of AMALTHEA 0.7.2."""
     wrap_roots(models, notes)
     for mapping in models.parts("mappingModel", "mapping"):
         if mapping.type in ("AbstractElementMapping", ""):
             mapping.tag, mapping.type = "memoryMapping", ""
             notes.renamed(mapping, "mapping -> memoryMapping")
-    _change_values(models, notes, official)
+    _change_values(models, notes)
     for label in models.nodes("modeLabels"):
-        _drop_mode(models, label, notes, official)
+        _drop_mode(models, label, notes)
     for os_model in models.parts("osModel"):
         _distribute_consistency(os_model, notes)
     for constraint in models.nodes("allocationConstraints", "mappingConstraints"):
@@ -43,26 +41,21 @@ def change(models: ModelSet, notes: Notes, official: bool) -> None:
         notes.renamed(found, f"abstract class -> {found.type}")
 
 
-def _change_values(models: ModelSet, notes: Notes, official: bool) -> None:
+def _change_values(models: ModelSet, notes: Notes) -> None:
     """Classes and units that occur in many places."""
-    units = _SIZE_UNITS if official else _SIZE_UNITS | _RATE_UNITS
     for node in models.index.all():
-        if "unit" in node.attributes and (unit := node.attributes["unit"]) in units:
-            node.attributes["unit"] = units[unit]
-            notes.renamed(node, f"unit {unit} -> {units[unit]}", attribute="unit")
+        if "unit" in node.attributes and (unit := node.attributes["unit"]) in _UNITS:
+            node.attributes["unit"] = _UNITS[unit]
+            notes.renamed(node, f"unit {unit} -> {_UNITS[unit]}", attribute="unit")
     for node in models.of_type(*_TIMES):
-        # The official converter knows only these two places.
-        if not official or node.enclosing("stimulusDeviation", "customProperties") is not None:
-            notes.renamed(node, f"{node.type} -> {_TIMES[node.type]}")
-            node.type = _TIMES[node.type]
+        notes.renamed(node, f"{node.type} -> {_TIMES[node.type]}")
+        node.type = _TIMES[node.type]
     for node in models.of_type("ProbabiltitySwitch"):
-        # The official converter forgets interrupt service routines.
-        if not (official and node.enclosing("isrs") is not None):
-            node.type = "ProbabilitySwitch"
-            notes.renamed(node, "ProbabiltitySwitch -> ProbabilitySwitch")
+        node.type = "ProbabilitySwitch"
+        notes.renamed(node, "ProbabiltitySwitch -> ProbabilitySwitch")
 
 
-def _drop_mode(models: ModelSet, label: Node, notes: Notes, official: bool) -> None:
+def _drop_mode(models: ModelSet, label: Node, notes: Notes) -> None:
     """The mode of a mode label follows from its initial value."""
     if text := label.attributes.pop("mode", ""):
         notes.lost(label, "mode of a mode label that is no reference", text, "mode")
@@ -74,8 +67,6 @@ def _drop_mode(models: ModelSet, label: Node, notes: Notes, official: bool) -> N
         notes.lost(label, "mode of a mode label: that of its initial value is another one", names_of(mode), "mode")
     elif initial is not None:
         notes.converted(label, "mode of a mode label -> mode of its initial value", names_of(mode), "mode")
-    elif official:
-        notes.lost(label, "mode of a mode label without initial value", names_of(mode), "mode")
     else:
         models.set_aside[label, "mode"] = mode
 
@@ -104,7 +95,7 @@ def _copied(node: Node) -> Node:
 
 
 def _keep_hardware_constraint(constraint: Node, notes: Notes) -> None:
-    """Conditions for the hardware have no successor; the official converter keeps their text."""
+    """Keep the text of conditions for the hardware, which have no successor."""
     conditions = constraint.all("hwConstraint")
     if not conditions:
         return

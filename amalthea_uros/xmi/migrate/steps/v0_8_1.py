@@ -47,54 +47,44 @@ _MODE_VALUE_LISTS = ("setModeValueList", "enablingModeValueList", "disablingMode
 _PARTS_OF_QUARTZ = ("components", "memories", "networks", "ports", "prescaler")
 
 
-def change(models: ModelSet, notes: Notes, official: bool) -> None:
+def change(models: ModelSet, notes: Notes) -> None:
     """Change the content of the files of AMALTHEA 0.8.0."""
     for node in models.rename_classes(_CLASSES):
         notes.renamed(node, "class renamed", f"{_OLD_NAMES[node.type]} -> {node.type}")
-    _rename_in_texts(models, notes, official)
-    _change_triggers(models, notes, official)
+    _rename_in_texts(models, notes)
+    _change_triggers(models, notes)
     _rename_features(models, notes)
     _type_mode_values(models, notes)
-    if not official:
-        _type_label_groups(models, notes)
+    _type_label_groups(models, notes)
     _keep_deadlines(models, notes)
-    move_priorities(models, notes, official)
+    move_priorities(models, notes)
     change_schedulers(models, notes)
-    contain_event_chains(models, notes, official)
+    contain_event_chains(models, notes)
     _change_hardware(models, notes)
 
 
-def _rename_in_texts(models: ModelSet, notes: Notes, official: bool) -> None:
-    """Rename the classes of stimuli in references that are texts of custom properties; the official converter does so after any `=`."""
+def _rename_in_texts(models: ModelSet, notes: Notes) -> None:
+    """Rename the classes of stimuli in references that are texts of custom properties."""
     for node in models.nodes("value", "values"):
-        before, mark, name = node.get("value").partition("=" if official else TYPE_MARK)
+        before, mark, name = node.get("value").partition(TYPE_MARK)
         if name not in _STIMULI or not node.type or node.enclosing("customProperties") is None:
             continue
-        if official and node.tag == "value" and node.parent is not None and node.parent.tag != "customProperties":
-            continue  # it looks only at the values of custom properties, and at those in lists
         node.attributes["value"] = f"{before}{mark}{_CLASSES[name]}"
         notes.renamed(node, "class renamed in the text of a custom property", f"{name} -> {_CLASSES[name]}", "value")
 
 
-def _change_triggers(models: ModelSet, notes: Notes, official: bool) -> None:
+def _change_triggers(models: ModelSet, notes: Notes) -> None:
     """From 0.8.1 on, a process can trigger others by inter-process stimuli only."""
     for trigger in models.nodes("calls"):
         stimulus = trigger.target("stimulus")
         if trigger.type != _TRIGGER or stimulus is None:
             continue
-        if official and stimulus.root is not trigger.root:
-            # The official converter compares the class of an element with a name without prefix, and so removes each of them.
-            del trigger.references["stimulus"]
-            notes.lost(trigger, "stimulus of another file", reference_text(stimulus), "stimulus")
-        elif class_of(stimulus) not in (_STIMULUS, ""):
-            _take_other_stimulus(trigger, stimulus, notes, official)
+        if class_of(stimulus) not in (_STIMULUS, ""):
+            _take_other_stimulus(trigger, stimulus, notes)
 
 
-def _take_other_stimulus(trigger: Node, stimulus: Node, notes: Notes, official: bool) -> None:
+def _take_other_stimulus(trigger: Node, stimulus: Node, notes: Notes) -> None:
     del trigger.references["stimulus"]
-    if official:
-        notes.lost(trigger, "triggered stimulus that is not an inter-process stimulus", reference_text(stimulus), "stimulus")
-        return
     value = Node("value", "ReferenceObject", origin=trigger.origin)
     value.refer("value", stimulus)
     add_value(trigger, "stimulus", value)
@@ -120,7 +110,7 @@ def _type_mode_values(models: ModelSet, notes: Notes) -> None:
 
 
 def _type_label_groups(models: ModelSet, notes: Notes) -> None:
-    """State the class of the labels of a pairing constraint: there is a second kind of groups now, which the official step forgets."""
+    """State the class of the labels of a pairing constraint: there is a second kind of groups now."""
     for constraint in models.parts("constraintsModel", "affinityConstraints"):
         for group in constraint.all("group") if constraint.type == "DataPairingConstraint" else ():
             if not group.type:

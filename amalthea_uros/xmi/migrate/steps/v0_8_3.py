@@ -22,7 +22,7 @@ _OLD_NAMES = {new: old for old, new in _CLASSES.items()}
 _DEVIATION = "stimulusDeviation"
 
 
-def change(models: ModelSet, notes: Notes, official: bool) -> None:
+def change(models: ModelSet, notes: Notes) -> None:
     """Change the content of the files of AMALTHEA 0.8.2."""
     for node in models.rename_classes(_CLASSES):
         notes.renamed(node, "class renamed", f"{_OLD_NAMES[node.type]} -> {node.type}")
@@ -30,18 +30,18 @@ def change(models: ModelSet, notes: Notes, official: bool) -> None:
         kind = _KINDS.get(stimulus.type)
         if kind is not None:
             kind(stimulus, notes)
-        _keep_deviation(stimulus, _DEVIATION, "deviation of a stimulus", notes, official)
+        _keep_deviation(stimulus, _DEVIATION, "deviation of a stimulus", notes)
     for activation in models.parts("swModel", "activations"):
         if activation.type == "VariableRateActivation":
-            _keep_deviation(activation, "activationDeviation", "deviation of a variable rate activation", notes, official)
-    state_conditions(models, notes, official)
+            _keep_deviation(activation, "activationDeviation", "deviation of a variable rate activation", notes)
+    state_conditions(models, notes)
 
 
-def _keep_deviation(holder: Node, tag: str, what: str, notes: Notes, official: bool) -> None:
+def _keep_deviation(holder: Node, tag: str, what: str, notes: Notes) -> None:
     for deviation in holder.all(tag):
         deviation.remove()
         text = _outline(deviation)
-        if official or not text:
+        if not text:
             notes.lost(holder, what, text)
         else:
             add_property(holder, tag, text)

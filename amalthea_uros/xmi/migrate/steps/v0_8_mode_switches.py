@@ -11,17 +11,15 @@ _PROVIDER = "valueProvider"
 _SWITCH, _RUNNABLE_SWITCH = "ModeSwitch", "RunnableModeSwitch"
 
 
-def state_conditions(models: ModelSet, notes: Notes, official: bool) -> None:
+def state_conditions(models: ModelSet, notes: Notes) -> None:
     """Label of a switch, and literals of each entry -> condition of each entry: one of the literals."""
     for switch in models.nodes("graphEntries", "runnableItems", "items"):
         if switch.type not in (_SWITCH, _RUNNABLE_SWITCH):
             continue
-        if official and switch.type == _RUNNABLE_SWITCH and switch.enclosing("defaultEntry"):
-            continue  # the official converter does not look there
-        _change(switch, notes, official)
+        _change(switch, notes)
 
 
-def _change(switch: Node, notes: Notes, official: bool) -> None:
+def _change(switch: Node, notes: Notes) -> None:
     labels = switch.references.pop(_PROVIDER, [])
     text = switch.attributes.pop(_PROVIDER, None)
     if text is not None:
@@ -31,10 +29,10 @@ def _change(switch: Node, notes: Notes, official: bool) -> None:
     if label is not None and not entries:
         notes.lost(switch, "mode label of a switch without entries", reference_text(label), _PROVIDER)
     for entry in entries:
-        _state_condition(entry, label, notes, official)
+        _state_condition(entry, label, notes)
 
 
-def _state_condition(entry: Node, label: Node | None, notes: Notes, official: bool) -> None:
+def _state_condition(entry: Node, label: Node | None, notes: Notes) -> None:
     literals = entry.references.pop("values", [])
     text = entry.attributes.pop("values", None)
     if text is not None:
@@ -47,10 +45,5 @@ def _state_condition(entry: Node, label: Node | None, notes: Notes, official: bo
         value.refer("value", literal)
         if label is None:
             continue
-        if official and label.root is not entry.root:
-            # The official converter forgets the address in the new element.
-            value.add(_PROVIDER)
-            notes.lost(entry, "mode label of another file", reference_text(label), _PROVIDER)
-        else:
-            value.refer(_PROVIDER, label)
+        value.refer(_PROVIDER, label)
     notes.converted(entry, "mode label and literals of a switch -> condition", ", ".join(map(reference_text, literals)))

@@ -15,19 +15,18 @@ _KEY = "priority"
 _GROUP = "osekTaskGroup"
 
 
-def move_priorities(models: ModelSet, notes: Notes, official: bool) -> None:
+def move_priorities(models: ModelSet, notes: Notes) -> None:
     """Priority of an allocation -> scheduling parameters; priority and task group of a process -> custom properties."""
-    allocated = _move_of_allocations(models, notes, official)
-    if not official:
-        allocated |= _replace_defaults_of_isr_allocations(models, notes)
+    allocated = _move_of_allocations(models, notes)
+    allocated |= _replace_defaults_of_isr_allocations(models, notes)
     for tag in ("tasks", "isrs", "processPrototypes"):
         for process in models.parts("swModel", tag):
-            _move_of_process(process, process in allocated, notes, official)
+            _move_of_process(process, process in allocated, notes)
     for task in models.parts("swModel", "tasks"):
-        _move_task_group(task, notes, official)
+        _move_task_group(task, notes)
 
 
-def _move_of_allocations(models: ModelSet, notes: Notes, official: bool) -> set[Node]:
+def _move_of_allocations(models: ModelSet, notes: Notes) -> set[Node]:
     """The tasks of which every allocation states a priority now."""
     allocated: set[Node] = set()
     unstated: set[Node | None] = set()
@@ -38,10 +37,7 @@ def _move_of_allocations(models: ModelSet, notes: Notes, official: bool) -> set[
             unstated.add(task)
             continue
         own = _own(task)
-        if text == "0" and official:
-            # The official converter takes 0 for no priority.
-            notes.lost(allocation, "priority 0 of a task allocation", attribute=_KEY)
-        elif text == "0" and own not in ("", "0"):
+        if text == "0" and own not in ("", "0"):
             # As scheduling parameter it would outdo the priority of the task from 2.0.0 on.
             notes.converted(allocation, "priority 0, the old default, left out: the priority of the task applies", own, _KEY)
         else:
@@ -70,12 +66,12 @@ def _replace_defaults_of_isr_allocations(models: ModelSet, notes: Notes) -> set[
     return allocated - unstated
 
 
-def _move_of_process(process: Node, is_allocated: bool, notes: Notes, official: bool) -> None:
+def _move_of_process(process: Node, is_allocated: bool, notes: Notes) -> None:
     text = process.attributes.pop(_KEY, None)
     if text is None:
         return
-    if text != "0" or not (official or is_allocated):
-        _state(process, _KEY, text, notes, official)
+    if text != "0" or not is_allocated:
+        _state(process, _KEY, text, notes)
         notes.kept(process, "priority of a process", text, _KEY)
     elif is_allocated:
         notes.converted(
@@ -85,22 +81,22 @@ def _move_of_process(process: Node, is_allocated: bool, notes: Notes, official: 
         notes.lost(process, "priority 0 of a process", attribute=_KEY)
 
 
-def _move_task_group(task: Node, notes: Notes, official: bool) -> None:
+def _move_task_group(task: Node, notes: Notes) -> None:
     text = task.attributes.pop(_GROUP, None)
     if text == "0":
         # Nothing is lost: a task without group is in group 0.
         notes.converted(task, "OSEK task group 0, the old default, left out", attribute=_GROUP)
     elif text is not None:
-        _state(task, _GROUP, text, notes, official)
+        _state(task, _GROUP, text, notes)
         notes.kept(task, "OSEK task group", text, _GROUP)
 
 
-def _state(process: Node, key: str, text: str, notes: Notes, official: bool) -> None:
+def _state(process: Node, key: str, text: str, notes: Notes) -> None:
     """Add a custom property that the step to 2.0.0 finds by its key: of another one of that key it would take the value."""
     present = property_of(process, key)
     if property_text(present) == text:
         return
-    if present is not None and not official:
+    if present is not None:
         present.attributes["key"] = free_key(key, keys_of(process))
         notes.renamed(
             present, f"custom property {key!r} gets another key: it is what the process states itself", present.get("key")

@@ -13,21 +13,20 @@ from amalthea_uros.xmi.migrate.steps.hardware.references import References
 from amalthea_uros.xmi.migrate.steps.hardware.structures import Structures
 
 
-def change(models: ModelSet, notes: Notes, official: bool) -> None:
+def change(models: ModelSet, notes: Notes) -> None:
     """Change the content of the files of AMALTHEA 0.8.3."""
-    references = References(models, notes, official)
+    references = References(models, notes)
     references.convert()
     references.convert_proxies()
-    clocks = Clocks(notes, official)
+    clocks = Clocks(notes)
     clocks.convert_quartzes(models)
-    definitions = Definitions(models, notes, official)
-    Structures(clocks, notes, official).convert(models)
-    AccessPaths(models, notes, official).convert()
+    definitions = Definitions(models, notes)
+    Structures(clocks, notes).convert(models)
+    AccessPaths(models, notes).convert()
     definitions.convert()
     needs = convert_instructions(models, notes)
     if needs:
         definitions.need_category(needs[0])
-    references.mix_up_properties()
 
 
 STEP = Step(

@@ -35,19 +35,16 @@ _DEVIATIONS = {
     "TaskMeasurement": _RUNTIME,
 }
 
-#: The official converter fails where they have a deviation without a distribution, so there is nothing to reproduce.
-_FAILING = ("SporadicActivation", "PeriodicStimulus")
-
 _LATENCIES = ("LatencyConstant", "LatencyDeviation")
 
 _STEP_LIMITS = ("maxIncreasePerStep", "maxDecreasePerStep")
 
 
-def change(models: ModelSet, notes: Notes, official: bool) -> None:
+def change(models: ModelSet, notes: Notes) -> None:
     """Change the content of the files of AMALTHEA 0.9.2."""
     found = by_class(models, (*_DEVIATIONS, *_LATENCIES, "ExecutionNeed"))
-    values = Values(notes, official)
-    ticks = Ticks(models, values, notes, official)
+    values = Values(notes)
+    ticks = Ticks(models, values, notes)
     ticks.convert_needs(found["ExecutionNeed"])
     ticks.convert_overheads(models.nodes("osOverheads"))
     models.rename_classes({"OsInstructions": "OsOverhead"})
@@ -56,10 +53,9 @@ def change(models: ModelSet, notes: Notes, official: bool) -> None:
     for name in _LATENCIES:
         for node in found[name]:
             _convert_latency(node, values, notes)
-    sensible = Values(notes, official=False)
     for name, place in _DEVIATIONS.items():
         for node in found[name]:
-            _convert_deviations(node, place, sensible if name in _FAILING else values, notes)
+            _convert_deviations(node, place, values, notes)
     for node in found["VariableRateStimulus"]:
         _convert_step_limits(node, notes)
 

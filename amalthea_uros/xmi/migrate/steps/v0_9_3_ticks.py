@@ -20,10 +20,10 @@ from amalthea_uros.xmi.migrate.steps.v0_9_parts import insert_after, keep_commen
 #: The key of needs that are instructions, and the category of the feature that says how many of them a cycle executes.
 _INSTRUCTIONS = "Instructions"
 
-#: What is measured in instructions, and what the official converter divides.
+#: Attributes in instructions.
 _DIVIDED = ("value", "lowerBound", "upperBound", "mean", "average")
 
-#: Also measured in instructions, but the official converter leaves it as it is.
+#: Also in instructions; converted only in versions for which the converters of APP4MC are not published.
 _DEVIATION = "sd"
 
 _DIVIDED_EXACTLY = (
@@ -36,8 +36,8 @@ _OVERHEADS = ("apiOverhead", "isrCategory1Overhead", "isrCategory2Overhead")
 class Ticks:
     """Converts what is stated in instructions; knows how many of them each kind of processing unit executes per cycle."""
 
-    def __init__(self, models: ModelSet, values: Values, notes: Notes, official: bool) -> None:
-        self.models, self.notes, self.official = models, notes, official
+    def __init__(self, models: ModelSet, values: Values, notes: Notes) -> None:
+        self.models, self.notes = models, notes
         self.values = values
         self.known: dict[Node, Fraction | None] = {}
         # Also in files of newer versions: the features of definitions are the same in them.
@@ -53,7 +53,7 @@ class Ticks:
         return self.known[definition]
 
     def find_rate(self, definition: Node) -> Fraction | None:
-        """The instructions per cycle of the first feature that states them. The official converter takes the first one, too."""
+        """The instructions per cycle of the first feature that states them."""
         features = definition.references.get("features", ())
         feature = next(filter(_is_rate, features), None)
         if feature is not None:
@@ -83,13 +83,11 @@ class Ticks:
         if needs and not self.definitions:
             self.notes.defaulted(needs[0], "no definition of a processing unit in the files: 1 instruction per cycle is taken")
         following: dict[Node, Node] = {}
-        emptied: list[Node] = []
         for node in needs:
-            self.convert_need(node, following, emptied)
-        remove_all(emptied)
+            self.convert_need(node, following)
         insert_after(following)
 
-    def convert_need(self, node: Node, following: dict[Node, Node], emptied: list[Node]) -> None:
+    def convert_need(self, node: Node, following: dict[Node, Node]) -> None:
         """Instructions become ticks; needs of other keys become an item of their own."""
         defaults, extended = node.all("default"), node.all("extended")
         if not defaults and not extended:
@@ -106,8 +104,6 @@ class Ticks:
         if not instructions and not by_definition:
             if others:
                 self.keep_others(node, others)
-            elif self.official:
-                emptied.append(node)
             else:
                 # Without it, the runnable would take no time, instead of an unknown one.
                 node.type = "Ticks"
@@ -122,7 +118,7 @@ class Ticks:
         self.fill(node, instructions, by_definition)
 
     def last_of_each_key(self, entries: list[Node]) -> dict[str, Node]:
-        """The entries by their keys; of several with one key the last one counts, as in the official converter."""
+        """The entries by their keys; of several with one key the last one counts."""
         found: dict[str, Node] = {}
         for entry in entries:
             key = entry.get("key")
@@ -180,7 +176,7 @@ class Ticks:
                 entry.take([ticks])
                 parts.append(entry)
         node.take(parts)
-        if stated and not self.official:
+        if stated:
             self.add_definitions(node, stated)
 
     def divide_for(self, entry: Node, ticks: Node) -> None:
@@ -194,10 +190,7 @@ class Ticks:
             self.divide(ticks, rate)
 
     def add_definitions(self, node: Node, default: Node) -> None:
-        """Keep what the default meant on definitions on which an instruction does not take one cycle: ticks of their own.
-
-        The official converter forgets them: it divides entries of definitions only.
-        """
+        """Keep what the default meant on definitions on which an instruction does not take one cycle: ticks of their own."""
         if not self.rates:
             return
         known = {target for entry in node.all("extended") for target in entry.references.get("key", ())}
@@ -210,10 +203,10 @@ class Ticks:
                 self.divide(ticks, rate)
 
     def divide(self, ticks: Node, rate: Fraction) -> None:
-        """Divide by the instructions per cycle; fractions are cut off, as the official converter does."""
+        """Divide by the instructions per cycle; fractions are cut off, as APP4MC does."""
         shown = []
         exact = {}
-        for name in _DIVIDED if self.official else (*_DIVIDED, _DEVIATION):
+        for name in (*_DIVIDED, _DEVIATION):
             text = ticks.attributes.get(name)
             if text is None:
                 continue
@@ -230,11 +223,11 @@ class Ticks:
         if shown:
             message = "instructions are ticks now: divided by the instructions per cycle of the definition"
             self.notes.converted(ticks, message, ", ".join(shown))
-        if exact and not self.official:
+        if exact:
             self.postpone_exact(ticks, exact)
 
     def postpone_exact(self, ticks: Node, exact: dict[str, str]) -> None:
-        """Divide exactly as soon as the content goes beyond what the official converter makes of it: nothing takes less time."""
+        """Divide exactly in versions for which the converters of APP4MC are not published: nothing takes less time then."""
         state = partial(ticks.attributes.update, exact)
         detail = ", ".join(f"{name} {ticks.attributes[name]} -> {text}" for name, text in exact.items())
         self.models.postponed.append(
@@ -252,17 +245,15 @@ class Ticks:
                         self.convert_overhead(part)
 
     def convert_overhead(self, part: Node) -> None:
-        """The part stays, and gets its number as the default. Without a class the official converter fails."""
+        """Keep the part, with its number as the default."""
         stated = self.values.number(part, "default", part)
-        if self.official and stated and stated.type == "DiscreteValueConstant":
-            stated.attributes.setdefault("value", "0")
         part.type = ""
         part.attributes.pop("value", None)
         properties = part.all("customProperties")
         part.set_children([])
         part.take([*properties, *([stated] if stated else ())])
         self.notes.converted(part, "instructions of the operating system are ticks now")
-        if stated and not self.official:
+        if stated:
             self.add_definitions(part, stated)
 
 

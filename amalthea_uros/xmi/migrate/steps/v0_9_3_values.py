@@ -49,8 +49,8 @@ _WEIBULL_PARAMETERS = ("kappa", "lambda")
 class Values:
     """Converts constants and deviations."""
 
-    def __init__(self, notes: Notes, official: bool) -> None:
-        self.notes, self.official = notes, official
+    def __init__(self, notes: Notes) -> None:
+        self.notes = notes
 
     def number(self, node: Node, tag: str, owner: Node) -> Node | None:
         """A need, a number of instructions or a latency in the newer form, as a new part without container; None if nothing is left.
@@ -79,9 +79,6 @@ class Values:
         distribution = node.child("distribution")
         form = _FORMS.get(distribution.type) if distribution is not None else None
         if form is None:
-            if self.official:
-                self.notes.lost(node, _LOST, _summary(node))
-                return False
             if not _keep_bounds(node, distribution, kind, owner, self.notes):
                 return False
             form = _BOUNDARIES
@@ -95,10 +92,9 @@ class Values:
     def default_bounds(self, node: Node, kind: str, form: _Form) -> None:
         """A missing lower bound of a number is 0: nothing of them is negative. A missing upper bound is left open.
 
-        With 0, something that may take any time, or occur any number of times, would be taken for something that never does. The
-        official converter makes bounds of 0 of both, also where a Gauss distribution is not cut off, and of times.
+        With 0, something that may take any time, or occur any number of times, would be taken for something that never does.
         """
-        if not self.official and (kind == TIME or form.suffix == "GaussDistribution"):
+        if kind == TIME or form.suffix == "GaussDistribution":
             return
         for name in _BOUNDS:
             if kind == TIME:
@@ -108,7 +104,7 @@ class Values:
                 bound.attributes["value"] = "0"
             elif name in node.attributes:
                 continue
-            elif name == _UPPER and not self.official:
+            elif name == _UPPER:
                 self.notes.to_check(node, _UNBOUNDED, attribute=name)
                 continue
             else:

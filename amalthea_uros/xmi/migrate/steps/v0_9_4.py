@@ -11,23 +11,23 @@ from amalthea_uros.xmi.migrate.steps.later import BEYOND_CONVERTERS
 from amalthea_uros.xmi.migrate.steps.v0_9_4_modes import Modes
 
 
-def change(models: ModelSet, notes: Notes, official: bool) -> None:
+def change(models: ModelSet, notes: Notes) -> None:
     """Change the content of the files of AMALTHEA 0.9.3."""
     for node in models.parts("swModel", "runnables"):
-        _move_deadlines(node, models, notes, official)
+        _move_deadlines(node, models, notes)
     for node in models.nodes("dataMapping"):
         _convert_mapping(node, notes)
     for node in models.nodes("ports"):
         if node.get("portInterface") == "ABH":
             node.attributes["portInterface"] = "AHB"
             notes.renamed(node, "the port interface ABH is spelt AHB now", attribute="portInterface")
-    modes = Modes(models, notes, official)
+    modes = Modes(models, notes)
     modes.convert()
     modes.convert_stimuli()
 
 
-def _move_deadlines(runnable: Node, models: ModelSet, notes: Notes, official: bool) -> None:
-    """The deadline of a runnable is a requirement. The official converter fails if there is a constraintsModel already."""
+def _move_deadlines(runnable: Node, models: ModelSet, notes: Notes) -> None:
+    """Make requirements of the deadlines of a runnable."""
     for deadline in runnable.all("deadline"):
         constraints = runnable.root.child_or_new("constraintsModel")
         requirement = constraints.add("requirements", "RunnableRequirement", like=deadline, name="deadline")
@@ -36,14 +36,13 @@ def _move_deadlines(runnable: Node, models: ModelSet, notes: Notes, official: bo
         deadline.tag = "limitValue"
         limit.insert(deadline)
         notes.moved(deadline, "the deadline of a runnable is a requirement now", deadline.get("value") + deadline.get("unit"))
-        if "value" not in deadline.attributes and not official:
+        if "value" not in deadline.attributes:
             # It would be one for a response time of 0.
             drop, message = requirement.remove, "a deadline without value is no requirement"
             models.postponed.append(Postponed(BEYOND_CONVERTERS, drop, Kind.CONVERTED, deadline, message, is_kept=True))
 
 
 def _convert_mapping(node: Node, notes: Notes) -> None:
-    """The official converter fails if one of the attributes is missing."""
     node.tag = "aliases"
     node.rename("platformName", "target")
     node.rename("platformType", "alias")

@@ -29,8 +29,8 @@ Comparison = tuple[Node, str]
 class Modes:
     """Converts modes, mode labels, and everything that sets or compares them."""
 
-    def __init__(self, models: ModelSet, notes: Notes, official: bool) -> None:
-        self.models, self.notes, self.official = models, notes, official
+    def __init__(self, models: ModelSet, notes: Notes) -> None:
+        self.models, self.notes = models, notes
         modes = [node for tree in models.trees for node in tree.root.find("swModel", "modes")]
         self.by_name = {node.name: node for node in reversed(modes)}
         #: Modes of the literals with which mode labels are used.
@@ -50,9 +50,7 @@ class Modes:
             for entry in node.all("entries"):
                 self.convert_assignment(entry)
         for node in self.models.nodes(*_DISJUNCTIONS):
-            # The official converter forgets the mode switches of interrupts.
-            if not self.official or node.enclosing("isrs") is None:
-                self.convert_disjunction(node)
+            self.convert_disjunction(node)
         for node in self.models.nodes("modeLabels"):
             self.convert_label(node)
 
@@ -66,7 +64,7 @@ class Modes:
             if mode is not None:
                 node.references["mode"] = [mode]
             self.notes.converted(node, "the initial value of a mode label is text now", literal_name(literal), "initialValue")
-        elif not self.official and not node.references.get("mode"):
+        elif not node.references.get("mode"):
             self.restore_mode(node, list(self.used.get(node, ())))
 
     def restore_mode(self, node: Node, used: list[Node]) -> None:
@@ -92,7 +90,7 @@ class Modes:
 
     def convert_assignment(self, node: Node) -> None:
         """An entry of the list of what a stimulus sets."""
-        if not self.official and node.type == "ModeValue":
+        if node.type == "ModeValue":
             # The class is abstract now; the only one that can be here needs not be stated.
             node.type = ""
         node.rename("valueProvider", "label")
@@ -105,8 +103,7 @@ class Modes:
             if entry.type in ("ModeValueConjunction", _CONJUNCTION):
                 entry.type = _CONJUNCTION
                 for part in entry.all("entries"):
-                    # The official converter leaves a class that is abstract now.
-                    self.convert_comparison(part, part.type if self.official else "")
+                    self.convert_comparison(part, "")
             elif entry.type in ("", "ModeValue"):
                 self.convert_comparison(entry, "ModeCondition")
 
@@ -163,9 +160,7 @@ class Modes:
         disabling.remove()
         entries = disabling.all("entries")
         comparisons = [comparison for entry in entries if (comparison := _comparison(entry)) is not None]
-        if self.official:
-            self.notes.lost(disabling, "disablingModeValueList is lost", _text(disabling))
-        elif not entries:
+        if not entries:
             self.notes.lost(disabling, "an empty disablingModeValueList")
         elif len(comparisons) < len(entries):
             add_property(stimulus, "disablingModeValueList", _text(disabling))

@@ -20,37 +20,28 @@ _RENAMED = {
 _WITHOUT_COUNTER = ("EnforcedMigration", "SchedulePoint")
 
 
-def change(models: ModelSet, notes: Notes, official: bool) -> None:
+def change(models: ModelSet, notes: Notes) -> None:
     """Change the content of the files of AMALTHEA 0.9.4."""
     found = by_class(models, ("CallSequence", *_RENAMED, *_WITHOUT_COUNTER))
     for node in models.nodes("graphEntries"):
-        if _is_converted(node, official):
-            node.tag = "items"
-            notes.renamed(node, "graphEntries of a call graph are items now")
+        node.tag = "items"
+        notes.renamed(node, "graphEntries of a call graph are items now")
     for node in found["CallSequence"]:
-        if _is_converted(node, official):
-            _convert_sequence(node, notes)
+        _convert_sequence(node, notes)
     for old, new in _RENAMED.items():
         for node in found[old]:
-            if _is_converted(node, official):
-                node.type = new
-                notes.renamed(node, f"{old} is {new} now")
-    if not official:
-        for name in _WITHOUT_COUNTER:
-            for node in found[name]:
-                _keep_counter(node, notes)
+            node.type = new
+            notes.renamed(node, f"{old} is {new} now")
+    for name in _WITHOUT_COUNTER:
+        for node in found[name]:
+            _keep_counter(node, notes)
     for node in models.parts("swModel", "runnables"):
         _make_graph(node, notes)
-    convert_clocks(models, notes, official)
-
-
-def _is_converted(node: Node, official: bool) -> bool:
-    """Whether a part of a call graph is converted: the official converter forgets those of interrupts."""
-    return not official or node.enclosing("isrs") is None
+    convert_clocks(models, notes)
 
 
 def _convert_sequence(node: Node, notes: Notes) -> None:
-    """A sequence is an ordered group. The official converter fails on one with custom properties."""
+    """Convert a sequence to an ordered group."""
     node.type = "Group"
     node.attributes["ordered"] = "true"
     if not node.name:
@@ -70,7 +61,7 @@ def _keep_counter(node: Node, notes: Notes) -> None:
 
 
 def _make_graph(runnable: Node, notes: Notes) -> None:
-    """Every runnable has a call graph, as the official converter makes it, if an empty one."""
+    """Every runnable has a call graph, as in APP4MC, if an empty one."""
     items = runnable.all("runnableItems")
     graph = runnable.child_or_new("callGraph")
     for item in items:

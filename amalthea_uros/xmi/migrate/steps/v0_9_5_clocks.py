@@ -7,15 +7,14 @@ from functools import partial
 from typing import NamedTuple
 
 from amalthea_uros.xmi.migrate.model_set import ModelSet
-from amalthea_uros.xmi.migrate.names import reference_text
-from amalthea_uros.xmi.migrate.node import Node, proxy
+from amalthea_uros.xmi.migrate.node import Node
 from amalthea_uros.xmi.migrate.notes import Kind, Notes
 from amalthea_uros.xmi.migrate.postponed import Postponed
 from amalthea_uros.xmi.migrate.steps.later import BEYOND_CONVERTERS
 from amalthea_uros.xmi.migrate.steps.properties import add_property
 from amalthea_uros.xmi.migrate.steps.v0_9_parts import by_class, keep_comments, quantity_text
 
-#: The key of the custom properties that keep the older definition, as the official converter writes it.
+#: The key of the custom properties that keep the older definition, as APP4MC writes it.
 _KEY = "old_definition_v0.9.4"
 
 _MESSAGE = "the definition of a clock has no successor whose meaning is certain"
@@ -38,77 +37,45 @@ _LIST = "ClockMultiplierList"
 _CLASSES = {**dict.fromkeys(_FUNCTIONS, "ClockFunction"), _LIST: "ClockStepList"}
 
 
-def convert_clocks(models: ModelSet, notes: Notes, official: bool) -> None:
+def convert_clocks(models: ModelSet, notes: Notes) -> None:
     """Convert scenarios and clocks; references to clocks follow."""
     for node in models.nodes("scenario"):
-        _keep_recurrence(node, notes, official)
+        _keep_recurrence(node, notes)
     found = by_class(models, (*_FUNCTIONS, _LIST))
-    # It fails on a clock without one of its numbers, so there is nothing to reproduce.
-    official = official and not any(_lacks_number(node) for nodes in found.values() for node in nodes)
-    clocks = [node for nodes in found.values() for node in nodes]
-    if official:
-        _leave_references(models, clocks)
-    else:
-        for node in models.proxies:
-            node.target_class = _CLASSES.get(node.target_class, node.target_class)
+    for node in models.proxies:
+        node.target_class = _CLASSES.get(node.target_class, node.target_class)
     for name, function in _FUNCTIONS.items():
-        if not official:
-            _postpone_curves(models, found[name])
-        _convert_functions(found[name], function, notes, official)
+        _postpone_curves(models, found[name])
+        _convert_functions(found[name], function, notes)
     for node in found[_LIST]:
         _convert_list(node, notes)
 
 
-def _lacks_number(clock: Node) -> bool:
-    if clock.type == _LIST:
-        return any("multiplier" not in entry.attributes for entry in clock.all("entries"))
-    return any(name not in clock.attributes for name in _FUNCTIONS[clock.type].numbers)
-
-
-def _keep_recurrence(scenario: Node, notes: Notes, official: bool) -> None:
+def _keep_recurrence(scenario: Node, notes: Notes) -> None:
     for recurrence in scenario.all("recurrence"):
-        text = f"recurrence={quantity_text(recurrence, official)}"
+        text = f"recurrence={quantity_text(recurrence)}"
         recurrence.remove()
         keep_comments(recurrence, scenario)
         add_property(scenario, _KEY, text)
         notes.kept(recurrence, "the recurrence of a scenario has no successor", text)
 
 
-def _leave_references(models: ModelSet, clocks: list[Node]) -> None:
-    """The official converter leaves the former classes in references, which so lead nowhere."""
-    lost = {clock: proxy(reference_text(clock).rpartition("?type=")[0], clock.type) for clock in clocks}
-    if not lost:
-        return
-    models.proxies.extend(lost.values())
-    for node in models.walk():
-        for name, targets in node.references.items():
-            node.references[name] = [lost.get(target, target) for target in targets]
-
-
-def _convert_functions(clocks: list[Node], function: _Function, notes: Notes, official: bool) -> None:
-    before: list[str] = []
-    root = None
+def _convert_functions(clocks: list[Node], function: _Function, notes: Notes) -> None:
     for clock in clocks:
         clock.type = "ClockFunction"
         clock.attributes["curveType"] = function.curve
         texts = [f"{name}={clock.attributes.pop(name)}" for name in function.numbers if name in clock.attributes]
         for part in clock.all(*_TIMES):
-            texts.append(f"{part.tag}={quantity_text(part, official)}")
+            texts.append(f"{part.tag}={quantity_text(part)}")
             keep_comments(part, clock)
             part.remove()
-        if official:
-            # It repeats what it wrote for the clocks before, in the same file.
-            before = before if root is clock.root else []
-            root = clock.root
-            before += texts
-            texts = before
         if texts:
             add_property(clock, _KEY, " ".join(texts))
             notes.kept(clock, _MESSAGE, " ".join(texts))
 
 
 def _postpone_curves(models: ModelSet, clocks: list[Node]) -> None:
-    """State the curves in the newer form, too, as soon as the content goes beyond what the official converter makes of them."""
+    """State the curves in the newer form, too, in versions for which the converters of APP4MC are not published."""
     for clock in clocks:
         parts = [_time(new, part) for old, new in _TIMES.items() for part in clock.all(old)]
         parts += _frequencies(clock)

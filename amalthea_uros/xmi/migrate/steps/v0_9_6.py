@@ -16,7 +16,7 @@ CONDITIONS = ("condition", "executionCondition")
 _ITEM_TYPES = {"segments": "sequence", "strands": "parallel"}
 
 
-def change(models: ModelSet, notes: Notes, official: bool) -> None:
+def change(models: ModelSet, notes: Notes) -> None:
     """Change the content of the files of AMALTHEA 0.9.5."""
     _check_event_chains(models, notes)
     convert_event_chains(models, notes)

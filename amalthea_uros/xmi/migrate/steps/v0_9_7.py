@@ -25,7 +25,7 @@ _MANDATORY: dict[tuple[str, str], tuple[str, ...]] = {
 }
 
 
-def change(models: ModelSet, notes: Notes, official: bool) -> None:
+def change(models: ModelSet, notes: Notes) -> None:
     """Change the content of the files of AMALTHEA 0.9.6."""
     # The known files of 0.9.6 have neither chains nor conditions: they may be written as in 0.9.5.
     convert_event_chains(models, notes)

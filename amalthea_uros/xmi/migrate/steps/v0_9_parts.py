@@ -32,8 +32,6 @@ def by_class(models: ModelSet, names: Iterable[str]) -> dict[str, list[Node]]:
     return {name: models.of_type(name) for name in names}
 
 
-def quantity_text(node: Node, official: bool) -> str:
-    """Value and unit without a blank: `10ms`. The official converter writes what is missing as `null`."""
-    if official:
-        return node.get("value", "null") + node.get("unit", "null")
+def quantity_text(node: Node) -> str:
+    """Value and unit without a blank: `10ms`."""
     return node.get("value", "0") + node.get("unit")

@@ -9,7 +9,6 @@ from amalthea_uros.xmi.migrate.node import Node
 from amalthea_uros.xmi.migrate.notes import Kind, Notes
 from amalthea_uros.xmi.migrate.postponed import Postponed
 from amalthea_uros.xmi.migrate.step import Step
-from amalthea_uros.xmi.migrate.steps.later import lose_for_now
 from amalthea_uros.xmi.migrate.steps.properties import add_property, move_properties
 from amalthea_uros.xmi.migrate.steps.v0_9_parts import keep_comments
 
@@ -17,10 +16,10 @@ from amalthea_uros.xmi.migrate.steps.v0_9_parts import keep_comments
 _MEASURED = ("runnable", "task", "eventChain")
 
 
-def change(models: ModelSet, notes: Notes, official: bool) -> None:
+def change(models: ModelSet, notes: Notes) -> None:
     """Change the content of the files of AMALTHEA 0.9.9."""
     for model in models.nodes("measurementModel"):
-        _remove_measurements(models, model, notes, official)
+        _remove_measurements(models, model, notes)
     for event in models.nodes("events"):
         if event.type == "ProcessEvent" and event.get("eventType") == "deadline":
             del event.attributes["eventType"]
@@ -29,10 +28,10 @@ def change(models: ModelSet, notes: Notes, official: bool) -> None:
             )
 
 
-def _remove_measurements(models: ModelSet, model: Node, notes: Notes, official: bool) -> None:
+def _remove_measurements(models: ModelSet, model: Node, notes: Notes) -> None:
     for measurement in model.all("measurements"):
         measured = next((target for name in _MEASURED for target in measurement.references.get(name, ())), None)
-        if not official and measured is not None and not measured.is_proxy:
+        if measured is not None and not measured.is_proxy:
             _move_properties(measurement, measured, notes)
             keep_comments(measurement, measured)
         name = repr(measured.name) if measured is not None else "unknown"
@@ -40,10 +39,10 @@ def _remove_measurements(models: ModelSet, model: Node, notes: Notes, official: 
         if measured is None or measured.is_proxy:
             notes.lost(measurement, *what)
             continue
-        # Up to 1.1.0, models of the official converter are without it.
+        # Up to 1.1.0, models of APP4MC are without it.
         keep = partial(add_property, measured, "measured runtimes", _described(measurement))
-        lose_for_now(models, notes, official, Postponed("1.2.0", keep, Kind.KEPT, measurement, *what))
-    if not official and model.parent is not None:
+        models.postponed.append(Postponed("1.2.0", keep, Kind.KEPT, measurement, *what))
+    if model.parent is not None:
         _move_properties(model, model.parent, notes)
     model.remove()
 

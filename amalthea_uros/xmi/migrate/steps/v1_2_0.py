@@ -8,7 +8,7 @@ from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.numbers import make_positive
 
 
-def change(models: ModelSet, notes: Notes, official: bool) -> None:
+def change(models: ModelSet, notes: Notes) -> None:
     """Change the content of the files of AMALTHEA 1.1.0."""
     for stimulus in models.of_type("PeriodicBurstStimulus"):
         make_positive(stimulus, "occurrenceCount", notes)

@@ -13,17 +13,15 @@ from amalthea_uros.xmi.migrate.steps.scheduling_properties import convert_proper
 from amalthea_uros.xmi.migrate.steps.v0_9_6 import conditions_below
 
 
-def change(models: ModelSet, notes: Notes, official: bool) -> None:
+def change(models: ModelSet, notes: Notes) -> None:
     """Change the content of the files of AMALTHEA 1.2.0."""
     definitions = Definitions(models)
     convert_algorithms(models, definitions, notes)
-    convert_parameters(models, definitions, notes, official)
-    if not official:
-        convert_properties(models, definitions, notes)
+    convert_parameters(models, definitions, notes)
+    convert_properties(models, definitions, notes)
     definitions.insert(notes)
     _convert_conditions(models, notes)
-    if not official:
-        restore_2_0_0(models, notes)
+    restore_2_0_0(models, notes)
 
 
 def _convert_conditions(models: ModelSet, notes: Notes) -> None:

@@ -9,7 +9,7 @@ from amalthea_uros.xmi.migrate.steps.numbers import make_positive, whole_number
 from amalthea_uros.xmi.migrate.steps.v0_9_6 import CONDITIONS, conditions_below
 
 
-def change(models: ModelSet, notes: Notes, official: bool) -> None:
+def change(models: ModelSet, notes: Notes) -> None:
     """Change the content of the files of AMALTHEA 2.0.0."""
     for semaphore in models.nodes("semaphores"):
         make_positive(semaphore, "maxValue", notes)

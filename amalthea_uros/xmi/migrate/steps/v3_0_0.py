@@ -18,7 +18,7 @@ _RENAMED = {
 }
 
 
-def change(models: ModelSet, notes: Notes, official: bool) -> None:
+def change(models: ModelSet, notes: Notes) -> None:
     """Change the content of the files of AMALTHEA 2.2.0."""
     for node in models.rename_classes(_RENAMED):
         notes.renamed(node, f"class is now {node.type}")
@@ -26,13 +26,12 @@ def change(models: ModelSet, notes: Notes, official: bool) -> None:
     for interface in models.nodes("interfaces", "subInterfaces"):
         if interface.rename("datatype", "dataType"):
             notes.renamed(interface, "datatype of the interface is now its dataType", "", "datatype")
-    if not official:
-        # The official converter writes nothing, so that the new default holds: only the owner may release it.
-        for semaphore in models.nodes("semaphores"):
-            if semaphore.get("semaphoreType") == "CountingSemaphore" and "ownership" not in semaphore.attributes:
-                semaphore.attributes["ownership"] = "false"
-                notes.defaulted(semaphore, "counting semaphore: it has no owner, so ownership is false", "", "ownership")
-        restore_3_0_0(models, notes)
+    # Without it the new default would hold: only the owner may release it.
+    for semaphore in models.nodes("semaphores"):
+        if semaphore.get("semaphoreType") == "CountingSemaphore" and "ownership" not in semaphore.attributes:
+            semaphore.attributes["ownership"] = "false"
+            notes.defaulted(semaphore, "counting semaphore: it has no owner, so ownership is false", "", "ownership")
+    restore_3_0_0(models, notes)
 
 
 STEP = Step("2.2.0", "3.0.0", change, frozenset(_RENAMED))

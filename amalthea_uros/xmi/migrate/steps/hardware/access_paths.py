@@ -5,9 +5,8 @@ from __future__ import annotations
 from fractions import Fraction
 from math import ceil, floor
 
-from amalthea_uros.metamodel.naming import encode
 from amalthea_uros.xmi.migrate.model_set import ModelSet
-from amalthea_uros.xmi.migrate.node import Node, proxy, remove_all
+from amalthea_uros.xmi.migrate.node import Node, remove_all
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.steps.hardware.clocks import frequency_of
 from amalthea_uros.xmi.migrate.steps.hardware.tools import copy_of
@@ -25,10 +24,9 @@ _MOST_INNER_PATHS = 50
 class AccessPaths:
     """The conversion of access paths, after that of structures and quartzes."""
 
-    def __init__(self, models: ModelSet, notes: Notes, official: bool) -> None:
+    def __init__(self, models: ModelSet, notes: Notes) -> None:
         self.models = models
         self.notes = notes
-        self.official = official
         self.inner_paths = 0
 
     def convert(self) -> None:
@@ -43,7 +41,7 @@ class AccessPaths:
                 self.notes.lost(path, "access path from something in no file", path.name)
             elif core is None or core.type != "ProcessingUnit":
                 self.notes.lost(path, "access path from something other than a core", path.name)
-            elif not self.official and (target is None or self._class_of(target) not in _DESTINATIONS):
+            elif target is None or self._class_of(target) not in _DESTINATIONS:
                 self.notes.lost(path, "access path to something other than a memory or core", path.name)
             else:
                 made.setdefault(core, []).append(self._access_element(path, core, target))
@@ -54,38 +52,15 @@ class AccessPaths:
     def _class_of(self, node: Node) -> str:
         return node.target_class if node.is_proxy else node.type
 
-    def _access_element(self, path: Node, core: Node, target: Node | None) -> Node:
+    def _access_element(self, path: Node, core: Node, target: Node) -> Node:
         element = Node("accessElements", origin=path.origin)
-        if path.name or self.official:
+        if path.name:
             element.attributes["name"] = path.name
-        if target is not None:
-            self._refer(element, target)
-        latencies = self._official_latencies(path) if self.official else self.latencies(path, core)
-        for latency in latencies:
+        element.refer("destination", target)
+        for latency in self.latencies(path, core):
             element.insert(latency)
         self.notes.converted(path, "access path -> access element of the core", path.name)
         return element
-
-    def _refer(self, element: Node, target: Node) -> None:
-        if self._class_of(target) == "Cache":
-            # The official converter refers to it as a memory, which does not exist.
-            target = proxy(encode(target.name), "Memory")
-            self.models.proxies.append(target)
-        if self._class_of(target) in _DESTINATIONS:
-            element.refer("destination", target)
-        else:
-            element.add("destination")
-
-    # As the official converter does it
-
-    def _official_latencies(self, path: Node) -> list[Node]:
-        found = []
-        for stated in path.all("latencies"):
-            for tag in _LATENCIES.get(stated.get("accessType"), ()):
-                latency = copy_of(stated)
-                self._make_latency(latency, tag)
-                found.append(latency)
-        return found
 
     def _make_latency(self, latency: Node, tag: str) -> None:
         latency.tag = tag
@@ -95,8 +70,6 @@ class AccessPaths:
         latency.rename("value", "cycles")
         for deviation in latency.all("deviation"):
             deviation.tag = "cycles"
-
-    # Better
 
     def latencies(self, path: Node, core: Node) -> list[Node]:
         """One latency for reading and one for writing: all latencies on the way, those of paths that are part of it included."""

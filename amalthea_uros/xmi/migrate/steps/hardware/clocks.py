@@ -5,7 +5,6 @@ from __future__ import annotations
 from fractions import Fraction
 from math import isfinite
 
-from amalthea_uros.metamodel.naming import encode
 from amalthea_uros.units import FREQUENCY
 from amalthea_uros.xmi.data_types import format_double, parse_float
 from amalthea_uros.xmi.migrate.model_set import ModelSet
@@ -19,16 +18,10 @@ _HERTZ = {"": 1, "_undefined_": 1, **FREQUENCY.units}
 
 
 class Clocks:
-    """The frequency domains of a set of files.
+    """The frequency domains of a set of files."""
 
-    Parameters
-    ----------
-    official : name domains of prescalers by the encoded name of the quartz; a prescaler without ratio stops the clock
-    """
-
-    def __init__(self, notes: Notes, official: bool) -> None:
+    def __init__(self, notes: Notes) -> None:
         self.notes = notes
-        self.official = official
         self.domains: dict[tuple[Node, str], Node] = {}
         self.names: set[str] = set()
 
@@ -36,7 +29,7 @@ class Clocks:
         """Make every quartz a frequency domain of its hardware model."""
         for hardware in models.parts("hwModel"):
             quartzes = [node for node in list(hardware.walk()) if node.tag == "quartzes" and self._is_convertible(node)]
-            # The order has no meaning: that of the official converter, so that results can be compared.
+            # The order has no meaning: that of APP4MC, so that results can be compared.
             hardware.take(hash_order(quartzes))
             for quartz in quartzes:
                 self.notes.converted(quartz, "quartz -> frequency domain")
@@ -44,7 +37,7 @@ class Clocks:
         self.names = {node.name for node in models.parts("hwModel", "domains")}
 
     def _is_convertible(self, quartz: Node) -> bool:
-        if quartz.name or (not self.official and quartz.children):
+        if quartz.name or quartz.children:
             return True
         self.notes.lost(quartz, "quartz without name")
         quartz.remove()
@@ -55,7 +48,7 @@ class Clocks:
         frequency = quartz.child("frequency")
         if frequency is not None:
             frequency.tag = "defaultValue"
-        _DOMAIN.reduce(quartz, self.notes, self.official)
+        _DOMAIN.reduce(quartz, self.notes)
 
     def convert_prescaler(self, module: Node) -> None:
         """Replace the prescaler of a module by a reference to a frequency domain."""
@@ -75,7 +68,7 @@ class Clocks:
             domain = self.domain(quartz, ratio)
         else:
             domain = None
-        if domain is None or (self.official and domain.is_proxy):
+        if domain is None:
             self.notes.lost(
                 module, "prescaler: its quartz is in none of the files", f"{quartz.get('path') or quartz.name} x {ratio}"
             )
@@ -86,8 +79,6 @@ class Clocks:
     def ratio(self, prescaler: Node) -> str | None:
         """The factor as text; None if the clock is that of the quartz."""
         text = prescaler.get("clockRatio")
-        if self.official:
-            return None if text.strip() == "1.0" else text or "0.0"
         number = _number(text)
         if not text or number == 0:
             self.notes.defaulted(prescaler, "prescaler without clock ratio, or with ratio 0: taken as 1", text, "clockRatio")
@@ -106,9 +97,9 @@ class Clocks:
         frequency = made.child("defaultValue")
         if frequency is not None and "value" in frequency.attributes:
             factor, value = _number(ratio), _number(frequency.get("value"))
-            if factor is not None and value is not None and (self.official or factor > 0):
+            if factor is not None and value is not None and factor > 0:
                 frequency.attributes["value"] = format_double(value * factor)
-            elif not self.official:
+            else:
                 # It is not the frequency of the quartz either.
                 words = "not a number" if factor is None or value is None else "negative"
                 self.notes.lost(made, f"frequency behind a prescaler: {words}", f"{frequency.get('value')} x {ratio}")
@@ -117,8 +108,6 @@ class Clocks:
 
     def _name(self, quartz: Node, ratio: str) -> str:
         """The name of the domain of a prescaler. References are names, so it must not be that of another domain."""
-        if self.official:
-            return f"{encode(quartz.name)}__{ratio}"
         name = free_key(f"{quartz.name}__{ratio}", self.names)
         self.names.add(name)
         return name

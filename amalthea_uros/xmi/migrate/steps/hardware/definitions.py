@@ -28,10 +28,9 @@ _WITHOUT_SUCCESSOR = {"systemTypes": "system type", "ecuTypes": "ECU type", "mcT
 class Definitions:
     """The definitions of a set of files."""
 
-    def __init__(self, models: ModelSet, notes: Notes, official: bool) -> None:
+    def __init__(self, models: ModelSet, notes: Notes) -> None:
         self.models = models
         self.notes = notes
-        self.official = official
         self.category: Node | None = None
         self.features: dict[str, Node] = {}
         for category in models.parts("hwModel", "featureCategories"):
@@ -42,7 +41,7 @@ class Definitions:
     def convert(self) -> None:
         """Convert the types of all hardware models."""
         for hardware in self.models.parts("hwModel"):
-            # The order has no meaning: that of the official converter, so that results can be compared.
+            # The order has no meaning: that of APP4MC, so that results can be compared.
             memory_types = hash_order(hardware.all("memoryTypes"))
             core_types, network_types = hardware.all("coreTypes"), hardware.all("networkTypes")
             hardware.take([*memory_types, *core_types, *network_types])
@@ -58,11 +57,11 @@ class Definitions:
         kind = node.attributes.pop("type", "_undefined_")
         if kind == "CACHE":
             node.tag, node.type = "definitions", "CacheDefinition"
-            (_MEMORY_TYPE if self.official else _CACHE_TYPE).reduce(node, self.notes, self.official)
+            _CACHE_TYPE.reduce(node, self.notes)
             self.notes.converted(node, "memory type CACHE -> cache definition")
             return
         node.tag, node.type = "definitions", "MemoryDefinition"
-        _MEMORY_TYPE.reduce(node, self.notes, self.official)
+        _MEMORY_TYPE.reduce(node, self.notes)
         self.notes.converted(node, "memory type -> memory definition")
         if kind != "_undefined_":
             self._keep_kind(node, kind)
@@ -70,7 +69,7 @@ class Definitions:
     def _keep_kind(self, node: Node, kind: str) -> None:
         """Keep of which kind a memory is; newer versions have other kinds."""
         what = (node, "'type' of memory types", kind, "type")
-        if self.official or not kind.startswith("FLASH_"):
+        if not kind.startswith("FLASH_"):
             self.notes.lost(*what)
             return
         add_property(node, "memoryType", kind)
@@ -87,11 +86,11 @@ class Definitions:
             self.notes.converted(
                 node, "instructions per cycle -> feature of the category 'Instructions'", cycles, "instructionsPerCycle"
             )
-        _CORE_TYPE.reduce(node, self.notes, self.official)
+        _CORE_TYPE.reduce(node, self.notes)
         self.notes.converted(node, "core type -> processing unit definition")
 
     def feature(self, cycles: str, node: Node, hardware: Node) -> Node:
-        """The feature that states a number of instructions per cycle; by its text, as the official converter has it."""
+        """The feature that states a number of instructions per cycle; its name has the text of the number."""
         name = f"IPC_{cycles}"
         made = self.features.get(name)
         if made is None:
@@ -114,7 +113,7 @@ class Definitions:
         policy = node.attributes.pop("schedPolicy", "")
         if policy:
             node.attributes["policy"] = _POLICY.get(policy, "_undefined_")
-        _NETWORK_TYPE.reduce(node, self.notes, self.official)
+        _NETWORK_TYPE.reduce(node, self.notes)
         self.notes.converted(node, "network type -> connection handler definition", kind)
 
     def _remove_types_of_structures(self, hardware: Node) -> None:

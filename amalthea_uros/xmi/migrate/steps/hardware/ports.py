@@ -17,7 +17,7 @@ _KEPT_OF_RESPONDERS = ("readCycles", "writeCycles", "baseAddress", "addressRange
 _NOTHING = frozenset({"", "_undefined_", "0", "0x0"})
 
 
-def convert_ports(node: Node, notes: Notes, official: bool) -> None:
+def convert_ports(node: Node, notes: Notes) -> None:
     """Convert the ports of a structure or module."""
     for port in node.all("ports"):
         port.type, port.target_class = "", "HwPort"
@@ -26,9 +26,8 @@ def convert_ports(node: Node, notes: Notes, official: bool) -> None:
         if master is not None:
             port.attributes["portType"] = "initiator" if is_initiator else "responder"
             notes.converted(port, "'master' of ports -> 'portType'", f"{master} -> {port.get('portType')}", "master")
-        if not official:
-            _keep(port, _KEPT if is_initiator else _KEPT_OF_RESPONDERS, notes)
-        (_INITIATOR if is_initiator else _PORT).reduce(port, notes, official)
+        _keep(port, _KEPT if is_initiator else _KEPT_OF_RESPONDERS, notes)
+        (_INITIATOR if is_initiator else _PORT).reduce(port, notes)
 
 
 def _keep(port: Node, names: tuple[str, ...], notes: Notes) -> None:

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from amalthea_uros.xmi.migrate.model_set import ModelSet
-from amalthea_uros.xmi.migrate.node import Node, remove_all
+from amalthea_uros.xmi.migrate.node import Node
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.steps.hardware.clocks import Clocks
 from amalthea_uros.xmi.migrate.steps.hardware.ports import convert_ports
-from amalthea_uros.xmi.migrate.steps.hardware.tools import Shape, copy_of, hash_order, is_cache
+from amalthea_uros.xmi.migrate.steps.hardware.tools import Shape, is_cache
 from amalthea_uros.xmi.migrate.steps.properties import add_property
 
 #: Tag -> type of the structure.
 _STRUCTURES = {"system": "System", "ecus": "ECU", "microcontrollers": "Microcontroller"}
 
-#: What may be inside of the parts of a structure: tag -> parts to search, in the order of the official converter.
+#: What may be inside of the parts of a structure: tag -> parts to search, in the order of APP4MC.
 _SEARCHED = {"memories": ("memories", "networks", "components"), "networks": ("networks", "memories", "components")}
 
 _STRUCTURE = Shape(
@@ -30,10 +30,9 @@ _NETWORK = Shape("networks", references=_REFERENCES, parts=frozenset({"ports", "
 class Structures:
     """The conversion of what the hardware consists of."""
 
-    def __init__(self, clocks: Clocks, notes: Notes, official: bool) -> None:
+    def __init__(self, clocks: Clocks, notes: Notes) -> None:
         self.clocks = clocks
         self.notes = notes
-        self.official = official
         #: What is converted, and what of it remains once its parts are where they belong.
         self.converted: list[tuple[Node, Shape]] = []
 
@@ -43,14 +42,14 @@ class Structures:
             for structure in hardware.all(*_STRUCTURES):
                 self.convert_structure(structure)
         for node, shape in self.converted:
-            shape.reduce(node, self.notes, self.official)
+            shape.reduce(node, self.notes)
 
     def convert_structure(self, node: Node) -> None:
         """Make a system, ECU or microcontroller a structure, with everything in it."""
         kind = _STRUCTURES[node.tag]
         inner, memories, networks = node.all(*_STRUCTURES), nested(node, "memories"), nested(node, "networks")
         if kind == "System":
-            # Before its own modules: this is the order in which the official converter makes frequency domains.
+            # Before its own modules: this is the order in which APP4MC makes frequency domains.
             self._convert_inner(inner)
         for memory in memories:
             self._convert_memory(memory)
@@ -63,7 +62,7 @@ class Structures:
             if module.parent is not node:
                 self.notes.moved(module, "module inside another one: moved into the structure", node.name)
         node.take(modules)
-        convert_ports(node, self.notes, self.official)
+        convert_ports(node, self.notes)
         node.tag, node.type, node.target_class = "structures", "", "HwStructure"
         node.attributes["structureType"] = kind
         self._finish(node, _STRUCTURE, f"{kind} -> structure")
@@ -76,8 +75,8 @@ class Structures:
         """Make cores processing units; also returns what is in them, but cannot be in a processing unit."""
         parts = [(nested(core, "memories"), nested(core, "networks")) for core in cores]
         caches = {core: list(filter(is_cache, memories)) for core, (memories, _) in zip(cores, parts, strict=True)}
-        modules = hash_order(cores) if self.official else list(cores)
-        for core in modules:
+        modules = list(cores)
+        for core in cores:
             self._convert_core(core, caches[core])
         taken = {cache for held in caches.values() for cache in held if cache.tag == "caches"}
         for memories, networks in parts:
@@ -92,24 +91,15 @@ class Structures:
     def _convert_core(self, core: Node, caches: list[Node]) -> None:
         core.tag, core.type = "modules", "ProcessingUnit"
         group = core.attributes.pop("lockstepGroup", "0")
-        if group != "0" and not self.official:
+        if group != "0":
             add_property(core, "lockstepGroup", group)
             self.notes.kept(core, "'lockstepGroup' of cores", group, "lockstepGroup")
         self._convert_module(core, "coreType")
-        if self.official:
-            caches = [self.copy_of_cache(cache) for cache in caches]
         for cache in caches:
             self._convert_memory(cache)
             cache.tag = "caches"
         core.take(caches)
         self._finish(core, _CORE, "core -> processing unit")
-
-    def copy_of_cache(self, cache: Node) -> Node:
-        """A cache of a core; the official converter has it a second time, as a memory of unknown type beside the core."""
-        made = copy_of(cache)
-        remove_all(made.all("memories", "networks", "components"))
-        cache.references.pop("type")
-        return made
 
     def _convert_memory(self, memory: Node) -> None:
         kind = "Cache" if is_cache(memory) else "Memory"
@@ -127,7 +117,7 @@ class Structures:
         if definition:
             module.references["definition"] = definition
         self.clocks.convert_prescaler(module)
-        convert_ports(module, self.notes, self.official)
+        convert_ports(module, self.notes)
 
     def _finish(self, node: Node, shape: Shape, message: str) -> None:
         self.notes.converted(node, message)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from amalthea_uros.metamodel.naming import encode
 from amalthea_uros.xmi.migrate.node import Node, remove_all
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.steps.v0_7_tools import content_of, names_of
@@ -29,9 +28,9 @@ class Shape:
     references: frozenset[str] = frozenset()
     parts: frozenset[str] = frozenset()
 
-    def reduce(self, node: Node, notes: Notes, official: bool) -> None:
-        """Remove the rest, and say so. The official converter drops custom properties and tags, too."""
-        shared = frozenset() if official else frozenset({"customProperties", "tags"})
+    def reduce(self, node: Node, notes: Notes) -> None:
+        """Remove the rest, and report it."""
+        shared = frozenset({"customProperties", "tags"})
         for key, text in list(node.attributes.items()):
             if key != "name" and key not in self.attributes:
                 del node.attributes[key]
@@ -74,15 +73,15 @@ def is_cache(memory: Node) -> bool:
     return memory_type is not None and (memory_type.get("type") == "CACHE" or memory_type.type == "CacheDefinition")
 
 
-def hash_order(nodes: Iterable[Node], encoded: bool = False) -> list[Node]:
-    """By name, as the official converter has objects that it holds in a table (a Java `HashMap`)."""
+def hash_order(nodes: Iterable[Node]) -> list[Node]:
+    """Nodes in the order of a Java `HashMap` by name, in which APP4MC writes them."""
     held = list(nodes)
     buckets = 16
     while len(held) > 0.75 * buckets:
         buckets *= 2
 
     def bucket(node: Node) -> int:
-        code = _java_hash(node.get("path") or encode(node.name) if encoded else node.name)
+        code = _java_hash(node.name)
         return (code ^ (code >> 16)) & (buckets - 1)
 
     return sorted(held, key=bucket)

@@ -11,14 +11,12 @@ from amalthea_uros.xmi.migrate.notes import Notes
 _UNSTATED = ("", "_undefined_")
 
 
-def state_units(models: ModelSet, notes: Notes, official: bool) -> None:
+def state_units(models: ModelSet, notes: Notes) -> None:
     """State that the frequencies of what was a quartz are in Hz, and the sizes of what was a memory type in bytes.
 
-    The official converter made both from plain numbers, without unit, and corrected its examples by hand in this sense. It leaves the
-    unit open; so this is done after the last version up to which its results are known.
+    APP4MC made both from plain numbers, without unit, and corrected its examples by hand in this sense. Its converters leave the unit
+    open; so this is done after the last version for which their results are known.
     """
-    if official:
-        return
     labels = models.origins.labels
 
     def was(tag: str) -> Callable[[Node], bool]:
