@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from amalthea_uros.findings import catalogue
 from amalthea_uros.findings.kind import FindingKind
 from amalthea_uros.validate import registry
-from amalthea_uros.validate.rule import ModelRule, Profile, Rule
+from amalthea_uros.validate.rule import ModelRule, Profile
 
 #: Families of findings whose examples are logs.
 _TRACES = ("CAN", "TRC")
@@ -31,8 +31,8 @@ def _page(kind: FindingKind) -> str:
 
 def _origin(kind: FindingKind) -> Iterator[str]:
     top = "../" * (kind.id.count("/") + 1)
-    if isinstance(kind, Rule):
-        yield f"A rule of the profile [`{registry.profile_of(kind.id)}`]({top}check.md#checking-models) of `amuros check`."
+    if (profile := registry.profile_of(kind.id)) is not None:
+        yield f"A rule of the profile [`{profile}`]({top}check.md#checking-models) of `amuros check`."
     else:
         yield f"A [finding]({top}findings.md) that is reported without being asked for: {catalogue.FAMILIES[kind.id[:3]].lower()}."
 
@@ -48,7 +48,7 @@ def _examples(kind: FindingKind) -> Iterator[str]:
         yield _example("With another file of the model", kind.beside)
     if kind.fails:
         yield _example("Fails", kind.fails, "text" if kind.id[:3] in _TRACES else "yaml")
-    if isinstance(kind, Rule):
+    if kind.passes:
         yield _example("Passes", kind.passes)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 _PACKAGE = Path(__file__).parents[1]
 
@@ -27,3 +28,10 @@ def known_platforms() -> list[str]:
 def known_rtoses() -> list[str]:
     """The names of the operating systems that come with this package."""
     return sorted(path.stem for path in RTOSES.glob("*.yaml"))
+
+
+def yaml_data(path: Path) -> Any:
+    """The content of a YAML file that is shipped with the package."""
+    import yaml
+
+    return yaml.load(path.read_text(encoding="utf-8"), getattr(yaml, "CSafeLoader", yaml.SafeLoader))

@@ -6,7 +6,7 @@ import click
 
 from amalthea_uros.services.rules import find_kind
 from amalthea_uros.validate import registry
-from amalthea_uros.validate.rule import ModelRule, Rule
+from amalthea_uros.validate.rule import ModelRule
 
 
 @click.command("explain")
@@ -14,7 +14,7 @@ from amalthea_uros.validate.rule import ModelRule, Rule
 def command(identifier: str) -> None:
     """Explain a rule or another kind of finding: what it reports, why that matters, what to do, and an example."""
     kind = find_kind(identifier)
-    profile = registry.profile_of(kind.id) if isinstance(kind, Rule) else None
+    profile = registry.profile_of(kind.id)
     click.echo(f"{kind.id}: {kind.title} ({kind.severity}{f', profile {profile}' if profile else ''})\n")
     click.echo(f"{kind.rationale}\n{kind.remedy}")
     if isinstance(kind, ModelRule):
@@ -22,9 +22,9 @@ def command(identifier: str) -> None:
         if kind.beside is not None:
             click.echo(f"\nWith another file of the model:\n{kind.beside.rstrip()}")
     if kind.fails:
-        click.echo(f"\nFails:\n{kind.fails.rstrip()}")
-    if isinstance(kind, Rule):
-        click.echo(f"\nPasses:\n{kind.passes.rstrip()}")
+        click.echo(f"\nFails:\n\n{kind.fails.strip()}")
+    if kind.passes:
+        click.echo(f"\nPasses:\n\n{kind.passes.strip()}")
     if (url := registry.rule_url(kind.id)) is not None:
         click.echo(f"\nSee {url}")
 

@@ -255,18 +255,18 @@ def _check_input(opened: ModelInput, rules: Collection[str]) -> list[Finding]:
     return sorted([*general, *_run(opened.model, rules, opened.system)], key=by_place)
 
 
-def _run(model: Model, identifiers: Iterable[str], system: System | None = None) -> list[Finding]:
+def _run(model: Model, identifiers: Collection[str], system: System | None = None) -> list[Finding]:
     """The findings of rules, those that are suppressed included.
 
     Parameters
     ----------
     system : the one that the model was built from, if it was
     """
-    rules = [registry.rule(identifier) for identifier in identifiers]
+    rules = registry.rules_with_checks(identifiers)
     with paused_garbage_collection():
         findings = run(model, [rule for rule in rules if isinstance(rule, ModelRule)])
         findings += _system_findings(model, system, [rule for rule in rules if isinstance(rule, SystemRule)])
-        return findings + _schema_findings(model, {rule.id for rule in rules})
+        return findings + _schema_findings(model, identifiers)
 
 
 def _system_findings(model: Model, system: System | None, rules: Sequence[SystemRule]) -> list[Finding]:

@@ -97,7 +97,7 @@ def _repair(paths: tuple[Path, ...], model: Model, rules: Collection[str], write
     from amalthea_uros.xmi.save import save_documents
     from amalthea_uros.xmi.writer import document_text
 
-    repairs = repair(model, [rule for rule in map(registry.rule, rules) if isinstance(rule, ModelRule)])
+    repairs = repair(model, [rule for rule in registry.rules_with_checks(rules) if isinstance(rule, ModelRule)])
     changed = tuple(
         FileChange(document.path, document.source.text, document_text(document, document in repairs.rewritten))
         for document in model.documents

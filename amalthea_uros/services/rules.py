@@ -12,7 +12,7 @@ from amalthea_uros.findings import catalogue
 from amalthea_uros.findings.kind import FindingKind
 from amalthea_uros.services.check import unknown_rule
 from amalthea_uros.validate import registry
-from amalthea_uros.validate.rule import Profile, Rule
+from amalthea_uros.validate.rule import Profile
 from amalthea_uros.validate.selection import UnknownPatternError, select
 
 
@@ -20,7 +20,7 @@ from amalthea_uros.validate.selection import UnknownPatternError, select
 class RulesResult:
     """Rules in the order of their profiles."""
 
-    rules: tuple[Rule, ...]
+    rules: tuple[FindingKind, ...]
 
 
 def find_rules(
@@ -50,7 +50,7 @@ def find_rules(
     return RulesResult(tuple(rule for rule in rules if rule.severity in wanted and text.casefold() in _words(rule)))
 
 
-def _words(rule: Rule) -> str:
+def _words(rule: FindingKind) -> str:
     return " ".join((rule.id, rule.title, rule.rationale, rule.remedy)).casefold()
 
 

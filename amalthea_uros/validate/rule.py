@@ -1,4 +1,8 @@
-"""The definition of a rule."""
+"""The definition of a rule.
+
+The ids of APP4MC's own rules are APP4MC's. What `amuros check` can also be asked for, but finds without a rule, is in the catalogue
+of findings: violations of the XML schema, and problems of building a system.
+"""
 
 from __future__ import annotations
 
@@ -28,21 +32,6 @@ class Profile(StrEnum):
     USER = "user"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Rule(FindingKind):
-    """A kind of finding that `amuros check` can be asked for; what finds it is elsewhere: the XML schema, or the building of a system.
-
-    The ids of APP4MC's own rules are APP4MC's.
-
-    Attributes
-    ----------
-    fails, passes : content of a model, or of a description, in which the rule fires, or does not
-    """
-
-    fails: str
-    passes: str
-
-
 class Downgraded(NamedTuple):
     """A message with a lower severity than that of its rule."""
 
@@ -58,7 +47,7 @@ Fix = Callable[[Any, Context], bool]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ModelRule(Rule):
+class ModelRule(FindingKind):
     """A rule about the objects of a class.
 
     Attributes
@@ -98,7 +87,7 @@ class Problem(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SystemRule(Rule):
+class SystemRule(FindingKind):
     """A rule about what a system means in time, whether it comes from a model or from a description.
 
     Attributes

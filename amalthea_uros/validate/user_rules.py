@@ -67,8 +67,8 @@ def installed_rules() -> list[ModelRule]:
     return [rule for entry in sorted(entry_points(group=GROUP)) for rule in _rules_of_package(entry)]
 
 
-def check_id(rule: ModelRule, is_taken: bool) -> None:
-    """Refuse a rule whose id cannot be selected, or would be ambiguous.
+def check_id(rule: ModelRule, taken: Iterable[str]) -> None:
+    """Refuse a rule whose id cannot be selected, or differs from one that is taken at most by its case.
 
     Raises
     ------
@@ -77,7 +77,7 @@ def check_id(rule: ModelRule, is_taken: bool) -> None:
     if not isinstance(rule.id, str) or _ID.fullmatch(rule.id) is None:
         message = f"{rule.id!r} cannot be the id of a rule"
         raise _refused("RUL002", message, None, "Use letters, digits and any of _ . / -, for example ACME-001.")
-    if is_taken:
+    if rule.id.casefold() in map(str.casefold, taken):
         message = f"the id {rule.id!r} is already used by another rule or finding"
         raise _refused("RUL002", message, None, "Give the rule an id of its own, for example with the name of the project.")
 

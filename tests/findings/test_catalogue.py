@@ -102,7 +102,7 @@ def reported(example, family, folder):
                 return [*described.findings, *analyze_system(described.system).findings]
             case "CAN" | "MEA" | "TRC":
                 return found_in_trace(example, folder)
-            case "IMP" if not example.startswith("\namuros:"):
+            case "IMP" if not example.startswith("amuros:"):
                 (folder / "main.c").write_text(example)
                 return import_code([folder / "main.c"]).findings
             case "IMP":

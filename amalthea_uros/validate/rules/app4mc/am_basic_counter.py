@@ -34,15 +34,5 @@ RULE = ModelRule(
   </runnables>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <runnables name="R">
-    <activityGraph>
-      <items xsi:type="am:RunnableCall">
-        <counter prescaler="2" offset="1"/>
-      </items>
-    </activityGraph>
-  </runnables>
-</swModel>
-""",
+    edits={'offset="-1"': 'offset="1"'},
 )

@@ -33,11 +33,5 @@ RULE = ModelRule(
   </domains>
 </hwModel>
 """,
-    passes="""
-<hwModel>
-  <domains xsi:type="am:FrequencyDomain" name="c">
-    <defaultValue value="1.0" unit="MHz"/>
-  </domains>
-</hwModel>
-""",
+    edits={'value="0.0"': 'value="1.0"'},
 )

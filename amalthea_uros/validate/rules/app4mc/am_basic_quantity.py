@@ -30,11 +30,5 @@ RULE = ModelRule(
   </labels>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <labels name="L">
-    <size value="4" unit="B"/>
-  </labels>
-</swModel>
-""",
+    edits={'value="4"': 'value="4" unit="B"'},
 )

@@ -95,12 +95,8 @@ RULE = ModelRule(
   </stimuli>
 </stimuliModel>
 """,
-    passes="""
-<stimuliModel>
-  <stimuli xsi:type="am:PeriodicStimulus" name="S">
-    <recurrence value="1" unit="ms"/>
-    <offset value="0" unit="ms"/>
-  </stimuli>
-</stimuliModel>
-""",
+    edits={
+        'value="0"': 'value="1"',
+        'value="-1"': 'value="0"',
+    },
 )

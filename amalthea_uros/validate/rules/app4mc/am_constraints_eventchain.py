@@ -46,17 +46,5 @@ RULE = ModelRule(
   </eventChains>
 </constraintsModel>
 """,
-    passes="""
-<eventModel>
-  <events xsi:type="am:CustomEvent" name="a"/>
-  <events xsi:type="am:CustomEvent" name="b"/>
-</eventModel>
-<constraintsModel>
-  <eventChains name="C" stimulus="a?type=CustomEvent" response="b?type=CustomEvent">
-    <items xsi:type="am:EventChainContainer">
-      <eventChain stimulus="a?type=CustomEvent" response="b?type=CustomEvent"/>
-    </items>
-  </eventChains>
-</constraintsModel>
-""",
+    edits={'stimulus="b?type=CustomEvent"': 'stimulus="a?type=CustomEvent"'},
 )

@@ -80,23 +80,8 @@ RULE = ModelRule(
   </structures>
 </hwModel>
 """,
-    passes="""
-<hwModel>
-  <definitions xsi:type="am:MemoryDefinition" name="D">
-    <size value="1" unit="KiB"/>
-  </definitions>
-  <structures name="ECU">
-    <modules xsi:type="am:ProcessingUnit" name="core">
-      <ports name="p"/>
-      <accessElements name="a" destination="RAM?type=Memory">
-        <accessPath name="way" pathElements="ECU/wire?type=HwConnection" startAddress="0x0" endAddress="0x400"/>
-      </accessElements>
-    </modules>
-    <modules xsi:type="am:Memory" name="RAM" definition="D?type=MemoryDefinition">
-      <ports name="p"/>
-    </modules>
-    <connections name="wire" port1="core/p?type=HwPort" port2="RAM/p?type=HwPort"/>
-  </structures>
-</hwModel>
-""",
+    edits={
+        'endAddress="0x401"': 'endAddress="0x400"',
+        'port1="core/p?type=HwPort"': 'port1="core/p?type=HwPort" port2="RAM/p?type=HwPort"',
+    },
 )

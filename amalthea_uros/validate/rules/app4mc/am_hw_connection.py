@@ -41,13 +41,9 @@ RULE = ModelRule(
   </structures>
 </hwModel>
 """,
-    passes="""
-<hwModel>
-  <structures name="ECU">
-    <ports name="a" portInterface="AXI"/>
+    edits={
+        '<connections name="wire"/>': """<ports name="a" portInterface="AXI"/>
     <ports name="b" portInterface="AXI"/>
-    <connections name="wire" port1="ECU/a?type=HwPort" port2="ECU/b?type=HwPort"/>
-  </structures>
-</hwModel>
-""",
+    <connections name="wire" port1="ECU/a?type=HwPort" port2="ECU/b?type=HwPort"/>""",
+    },
 )

@@ -35,12 +35,8 @@ RULE = ModelRule(
   </featureCategories>
 </hwModel>
 """,
-    passes="""
-<hwModel>
-  <definitions xsi:type="am:ProcessingUnitDefinition" name="D" features="I/a?type=HwFeature"/>
-  <featureCategories name="I">
-    <features name="a"/>
-  </featureCategories>
-</hwModel>
-""",
+    edits={
+        'features="I/a?type=HwFeature I/b?type=HwFeature"': 'features="I/a?type=HwFeature"',
+        '    <features name="b"/>\n': "",
+    },
 )

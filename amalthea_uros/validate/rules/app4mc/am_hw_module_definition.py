@@ -30,12 +30,9 @@ RULE = ModelRule(
   </structures>
 </hwModel>
 """,
-    passes="""
-<hwModel>
-  <definitions xsi:type="am:MemoryDefinition" name="D"/>
-  <structures name="ECU">
-    <modules xsi:type="am:Memory" name="RAM" definition="D?type=MemoryDefinition"/>
-  </structures>
-</hwModel>
-""",
+    edits={
+        '<structures name="ECU">': """<definitions xsi:type="am:MemoryDefinition" name="D"/>
+  <structures name="ECU">""",
+        'name="RAM"': 'name="RAM" definition="D?type=MemoryDefinition"',
+    },
 )

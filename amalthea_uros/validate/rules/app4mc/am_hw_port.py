@@ -40,20 +40,11 @@ RULE = ModelRule(
   </structures>
 </hwModel>
 """,
-    passes="""
-<hwModel>
-  <structures name="ECU">
-    <modules xsi:type="am:ProcessingUnit" name="core">
-      <ports name="p"/>
-      <ports name="q"/>
+    edits={
+        """</modules>
+    <modules xsi:type="am:Memory" name="RAM">""": """  <ports name="q"/>
     </modules>
-    <modules xsi:type="am:Memory" name="RAM">
-      <ports name="p"/>
-      <ports name="q"/>
-    </modules>
-    <connections name="a" port1="core/p?type=HwPort" port2="RAM/p?type=HwPort"/>
-    <connections name="b" port1="core/q?type=HwPort" port2="RAM/q?type=HwPort"/>
-  </structures>
-</hwModel>
-""",
+    <modules xsi:type="am:Memory" name="RAM">""",
+        'name="b" port1="core/p?type=HwPort"': 'name="b" port1="core/q?type=HwPort"',
+    },
 )

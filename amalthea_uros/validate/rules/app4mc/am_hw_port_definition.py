@@ -31,11 +31,5 @@ RULE = ModelRule(
   </structures>
 </hwModel>
 """,
-    passes="""
-<hwModel>
-  <structures name="ECU">
-    <ports name="a" portType="initiator" portInterface="AXI"/>
-  </structures>
-</hwModel>
-""",
+    edits={'name="a"': 'name="a" portType="initiator" portInterface="AXI"'},
 )

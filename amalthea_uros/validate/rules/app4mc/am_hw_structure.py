@@ -57,17 +57,9 @@ RULE = ModelRule(
   </structures>
 </hwModel>
 """,
-    passes="""
-<hwModel>
-  <structures name="ECU">
-    <modules xsi:type="am:ProcessingUnit" name="core">
-      <ports name="p" portType="initiator"/>
-    </modules>
-    <modules xsi:type="am:Memory" name="RAM">
-      <ports name="p" portType="responder"/>
-    </modules>
-    <connections name="wire" port1="core/p?type=HwPort" port2="RAM/p?type=HwPort"/>
-  </structures>
-</hwModel>
-""",
+    edits={
+        """<modules xsi:type="am:Memory" name="RAM">
+      <ports name="p" portType="initiator"/>""": """<modules xsi:type="am:Memory" name="RAM">
+      <ports name="p" portType="responder"/>""",
+    },
 )

@@ -28,12 +28,10 @@ RULE = ModelRule(
   <isrs name="I"/>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <isrs name="I"/>
-</swModel>
+    edits={
+        "</swModel>": """</swModel>
 <mappingModel>
   <isrAllocation isr="I?type=ISR"/>
-</mappingModel>
-""",
+</mappingModel>""",
+    },
 )

@@ -31,14 +31,10 @@ RULE = ModelRule(
   </operatingSystems>
 </osModel>
 """,
-    passes="""
-<osModel>
-  <operatingSystems name="OS">
-    <taskSchedulers name="S"/>
-  </operatingSystems>
-</osModel>
+    edits={
+        "</osModel>": """</osModel>
 <mappingModel>
   <schedulerAllocation scheduler="S?type=TaskScheduler"/>
-</mappingModel>
-""",
+</mappingModel>""",
+    },
 )

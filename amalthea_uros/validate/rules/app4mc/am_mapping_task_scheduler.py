@@ -28,12 +28,10 @@ RULE = ModelRule(
   <tasks name="T"/>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <tasks name="T"/>
-</swModel>
+    edits={
+        "</swModel>": """</swModel>
 <mappingModel>
   <taskAllocation task="T?type=Task"/>
-</mappingModel>
-""",
+</mappingModel>""",
+    },
 )

@@ -43,18 +43,5 @@ RULE = ModelRule(
   </runnables>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <runnables name="R">
-    <activityGraph>
-      <items xsi:type="am:RunnableCall" runnable="S?type=Runnable">
-        <arguments parameter="S/p?type=RunnableParameter"/>
-      </items>
-    </activityGraph>
-  </runnables>
-  <runnables name="S">
-    <parameters name="p" direction="in"/>
-  </runnables>
-</swModel>
-""",
+    edits={"<arguments": '<arguments parameter="S/p?type=RunnableParameter"'},
 )

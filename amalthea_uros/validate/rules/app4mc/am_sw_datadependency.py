@@ -74,17 +74,5 @@ RULE = ModelRule(
   <labels name="L"/>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <runnables name="R">
-    <activityGraph>
-      <items xsi:type="am:LabelAccess" access="write" data="L?type=Label">
-        <dependsOn parameters="R/p?type=RunnableParameter"/>
-      </items>
-    </activityGraph>
-    <parameters name="p" direction="in"/>
-  </runnables>
-  <labels name="L"/>
-</swModel>
-""",
+    edits={'access="read"': 'access="write"'},
 )

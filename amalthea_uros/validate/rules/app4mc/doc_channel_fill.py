@@ -45,9 +45,5 @@ RULE = ModelRule(
   <channels name="C" defaultElements="3" maxElements="2"/>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <channels name="C" defaultElements="2" maxElements="2"/>
-</swModel>
-""",
+    edits={'defaultElements="3"': 'defaultElements="2"'},
 )

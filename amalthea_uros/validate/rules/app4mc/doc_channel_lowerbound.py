@@ -37,14 +37,5 @@ RULE = ModelRule(
   <channels name="C"/>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <runnables name="R">
-    <activityGraph>
-      <items xsi:type="am:ChannelReceive" data="C?type=Channel" elements="2" lowerBound="2"/>
-    </activityGraph>
-  </runnables>
-  <channels name="C"/>
-</swModel>
-""",
+    edits={'lowerBound="3"': 'lowerBound="2"'},
 )

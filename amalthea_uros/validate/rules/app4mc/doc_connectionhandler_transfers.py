@@ -54,16 +54,5 @@ RULE = ModelRule(
   </structures>
 </hwModel>
 """,
-    passes="""
-<hwModel>
-  <definitions xsi:type="am:ConnectionHandlerDefinition" name="D" maxConcurrentTransfers="1"/>
-  <structures name="ECU">
-    <modules xsi:type="am:ConnectionHandler" name="bus" definition="D?type=ConnectionHandlerDefinition">
-      <ports name="a" portType="responder"/>
-      <ports name="b" portType="responder"/>
-      <ports name="c" portType="initiator"/>
-    </modules>
-  </structures>
-</hwModel>
-""",
+    edits={'maxConcurrentTransfers="2"': 'maxConcurrentTransfers="1"'},
 )

@@ -44,12 +44,5 @@ RULE = ModelRule(
   <modeLabels name="L" mode="M?type=EnumMode" initialValue="off"/>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <modes xsi:type="am:EnumMode" name="M">
-    <literals name="on"/>
-  </modes>
-  <modeLabels name="L" mode="M?type=EnumMode" initialValue="on"/>
-</swModel>
-""",
+    edits={'initialValue="off"': 'initialValue="on"'},
 )

@@ -34,13 +34,5 @@ RULE = ModelRule(
   </featureCategories>
 </hwModel>
 """,
-    passes="""
-<hwModel>
-  <definitions xsi:type="am:ProcessingUnitDefinition" name="D" features="I/a?type=HwFeature"/>
-  <featureCategories name="I">
-    <features name="a"/>
-    <features name="b"/>
-  </featureCategories>
-</hwModel>
-""",
+    edits={'features="I/a?type=HwFeature I/b?type=HwFeature"': 'features="I/a?type=HwFeature"'},
 )

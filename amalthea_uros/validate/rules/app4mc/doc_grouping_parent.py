@@ -50,16 +50,9 @@ RULE = ModelRule(
   </operatingSystems>
 </osModel>
 """,
-    passes="""
-<osModel>
-  <schedulerDefinitions name="Grouping" requiresParentScheduler="true"/>
-  <schedulerDefinitions name="OSEK"/>
-  <operatingSystems name="OS">
-    <taskSchedulers name="group" definition="Grouping?type=SchedulerDefinition">
+    edits={
+        'definition="Grouping?type=SchedulerDefinition"/>': """definition="Grouping?type=SchedulerDefinition">
       <parentAssociation parent="main?type=TaskScheduler"/>
-    </taskSchedulers>
-    <taskSchedulers name="main" definition="OSEK?type=SchedulerDefinition"/>
-  </operatingSystems>
-</osModel>
-""",
+    </taskSchedulers>""",
+    },
 )

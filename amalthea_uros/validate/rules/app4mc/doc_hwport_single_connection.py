@@ -42,18 +42,5 @@ RULE = ModelRule(
   </structures>
 </hwModel>
 """,
-    passes="""
-<hwModel>
-  <structures name="ECU">
-    <ports name="p"/>
-    <modules xsi:type="am:Memory" name="RAM">
-      <ports name="a"/>
-      <ports name="b"/>
-      <ports name="c"/>
-    </modules>
-    <connections name="x" port1="ECU/p?type=HwPort" port2="RAM/a?type=HwPort"/>
-    <connections name="y" port1="ECU/p?type=HwPort" port2="RAM/b?type=HwPort"/>
-  </structures>
-</hwModel>
-""",
+    edits={'    <connections name="z" port1="ECU/p?type=HwPort" port2="RAM/c?type=HwPort"/>\n': ""},
 )

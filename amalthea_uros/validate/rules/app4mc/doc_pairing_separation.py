@@ -138,26 +138,5 @@ RULE = ModelRule(
   <memoryMapping abstractElement="M?type=Label" memory="b?type=Memory"/>
 </mappingModel>
 """,
-    passes="""
-<swModel>
-  <labels name="L"/>
-  <labels name="M"/>
-</swModel>
-<hwModel>
-  <structures name="ECU">
-    <modules xsi:type="am:Memory" name="a"/>
-    <modules xsi:type="am:Memory" name="b"/>
-  </structures>
-</hwModel>
-<constraintsModel>
-  <affinityConstraints xsi:type="am:DataPairingConstraint" name="C">
-    <target xsi:type="am:TargetMemory"/>
-    <group xsi:type="am:LabelEntityGroup" labels="L?type=Label M?type=Label"/>
-  </affinityConstraints>
-</constraintsModel>
-<mappingModel>
-  <memoryMapping abstractElement="L?type=Label" memory="b?type=Memory"/>
-  <memoryMapping abstractElement="M?type=Label" memory="b?type=Memory"/>
-</mappingModel>
-""",
+    edits={'memory="a?type=Memory"': 'memory="b?type=Memory"'},
 )

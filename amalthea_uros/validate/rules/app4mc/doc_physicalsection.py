@@ -54,21 +54,5 @@ RULE = ModelRule(
   <physicalSectionMapping name="P" origin="s?type=Section" memory="b?type=Memory"/>
 </mappingModel>
 """,
-    passes="""
-<swModel>
-  <sections name="s"/>
-</swModel>
-<hwModel>
-  <structures name="ECU">
-    <modules xsi:type="am:Memory" name="a"/>
-    <modules xsi:type="am:Memory" name="b"/>
-  </structures>
-</hwModel>
-<constraintsModel>
-  <physicalSectionConstraints name="C" section="s?type=Section" memories="a?type=Memory"/>
-</constraintsModel>
-<mappingModel>
-  <physicalSectionMapping name="P" origin="s?type=Section" memory="a?type=Memory"/>
-</mappingModel>
-""",
+    edits={'memory="b?type=Memory"': 'memory="a?type=Memory"'},
 )

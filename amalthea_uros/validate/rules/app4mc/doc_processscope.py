@@ -49,16 +49,10 @@ RULE = ModelRule(
   </runnableSequencingConstraints>
 </constraintsModel>
 """,
-    passes="""
-<swModel>
-  <runnables name="R"/>
-  <runnables name="S"/>
-</swModel>
-<constraintsModel>
-  <runnableSequencingConstraints name="C">
-    <runnableGroups runnables="R?type=Runnable"/>
-    <runnableGroups runnables="S?type=Runnable"/>
-  </runnableSequencingConstraints>
-</constraintsModel>
-""",
+    edits={
+        "</swModel>": """  <runnables name="S"/>
+</swModel>""",
+        "</runnableSequencingConstraints>": """  <runnableGroups runnables="S?type=Runnable"/>
+  </runnableSequencingConstraints>""",
+    },
 )

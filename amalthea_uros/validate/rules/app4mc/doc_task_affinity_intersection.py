@@ -51,24 +51,5 @@ RULE = ModelRule(
   <taskAllocation task="T?type=Task" scheduler="S?type=TaskScheduler" affinity="b?type=ProcessingUnit"/>
 </mappingModel>
 """,
-    passes="""
-<swModel>
-  <tasks name="T"/>
-</swModel>
-<hwModel>
-  <structures name="ECU">
-    <modules xsi:type="am:ProcessingUnit" name="a"/>
-    <modules xsi:type="am:ProcessingUnit" name="b"/>
-  </structures>
-</hwModel>
-<osModel>
-  <operatingSystems name="OS">
-    <taskSchedulers name="S"/>
-  </operatingSystems>
-</osModel>
-<mappingModel>
-  <schedulerAllocation scheduler="S?type=TaskScheduler" responsibility="a?type=ProcessingUnit"/>
-  <taskAllocation task="T?type=Task" scheduler="S?type=TaskScheduler" affinity="a?type=ProcessingUnit"/>
-</mappingModel>
-""",
+    edits={'affinity="b?type=ProcessingUnit"': 'affinity="a?type=ProcessingUnit"'},
 )

@@ -50,18 +50,5 @@ RULE = ModelRule(
   <taskAllocation task="T?type=Task" scheduler="R?type=TaskScheduler"/>
 </mappingModel>
 """,
-    passes="""
-<swModel>
-  <tasks name="T"/>
-</swModel>
-<osModel>
-  <operatingSystems name="OS">
-    <taskSchedulers name="S"/>
-    <taskSchedulers name="R"/>
-  </operatingSystems>
-</osModel>
-<mappingModel>
-  <taskAllocation task="T?type=Task" scheduler="S?type=TaskScheduler"/>
-</mappingModel>
-""",
+    edits={'  <taskAllocation task="T?type=Task" scheduler="R?type=TaskScheduler"/>\n': ""},
 )

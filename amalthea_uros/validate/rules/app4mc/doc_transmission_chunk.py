@@ -66,20 +66,5 @@ RULE = ModelRule(
   </labels>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <runnables name="R">
-    <activityGraph>
-      <items xsi:type="am:LabelAccess" access="read" data="L?type=Label">
-        <transmissionPolicy>
-          <chunkSize value="4" unit="B"/>
-        </transmissionPolicy>
-      </items>
-    </activityGraph>
-  </runnables>
-  <labels name="L">
-    <size value="32" unit="bit"/>
-  </labels>
-</swModel>
-""",
+    edits={'value="8"': 'value="4"'},
 )

@@ -35,16 +35,5 @@ RULE = ModelRule(
   <labels name="L"/>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <runnables name="R">
-    <activityGraph>
-      <items xsi:type="am:LabelAccess" access="read" data="L?type=Label">
-        <transmissionPolicy transmitRatio="0.5"/>
-      </items>
-    </activityGraph>
-  </runnables>
-  <labels name="L"/>
-</swModel>
-""",
+    edits={'transmitRatio="50.0"': 'transmitRatio="0.5"'},
 )

@@ -51,16 +51,5 @@ RULE = ModelRule(
   <runnables name="S"/>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <runnables name="R">
-    <activityGraph>
-      <items xsi:type="am:RunnableCall" runnable="S?type=Runnable">
-        <counter prescaler="2"/>
-      </items>
-    </activityGraph>
-  </runnables>
-  <runnables name="S"/>
-</swModel>
-""",
+    edits={'prescaler="0"': 'prescaler="2"'},
 )

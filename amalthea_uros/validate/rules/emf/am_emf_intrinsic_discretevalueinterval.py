@@ -34,15 +34,5 @@ RULE = ModelRule(
   </runnables>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <runnables name="R">
-    <activityGraph>
-      <items xsi:type="am:Ticks">
-        <default xsi:type="am:DiscreteValueBoundaries" lowerBound="10" upperBound="20"/>
-      </items>
-    </activityGraph>
-  </runnables>
-</swModel>
-""",
+    edits={'lowerBound="20" upperBound="10"': 'lowerBound="10" upperBound="20"'},
 )

@@ -36,9 +36,5 @@ RULE = ModelRule(
   <tasks/>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <tasks name="T"/>
-</swModel>
-""",
+    edits={"<tasks": '<tasks name="T"'},
 )

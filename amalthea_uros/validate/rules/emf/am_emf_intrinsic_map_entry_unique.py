@@ -72,13 +72,10 @@ RULE = ModelRule(
   </tasks>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <tasks name="T">
-    <customProperties key="k">
-      <value xsi:type="am:StringObject" value="1"/>
+    edits={
+        """    <customProperties key="k">
+      <value xsi:type="am:StringObject" value="2"/>
     </customProperties>
-  </tasks>
-</swModel>
-""",
+""": "",
+    },
 )

@@ -35,13 +35,5 @@ RULE = ModelRule(
   <modeLabels name="L" mode="M?type=EnumMode" initialValue="half"/>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <modes xsi:type="am:EnumMode" name="M">
-    <literals name="on"/>
-    <literals name="off"/>
-  </modes>
-  <modeLabels name="L" mode="M?type=EnumMode" initialValue="on"/>
-</swModel>
-""",
+    edits={'initialValue="half"': 'initialValue="on"'},
 )

@@ -43,18 +43,5 @@ RULE = ModelRule(
   </runnables>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <modes xsi:type="am:EnumMode" name="M">
-    <literals name="on"/>
-    <literals name="off"/>
-  </modes>
-  <modeLabels name="L" mode="M?type=EnumMode"/>
-  <runnables name="R">
-    <activityGraph>
-      <items xsi:type="am:ModeLabelAccess" data="L?type=ModeLabel" access="set" value="off"/>
-    </activityGraph>
-  </runnables>
-</swModel>
-""",
+    edits={'value="half"': 'value="off"'},
 )

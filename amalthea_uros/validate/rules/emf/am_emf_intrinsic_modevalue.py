@@ -45,18 +45,5 @@ RULE = ModelRule(
   </runnables>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <modes xsi:type="am:EnumMode" name="M">
-    <literals name="on"/>
-    <literals name="off"/>
-  </modes>
-  <modeLabels name="L" mode="M?type=EnumMode"/>
-  <runnables name="R">
-    <executionCondition>
-      <entries xsi:type="am:ModeValueCondition" label="L?type=ModeLabel" value="off"/>
-    </executionCondition>
-  </runnables>
-</swModel>
-""",
+    edits={'value="half"': 'value="off"'},
 )

@@ -48,11 +48,9 @@ RULE = ModelRule(
   <eventChains name="A"/>
 </constraintsModel>
 """,
-    passes="""
-<constraintsModel>
-  <timingConstraints xsi:type="am:EventChainSynchronizationConstraint" name="C" scope="A?type=EventChain B?type=EventChain"/>
-  <eventChains name="A"/>
-  <eventChains name="B"/>
-</constraintsModel>
-""",
+    edits={
+        'scope="A?type=EventChain"': 'scope="A?type=EventChain B?type=EventChain"',
+        "</constraintsModel>": """  <eventChains name="B"/>
+</constraintsModel>""",
+    },
 )

@@ -29,13 +29,11 @@ RULE = ModelRule(
   <tasks name="T" stimuli="S?type=PeriodicStimulus"/>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <tasks name="T" stimuli="S?type=PeriodicStimulus"/>
-</swModel>
+    edits={
+        "</swModel>": """</swModel>
 <stimuliModel>
   <stimuli xsi:type="am:PeriodicStimulus" name="S"/>
-</stimuliModel>
-""",
+</stimuliModel>""",
+    },
     is_about_files=True,
 )

@@ -45,14 +45,9 @@ RULE = ModelRule(
   </runnables>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <runnables name="R">
-    <activityGraph>
-      <items xsi:type="am:RunnableCall" runnable="S?type=Runnable"/>
-    </activityGraph>
-  </runnables>
-  <runnables name="S"/>
-</swModel>
-""",
+    edits={
+        'xsi:type="am:RunnableCall"': 'xsi:type="am:RunnableCall" runnable="S?type=Runnable"',
+        "</swModel>": """  <runnables name="S"/>
+</swModel>""",
+    },
 )

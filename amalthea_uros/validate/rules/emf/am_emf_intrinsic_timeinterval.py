@@ -33,14 +33,9 @@ RULE = ModelRule(
   </stimuli>
 </stimuliModel>
 """,
-    passes="""
-<stimuliModel>
-  <stimuli xsi:type="am:PeriodicStimulus" name="S">
-    <jitter xsi:type="am:TimeUniformDistribution">
-      <lowerBound value="2" unit="ms"/>
-      <upperBound value="3" unit="ms"/>
-    </jitter>
-  </stimuli>
-</stimuliModel>
-""",
+    edits={
+        """<lowerBound value="3" unit="ms"/>
+      <upperBound value="2" unit="ms"/>""": """<lowerBound value="2" unit="ms"/>
+      <upperBound value="3" unit="ms"/>""",
+    },
 )

@@ -30,11 +30,5 @@ RULE = ModelRule(
   </stimuli>
 </stimuliModel>
 """,
-    passes="""
-<stimuliModel>
-  <stimuli xsi:type="am:VariableRateStimulus" name="S">
-    <occurrencesPerStep xsi:type="am:ContinuousValueGaussDistribution" lowerBound="1.5" upperBound="2.0" mean="1.75" sd="1.0"/>
-  </stimuli>
-</stimuliModel>
-""",
+    edits={'lowerBound="2.0" upperBound="1.5"': 'lowerBound="1.5" upperBound="2.0"'},
 )

@@ -35,16 +35,8 @@ RULE = ModelRule(
   </stimuli>
 </stimuliModel>
 """,
-    passes="""
-<stimuliModel>
-  <stimuli xsi:type="am:PeriodicStimulus" name="S">
-    <jitter xsi:type="am:TimeGaussDistribution">
-      <mean value="2" unit="ms"/>
-      <sd value="1" unit="ms"/>
-      <lowerBound value="1" unit="ms"/>
-      <upperBound value="3" unit="ms"/>
-    </jitter>
-  </stimuli>
-</stimuliModel>
-""",
+    edits={
+        'value="3"': 'value="1"',
+        '<upperBound value="1"': '<upperBound value="3"',
+    },
 )

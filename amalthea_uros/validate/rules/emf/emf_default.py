@@ -57,10 +57,6 @@ RULE = ModelRule(
   <tasks name="T" preemption="_undefined_"/>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <tasks name="T" preemption="preemptive"/>
-</swModel>
-""",
+    edits={'preemption="_undefined_"': 'preemption="preemptive"'},
     in_canonical_form=True,
 )

@@ -39,10 +39,6 @@ RULE = ModelRule(
   <labels name="L"/>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <labels xmi:id="L?type=Label" name="L"/>
-</swModel>
-""",
+    edits={'<labels name="L"': '<labels xmi:id="L?type=Label" name="L"'},
     in_canonical_form=True,
 )

@@ -58,17 +58,9 @@ RULE = ModelRule(
   </eventChains>
 </constraintsModel>
 """,
-    passes="""
-<eventModel>
-  <events xsi:type="am:ProcessEvent" name="a" entity="T?type=Task" eventType="start"/>
-  <events xsi:type="am:ProcessEvent" name="b" entity="T?type=Task" eventType="terminate"/>
-  <events xsi:type="am:CustomEvent" name="c"/>
-</eventModel>
-<swModel>
-  <tasks name="T"/>
-</swModel>
-<constraintsModel>
-  <eventChains name="C" stimulus="a?type=ProcessEvent" response="b?type=ProcessEvent"/>
-</constraintsModel>
-""",
+    edits={
+        """<eventChains name="C" stimulus="a?type=ProcessEvent" response="b?type=ProcessEvent">
+    <items xsi:type="am:EventChainReference" eventChain="C?type=EventChain"/>
+  </eventChains>""": '<eventChains name="C" stimulus="a?type=ProcessEvent" response="b?type=ProcessEvent"/>',
+    },
 )

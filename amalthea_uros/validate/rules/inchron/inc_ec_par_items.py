@@ -51,32 +51,24 @@ RULE = ModelRule(
   </eventChains>
 </constraintsModel>
 """,
-    passes="""
-<eventModel>
-  <events xsi:type="am:ProcessEvent" name="a" entity="T?type=Task" eventType="start"/>
-  <events xsi:type="am:ProcessEvent" name="b" entity="T?type=Task" eventType="terminate"/>
-  <events xsi:type="am:CustomEvent" name="c"/>
-</eventModel>
-<swModel>
-  <tasks name="T"/>
-</swModel>
-<constraintsModel>
-  <eventChains name="C" itemType="parallel" stimulus="a?type=ProcessEvent" response="b?type=ProcessEvent">
-    <items xsi:type="am:EventChainContainer">
-      <eventChain stimulus="a?type=ProcessEvent" response="b?type=ProcessEvent">
+    edits={
+        """<eventChain stimulus="a?type=ProcessEvent" response="b?type=ProcessEvent"/>
+    </items>
+    <items xsi:type="am:EventChainContainer">""": """<eventChain stimulus="a?type=ProcessEvent" response="b?type=ProcessEvent">
         <items xsi:type="am:EventChainContainer">
           <eventChain stimulus="a?type=ProcessEvent" response="b?type=ProcessEvent"/>
         </items>
       </eventChain>
     </items>
-    <items xsi:type="am:EventChainContainer">
-      <eventChain stimulus="a?type=ProcessEvent" response="b?type=ProcessEvent">
+    <items xsi:type="am:EventChainContainer">""",
+        """<eventChain stimulus="a?type=ProcessEvent" response="b?type=ProcessEvent"/>
+    </items>
+  </eventChains>""": """<eventChain stimulus="a?type=ProcessEvent" response="b?type=ProcessEvent">
         <items xsi:type="am:EventChainContainer">
           <eventChain stimulus="a?type=ProcessEvent" response="b?type=ProcessEvent"/>
         </items>
       </eventChain>
     </items>
-  </eventChains>
-</constraintsModel>
-""",
+  </eventChains>""",
+    },
 )

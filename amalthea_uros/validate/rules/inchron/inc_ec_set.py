@@ -58,17 +58,8 @@ RULE = ModelRule(
   <eventChains name="C" stimulus="a?type=ProcessEvent" response="set?type=EventSet"/>
 </constraintsModel>
 """,
-    passes="""
-<eventModel>
-  <events xsi:type="am:ProcessEvent" name="a" entity="T?type=Task" eventType="start"/>
-  <events xsi:type="am:ProcessEvent" name="b" entity="T?type=Task" eventType="terminate"/>
-  <events xsi:type="am:CustomEvent" name="c"/>
-</eventModel>
-<swModel>
-  <tasks name="T"/>
-</swModel>
-<constraintsModel>
-  <eventChains name="C" stimulus="a?type=ProcessEvent" response="b?type=ProcessEvent"/>
-</constraintsModel>
-""",
+    edits={
+        '  <events xsi:type="am:EventSet" name="set"/>\n': "",
+        'response="set?type=EventSet"': 'response="b?type=ProcessEvent"',
+    },
 )

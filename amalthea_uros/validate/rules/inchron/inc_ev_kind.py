@@ -39,16 +39,13 @@ RULE = ModelRule(
   <eventChains name="C" stimulus="c?type=CustomEvent" response="c?type=CustomEvent"/>
 </constraintsModel>
 """,
-    passes="""
-<eventModel>
-  <events xsi:type="am:ProcessEvent" name="a" entity="T?type=Task" eventType="start"/>
-  <events xsi:type="am:ProcessEvent" name="b" entity="T?type=Task" eventType="terminate"/>
-</eventModel>
-<swModel>
+    edits={
+        'xsi:type="am:CustomEvent" name="c"/>': """xsi:type="am:ProcessEvent" name="a" entity="T?type=Task" eventType="start"/>
+  <events xsi:type="am:ProcessEvent" name="b" entity="T?type=Task" eventType="terminate"/>""",
+        "<constraintsModel>": """<swModel>
   <tasks name="T"/>
 </swModel>
-<constraintsModel>
-  <eventChains name="C" stimulus="a?type=ProcessEvent" response="b?type=ProcessEvent"/>
-</constraintsModel>
-""",
+<constraintsModel>""",
+        'stimulus="c?type=CustomEvent" response="c?type=CustomEvent"': 'stimulus="a?type=ProcessEvent" response="b?type=ProcessEvent"',
+    },
 )

@@ -37,12 +37,8 @@ RULE = ModelRule(
   <events xsi:type="am:LabelEvent" name="e" entity="L?type=Label" eventType="read" runnable="R?type=Runnable"/>
 </eventModel>
 """,
-    passes="""
-<swModel>
-  <labels name="L"/>
-</swModel>
-<eventModel>
-  <events xsi:type="am:LabelEvent" name="e" entity="L?type=Label" eventType="read"/>
-</eventModel>
-""",
+    edits={
+        '  <runnables name="R"/>\n': "",
+        'eventType="read" runnable="R?type=Runnable"': 'eventType="read"',
+    },
 )

@@ -42,14 +42,5 @@ RULE = ModelRule(
   <tasks name="T"/>
 </swModel>
 """,
-    passes="""
-<eventModel>
-  <events xsi:type="am:ProcessEvent" name="a" entity="T?type=Task" eventType="start"/>
-  <events xsi:type="am:ProcessEvent" name="b" entity="T?type=Task" eventType="terminate"/>
-  <events xsi:type="am:CustomEvent" name="c"/>
-</eventModel>
-<swModel>
-  <tasks name="T"/>
-</swModel>
-""",
+    edits={'eventType="preempt"': 'eventType="start"'},
 )

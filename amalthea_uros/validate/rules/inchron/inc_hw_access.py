@@ -41,14 +41,9 @@ RULE = ModelRule(
   </structures>
 </hwModel>
 """,
-    passes="""
-<hwModel>
-  <domains xsi:type="am:FrequencyDomain" name="clock">
-    <defaultValue value="300" unit="MHz"/>
-  </domains>
-  <structures name="ECU">
-    <modules xsi:type="am:ProcessingUnit" name="core"/>
-  </structures>
-</hwModel>
-""",
+    edits={
+        """<modules xsi:type="am:ProcessingUnit" name="core">
+      <accessElements name="a"/>
+    </modules>""": '<modules xsi:type="am:ProcessingUnit" name="core"/>',
+    },
 )

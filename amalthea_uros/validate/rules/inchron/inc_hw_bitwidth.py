@@ -35,16 +35,5 @@ RULE = ModelRule(
   </structures>
 </hwModel>
 """,
-    passes="""
-<hwModel>
-  <domains xsi:type="am:FrequencyDomain" name="clock">
-    <defaultValue value="300" unit="MHz"/>
-  </domains>
-  <structures name="ECU">
-    <modules xsi:type="am:Memory" name="RAM">
-      <ports name="p" bitWidth="32"/>
-    </modules>
-  </structures>
-</hwModel>
-""",
+    edits={'name="p"': 'name="p" bitWidth="32"'},
 )

@@ -35,15 +35,8 @@ RULE = ModelRule(
   </structures>
 </hwModel>
 """,
-    passes="""
-<hwModel>
-  <domains xsi:type="am:FrequencyDomain" name="clock">
-    <defaultValue value="300" unit="MHz"/>
-  </domains>
-  <structures name="ECU">
-    <modules xsi:type="am:ProcessingUnit" name="core"/>
-    <modules xsi:type="am:Cache" name="L2"/>
-  </structures>
-</hwModel>
-""",
+    edits={
+        'xsi:type="am:Cache" name="L2"/>': """xsi:type="am:ProcessingUnit" name="core"/>
+    <modules xsi:type="am:Cache" name="L2"/>""",
+    },
 )

@@ -35,16 +35,5 @@ RULE = ModelRule(
   </structures>
 </hwModel>
 """,
-    passes="""
-<hwModel>
-  <domains xsi:type="am:FrequencyDomain" name="clock">
-    <defaultValue value="300" unit="MHz"/>
-  </domains>
-  <structures name="ECU">
-    <modules xsi:type="am:ConnectionHandler" name="bus">
-      <ports name="p" portInterface="AXI"/>
-    </modules>
-  </structures>
-</hwModel>
-""",
+    edits={'portInterface="CAN"': 'portInterface="AXI"'},
 )

@@ -39,16 +39,5 @@ RULE = ModelRule(
   </structures>
 </hwModel>
 """,
-    passes="""
-<hwModel>
-  <domains xsi:type="am:FrequencyDomain" name="clock">
-    <defaultValue value="300" unit="MHz"/>
-  </domains>
-  <structures name="ECU">
-    <ports name="a" portType="initiator"/>
-    <ports name="b" portType="responder"/>
-    <connections name="wire" port1="ECU/a?type=HwPort" port2="ECU/b?type=HwPort"/>
-  </structures>
-</hwModel>
-""",
+    edits={'name="b" portType="initiator"': 'name="b" portType="responder"'},
 )

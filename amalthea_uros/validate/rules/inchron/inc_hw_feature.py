@@ -48,20 +48,11 @@ RULE = ModelRule(
   </featureCategories>
 </hwModel>
 """,
-    passes="""
-<swModel>
-  <runnables name="R">
-    <activityGraph>
-      <items xsi:type="am:Ticks">
-        <default xsi:type="am:DiscreteValueConstant" value="100"/>
-      </items>
-    </activityGraph>
-  </runnables>
-</swModel>
-<hwModel>
-  <featureCategories name="Instructions">
-    <features name="IPC" value="1.5"/>
-  </featureCategories>
-</hwModel>
-""",
+    edits={
+        """<items xsi:type="am:ExecutionNeed">
+        <needs key="Instructions">
+          <value xsi:type="am:DiscreteValueConstant" value="100"/>
+        </needs>""": """<items xsi:type="am:Ticks">
+        <default xsi:type="am:DiscreteValueConstant" value="100"/>""",
+    },
 )

@@ -53,15 +53,9 @@ RULE = ModelRule(
   </structures>
 </hwModel>
 """,
-    passes="""
-<hwModel>
-  <domains xsi:type="am:FrequencyDomain" name="clock">
+    edits={
+        'name="clock"/>': """name="clock">
     <defaultValue value="300" unit="MHz"/>
-  </domains>
-  <structures name="ECU">
-    <modules xsi:type="am:ProcessingUnit" name="core_0" frequencyDomain="clock?type=FrequencyDomain"/>
-    <modules xsi:type="am:ProcessingUnit" name="core_1" frequencyDomain="clock?type=FrequencyDomain"/>
-  </structures>
-</hwModel>
-""",
+  </domains>""",
+    },
 )

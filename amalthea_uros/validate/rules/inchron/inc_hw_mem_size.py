@@ -35,14 +35,10 @@ RULE = ModelRule(
   </structures>
 </hwModel>
 """,
-    passes="""
-<hwModel>
-  <definitions xsi:type="am:MemoryDefinition" name="type">
-    <size value="1" unit="MB"/>
-  </definitions>
-  <structures name="ECU">
-    <modules xsi:type="am:Memory" name="RAM" definition="type?type=MemoryDefinition"/>
-  </structures>
-</hwModel>
-""",
+    edits={
+        '<domains xsi:type="am:FrequencyDomain" name="clock"': '<definitions xsi:type="am:MemoryDefinition" name="type"',
+        '<defaultValue value="300" unit="MHz"': '<size value="1" unit="MB"',
+        "</domains": "</definitions",
+        'name="RAM"': 'name="RAM" definition="type?type=MemoryDefinition"',
+    },
 )

@@ -34,10 +34,5 @@ RULE = ModelRule(
   <structures name="B" structureType="System"/>
 </hwModel>
 """,
-    passes="""
-<hwModel>
-  <structures name="A" structureType="System"/>
-  <structures name="B" structureType="ECU"/>
-</hwModel>
-""",
+    edits={'name="B" structureType="System"': 'name="B" structureType="ECU"'},
 )

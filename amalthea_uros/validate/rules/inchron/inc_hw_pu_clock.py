@@ -33,14 +33,5 @@ RULE = ModelRule(
   </structures>
 </hwModel>
 """,
-    passes="""
-<hwModel>
-  <domains xsi:type="am:FrequencyDomain" name="clock">
-    <defaultValue value="300" unit="MHz"/>
-  </domains>
-  <structures name="ECU">
-    <modules xsi:type="am:ProcessingUnit" name="core" frequencyDomain="clock?type=FrequencyDomain"/>
-  </structures>
-</hwModel>
-""",
+    edits={'name="core"': 'name="core" frequencyDomain="clock?type=FrequencyDomain"'},
 )

@@ -150,10 +150,6 @@ RULE = ModelRule(
   <threads name="T"/>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <tasks name="T"/>
-</swModel>
-""",
+    edits={"<threads": "<tasks"},
     is_about_files=True,
 )

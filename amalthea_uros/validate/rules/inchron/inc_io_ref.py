@@ -43,15 +43,9 @@ RULE = ModelRule(
   </tasks>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <tasks name="T">
-    <activityGraph>
-      <items xsi:type="am:RunnableCall" runnable="R?type=Runnable"/>
-    </activityGraph>
-  </tasks>
-  <runnables name="R"/>
-</swModel>
-""",
+    edits={
+        "</swModel>": """  <runnables name="R"/>
+</swModel>""",
+    },
     is_about_files=True,
 )

@@ -33,10 +33,7 @@ RULE = ModelRule(
 <!-- a file of AMALTHEA 2.2.0 beside one of 3.3.0 -->
 <swModel/>
 """,
-    passes="""
-<!-- a file of AMALTHEA 3.3.0 beside another one -->
-<swModel/>
-""",
+    edits={"2.2.0 beside one of 3.3.0": "3.3.0 beside another one"},
     example_version="2.2.0",
     beside="<hwModel/>",
 )

@@ -83,11 +83,8 @@ RULE = ModelRule(
   </tasks>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <tasks xmi:id="T?type=Task" name="T">
-    <localLabels xmi:id="T/l?type=LocalModeLabel" name="l"/>
-  </tasks>
-</swModel>
-""",
+    edits={
+        '<tasks name="T"': '<tasks xmi:id="T?type=Task" name="T"',
+        '<localLabels name="l"': '<localLabels xmi:id="T/l?type=LocalModeLabel" name="l"',
+    },
 )

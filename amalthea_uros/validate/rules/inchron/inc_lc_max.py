@@ -30,11 +30,9 @@ RULE = ModelRule(
   <timingConstraints xsi:type="am:EventChainLatencyConstraint" name="L"/>
 </constraintsModel>
 """,
-    passes="""
-<constraintsModel>
-  <timingConstraints xsi:type="am:EventChainLatencyConstraint" name="L" type="Age">
+    edits={
+        'name="L"/>': """name="L" type="Age">
     <maximum value="1" unit="ms"/>
-  </timingConstraints>
-</constraintsModel>
-""",
+  </timingConstraints>""",
+    },
 )

@@ -36,14 +36,7 @@ RULE = ModelRule(
   <schedulerAllocation executingPU="core?type=ProcessingUnit"/>
 </mappingModel>
 """,
-    passes="""
-<hwModel>
-  <structures name="ECU">
-    <modules xsi:type="am:ProcessingUnit" name="core"/>
-  </structures>
-</hwModel>
-<mappingModel>
-  <schedulerAllocation responsibility="core?type=ProcessingUnit" executingPU="core?type=ProcessingUnit"/>
-</mappingModel>
-""",
+    edits={
+        'executingPU="core?type=ProcessingUnit"': 'responsibility="core?type=ProcessingUnit" executingPU="core?type=ProcessingUnit"',
+    },
 )

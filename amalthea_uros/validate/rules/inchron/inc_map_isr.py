@@ -33,17 +33,13 @@ RULE = ModelRule(
   <isrAllocation isr="I?type=ISR"/>
 </mappingModel>
 """,
-    passes="""
-<osModel>
+    edits={
+        "<swModel>": """<osModel>
   <operatingSystems name="OS">
     <interruptControllers name="C"/>
   </operatingSystems>
 </osModel>
-<swModel>
-  <isrs name="I"/>
-</swModel>
-<mappingModel>
-  <isrAllocation isr="I?type=ISR" controller="C?type=InterruptController"/>
-</mappingModel>
-""",
+<swModel>""",
+        'isr="I?type=ISR"': 'isr="I?type=ISR" controller="C?type=InterruptController"',
+    },
 )

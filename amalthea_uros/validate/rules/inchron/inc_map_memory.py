@@ -40,17 +40,11 @@ RULE = ModelRule(
   <memoryMapping memory="RAM?type=Memory"/>
 </mappingModel>
 """,
-    passes="""
-<hwModel>
-  <structures name="ECU">
-    <modules xsi:type="am:Memory" name="RAM"/>
-  </structures>
-</hwModel>
-<swModel>
+    edits={
+        "<mappingModel>": """<swModel>
   <labels name="L"/>
 </swModel>
-<mappingModel>
-  <memoryMapping abstractElement="L?type=Label" memory="RAM?type=Memory"/>
-</mappingModel>
-""",
+<mappingModel>""",
+        'memory="RAM?type=Memory"': 'abstractElement="L?type=Label" memory="RAM?type=Memory"',
+    },
 )

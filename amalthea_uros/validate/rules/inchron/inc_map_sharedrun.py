@@ -79,29 +79,9 @@ RULE = ModelRule(
   <taskAllocation task="U?type=Task" scheduler="P?type=TaskScheduler"/>
 </mappingModel>
 """,
-    passes="""
-<swModel>
-  <tasks name="T">
-    <activityGraph>
-      <items xsi:type="am:RunnableCall" runnable="R?type=Runnable"/>
-    </activityGraph>
-  </tasks>
-  <tasks name="U">
-    <activityGraph>
-      <items xsi:type="am:RunnableCall" runnable="R?type=Runnable"/>
-    </activityGraph>
-  </tasks>
-  <runnables name="R"/>
-</swModel>
-<osModel>
-  <operatingSystems name="A">
-    <taskSchedulers name="S"/>
-    <taskSchedulers name="P"/>
-  </operatingSystems>
-</osModel>
-<mappingModel>
-  <taskAllocation task="T?type=Task" scheduler="S?type=TaskScheduler"/>
-  <taskAllocation task="U?type=Task" scheduler="P?type=TaskScheduler"/>
-</mappingModel>
-""",
+    edits={
+        """  </operatingSystems>
+  <operatingSystems name="B">
+""": "",
+    },
 )

@@ -40,17 +40,5 @@ RULE = ModelRule(
   <taskAllocation scheduler="S?type=TaskScheduler"/>
 </mappingModel>
 """,
-    passes="""
-<osModel>
-  <operatingSystems name="OS">
-    <taskSchedulers name="S"/>
-  </operatingSystems>
-</osModel>
-<swModel>
-  <tasks name="T"/>
-</swModel>
-<mappingModel>
-  <taskAllocation task="T?type=Task" scheduler="S?type=TaskScheduler"/>
-</mappingModel>
-""",
+    edits={'scheduler="S?type=TaskScheduler"': 'task="T?type=Task" scheduler="S?type=TaskScheduler"'},
 )

@@ -35,17 +35,10 @@ RULE = ModelRule(
   <tasks name="T"/>
 </swModel>
 """,
-    passes="""
-<osModel>
-  <operatingSystems name="OS">
-    <taskSchedulers name="S"/>
-  </operatingSystems>
-</osModel>
-<swModel>
-  <tasks name="T"/>
-</swModel>
+    edits={
+        "</swModel>": """</swModel>
 <mappingModel>
   <taskAllocation task="T?type=Task" scheduler="S?type=TaskScheduler"/>
-</mappingModel>
-""",
+</mappingModel>""",
+    },
 )

@@ -44,19 +44,8 @@ RULE = ModelRule(
   </taskAllocation>
 </mappingModel>
 """,
-    passes="""
-<osModel>
-  <schedulingParameterDefinitions name="priority"/>
-</osModel>
-<swModel>
-  <tasks name="T"/>
-</swModel>
-<mappingModel>
-  <taskAllocation task="T?type=Task">
-    <schedulingParameters key="priority?type=SchedulingParameterDefinition">
-      <value xsi:type="am:IntegerObject" value="3"/>
-    </schedulingParameters>
-  </taskAllocation>
-</mappingModel>
-""",
+    edits={
+        'name="taskGroup"': 'name="priority"',
+        'key="taskGroup?type=SchedulingParameterDefinition"': 'key="priority?type=SchedulingParameterDefinition"',
+    },
 )

@@ -35,12 +35,8 @@ RULE = ModelRule(
   </operatingSystems>
 </osModel>
 """,
-    passes="""
-<osModel>
-  <schedulerDefinitions name="FixedPriorityPreemptive"/>
-  <operatingSystems name="OS">
-    <taskSchedulers name="S" definition="FixedPriorityPreemptive?type=SchedulerDefinition"/>
-  </operatingSystems>
-</osModel>
-""",
+    edits={
+        'name="EarliestDeadlineFirst"': 'name="FixedPriorityPreemptive"',
+        'definition="EarliestDeadlineFirst?type=SchedulerDefinition"': 'definition="FixedPriorityPreemptive?type=SchedulerDefinition"',
+    },
 )

@@ -32,11 +32,5 @@ RULE = ModelRule(
   </operatingSystems>
 </osModel>
 """,
-    passes="""
-<osModel>
-  <operatingSystems name="OS">
-    <osDataConsistency mode="noProtection"/>
-  </operatingSystems>
-</osModel>
-""",
+    edits={'mode="automaticProtection"': 'mode="noProtection"'},
 )

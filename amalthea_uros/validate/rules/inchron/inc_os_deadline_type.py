@@ -39,19 +39,5 @@ RULE = ModelRule(
   </taskAllocation>
 </mappingModel>
 """,
-    passes="""
-<osModel>
-  <schedulingParameterDefinitions name="deadline"/>
-</osModel>
-<swModel>
-  <tasks name="T"/>
-</swModel>
-<mappingModel>
-  <taskAllocation task="T?type=Task">
-    <schedulingParameters key="deadline?type=SchedulingParameterDefinition">
-      <value xsi:type="am:Time" value="3" unit="ms"/>
-    </schedulingParameters>
-  </taskAllocation>
-</mappingModel>
-""",
+    edits={'xsi:type="am:IntegerObject" value="3"': 'xsi:type="am:Time" value="3" unit="ms"'},
 )

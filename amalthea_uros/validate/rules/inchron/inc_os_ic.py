@@ -33,11 +33,5 @@ RULE = ModelRule(
   </operatingSystems>
 </osModel>
 """,
-    passes="""
-<osModel>
-  <operatingSystems name="OS">
-    <interruptControllers name="A"/>
-  </operatingSystems>
-</osModel>
-""",
+    edits={'    <interruptControllers name="B"/>\n': ""},
 )

@@ -34,16 +34,9 @@ RULE = ModelRule(
   </operatingSystems>
 </osModel>
 """,
-    passes="""
-<osModel>
-  <operatingSystems name="OS">
-    <taskSchedulers name="S">
-      <schedulingParameters key="priority?type=SchedulingParameterDefinition">
-        <value xsi:type="am:IntegerObject" value="3"/>
-      </schedulingParameters>
-    </taskSchedulers>
-  </operatingSystems>
-  <schedulingParameterDefinitions name="priority"/>
-</osModel>
-""",
+    edits={
+        "<schedulingParameters": '<schedulingParameters key="priority?type=SchedulingParameterDefinition"',
+        "</osModel>": """  <schedulingParameterDefinitions name="priority"/>
+</osModel>""",
+    },
 )

@@ -40,19 +40,5 @@ RULE = ModelRule(
   </taskAllocation>
 </mappingModel>
 """,
-    passes="""
-<osModel>
-  <schedulingParameterDefinitions name="priority"/>
-</osModel>
-<swModel>
-  <tasks name="T"/>
-</swModel>
-<mappingModel>
-  <taskAllocation task="T?type=Task">
-    <schedulingParameters key="priority?type=SchedulingParameterDefinition">
-      <value xsi:type="am:IntegerObject" value="3"/>
-    </schedulingParameters>
-  </taskAllocation>
-</mappingModel>
-""",
+    edits={'xsi:type="am:StringObject"': 'xsi:type="am:IntegerObject"'},
 )

@@ -30,9 +30,5 @@ RULE = ModelRule(
   <semaphores name="S" semaphoreType="Mutex"/>
 </osModel>
 """,
-    passes="""
-<osModel>
-  <semaphores name="S" semaphoreType="CountingSemaphore" ownership="false"/>
-</osModel>
-""",
+    edits={'semaphoreType="Mutex"': 'semaphoreType="CountingSemaphore" ownership="false"'},
 )

@@ -30,9 +30,5 @@ RULE = ModelRule(
   <stimuli xsi:type="am:PeriodicBurstStimulus" name="S" occurrenceCount="0"/>
 </stimuliModel>
 """,
-    passes="""
-<stimuliModel>
-  <stimuli xsi:type="am:PeriodicBurstStimulus" name="S" occurrenceCount="3"/>
-</stimuliModel>
-""",
+    edits={'occurrenceCount="0"': 'occurrenceCount="3"'},
 )

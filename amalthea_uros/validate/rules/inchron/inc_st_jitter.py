@@ -35,13 +35,9 @@ RULE = ModelRule(
   </stimuli>
 </stimuliModel>
 """,
-    passes="""
-<stimuliModel>
-  <stimuli xsi:type="am:PeriodicStimulus" name="S">
-    <jitter xsi:type="am:TimeConstant">
+    edits={
+        'xsi:type="am:TimeStatistics"/>': """xsi:type="am:TimeConstant">
       <value value="1" unit="ms"/>
-    </jitter>
-  </stimuli>
-</stimuliModel>
-""",
+    </jitter>""",
+    },
 )

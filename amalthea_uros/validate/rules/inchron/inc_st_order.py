@@ -44,13 +44,7 @@ RULE = ModelRule(
   <tasks name="T" stimuli="C?type=CustomStimulus P?type=PeriodicStimulus"/>
 </swModel>
 """,
-    passes="""
-<stimuliModel>
-  <stimuli xsi:type="am:CustomStimulus" name="C"/>
-  <stimuli xsi:type="am:PeriodicStimulus" name="P"/>
-</stimuliModel>
-<swModel>
-  <tasks name="T" stimuli="P?type=PeriodicStimulus C?type=CustomStimulus"/>
-</swModel>
-""",
+    edits={
+        'stimuli="C?type=CustomStimulus P?type=PeriodicStimulus"': 'stimuli="P?type=PeriodicStimulus C?type=CustomStimulus"',
+    },
 )

@@ -29,11 +29,9 @@ RULE = ModelRule(
   <stimuli xsi:type="am:PeriodicStimulus" name="S"/>
 </stimuliModel>
 """,
-    passes="""
-<stimuliModel>
-  <stimuli xsi:type="am:PeriodicStimulus" name="S">
+    edits={
+        'name="S"/>': """name="S">
     <recurrence value="1" unit="ms"/>
-  </stimuli>
-</stimuliModel>
-""",
+  </stimuli>""",
+    },
 )

@@ -35,14 +35,10 @@ RULE = ModelRule(
   </stimuli>
 </stimuliModel>
 """,
-    passes="""
-<stimuliModel>
-  <stimuli xsi:type="am:RelativePeriodicStimulus" name="S">
-    <nextOccurrence xsi:type="am:TimeUniformDistribution">
+    edits={
+        """<nextOccurrence xsi:type="am:TimeConstant">
+      <value value="1" unit="ms"/>""": """<nextOccurrence xsi:type="am:TimeUniformDistribution">
       <lowerBound value="1" unit="ms"/>
-      <upperBound value="2" unit="ms"/>
-    </nextOccurrence>
-  </stimuli>
-</stimuliModel>
-""",
+      <upperBound value="2" unit="ms"/>""",
+    },
 )

@@ -52,14 +52,5 @@ RULE = ModelRule(
   </stimuli>
 </stimuliModel>
 """,
-    passes="""
-<stimuliModel>
-  <stimuli xsi:type="am:RelativePeriodicStimulus" name="S">
-    <nextOccurrence xsi:type="am:TimeUniformDistribution">
-      <lowerBound value="1" unit="ms"/>
-      <upperBound value="2" unit="ms"/>
-    </nextOccurrence>
-  </stimuli>
-</stimuliModel>
-""",
+    edits={'value="2000" unit="us"': 'value="2" unit="ms"'},
 )

@@ -38,14 +38,10 @@ RULE = ModelRule(
   <tasks name="T" stimuli="S?type=VariableRateStimulus"/>
 </swModel>
 """,
-    passes="""
-<stimuliModel>
-  <stimuli xsi:type="am:PeriodicStimulus" name="S">
+    edits={
+        'xsi:type="am:VariableRateStimulus" name="S"/>': """xsi:type="am:PeriodicStimulus" name="S">
     <recurrence value="1" unit="ms"/>
-  </stimuli>
-</stimuliModel>
-<swModel>
-  <tasks name="T" stimuli="S?type=PeriodicStimulus"/>
-</swModel>
-""",
+  </stimuli>""",
+        'stimuli="S?type=VariableRateStimulus"': 'stimuli="S?type=PeriodicStimulus"',
+    },
 )

@@ -31,11 +31,5 @@ RULE = ModelRule(
   </stimuli>
 </stimuliModel>
 """,
-    passes="""
-<stimuliModel>
-  <stimuli xsi:type="am:PeriodicStimulus" name="S">
-    <recurrence value="1" unit="ms"/>
-  </stimuli>
-</stimuliModel>
-""",
+    edits={'value="1"': 'value="1" unit="ms"'},
 )

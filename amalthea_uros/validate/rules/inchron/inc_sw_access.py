@@ -47,14 +47,5 @@ RULE = ModelRule(
   <labels name="L"/>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <runnables name="R">
-    <activityGraph>
-      <items xsi:type="am:LabelAccess" data="L?type=Label" access="read"/>
-    </activityGraph>
-  </runnables>
-  <labels name="L"/>
-</swModel>
-""",
+    edits={'data="L?type=Label"': 'data="L?type=Label" access="read"'},
 )

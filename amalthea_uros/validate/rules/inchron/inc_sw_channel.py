@@ -39,11 +39,9 @@ RULE = ModelRule(
   </runnables>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <runnables name="R">
-    <activityGraph/>
-  </runnables>
-</swModel>
-""",
+    edits={
+        """<activityGraph>
+      <items xsi:type="am:TerminateProcess"/>
+    </activityGraph>""": "<activityGraph/>",
+    },
 )

@@ -66,21 +66,11 @@ RULE = ModelRule(
   <channels name="C"/>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <runnables name="R">
-    <activityGraph>
-      <items xsi:type="am:Switch">
-        <entries name="e">
-          <condition>
-            <entries xsi:type="am:ModeValueCondition" label="L?type=ModeLabel" relation="EQUAL" value="1"/>
-          </condition>
-        </entries>
-      </items>
-    </activityGraph>
-  </runnables>
-  <modes xsi:type="am:NumericMode" name="M"/>
-  <modeLabels name="L" mode="M?type=NumericMode"/>
-</swModel>
-""",
+    edits={
+        """<entries xsi:type="am:ConditionConjunction">
+              <entries xsi:type="am:ChannelFillCondition" channel="C?type=Channel" relation="EQUAL" fillLevel="1"/>
+            </entries>""": '<entries xsi:type="am:ModeValueCondition" label="L?type=ModeLabel" relation="EQUAL" value="1"/>',
+        '<channels name="C"/>': """<modes xsi:type="am:NumericMode" name="M"/>
+  <modeLabels name="L" mode="M?type=NumericMode"/>""",
+    },
 )

@@ -38,19 +38,11 @@ RULE = ModelRule(
   </runnables>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <runnables name="R">
-    <activityGraph>
-      <items xsi:type="am:Switch">
-        <entries name="e">
+    edits={
+        'name="e"/>': """name="e">
           <condition>
             <entries xsi:type="am:ModeValueCondition" relation="EQUAL" value="1"/>
           </condition>
-        </entries>
-      </items>
-    </activityGraph>
-  </runnables>
-</swModel>
-""",
+        </entries>""",
+    },
 )

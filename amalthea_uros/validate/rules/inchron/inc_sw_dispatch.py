@@ -58,20 +58,5 @@ RULE = ModelRule(
   </tasks>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <tasks name="T">
-    <customProperties key="callbackServer">
-      <value xsi:type="am:BooleanObject" value="true"/>
-    </customProperties>
-    <activityGraph>
-      <items xsi:type="am:Group" name="G">
-        <customProperties key="dispatchingPolicy">
-          <value xsi:type="am:StringObject" value="FIFO"/>
-        </customProperties>
-      </items>
-    </activityGraph>
-  </tasks>
-</swModel>
-""",
+    edits={'value="random"': 'value="FIFO"'},
 )

@@ -39,16 +39,8 @@ RULE = ModelRule(
   <events name="b"/>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <runnables name="R">
-    <activityGraph>
-      <items xsi:type="am:SetEvent">
-        <eventMask events="a?type=OsEvent"/>
-      </items>
-    </activityGraph>
-  </runnables>
-  <events name="a"/>
-</swModel>
-""",
+    edits={
+        'events="a?type=OsEvent b?type=OsEvent"': 'events="a?type=OsEvent"',
+        '  <events name="b"/>\n': "",
+    },
 )

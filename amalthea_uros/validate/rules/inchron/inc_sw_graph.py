@@ -29,11 +29,9 @@ RULE = ModelRule(
   <runnables name="R"/>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <runnables name="R">
+    edits={
+        'name="R"/>': """name="R">
     <activityGraph/>
-  </runnables>
-</swModel>
-""",
+  </runnables>""",
+    },
 )

@@ -32,13 +32,5 @@ RULE = ModelRule(
   </runnables>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <runnables name="R">
-    <activityGraph>
-      <items xsi:type="am:Group" ordered="true"/>
-    </activityGraph>
-  </runnables>
-</swModel>
-""",
+    edits={'ordered="false"': 'ordered="true"'},
 )

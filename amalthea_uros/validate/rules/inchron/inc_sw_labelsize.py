@@ -28,11 +28,9 @@ RULE = ModelRule(
   <labels name="L"/>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <labels name="L">
+    edits={
+        'name="L"/>': """name="L">
     <size value="4" unit="B"/>
-  </labels>
-</swModel>
-""",
+  </labels>""",
+    },
 )

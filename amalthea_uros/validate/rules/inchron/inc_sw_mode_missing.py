@@ -28,10 +28,8 @@ RULE = ModelRule(
   <modeLabels name="L"/>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <modes xsi:type="am:NumericMode" name="M"/>
-  <modeLabels name="L" mode="M?type=NumericMode"/>
-</swModel>
-""",
+    edits={
+        '<modeLabels name="L"/>': """<modes xsi:type="am:NumericMode" name="M"/>
+  <modeLabels name="L" mode="M?type=NumericMode"/>""",
+    },
 )

@@ -36,15 +36,5 @@ RULE = ModelRule(
   <modeLabels name="L" mode="M?type=NumericMode"/>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <runnables name="R">
-    <activityGraph>
-      <items xsi:type="am:ModeLabelAccess" data="L?type=ModeLabel" access="increment" step="5"/>
-    </activityGraph>
-  </runnables>
-  <modes xsi:type="am:NumericMode" name="M"/>
-  <modeLabels name="L" mode="M?type=NumericMode"/>
-</swModel>
-""",
+    edits={'access="set" value="5"': 'access="increment" step="5"'},
 )

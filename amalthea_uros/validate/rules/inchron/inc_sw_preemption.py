@@ -28,9 +28,5 @@ RULE = ModelRule(
   <tasks name="T" preemption="cooperative"/>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <tasks name="T" preemption="preemptive"/>
-</swModel>
-""",
+    edits={'preemption="cooperative"': 'preemption="preemptive"'},
 )

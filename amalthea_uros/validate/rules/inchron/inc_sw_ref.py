@@ -38,14 +38,9 @@ RULE = ModelRule(
   </runnables>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <runnables name="R">
-    <activityGraph>
-      <items xsi:type="am:RunnableCall" runnable="Other?type=Runnable"/>
-    </activityGraph>
-  </runnables>
-  <runnables name="Other"/>
-</swModel>
-""",
+    edits={
+        'xsi:type="am:RunnableCall"': 'xsi:type="am:RunnableCall" runnable="Other?type=Runnable"',
+        "</swModel>": """  <runnables name="Other"/>
+</swModel>""",
+    },
 )

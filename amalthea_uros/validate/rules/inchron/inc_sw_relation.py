@@ -39,19 +39,5 @@ RULE = ModelRule(
   </runnables>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <runnables name="R">
-    <activityGraph>
-      <items xsi:type="am:Switch">
-        <entries name="e">
-          <condition>
-            <entries xsi:type="am:ModeValueCondition" relation="EQUAL" value="1"/>
-          </condition>
-        </entries>
-      </items>
-    </activityGraph>
-  </runnables>
-</swModel>
-""",
+    edits={'relation="LESS_THAN"': 'relation="EQUAL"'},
 )

@@ -37,14 +37,9 @@ RULE = ModelRule(
   </runnables>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <runnables name="R">
-    <activityGraph>
-      <items xsi:type="am:SynchronousServerCall" serverRunnable="Server?type=Runnable"/>
-    </activityGraph>
-  </runnables>
-  <runnables name="Server"/>
-</swModel>
-""",
+    edits={
+        'xsi:type="am:SynchronousServerCall"': 'xsi:type="am:SynchronousServerCall" serverRunnable="Server?type=Runnable"',
+        "</swModel>": """  <runnables name="Server"/>
+</swModel>""",
+    },
 )

@@ -32,9 +32,5 @@ RULE = ModelRule(
   <labels name="L" dataStability="automaticProtection"/>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <labels name="L" dataStability="noProtection"/>
-</swModel>
-""",
+    edits={'dataStability="automaticProtection"': 'dataStability="noProtection"'},
 )

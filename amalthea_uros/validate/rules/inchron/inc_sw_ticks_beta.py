@@ -35,15 +35,8 @@ RULE = ModelRule(
   </runnables>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <runnables name="R">
-    <activityGraph>
-      <items xsi:type="am:Ticks">
-        <default xsi:type="am:DiscreteValueConstant" value="1"/>
-      </items>
-    </activityGraph>
-  </runnables>
-</swModel>
-""",
+    edits={
+        'xsi:type="am:DiscreteValueBetaDistribution"': 'xsi:type="am:DiscreteValueConstant"',
+        'alpha="1" beta="2" lowerBound="1" upperBound="9"': 'value="1"',
+    },
 )

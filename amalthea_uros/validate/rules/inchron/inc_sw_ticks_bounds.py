@@ -35,15 +35,5 @@ RULE = ModelRule(
   </runnables>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <runnables name="R">
-    <activityGraph>
-      <items xsi:type="am:Ticks">
-        <default xsi:type="am:DiscreteValueBoundaries" lowerBound="1" upperBound="9" samplingType="Uniform"/>
-      </items>
-    </activityGraph>
-  </runnables>
-</swModel>
-""",
+    edits={'upperBound="9"': 'upperBound="9" samplingType="Uniform"'},
 )

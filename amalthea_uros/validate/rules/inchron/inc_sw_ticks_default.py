@@ -38,15 +38,9 @@ RULE = ModelRule(
   </runnables>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <runnables name="R">
-    <activityGraph>
-      <items xsi:type="am:Ticks">
+    edits={
+        'xsi:type="am:Ticks"/>': """xsi:type="am:Ticks">
         <default xsi:type="am:DiscreteValueConstant" value="1"/>
-      </items>
-    </activityGraph>
-  </runnables>
-</swModel>
-""",
+      </items>""",
+    },
 )

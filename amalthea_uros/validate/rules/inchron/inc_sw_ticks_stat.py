@@ -36,15 +36,8 @@ RULE = ModelRule(
   </runnables>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <runnables name="R">
-    <activityGraph>
-      <items xsi:type="am:Ticks">
-        <default xsi:type="am:DiscreteValueBoundaries" lowerBound="1" upperBound="9" samplingType="Uniform"/>
-      </items>
-    </activityGraph>
-  </runnables>
-</swModel>
-""",
+    edits={
+        'xsi:type="am:DiscreteValueStatistics"': 'xsi:type="am:DiscreteValueBoundaries"',
+        'average="4"': 'samplingType="Uniform"',
+    },
 )

@@ -31,12 +31,5 @@ RULE = ModelRule(
   </stimuli>
 </stimuliModel>
 """,
-    passes="""
-<stimuliModel>
-  <stimuli xsi:type="am:VariableRateStimulus" name="S">
-    <step value="1" unit="s"/>
-    <occurrencesPerStep xsi:type="am:ContinuousValueGaussDistribution" mean="5" sd="1" lowerBound="1" upperBound="9"/>
-  </stimuli>
-</stimuliModel>
-""",
+    edits={'mean="0.5"': 'mean="5"'},
 )

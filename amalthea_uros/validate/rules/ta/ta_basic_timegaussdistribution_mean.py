@@ -36,17 +36,5 @@ RULE = ModelRule(
   </stimuli>
 </stimuliModel>
 """,
-    passes="""
-<stimuliModel>
-  <stimuli xsi:type="am:PeriodicStimulus" name="S">
-    <recurrence value="10" unit="ms"/>
-    <jitter xsi:type="am:TimeGaussDistribution">
-      <lowerBound value="0" unit="ms"/>
-      <upperBound value="2" unit="ms"/>
-      <mean value="1" unit="ms"/>
-      <sd value="100" unit="us"/>
-    </jitter>
-  </stimuli>
-</stimuliModel>
-""",
+    edits={'value="900" unit="us"': 'value="2" unit="ms"'},
 )

@@ -33,14 +33,5 @@ RULE = ModelRule(
   </dataAgeConstraints>
 </constraintsModel>
 """,
-    passes="""
-<constraintsModel>
-  <dataAgeConstraints name="D">
-    <dataAge xsi:type="am:DataAgeTime">
-      <minimumTime value="1" unit="ms"/>
-      <maximumTime value="2" unit="ms"/>
-    </dataAge>
-  </dataAgeConstraints>
-</constraintsModel>
-""",
+    edits={'value="3"': 'value="1"'},
 )

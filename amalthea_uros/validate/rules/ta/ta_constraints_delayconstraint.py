@@ -31,12 +31,5 @@ RULE = ModelRule(
   </timingConstraints>
 </constraintsModel>
 """,
-    passes="""
-<constraintsModel>
-  <timingConstraints xsi:type="am:DelayConstraint" name="D">
-    <upper value="2" unit="ms"/>
-    <lower value="1" unit="ms"/>
-  </timingConstraints>
-</constraintsModel>
-""",
+    edits={'value="3"': 'value="1"'},
 )

@@ -67,25 +67,14 @@ RULE = ModelRule(
   <taskAllocation task="T?type=Task" scheduler="S?type=TaskScheduler"/>
 </mappingModel>
 """,
-    passes="""
-<osModel>
-  <schedulerDefinitions name="EarliestDeadlineFirst"/>
-  <operatingSystems name="OS">
-    <taskSchedulers name="S" definition="EarliestDeadlineFirst?type=SchedulerDefinition"/>
-  </operatingSystems>
-</osModel>
-<swModel>
-  <tasks name="T"/>
-</swModel>
-<constraintsModel>
+    edits={
+        "<mappingModel>": """<constraintsModel>
   <requirements xsi:type="am:ProcessRequirement" name="deadline" process="T?type=Task">
     <limit xsi:type="am:TimeRequirementLimit" limitType="UpperLimit" metric="ResponseTime">
       <limitValue value="10" unit="ms"/>
     </limit>
   </requirements>
 </constraintsModel>
-<mappingModel>
-  <taskAllocation task="T?type=Task" scheduler="S?type=TaskScheduler"/>
-</mappingModel>
-""",
+<mappingModel>""",
+    },
 )

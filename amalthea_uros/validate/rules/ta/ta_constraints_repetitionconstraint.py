@@ -31,12 +31,5 @@ RULE = ModelRule(
   </timingConstraints>
 </constraintsModel>
 """,
-    passes="""
-<constraintsModel>
-  <timingConstraints xsi:type="am:RepetitionConstraint" name="R" span="1">
-    <lower value="1" unit="ms"/>
-    <upper value="2" unit="ms"/>
-  </timingConstraints>
-</constraintsModel>
-""",
+    edits={'value="3"': 'value="1"'},
 )

@@ -36,16 +36,5 @@ RULE = ModelRule(
   <tasks name="T"/>
 </swModel>
 """,
-    passes="""
-<constraintsModel>
-  <requirements xsi:type="am:ProcessRequirement" name="deadline" process="T?type=Task">
-    <limit xsi:type="am:TimeRequirementLimit" limitType="UpperLimit" metric="ResponseTime">
-      <limitValue value="10" unit="ms"/>
-    </limit>
-  </requirements>
-</constraintsModel>
-<swModel>
-  <tasks name="T"/>
-</swModel>
-""",
+    edits={'value="0"': 'value="10"'},
 )

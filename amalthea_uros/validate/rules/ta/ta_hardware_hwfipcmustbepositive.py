@@ -33,11 +33,5 @@ RULE = ModelRule(
   </featureCategories>
 </hwModel>
 """,
-    passes="""
-<hwModel>
-  <featureCategories name="Instructions">
-    <features name="IPC_1" value="1.5"/>
-  </featureCategories>
-</hwModel>
-""",
+    edits={'value="0.0"': 'value="1.5"'},
 )

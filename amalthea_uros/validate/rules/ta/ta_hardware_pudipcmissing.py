@@ -35,12 +35,5 @@ RULE = ModelRule(
   </featureCategories>
 </hwModel>
 """,
-    passes="""
-<hwModel>
-  <definitions xsi:type="am:ProcessingUnitDefinition" name="D" puType="CPU" features="Instructions/IPC_1?type=HwFeature"/>
-  <featureCategories name="Instructions">
-    <features name="IPC_1" value="1.5"/>
-  </featureCategories>
-</hwModel>
-""",
+    edits={'puType="CPU"': 'puType="CPU" features="Instructions/IPC_1?type=HwFeature"'},
 )

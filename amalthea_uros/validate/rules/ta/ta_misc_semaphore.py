@@ -33,9 +33,5 @@ RULE = ModelRule(
   <semaphores name="S" initialValue="2" maxValue="1"/>
 </osModel>
 """,
-    passes="""
-<osModel>
-  <semaphores name="S" initialValue="0" maxValue="1"/>
-</osModel>
-""",
+    edits={'initialValue="2"': 'initialValue="0"'},
 )

@@ -49,18 +49,5 @@ RULE = ModelRule(
   <modeLabels name="L" mode="M?type=EnumMode"/>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <runnables name="R">
-    <executionCondition>
-      <entries xsi:type="am:ModeValueCondition" label="L?type=ModeLabel" relation="EQUAL" value="on"/>
-    </executionCondition>
-  </runnables>
-  <modes xsi:type="am:EnumMode" name="M">
-    <literals name="on"/>
-    <literals name="off"/>
-  </modes>
-  <modeLabels name="L" mode="M?type=EnumMode"/>
-</swModel>
-""",
+    edits={'      <entries xsi:type="am:ModeValueCondition" label="L?type=ModeLabel" relation="EQUAL" value="off"/>\n': ""},
 )

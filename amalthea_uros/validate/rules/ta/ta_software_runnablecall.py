@@ -33,14 +33,9 @@ RULE = ModelRule(
   </runnables>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <runnables name="R">
-    <activityGraph>
-      <items xsi:type="am:RunnableCall" runnable="Q?type=Runnable"/>
-    </activityGraph>
-  </runnables>
-  <runnables name="Q"/>
-</swModel>
-""",
+    edits={
+        'runnable="R?type=Runnable"': 'runnable="Q?type=Runnable"',
+        "</swModel>": """  <runnables name="Q"/>
+</swModel>""",
+    },
 )

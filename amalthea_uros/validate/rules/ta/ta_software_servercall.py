@@ -34,14 +34,9 @@ RULE = ModelRule(
   </runnables>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <runnables name="R">
-    <activityGraph>
-      <items xsi:type="am:SynchronousServerCall" serverRunnable="Q?type=Runnable"/>
-    </activityGraph>
-  </runnables>
-  <runnables name="Q"/>
-</swModel>
-""",
+    edits={
+        'serverRunnable="R?type=Runnable"': 'serverRunnable="Q?type=Runnable"',
+        "</swModel>": """  <runnables name="Q"/>
+</swModel>""",
+    },
 )

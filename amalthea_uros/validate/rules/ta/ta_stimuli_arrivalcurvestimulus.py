@@ -48,23 +48,14 @@ RULE = ModelRule(
   <events name="E"/>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <tasks name="T">
-    <activityGraph>
-      <items xsi:type="am:WaitEvent">
-        <eventMask events="E?type=OsEvent"/>
-      </items>
-    </activityGraph>
-  </tasks>
-  <tasks name="U">
+    edits={
+        '<events name="E"/>': """<tasks name="U">
     <activityGraph>
       <items xsi:type="am:SetEvent">
         <eventMask events="E?type=OsEvent"/>
       </items>
     </activityGraph>
   </tasks>
-  <events name="E"/>
-</swModel>
-""",
+  <events name="E"/>""",
+    },
 )

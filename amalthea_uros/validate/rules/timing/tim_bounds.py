@@ -36,15 +36,5 @@ RULE = ModelRule(
   </runnables>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <runnables name="R">
-    <activityGraph>
-      <items xsi:type="am:Ticks">
-        <default xsi:type="am:DiscreteValueGaussDistribution" mean="5" sd="1" lowerBound="1" upperBound="9"/>
-      </items>
-    </activityGraph>
-  </runnables>
-</swModel>
-""",
+    edits={'sd="1"': 'sd="1" lowerBound="1" upperBound="9"'},
 )

@@ -47,27 +47,5 @@ RULE = SystemRule(
   <eventChains name="C" stimulus="start+of+T?type=ProcessEvent" response="end+of+U?type=ProcessEvent"/>
 </constraintsModel>
 """,
-    passes="""
-<eventModel>
-  <events xsi:type="am:ProcessEvent" name="start of T" eventType="start" entity="T?type=Task"/>
-  <events xsi:type="am:ProcessEvent" name="end of U" eventType="terminate" entity="U?type=Task"/>
-</eventModel>
-<swModel>
-  <tasks name="T">
-    <activityGraph>
-      <items xsi:type="am:LabelAccess" data="L?type=Label" access="write"/>
-    </activityGraph>
-  </tasks>
-  <tasks name="U">
-    <activityGraph>
-      <items xsi:type="am:LabelAccess" data="L?type=Label" access="read"/>
-    </activityGraph>
-  </tasks>
-  <labels name="L"/>
-  <labels name="M"/>
-</swModel>
-<constraintsModel>
-  <eventChains name="C" stimulus="start+of+T?type=ProcessEvent" response="end+of+U?type=ProcessEvent"/>
-</constraintsModel>
-""",
+    edits={'data="M?type=Label"': 'data="L?type=Label"'},
 )

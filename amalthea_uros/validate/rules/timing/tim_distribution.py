@@ -39,15 +39,5 @@ RULE = ModelRule(
   </runnables>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <runnables name="R">
-    <activityGraph>
-      <items xsi:type="am:Ticks">
-        <default xsi:type="am:DiscreteValueWeibullEstimatorsDistribution" lowerBound="10" upperBound="90" average="50"/>
-      </items>
-    </activityGraph>
-  </runnables>
-</swModel>
-""",
+    edits={'average="90"': 'average="50"'},
 )

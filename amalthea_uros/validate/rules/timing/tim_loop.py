@@ -31,11 +31,9 @@ RULE = ModelRule(
   </runnables>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <runnables name="R">
-    <activityGraph/>
-  </runnables>
-</swModel>
-""",
+    edits={
+        """<activityGraph>
+      <items xsi:type="am:WhileLoop"/>
+    </activityGraph>""": "<activityGraph/>",
+    },
 )

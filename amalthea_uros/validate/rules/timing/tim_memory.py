@@ -77,27 +77,5 @@ RULE = ModelRule(
   <physicalSectionMapping name="P" origin="S?type=Section" memory="RAM?type=Memory"/>
 </mappingModel>
 """,
-    passes="""
-<swModel>
-  <labels name="L">
-    <size value="1023" unit="B"/>
-  </labels>
-  <labels name="M" section="S?type=Section">
-    <size value="8" unit="bit"/>
-  </labels>
-  <sections name="S"/>
-</swModel>
-<hwModel>
-  <definitions xsi:type="am:MemoryDefinition" name="D">
-    <size value="1" unit="KiB"/>
-  </definitions>
-  <structures name="ECU">
-    <modules xsi:type="am:Memory" name="RAM" definition="D?type=MemoryDefinition"/>
-  </structures>
-</hwModel>
-<mappingModel>
-  <memoryMapping abstractElement="L?type=Label" memory="RAM?type=Memory"/>
-  <physicalSectionMapping name="P" origin="S?type=Section" memory="RAM?type=Memory"/>
-</mappingModel>
-""",
+    edits={'value="1024"': 'value="1023"'},
 )

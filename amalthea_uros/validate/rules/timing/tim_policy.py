@@ -38,18 +38,5 @@ RULE = ModelRule(
   <taskAllocation task="T?type=Task" scheduler="S?type=TaskScheduler"/>
 </mappingModel>
 """,
-    passes="""
-<osModel>
-  <schedulerDefinitions name="FixedPriorityPreemptive"/>
-  <operatingSystems name="OS">
-    <taskSchedulers name="S" definition="FixedPriorityPreemptive?type=SchedulerDefinition"/>
-  </operatingSystems>
-</osModel>
-<swModel>
-  <tasks name="T"/>
-</swModel>
-<mappingModel>
-  <taskAllocation task="T?type=Task" scheduler="S?type=TaskScheduler"/>
-</mappingModel>
-""",
+    edits={'name="S"/>': 'name="S" definition="FixedPriorityPreemptive?type=SchedulerDefinition"/>'},
 )

@@ -49,32 +49,11 @@ RULE = ModelRule(
   <taskAllocation task="T?type=Task" scheduler="S?type=TaskScheduler"/>
 </mappingModel>
 """,
-    passes="""
-<hwModel>
-  <domains xsi:type="am:FrequencyDomain" name="clock">
-    <defaultValue value="300" unit="MHz"/>
-  </domains>
-  <structures name="ECU">
-    <modules xsi:type="am:ProcessingUnit" name="core" frequencyDomain="clock?type=FrequencyDomain"/>
-  </structures>
-</hwModel>
-<osModel>
-  <schedulingParameterDefinitions name="priority"/>
-  <schedulerDefinitions name="FixedPriorityPreemptive"/>
-  <operatingSystems name="OS">
-    <taskSchedulers name="S" definition="FixedPriorityPreemptive?type=SchedulerDefinition"/>
-  </operatingSystems>
-</osModel>
-<swModel>
-  <tasks name="T"/>
-</swModel>
-<mappingModel>
-  <schedulerAllocation scheduler="S?type=TaskScheduler" responsibility="core?type=ProcessingUnit"/>
-  <taskAllocation task="T?type=Task" scheduler="S?type=TaskScheduler">
+    edits={
+        'scheduler="S?type=TaskScheduler"/>': """scheduler="S?type=TaskScheduler">
     <schedulingParameters key="priority?type=SchedulingParameterDefinition">
       <value xsi:type="am:IntegerObject" value="1"/>
     </schedulingParameters>
-  </taskAllocation>
-</mappingModel>
-""",
+  </taskAllocation>""",
+    },
 )

@@ -59,38 +59,11 @@ RULE = SystemRule(
   </taskAllocation>
 </mappingModel>
 """,
-    passes="""
-<hwModel>
-  <domains xsi:type="am:FrequencyDomain" name="clock">
-    <defaultValue value="300" unit="MHz"/>
-  </domains>
-  <structures name="ECU">
-    <modules xsi:type="am:ProcessingUnit" name="core" frequencyDomain="clock?type=FrequencyDomain"/>
-  </structures>
-</hwModel>
-<osModel>
-  <schedulingParameterDefinitions name="priority"/>
-  <schedulerDefinitions name="FixedPriorityPreemptive"/>
-  <operatingSystems name="OS">
-    <taskSchedulers name="S" definition="FixedPriorityPreemptive?type=SchedulerDefinition"/>
-  </operatingSystems>
-</osModel>
-<swModel>
-  <tasks name="T"/>
-  <tasks name="U"/>
-</swModel>
-<mappingModel>
-  <schedulerAllocation scheduler="S?type=TaskScheduler" responsibility="core?type=ProcessingUnit"/>
-  <taskAllocation task="T?type=Task" scheduler="S?type=TaskScheduler">
+    edits={
+        """<taskAllocation task="U?type=Task" scheduler="S?type=TaskScheduler">
     <schedulingParameters key="priority?type=SchedulingParameterDefinition">
-      <value xsi:type="am:IntegerObject" value="1"/>
-    </schedulingParameters>
-  </taskAllocation>
-  <taskAllocation task="U?type=Task" scheduler="S?type=TaskScheduler">
+      <value xsi:type="am:IntegerObject" value="1"/>""": """<taskAllocation task="U?type=Task" scheduler="S?type=TaskScheduler">
     <schedulingParameters key="priority?type=SchedulingParameterDefinition">
-      <value xsi:type="am:IntegerObject" value="2"/>
-    </schedulingParameters>
-  </taskAllocation>
-</mappingModel>
-""",
+      <value xsi:type="am:IntegerObject" value="2"/>""",
+    },
 )

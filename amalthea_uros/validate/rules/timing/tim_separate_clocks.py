@@ -76,37 +76,5 @@ RULE = SystemRule(
   <eventChains name="C" stimulus="sent?type=ProcessEvent" response="got?type=ProcessEvent"/>
 </constraintsModel>
 """,
-    passes="""
-<eventModel>
-  <events xsi:type="am:ProcessEvent" name="sent" eventType="terminate" entity="T?type=Task"/>
-  <events xsi:type="am:ProcessEvent" name="got" eventType="start" entity="U?type=Task"/>
-</eventModel>
-<swModel>
-  <tasks name="T"/>
-  <tasks name="U"/>
-</swModel>
-<hwModel>
-  <structures name="A" structureType="ECU">
-    <modules xsi:type="am:ProcessingUnit" name="core0"/>
-  </structures>
-  <structures name="B" structureType="ECU">
-    <modules xsi:type="am:ProcessingUnit" name="core1"/>
-  </structures>
-</hwModel>
-<osModel>
-  <operatingSystems name="OS">
-    <taskSchedulers name="S0"/>
-    <taskSchedulers name="S1"/>
-  </operatingSystems>
-</osModel>
-<mappingModel>
-  <schedulerAllocation scheduler="S0?type=TaskScheduler" responsibility="core0?type=ProcessingUnit"/>
-  <schedulerAllocation scheduler="S1?type=TaskScheduler" responsibility="core1?type=ProcessingUnit"/>
-  <taskAllocation task="T?type=Task" scheduler="S0?type=TaskScheduler"/>
-  <taskAllocation task="U?type=Task" scheduler="S0?type=TaskScheduler"/>
-</mappingModel>
-<constraintsModel>
-  <eventChains name="C" stimulus="sent?type=ProcessEvent" response="got?type=ProcessEvent"/>
-</constraintsModel>
-""",
+    edits={'task="U?type=Task" scheduler="S1?type=TaskScheduler"': 'task="U?type=Task" scheduler="S0?type=TaskScheduler"'},
 )

@@ -72,26 +72,5 @@ RULE = ModelRule(
   </structures>
 </hwModel>
 """,
-    passes="""
-<swModel>
-  <runnables name="R">
-    <activityGraph>
-      <items xsi:type="am:ExecutionNeed">
-        <needs key="Matrix">
-          <value xsi:type="am:DiscreteValueConstant" value="100"/>
-        </needs>
-      </items>
-    </activityGraph>
-  </runnables>
-</swModel>
-<hwModel>
-  <definitions xsi:type="am:ProcessingUnitDefinition" name="D" features="Matrix/cost?type=HwFeature"/>
-  <featureCategories name="Matrix">
-    <features name="cost" value="4.0"/>
-  </featureCategories>
-  <structures name="ECU">
-    <modules xsi:type="am:ProcessingUnit" name="core" definition="D?type=ProcessingUnitDefinition"/>
-  </structures>
-</hwModel>
-""",
+    edits={'key="MATRIX"': 'key="Matrix"'},
 )

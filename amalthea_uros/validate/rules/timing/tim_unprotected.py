@@ -140,37 +140,5 @@ RULE = SystemRule(
   <taskAllocation task="U?type=Task" scheduler="S1?type=TaskScheduler"/>
 </mappingModel>
 """,
-    passes="""
-<swModel>
-  <tasks name="T">
-    <activityGraph>
-      <items xsi:type="am:LabelAccess" data="L?type=Label" access="write"/>
-    </activityGraph>
-  </tasks>
-  <tasks name="U">
-    <activityGraph>
-      <items xsi:type="am:LabelAccess" data="L?type=Label" access="write"/>
-    </activityGraph>
-  </tasks>
-  <labels name="L" dataStability="automaticProtection"/>
-</swModel>
-<hwModel>
-  <structures name="ECU">
-    <modules xsi:type="am:ProcessingUnit" name="core0"/>
-    <modules xsi:type="am:ProcessingUnit" name="core1"/>
-  </structures>
-</hwModel>
-<osModel>
-  <operatingSystems name="OS">
-    <taskSchedulers name="S0"/>
-    <taskSchedulers name="S1"/>
-  </operatingSystems>
-</osModel>
-<mappingModel>
-  <schedulerAllocation scheduler="S0?type=TaskScheduler" responsibility="core0?type=ProcessingUnit"/>
-  <schedulerAllocation scheduler="S1?type=TaskScheduler" responsibility="core1?type=ProcessingUnit"/>
-  <taskAllocation task="T?type=Task" scheduler="S0?type=TaskScheduler"/>
-  <taskAllocation task="U?type=Task" scheduler="S1?type=TaskScheduler"/>
-</mappingModel>
-""",
+    edits={'name="L"': 'name="L" dataStability="automaticProtection"'},
 )

@@ -34,15 +34,5 @@ RULE = ModelRule(
   </runnables>
 </swModel>
 """,
-    passes="""
-<swModel>
-  <runnables name="R">
-    <activityGraph>
-      <items xsi:type="am:ProbabilitySwitch">
-        <entries probability="0.5"/>
-      </items>
-    </activityGraph>
-  </runnables>
-</swModel>
-""",
+    edits={'probability="0"': 'probability="0.5"'},
 )

@@ -1,1 +1,0 @@
-"""The kinds of findings, one module for each family of ids."""

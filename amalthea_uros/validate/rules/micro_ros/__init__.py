@@ -1,1 +1,0 @@
-"""Findings about micro-ROS applications that fail or are fragile; reported while a description is assembled."""

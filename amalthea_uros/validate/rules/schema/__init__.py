@@ -1,1 +1,0 @@
-"""The XML schema of the AMALTHEA version of a model."""
