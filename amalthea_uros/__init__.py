@@ -153,9 +153,9 @@ if TYPE_CHECKING:
     from amalthea_uros.simulate.options import Mode as Mode
     from amalthea_uros.simulate.options import Options as Options
     from amalthea_uros.simulate.results import Simulation as Simulation
+    from amalthea_uros.timing.basics.settings import Memory as Memory
+    from amalthea_uros.timing.basics.settings import Settings as Settings
     from amalthea_uros.timing.dataflow.paths import paths as paths
-    from amalthea_uros.timing.settings import Memory as Memory
-    from amalthea_uros.timing.settings import Settings as Settings
     from amalthea_uros.trace.table import Entity as Entity
     from amalthea_uros.trace.table import EntityKind as EntityKind
     from amalthea_uros.trace.table import EventKind as EventKind
@@ -230,7 +230,7 @@ _NAMES = {
     "simulate.options": ("Mode", "Options"),
     "simulate.results": ("Simulation",),
     "timing.dataflow.paths": ("paths",),
-    "timing.settings": ("Memory", "Settings"),
+    "timing.basics.settings": ("Memory", "Settings"),
     "trace.table": ("Entity", "EntityKind", "EventKind", "EventTable"),
     "units": ("parse_time",),
     "uros.assemble": ("Assembly",),

@@ -22,7 +22,7 @@ from amalthea_uros.perf import activities, events, mapping, os, software, stimul
 from amalthea_uros.perf.distributions import Constant
 from amalthea_uros.perf.hardware import Clock, Core, Hardware, Structure
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.multiframe import MultiframeDemand
+from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 
 MILLISECOND = 10**9
 #: 43,000 jobs in a hyperperiod of 1 s.

@@ -36,7 +36,7 @@ from amalthea_uros.design.optimize.solvers.offsets import solve_offsets  # noqa:
 from amalthea_uros.design.optimize.solvers.priorities import solve_priorities  # noqa: E402
 from amalthea_uros.design.optimize.space import Choice, Kind, Space  # noqa: E402
 from amalthea_uros.services.optimize import plan_optimization  # noqa: E402
-from amalthea_uros.timing.settings import Settings  # noqa: E402
+from amalthea_uros.timing.basics.settings import Settings  # noqa: E402
 from amalthea_uros.units import MICROSECOND as US  # noqa: E402
 
 #: The clock of the cores with which the model of the challenge of 2017 is schedulable.

@@ -21,8 +21,8 @@ from amalthea_uros.perf import activities, mapping, os, software, stimuli
 from amalthea_uros.perf.distributions import Statistics
 from amalthea_uros.perf.hardware import Clock, Core, Hardware, Structure
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.event_models import Periodic
-from amalthea_uros.timing.multiframe import MultiframeDemand
 
 PERIODS = (1, 2, 5, 10, 20, 50, 100, 200, 1000)
 MILLISECOND = 10**9

@@ -27,7 +27,7 @@ from amalthea_uros.simulate import machine_code
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.results import Simulation
 from amalthea_uros.simulate.system import simulate_system
-from amalthea_uros.timing.settings import Settings
+from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import parse_frequency
 
 ROOT = Path(__file__).parents[1]

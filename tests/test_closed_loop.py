@@ -12,7 +12,7 @@ from command import amuros as command
 from support import ROOT
 
 import amalthea_uros as amuros
-from amalthea_uros.timing.chain_quantity import ChainQuantity
+from amalthea_uros.timing.basics.quantities import ChainQuantity
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
 

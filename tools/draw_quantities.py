@@ -16,7 +16,7 @@ from amalthea_uros.analyze.chains.read_write_times import ReadWriteTimes
 from amalthea_uros.analyze.response_times import schedule
 from amalthea_uros.analyze.response_times.schedule import PeriodicTask
 from amalthea_uros.analyze.results import Quantity
-from amalthea_uros.timing.multiframe import MultiframeDemand
+from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 
 TASKS = (
     PeriodicTask(name="Sensor", period=4, offset=0, demand=MultiframeDemand.constant(1), priority=1),

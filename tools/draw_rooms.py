@@ -55,7 +55,7 @@ def room_imports() -> nx.DiGraph:
 
 
 def room_of(module: str) -> str:
-    """The room of a module: `timing` for `amalthea_uros.timing.demand`."""
+    """The room of a module: `timing` for `amalthea_uros.timing.demand.model`."""
     return [*module.split("."), "__init__"][1]
 
 

@@ -13,7 +13,7 @@ from amalthea_uros.analyze.priority_orders import Order, PriorityOrders, with_pr
 from amalthea_uros.analyze.results import Analysis, require_analysis
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.judge.verdict import FAILURES, Verdict
-from amalthea_uros.timing.scheduling import ScheduledProcess
+from amalthea_uros.timing.scheduling.ranks import ScheduledProcess
 
 #: All orders of at most this many tasks are tried.
 MAX_PERMUTED = 6

@@ -28,10 +28,10 @@ from amalthea_uros.perf.constraints import Bound, TimeLimit, TimeMetric
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.counters import first_effect, is_always, min_distance, takes_effect
 from amalthea_uros.timing.dataflow.events import UnresolvedError
-from amalthea_uros.timing.dataflow.positions import ActivityPosition
-from amalthea_uros.timing.multiframe import MultiframeDemand
+from amalthea_uros.timing.demand.multiframe import MultiframeDemand
+from amalthea_uros.timing.jobs.counters import first_effect, is_always, min_distance, takes_effect
+from amalthea_uros.timing.jobs.positions import ActivityPosition
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:

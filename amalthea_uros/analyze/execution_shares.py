@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from amalthea_uros.perf.activities import Activity, Call, Execute, ExecutionNeed, Group, LabelAccess
 from amalthea_uros.perf.stimuli import Counter
+from amalthea_uros.timing.basics.notes import UnknownDemandError
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.notes import UnknownDemandError
 from amalthea_uros.units import Time
 
 OWN, ACCESSES, OTHER = "own execution", "label accesses", "other activities"

@@ -16,9 +16,9 @@ from amalthea_uros.analyze.results import Analysis, CallbackResult, ProcessResul
 from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.analyze.unknown_origins import Origin, origins
 from amalthea_uros.judge.verdict import FAILURES, Verdict
-from amalthea_uros.timing.counters import takes_effect
-from amalthea_uros.timing.multiframe import MultiframeDemand
-from amalthea_uros.timing.scheduling import ScheduledProcess, Server
+from amalthea_uros.timing.demand.multiframe import MultiframeDemand
+from amalthea_uros.timing.jobs.counters import takes_effect
+from amalthea_uros.timing.scheduling.ranks import ScheduledProcess, Server
 from amalthea_uros.units import Time
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from amalthea_uros.analyze.results import RequirementResult
 from amalthea_uros.perf.constraints import TimeMetric
 from amalthea_uros.perf.named import Named
-from amalthea_uros.timing.notes import Notes
+from amalthea_uros.timing.basics.notes import Notes
 from amalthea_uros.units import HOUR, time_text
 
 #: Longer limits are certainly mistakes in the unit: a year.

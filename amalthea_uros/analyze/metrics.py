@@ -23,7 +23,7 @@ from amalthea_uros.analyze.chains.core_schedule import CoreSchedule, CoreSchedul
 from amalthea_uros.analyze.response_times import schedule
 from amalthea_uros.analyze.results import Claim, JobMetric, Metric, ProcessResult
 from amalthea_uros.analyze.solution import Solution
-from amalthea_uros.timing.multiframe import MultiframeDemand
+from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:

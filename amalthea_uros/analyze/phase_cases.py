@@ -24,9 +24,9 @@ from amalthea_uros.perf.activities import Call, Trigger, walk
 from amalthea_uros.perf.constraints import LatencyConstraint
 from amalthea_uros.perf.events import EventChain
 from amalthea_uros.perf.stimuli import Counter, EventTriggered, InterProcess, Periodic
-from amalthea_uros.timing.counters import first_effect
-from amalthea_uros.timing.phases import Occurrence, own_counters
-from amalthea_uros.timing.releases import known_releases
+from amalthea_uros.timing.activation.phases import Occurrence, own_counters
+from amalthea_uros.timing.activation.releases import known_releases
+from amalthea_uros.timing.jobs.counters import first_effect
 from amalthea_uros.units import Time
 
 #: The number of the first combination of each case, and how many combinations the case has.

@@ -30,8 +30,8 @@ from amalthea_uros.judge.evidence import Ends
 from amalthea_uros.judge.limits import SystemLimit
 from amalthea_uros.judge.summary import summarize
 from amalthea_uros.judge.verdict import WORST_FIRST, prove
-from amalthea_uros.timing.jitter import jitter_of
-from amalthea_uros.timing.phases import Occurrence, phase_combinations, phase_count, with_phases
+from amalthea_uros.timing.activation.phases import Occurrence, phase_combinations, phase_count, with_phases
+from amalthea_uros.timing.basics.quantities import jitter_of
 from amalthea_uros.units import Time
 
 #: With more combinations of phases, or more jobs in all of them, any job can be the one that takes what comes from outside.

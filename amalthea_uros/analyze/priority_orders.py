@@ -19,13 +19,12 @@ from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.judge.verdict import FAILURES, Verdict
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.activation import UnknownActivationError
+from amalthea_uros.timing.activation.activations import UnknownActivationError
+from amalthea_uros.timing.activation.releases import known_releases
+from amalthea_uros.timing.blocking.critical_sections import Protection
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.critical_sections import Protection
 from amalthea_uros.timing.event_models import EventModel
-from amalthea_uros.timing.preemption import is_preemptive
-from amalthea_uros.timing.releases import known_releases
-from amalthea_uros.timing.scheduling import EqualPriority, ScheduledProcess
+from amalthea_uros.timing.scheduling.ranks import EqualPriority, ScheduledProcess, is_preemptive
 from amalthea_uros.units import Time, percent_text, time_text
 
 #: Names of tasks, lowest priority first.

@@ -18,12 +18,12 @@ from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.executors.semantics.loops import sleep_of, why_dense, workload
 from amalthea_uros.perf.activities import Trigger
 from amalthea_uros.perf.software import Process
-from amalthea_uros.timing.activation import Output, UnknownActivationError
+from amalthea_uros.timing.activation.activations import Output, UnknownActivationError
+from amalthea_uros.timing.basics.limits import MAX_INPUT
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.event_models import Delayed, EventModel, OutputEventModel, Periodic
-from amalthea_uros.timing.limits import MAX_INPUT
-from amalthea_uros.timing.scheduling import ScheduledProcess
+from amalthea_uros.timing.scheduling.ranks import ScheduledProcess
 from amalthea_uros.units import Time
 
 #: Maximum number of rounds, and of jobs of busy windows in all rounds; if jitter still increases then, it does not converge.

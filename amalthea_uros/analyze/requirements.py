@@ -15,8 +15,8 @@ from amalthea_uros.judge.limits import SystemLimit, is_from_period, limits_of, n
 from amalthea_uros.judge.verdict import Verdict, prove, unknown
 from amalthea_uros.perf.constraints import Requirement, TimeMetric
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.jitter import jitter_of
-from amalthea_uros.timing.notes import Notes
+from amalthea_uros.timing.basics.notes import Notes
+from amalthea_uros.timing.basics.quantities import jitter_of
 from amalthea_uros.units import Time
 
 #: What the analysis computes; a running time is bounded by the net execution time, and each kind of waiting by all waiting.

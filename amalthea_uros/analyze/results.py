@@ -16,7 +16,7 @@ from amalthea_uros.judge.limits import DEADLINE, PERIOD, SystemLimit
 from amalthea_uros.judge.margins import margin_of
 from amalthea_uros.judge.summary import Summary
 from amalthea_uros.judge.verdict import Failure, Judgement, Verdict
-from amalthea_uros.timing.job_metric import JobMetric as JobMetric
+from amalthea_uros.timing.basics.quantities import JobMetric as JobMetric
 from amalthea_uros.timing.response import Claim as Claim
 from amalthea_uros.timing.response import Response as Response
 from amalthea_uros.units import Frequency, Time, time_text

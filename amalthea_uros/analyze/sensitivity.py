@@ -17,7 +17,7 @@ from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.perf.constraints import ChainSynchronization, LatencyConstraint
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.settings import Settings
+from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import Time
 
 #: Absolute resolution of factors below 1, relative resolution of factors above 1.

@@ -33,24 +33,23 @@ from amalthea_uros.perf.network import Purpose
 from amalthea_uros.perf.software import Preemption, Task
 from amalthea_uros.perf.stimuli import RelativePeriodic
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.allocation import allocated_cores
-from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.deadlines import ASSUMPTION
-from amalthea_uros.timing.event_models import EventModel
-from amalthea_uros.timing.job_paths import JobDemand
-from amalthea_uros.timing.load import CoreLoad, certain_loads, suppressible
-from amalthea_uros.timing.multiframe import MultiframeDemand
-from amalthea_uros.timing.overheads import COUNTED
-from amalthea_uros.timing.phases import (
+from amalthea_uros.timing.activation.load import CoreLoad, certain_loads, suppressible
+from amalthea_uros.timing.activation.phases import (
     Occurrence,
     phase_assumptions,
     unknown_phases,
     with_stated_phases,
 )
-from amalthea_uros.timing.preemption import preemption
-from amalthea_uros.timing.scheduling import EqualPriority, ScheduledProcess
-from amalthea_uros.timing.settings import Settings
-from amalthea_uros.timing.stated_demand import states_mean
+from amalthea_uros.timing.activation.releases import ASSUMPTION
+from amalthea_uros.timing.basics.settings import Settings
+from amalthea_uros.timing.context import TimingContext
+from amalthea_uros.timing.demand.job_paths import JobDemand
+from amalthea_uros.timing.demand.multiframe import MultiframeDemand
+from amalthea_uros.timing.demand.overheads import COUNTED
+from amalthea_uros.timing.event_models import EventModel
+from amalthea_uros.timing.jobs.executed import states_mean
+from amalthea_uros.timing.scheduling.allocation import allocated_cores
+from amalthea_uros.timing.scheduling.ranks import EqualPriority, ScheduledProcess, preemption
 from amalthea_uros.units import Rounding, percent_text, rounded_time_text
 
 

@@ -29,7 +29,7 @@ from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.report.closing_line import closing_line
 from amalthea_uros.services.analyze import AnalysisResult, analyze_files, chain_detail
 from amalthea_uros.services.changed_model import write_changed
-from amalthea_uros.timing.settings import Settings
+from amalthea_uros.timing.basics.settings import Settings
 
 
 @click.command("analyze")

@@ -28,7 +28,7 @@ from amalthea_uros.compare.results import Comparison, Source
 from amalthea_uros.design.changes.change import Change
 from amalthea_uros.services.compare import CompareOptions, compare_files, parse_tolerance
 from amalthea_uros.services.measure import MeasureOptions
-from amalthea_uros.timing.settings import Settings
+from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import Time, parse_duration, parse_time
 
 _BOTH = "both"

@@ -34,7 +34,7 @@ from amalthea_uros.report.optimized import closing_line, is_met
 from amalthea_uros.services.design_space import DEFAULT, Vary
 from amalthea_uros.services.optimize import MOST_DESIGNS, MOST_PROPOSALS, Optimization, optimize
 from amalthea_uros.services.optimized_model import write_proposal
-from amalthea_uros.timing.settings import Settings
+from amalthea_uros.timing.basics.settings import Settings
 
 
 def _vary(text: str) -> tuple[Vary, ...]:

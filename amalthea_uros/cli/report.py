@@ -24,7 +24,7 @@ from amalthea_uros.design.changes.change import Change
 from amalthea_uros.report.closing_line import closing_line
 from amalthea_uros.report.suffixes import FORMATS, format_of
 from amalthea_uros.services.report import compile_report
-from amalthea_uros.timing.settings import Settings
+from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import Time, parse_duration
 
 _SUFFIXES = ", ".join(FORMATS)

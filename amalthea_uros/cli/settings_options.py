@@ -13,7 +13,7 @@ import click
 from amalthea_uros.cli.parsed import Parsed
 from amalthea_uros.design.changes.change import EXAMPLE, FORM, parse_change
 from amalthea_uros.perf.activities import Communication
-from amalthea_uros.timing.settings import Memory, Settings
+from amalthea_uros.timing.basics.settings import Memory, Settings
 from amalthea_uros.units import Frequency, Time, parse_frequency, parse_time
 
 T = TypeVar("T")

@@ -34,7 +34,7 @@ from amalthea_uros.design.changes import sweep as sweeping
 from amalthea_uros.design.changes.change import Change
 from amalthea_uros.services.simulate import CampaignResult, SimulationResult, plan_simulation, simulate_campaign, simulate_plan
 from amalthea_uros.simulate.options import Mode, Options
-from amalthea_uros.timing.settings import Settings
+from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import Time, parse_duration, parse_time, time_text
 
 

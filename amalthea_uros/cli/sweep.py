@@ -32,7 +32,7 @@ from amalthea_uros.design.campaign.tables import table_format, write_table
 from amalthea_uros.design.changes import sweep as sweeping
 from amalthea_uros.design.changes.change import Change
 from amalthea_uros.services.sweep import SweepResult, sweep_files
-from amalthea_uros.timing.settings import Settings
+from amalthea_uros.timing.basics.settings import Settings
 
 
 @click.command("sweep")

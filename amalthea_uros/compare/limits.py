@@ -29,8 +29,8 @@ from amalthea_uros.measure.baselines import with_baseline
 from amalthea_uros.measure.series import Series
 from amalthea_uros.perf.constraints import Requirement, TimeMetric
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.settings import Settings
 
 #: Object and quantity -> what was measured of it.
 _Measured = Mapping[tuple[str, str], Series]

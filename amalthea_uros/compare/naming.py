@@ -13,8 +13,7 @@ from amalthea_uros.measure.series import Kind, Measurement, Series
 from amalthea_uros.measure.statistics import Statistics
 from amalthea_uros.names import require
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.chain_quantity import ChainQuantity
-from amalthea_uros.timing.job_metric import JobMetric
+from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
 
 #: How a meaning is written.
 FORM = "MEASURED=OBJECT.QUANTITY"

@@ -7,8 +7,14 @@ from collections.abc import Iterator
 from amalthea_uros.analyze.results import Analysis
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.phases import phase_combinations, phase_count, unstated_phases, with_first_arrivals, with_phases
-from amalthea_uros.timing.settings import Settings
+from amalthea_uros.timing.activation.phases import (
+    phase_combinations,
+    phase_count,
+    unstated_phases,
+    with_first_arrivals,
+    with_phases,
+)
+from amalthea_uros.timing.basics.settings import Settings
 
 #: More phases are not evaluated one by one.
 MOST_PHASES = 32

@@ -19,8 +19,7 @@ from amalthea_uros.compare.simulated import Run
 from amalthea_uros.measure.series import Kind
 from amalthea_uros.measure.statistics import Statistics
 from amalthea_uros.simulate.results import MetricObservation, Simulation
-from amalthea_uros.timing.chain_quantity import ChainQuantity
-from amalthea_uros.timing.job_metric import JobMetric
+from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
 from amalthea_uros.units import Time, time_text
 
 #: The predictions of a quantity.

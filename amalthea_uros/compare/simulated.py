@@ -20,8 +20,8 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.results import Simulation
 from amalthea_uros.simulate.system import simulate_system
-from amalthea_uros.timing.phases import with_first_arrivals
-from amalthea_uros.timing.settings import Settings
+from amalthea_uros.timing.activation.phases import with_first_arrivals
+from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.trace.table import Entity, EventTable
 from amalthea_uros.units import SECOND, Time
 

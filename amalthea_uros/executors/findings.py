@@ -12,7 +12,7 @@ from amalthea_uros.executors.semantics.loops import busy_polls, longest_wait, mi
 from amalthea_uros.executors.semantics.readiness import can_defer, has_backlog, messages, shares_session, timers
 from amalthea_uros.executors.semantics.suspension import SESSION_ASSUMPTION
 from amalthea_uros.perf.executors import Executor, HandleKind, LoopKind
-from amalthea_uros.timing.notes import Notes
+from amalthea_uros.timing.basics.notes import Notes
 from amalthea_uros.units import SECOND, Rounding, Time, rounded_time_text, time_text
 
 #: A timer is called late if the sleep of the loop is more than this part of its period.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from amalthea_uros.timing.jitter import jitter_of
+from amalthea_uros.timing.basics.quantities import jitter_of
 from amalthea_uros.units import Time
 
 

@@ -26,12 +26,9 @@ from amalthea_uros.perf.constraints import (
 from amalthea_uros.perf.named import Named
 from amalthea_uros.perf.software import Process, Task
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.chain_quantity import ChainQuantity
+from amalthea_uros.timing.activation.releases import activation_period, implicit_deadline, response_time_limits
+from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric, is_deviation_from_period, jitter_name
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.deadlines import implicit_deadline
-from amalthea_uros.timing.jitter import is_deviation_from_period, jitter_name
-from amalthea_uros.timing.job_metric import JobMetric
-from amalthea_uros.timing.releases import activation_period, response_time_limits
 from amalthea_uros.units import Time
 
 #: A constraint that is about occurrences.

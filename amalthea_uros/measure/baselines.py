@@ -12,7 +12,7 @@ from dataclasses import replace
 
 from amalthea_uros.measure.series import Series
 from amalthea_uros.measure.statistics import Statistics, shifted
-from amalthea_uros.timing.job_metric import JobMetric
+from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.units import Time
 
 #: The quantities that contain the cost of measuring once.

@@ -24,7 +24,7 @@ from amalthea_uros.measure.pairing import Pairs, paired_by_number, paired_in_ord
 from amalthea_uros.measure.reactions import reactions
 from amalthea_uros.measure.series import Counts, Series
 from amalthea_uros.measure.statistics import Statistics, merged, statistics_or_none
-from amalthea_uros.timing.job_metric import JobMetric
+from amalthea_uros.timing.basics.quantities import JobMetric
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -15,7 +15,7 @@ import numpy as np
 
 from amalthea_uros.measure.reactions import BY_NUMBER, LatencyLists, is_after_loss
 from amalthea_uros.measure.series import Counts, Series
-from amalthea_uros.timing.route_latencies import RouteLatencies
+from amalthea_uros.timing.observed.chain_latencies import RouteLatencies
 from amalthea_uros.trace.table import NO_NOTE, EventKind, EventTable
 
 if TYPE_CHECKING:

@@ -14,8 +14,8 @@ import numpy as np
 
 from amalthea_uros.measure.series import Counts, Kind, Series
 from amalthea_uros.measure.statistics import statistics_of
-from amalthea_uros.timing.job_metric import JobMetric
-from amalthea_uros.timing.job_times import BETWEEN, OWN, Job, own_times, times_between
+from amalthea_uros.timing.basics.quantities import JobMetric
+from amalthea_uros.timing.observed.job_times import BETWEEN, OWN, Job, own_times, times_between
 from amalthea_uros.trace.charts import PROCESS
 from amalthea_uros.trace.table import EventKind, EventTable
 

@@ -16,8 +16,8 @@ import numpy as np
 from amalthea_uros.measure.pairing import counted_on, lost_numbers
 from amalthea_uros.measure.series import Counts, Kind, Series
 from amalthea_uros.measure.statistics import statistics_of
-from amalthea_uros.timing.chain_quantity import ChainQuantity
-from amalthea_uros.timing.route_latencies import SAME, RouteLatencies
+from amalthea_uros.timing.basics.quantities import ChainQuantity
+from amalthea_uros.timing.observed.chain_latencies import SAME, RouteLatencies
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

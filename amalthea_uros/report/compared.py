@@ -18,8 +18,7 @@ from amalthea_uros.compare.results import (
 )
 from amalthea_uros.measure.series import Kind, Measurement
 from amalthea_uros.report.simulated import duration_text
-from amalthea_uros.timing.chain_quantity import ChainQuantity
-from amalthea_uros.timing.job_metric import JobMetric
+from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
 from amalthea_uros.units import Rounding, rounded_time_text, time_text
 
 #: Quantities that are shown although they agree.

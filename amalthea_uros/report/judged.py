@@ -12,7 +12,7 @@ from amalthea_uros.analyze.results import Analysis, ChainResult, Claim, Judged, 
 from amalthea_uros.judge.causes import quantity_of
 from amalthea_uros.judge.summary import urgency
 from amalthea_uros.judge.verdict import FAILURES, WORST_FIRST, Verdict
-from amalthea_uros.timing.jitter import jitter_name
+from amalthea_uros.timing.basics.quantities import jitter_name
 from amalthea_uros.units import Rounding, Time, number_text, rounded, rounded_time_text, time_text
 
 #: Sorts the worst first.

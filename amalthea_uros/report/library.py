@@ -14,7 +14,7 @@ from amalthea_uros.services.report import ReportContent, compile_report, save_te
 from amalthea_uros.services.simulate import time_of
 from amalthea_uros.services.subject import Subject
 from amalthea_uros.services.what_if import Changes
-from amalthea_uros.timing.settings import Settings
+from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import Time
 
 

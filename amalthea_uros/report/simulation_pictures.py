@@ -31,8 +31,7 @@ from amalthea_uros.simulate.results import (
     Occurrence,
     ProcessObservation,
 )
-from amalthea_uros.timing.chain_quantity import ChainQuantity
-from amalthea_uros.timing.job_metric import JobMetric
+from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
 from amalthea_uros.trace.table import Entity, EntityKind, EventKind
 from amalthea_uros.units import Time, time_text
 

@@ -13,7 +13,7 @@ from amalthea_uros.design.changed_model import changed_system, update_model
 from amalthea_uros.design.changes.change import Change
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.services.subject import Subject, paths_of, system_of
-from amalthea_uros.timing.settings import Settings
+from amalthea_uros.timing.basics.settings import Settings
 
 if TYPE_CHECKING:
     from amalthea_uros.metamodel.model import Model

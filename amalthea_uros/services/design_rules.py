@@ -8,8 +8,7 @@ from amalthea_uros.design.optimize.rules import CapacityRule, PeriodRule, Rule, 
 from amalthea_uros.perf.activities import Call, walk
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.arrivals import nominal_period
-from amalthea_uros.timing.phases import counters
+from amalthea_uros.timing.activation.phases import counters, nominal_period
 from amalthea_uros.units import Time, time_text
 from amalthea_uros.uros.assemble import Assembly
 

@@ -25,11 +25,11 @@ from amalthea_uros.services.design_rules import rules
 from amalthea_uros.services.design_structures import DescribedCallbacks
 from amalthea_uros.services.inputs import SystemInput
 from amalthea_uros.services.subject import Subject
-from amalthea_uros.timing.allocation import allocated_cores, scheduler_cores
-from amalthea_uros.timing.releases import known_releases
-from amalthea_uros.timing.scheduling import is_by_priority
-from amalthea_uros.timing.settings import Memory
-from amalthea_uros.timing.stretches import executed
+from amalthea_uros.timing.activation.releases import known_releases
+from amalthea_uros.timing.basics.settings import Memory
+from amalthea_uros.timing.jobs.executed import executed
+from amalthea_uros.timing.scheduling.allocation import allocated_cores, scheduler_cores
+from amalthea_uros.timing.scheduling.ranks import is_by_priority
 from amalthea_uros.units import time_text
 
 

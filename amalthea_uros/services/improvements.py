@@ -17,8 +17,7 @@ from amalthea_uros.design.improvement_candidates import Candidate, candidates
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.names import require
 from amalthea_uros.services.analyze import AnalysisResult, Analyzed, analysis_result
-from amalthea_uros.timing.arrivals import nominal_period
-from amalthea_uros.timing.phases import counters
+from amalthea_uros.timing.activation.phases import counters, nominal_period
 from amalthea_uros.units import Time, time_text
 
 #: The analyses of changed systems: at most so many, fewer for systems with many processes, but always some.

@@ -7,8 +7,8 @@ from collections.abc import Iterable
 from amalthea_uros.names import require
 from amalthea_uros.perf.system import System
 from amalthea_uros.simulate.options import ALL_LABELS
-from amalthea_uros.timing.phases import sources
-from amalthea_uros.timing.settings import Settings
+from amalthea_uros.timing.activation.phases import sources
+from amalthea_uros.timing.basics.settings import Settings
 
 
 def require_settings(settings: Settings, system: System) -> None:

@@ -32,7 +32,7 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.services.design_space import DEFAULT, Vary, Wishes, design_space
 from amalthea_uros.services.names import require_settings
 from amalthea_uros.services.subject import Subject, open_subject, paths_of, reusable
-from amalthea_uros.timing.settings import Settings
+from amalthea_uros.timing.basics.settings import Settings
 
 #: So many proposals are shown, unless more are asked for.
 MOST_PROPOSALS = 5

@@ -25,8 +25,8 @@ from amalthea_uros.services.subject import Subject
 from amalthea_uros.services.waiting_messages import with_analysed_storage
 from amalthea_uros.services.what_if import Changes, as_changes
 from amalthea_uros.simulate.options import Options
-from amalthea_uros.timing.load import activation_rates
-from amalthea_uros.timing.settings import Settings
+from amalthea_uros.timing.activation.load import activation_rates
+from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import MILLISECOND, SECOND, Time
 
 if TYPE_CHECKING:

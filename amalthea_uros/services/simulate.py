@@ -28,7 +28,7 @@ from amalthea_uros.services.inputs import as_paths, open_system
 from amalthea_uros.services.names import require_labels, require_settings
 from amalthea_uros.services.subject import Subject, open_subject
 from amalthea_uros.simulate.options import Mode, Options
-from amalthea_uros.timing.settings import Settings
+from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import Time, parse_time
 
 if TYPE_CHECKING:

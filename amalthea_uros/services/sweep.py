@@ -25,7 +25,7 @@ from amalthea_uros.services.inputs import SystemInput, as_paths, open_system
 from amalthea_uros.services.names import require_settings
 from amalthea_uros.services.subject import Subject, open_subject
 from amalthea_uros.services.what_if import Changes, as_changes
-from amalthea_uros.timing.settings import Settings
+from amalthea_uros.timing.basics.settings import Settings
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)

@@ -20,7 +20,7 @@ from amalthea_uros.services.changed_model import write_changed
 from amalthea_uros.services.impact_text import HEADINGS, cells, plain_table, unchanged_text
 from amalthea_uros.services.names import require_settings
 from amalthea_uros.services.subject import Subject, reusable, system_of
-from amalthea_uros.timing.settings import Settings
+from amalthea_uros.timing.basics.settings import Settings
 
 #: Changes as callers give them: `{"Task.period": "2 ms"}` or `["Task.period=2ms"]`.
 Changes: TypeAlias = Mapping[str, object] | Iterable[str | Change]

@@ -22,8 +22,7 @@ from amalthea_uros.perf.constraints import (
     TimeMetric,
 )
 from amalthea_uros.simulate.results import MetricObservation, ProcessObservation, RunnableObservation
-from amalthea_uros.timing.jitter import is_deviation_from_period
-from amalthea_uros.timing.job_metric import JobMetric
+from amalthea_uros.timing.basics.quantities import JobMetric, is_deviation_from_period
 from amalthea_uros.units import Time
 
 _SHARES = {

@@ -14,7 +14,7 @@ from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.dataflow.chains import UnfoldError, sequences, unfold
 from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.links import reads, writes
-from amalthea_uros.timing.dataflow.positions import ActivityPosition
+from amalthea_uros.timing.jobs.positions import ActivityPosition
 
 #: Why nothing was observed of a requirement on a process that is not simulated.
 LIMITED_PROCESS_LEFT_OUT = "the process that it limits is not simulated"

@@ -18,9 +18,9 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.simulate.limited_values import LimitedQuantity, limited_values, limited_values_of_runnable, observed_values
 from amalthea_uros.simulate.not_simulated import LIMITED_PROCESS_LEFT_OUT
 from amalthea_uros.simulate.results import ChainObservation, ProcessObservation, RequirementObservation, RunnableObservation
-from amalthea_uros.timing.chain_quantity import ChainQuantity
+from amalthea_uros.timing.activation.releases import activation_period
+from amalthea_uros.timing.basics.quantities import ChainQuantity
 from amalthea_uros.timing.dataflow.chains import UnfoldError, forks, unfold
-from amalthea_uros.timing.releases import activation_period
 from amalthea_uros.units import Time
 
 

@@ -33,7 +33,7 @@ from amalthea_uros.simulate.program.watches import Source, event_names, events_o
 from amalthea_uros.simulate.results import LabelObservation
 from amalthea_uros.simulate.rows import Observation
 from amalthea_uros.timing.dataflow.events import EventLocator
-from amalthea_uros.timing.runnable_order import order_scope
+from amalthea_uros.timing.dataflow.runnable_order import order_scope
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

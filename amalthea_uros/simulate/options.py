@@ -7,7 +7,7 @@ from enum import StrEnum
 
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.settings import Settings
+from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import Time
 
 #: Among `Options.labels`: all labels.

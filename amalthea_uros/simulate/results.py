@@ -18,8 +18,7 @@ from amalthea_uros.judge.limits import DEADLINE, PERIOD, SystemLimit
 from amalthea_uros.judge.margins import margin_of, tightest
 from amalthea_uros.judge.verdict import WORST_OBSERVED_FIRST, ObservedJudgement, ObservedVerdict
 from amalthea_uros.simulate.options import Mode
-from amalthea_uros.timing.chain_quantity import ChainQuantity
-from amalthea_uros.timing.job_metric import JobMetric
+from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
 from amalthea_uros.units import Time, time_text
 
 if TYPE_CHECKING:

@@ -49,11 +49,11 @@ from amalthea_uros.simulate.results import (
     Simulation,
 )
 from amalthea_uros.simulate.rows import OCCURRENCE, Observation
+from amalthea_uros.timing.activation.phases import with_first_arrivals
+from amalthea_uros.timing.activation.releases import ASSUMPTION
+from amalthea_uros.timing.basics.quantities import JobMetric
+from amalthea_uros.timing.blocking.critical_sections import spinlocks_of
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.critical_sections import spinlocks_of
-from amalthea_uros.timing.deadlines import ASSUMPTION
-from amalthea_uros.timing.job_metric import JobMetric
-from amalthea_uros.timing.phases import with_first_arrivals
 from amalthea_uros.trace.semaphore_states import SemaphoreStates
 from amalthea_uros.trace.sinks import TraceSink
 from amalthea_uros.trace.suspensions import RunnableSuspensions

@@ -13,7 +13,7 @@ from amalthea_uros.perf.activities import Call
 from amalthea_uros.perf.network import Transmission, Wait
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.dataflow.links import Dataflow
-from amalthea_uros.timing.stretches import executed
+from amalthea_uros.timing.jobs.executed import executed
 from amalthea_uros.units import time_text
 
 _WAYS_OUT = "give the executor its loop, or state 'reliable: {waits: false}' if the port does not wait"

@@ -10,27 +10,30 @@ from typing import TypeVar
 from amalthea_uros.perf.os import Policy, Scheduler
 from amalthea_uros.perf.stimuli import EventTriggered, InterProcess
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.activation import Activations, UnknownActivationError
-from amalthea_uros.timing.allocation import allocated_cores, effective_priority
-from amalthea_uros.timing.arrivals import arrival_assumptions, with_bounded_arrivals
+from amalthea_uros.timing.activation.activations import (
+    Activations,
+    TriggeredTogether,
+    UnknownActivationError,
+    triggered_together,
+)
+from amalthea_uros.timing.activation.phases import arrival_assumptions, with_bounded_arrivals
+from amalthea_uros.timing.activation.releases import response_time_limits
 from amalthea_uros.timing.awaited import why_suspended
-from amalthea_uros.timing.critical_sections import Locks, Protection, spinlocks_of
+from amalthea_uros.timing.basics.limits import MAX_INPUT
+from amalthea_uros.timing.basics.notes import Notes, UnknownDemandError
+from amalthea_uros.timing.basics.settings import Memory, Settings
+from amalthea_uros.timing.blocking.critical_sections import Locks, Protection, spinlocks_of
+from amalthea_uros.timing.blocking.regions import KeptOff, ProcessStretches, StretchWalk, UnclearLocksError
 from amalthea_uros.timing.dataflow.links import Dataflow
-from amalthea_uros.timing.demand import DemandModel
+from amalthea_uros.timing.demand.model import DemandModel
+from amalthea_uros.timing.demand.multiframe import MultiframeDemand
+from amalthea_uros.timing.demand.overheads import ASSUMPTION as OVERHEAD_ASSUMPTION
+from amalthea_uros.timing.demand.overheads import has_overhead_of_tasks
 from amalthea_uros.timing.event_models import EventModel
-from amalthea_uros.timing.exclusive_jobs import TriggeredTogether, triggered_together
-from amalthea_uros.timing.limits import MAX_INPUT
-from amalthea_uros.timing.multiframe import MultiframeDemand
-from amalthea_uros.timing.notes import Notes, UnknownDemandError
-from amalthea_uros.timing.overheads import ASSUMPTION as OVERHEAD_ASSUMPTION
-from amalthea_uros.timing.overheads import has_overhead_of_tasks
-from amalthea_uros.timing.process_stretches import ProcessStretches
-from amalthea_uros.timing.releases import response_time_limits
-from amalthea_uros.timing.scheduling import NotSchedulableError, ScheduledProcess, Scheduling, Server
-from amalthea_uros.timing.server_calls import with_direct_calls
-from amalthea_uros.timing.settings import Memory, Settings
-from amalthea_uros.timing.stated_demand import states_execution_time
-from amalthea_uros.timing.stretches import KeptOff, StretchWalk, UnclearLocksError
+from amalthea_uros.timing.jobs.executed import states_execution_time
+from amalthea_uros.timing.jobs.server_calls import with_direct_calls
+from amalthea_uros.timing.scheduling.allocation import allocated_cores, effective_priority
+from amalthea_uros.timing.scheduling.ranks import NotSchedulableError, ScheduledProcess, Scheduling, Server
 from amalthea_uros.timing.successors import with_successors
 from amalthea_uros.timing.touching import Touching
 

@@ -46,12 +46,12 @@ from amalthea_uros.perf.stimuli import (
     VariableRate,
 )
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.allocation import allocated_cores
+from amalthea_uros.timing.basics.quantities import JobMetric
+from amalthea_uros.timing.basics.settings import Memory, Settings
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.dataflow.chains import events_of
-from amalthea_uros.timing.job_metric import JobMetric
-from amalthea_uros.timing.preemption import is_preemptive
-from amalthea_uros.timing.settings import Memory, Settings
+from amalthea_uros.timing.scheduling.allocation import allocated_cores
+from amalthea_uros.timing.scheduling.ranks import is_preemptive
 
 #: By these, processes influence each other in ways that are not followed here: then each one influences all.
 _COUPLING = (Migrate, SemaphoreAccess, SenderReceiverAccess, ServerCall, WaitEvent)

@@ -14,12 +14,12 @@ from amalthea_uros.perf.activities import Incomplete, Migrate
 from amalthea_uros.perf.conditions import read_by
 from amalthea_uros.perf.software import Isr
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.allocation import allocated_cores, scheduler_cores
-from amalthea_uros.timing.critical_sections import Protection, protection_of
+from amalthea_uros.timing.blocking.critical_sections import Protection, protection_of
 from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.links import Dataflow, DirectLink, LinkKind, reads, writes
-from amalthea_uros.timing.scheduling import ScheduledProcess
-from amalthea_uros.timing.stretches import executed
+from amalthea_uros.timing.jobs.executed import executed
+from amalthea_uros.timing.scheduling.allocation import allocated_cores, scheduler_cores
+from amalthea_uros.timing.scheduling.ranks import ScheduledProcess
 
 #: What the bridge calls a migration without a target.
 _INCOMPLETE_MIGRATION = "an incomplete EnforcedMigration"

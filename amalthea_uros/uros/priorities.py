@@ -13,8 +13,8 @@ from itertools import count
 from math import inf
 
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.allocation import allocated_cores
-from amalthea_uros.timing.shared_priorities import sharing_a_priority
+from amalthea_uros.timing.scheduling.allocation import allocated_cores
+from amalthea_uros.timing.scheduling.shared_priorities import sharing_a_priority
 from amalthea_uros.units import time_text
 from amalthea_uros.uros.notes import Notes
 from amalthea_uros.uros.rtos import HIGHER_IS_MORE_URGENT, PriorityScale

@@ -8,13 +8,12 @@ from fractions import Fraction
 from functools import cached_property
 
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.activation import Activations
-from amalthea_uros.timing.allocation import allocated_cores
-from amalthea_uros.timing.clocks import controller_of_core
+from amalthea_uros.timing.activation.activations import Activations
+from amalthea_uros.timing.activation.load import activation_rates, certain_loads, loads, suppressible
+from amalthea_uros.timing.basics.notes import Notes
 from amalthea_uros.timing.dataflow.links import Dataflow
-from amalthea_uros.timing.demand import DemandModel
-from amalthea_uros.timing.load import activation_rates, certain_loads, loads, suppressible
-from amalthea_uros.timing.notes import Notes
+from amalthea_uros.timing.demand.model import DemandModel
+from amalthea_uros.timing.scheduling.allocation import allocated_cores, controller_of_core
 from amalthea_uros.timing.successors import with_successors
 
 

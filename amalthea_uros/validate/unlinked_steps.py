@@ -7,9 +7,8 @@ from itertools import product
 from typing import NamedTuple
 
 from amalthea_uros.perf.named import Located
-from amalthea_uros.timing.crossing import crosses
 from amalthea_uros.timing.dataflow.chains import steps
-from amalthea_uros.timing.dataflow.routes import is_linked
+from amalthea_uros.timing.dataflow.routes import crosses, is_linked
 from amalthea_uros.validate.system_context import SystemContext
 
 

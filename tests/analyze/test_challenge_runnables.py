@@ -19,7 +19,7 @@ from amalthea_uros.perf.events import EventChain, Events, RunnableChange, Runnab
 from amalthea_uros.perf.mapping import TaskAllocation
 from amalthea_uros.perf.software import Preemption, Runnable, Task
 from amalthea_uros.perf.stimuli import Periodic, RelativePeriodic
-from amalthea_uros.timing.settings import Settings
+from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import MICROSECOND as US
 
 MODEL = SHARED / "corpus" / "WATERS_2017_v072.amxmi"

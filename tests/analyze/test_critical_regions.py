@@ -8,7 +8,7 @@ import pytest
 from opponent.to_perf import to_perf
 
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.timing.stretches import AFTER_CALL, NOTHING, POINT, Stretches
+from amalthea_uros.timing.blocking.regions import AFTER_CALL, NOTHING, POINT, Stretches
 from amalthea_uros.units import MICROSECOND as US
 
 

@@ -14,6 +14,7 @@ from amalthea_uros.analyze.response_times.task import Task
 from amalthea_uros.perf import stimuli as perf
 from amalthea_uros.perf.distributions import Constant, Uniform
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.event_models import (
     AggregatedEventModel,
     Curve,
@@ -27,7 +28,6 @@ from amalthea_uros.timing.event_models import (
     Sporadic,
 )
 from amalthea_uros.timing.event_models.stimuli import event_model_of
-from amalthea_uros.timing.multiframe import MultiframeDemand
 
 PERIODIC = st.builds(Periodic, st.integers(1, 30), st.integers(0, 80), st.integers(0, 5)).filter(
     lambda p: p.min_interarrival <= p.period

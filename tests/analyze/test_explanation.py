@@ -18,7 +18,7 @@ from amalthea_uros.perf.mapping import TaskAllocation
 from amalthea_uros.perf.os import Duration, Parameter, Parent, Policy, Scheduler
 from amalthea_uros.perf.software import Runnable, Task
 from amalthea_uros.perf.stimuli import Counter, Periodic
-from amalthea_uros.timing.settings import Settings
+from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import MICROSECOND as US
 
 

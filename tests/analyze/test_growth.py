@@ -26,10 +26,10 @@ from amalthea_uros.perf.os import OperatingSystem, Os, Policy, Scheduler
 from amalthea_uros.perf.software import Label, Runnable, Software, Task
 from amalthea_uros.perf.stimuli import EventTriggered, InterProcess, Periodic, Stimuli
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.basics.notes import Notes
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.dataflow import events as dataflow_events
 from amalthea_uros.timing.dataflow.events import EventLocator, UnresolvedError
-from amalthea_uros.timing.notes import Notes
 
 #: Tasks on a core.
 HERE = 4

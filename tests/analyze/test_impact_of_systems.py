@@ -11,7 +11,7 @@ from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.design.changes.apply import apply
 from amalthea_uros.design.changes.change import parse_change
 from amalthea_uros.services.inputs import open_system
-from amalthea_uros.timing.settings import Settings
+from amalthea_uros.timing.basics.settings import Settings
 
 #: What is certain about a process, requirement or system that is fine.
 GOOD = {"met", "yes"}

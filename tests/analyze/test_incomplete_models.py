@@ -4,7 +4,7 @@ import pytest
 from support import MODEL
 
 from amalthea_uros import analyze_system, extract, load
-from amalthea_uros.timing.settings import Memory, Settings
+from amalthea_uros.timing.basics.settings import Memory, Settings
 from amalthea_uros.units import MICROSECOND as US
 
 TEXT = """

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from amalthea_uros._internal.compiled import Compiled, compiled
 from amalthea_uros.analyze.response_times import kernel, schedule
 from amalthea_uros.analyze.response_times.schedule import PeriodicTask
-from amalthea_uros.timing.multiframe import Frame, MultiframeDemand
+from amalthea_uros.timing.demand.multiframe import Frame, MultiframeDemand
 
 np = pytest.importorskip("numpy")
 pytest.importorskip("numba")

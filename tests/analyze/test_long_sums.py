@@ -6,8 +6,8 @@ from effort import every
 from amalthea_uros.analyze.response_times import priority_levels
 from amalthea_uros.analyze.response_times.busy_window import Interference
 from amalthea_uros.analyze.response_times.task import Task
+from amalthea_uros.timing.demand.multiframe import Frame, MultiframeDemand
 from amalthea_uros.timing.event_models import Pattern, Periodic
-from amalthea_uros.timing.multiframe import Frame, MultiframeDemand
 
 LONGEST = 2**54
 

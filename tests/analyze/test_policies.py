@@ -41,7 +41,7 @@ from amalthea_uros.perf.software import Channel, Isr, IsrCategory, Label, Preemp
 from amalthea_uros.perf.stimuli import EventTriggered, Periodic, RelativePeriodic, Stimuli
 from amalthea_uros.perf.system import System
 from amalthea_uros.report.closing_line import closing_line
-from amalthea_uros.timing.settings import Memory, Settings
+from amalthea_uros.timing.basics.settings import Memory, Settings
 from amalthea_uros.units import MICROSECOND as US
 
 

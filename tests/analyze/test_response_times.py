@@ -12,8 +12,8 @@ from support import SHARED
 from amalthea_uros.analyze.response_times import non_preemptive, priority_levels, schedule
 from amalthea_uros.analyze.response_times.schedule import PeriodicTask
 from amalthea_uros.analyze.response_times.task import Task
+from amalthea_uros.timing.demand.multiframe import Frame, MultiframeDemand
 from amalthea_uros.timing.event_models import Periodic
-from amalthea_uros.timing.multiframe import Frame, MultiframeDemand
 
 
 def vectors(name, accept=lambda case: True):

@@ -13,9 +13,9 @@ from amalthea_uros.analyze.response_times import priority_levels
 from amalthea_uros.analyze.response_times.busy_window import Interference
 from amalthea_uros.analyze.response_times.round_robin import response_time
 from amalthea_uros.analyze.response_times.task import Task
+from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.event_models import AggregatedEventModel, Periodic
-from amalthea_uros.timing.multiframe import MultiframeDemand
-from amalthea_uros.timing.scheduling import EqualPriority
+from amalthea_uros.timing.scheduling.ranks import EqualPriority
 
 
 class Row(NamedTuple):

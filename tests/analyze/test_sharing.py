@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 from amalthea_uros.analyze.response_times import priority_levels
 from amalthea_uros.analyze.response_times.supply import Budget
 from amalthea_uros.analyze.response_times.task import Task
+from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.event_models import Periodic
-from amalthea_uros.timing.multiframe import MultiframeDemand
-from amalthea_uros.timing.scheduling import EqualPriority
+from amalthea_uros.timing.scheduling.ranks import EqualPriority
 
 
 def shared(equal_priority, rows, above=()):

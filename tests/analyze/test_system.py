@@ -20,7 +20,7 @@ from amalthea_uros.perf.os import OperatingSystem, Os, Policy, Scheduler
 from amalthea_uros.perf.software import Preemption, Runnable, Software, Task
 from amalthea_uros.perf.stimuli import InterProcess, Periodic, RelativePeriodic, Stimuli
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.settings import Settings
+from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
 

@@ -29,7 +29,7 @@ from amalthea_uros.simulate.results import (
     ProcessObservation,
     Simulation,
 )
-from amalthea_uros.timing.job_metric import JobMetric
+from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.trace.table import NO_NOTE, Entity, EntityKind, EventKind, EventTable
 
 ADVANCED = ROOT / "samples" / "bodas-test-advanced.yaml"

@@ -13,7 +13,7 @@ from amalthea_uros.measure.series import Kind, Measurement, Series
 from amalthea_uros.measure.statistics import statistics_of
 from amalthea_uros.services.build import describe_text
 from amalthea_uros.services.measure import measure
-from amalthea_uros.timing.job_metric import JobMetric
+from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.units import MICROSECOND, MILLISECOND, SECOND
 
 SAMPLES = ROOT / "samples"

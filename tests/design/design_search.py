@@ -15,7 +15,7 @@ from amalthea_uros.design.optimize.problem import Evaluation, Feasibility, Goal,
 from amalthea_uros.design.optimize.space import Choice, Kind, PriorityOrder, Space
 from amalthea_uros.perf.activities import Communication
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.settings import Settings
+from amalthea_uros.timing.basics.settings import Settings
 
 Measure = Callable[[Analysis], Fraction | int | None]
 

@@ -10,7 +10,7 @@ from amalthea_uros.design.optimize.problem import Conclusion, Evaluation, Feasib
 from amalthea_uros.design.optimize.solvers.annealing import Design, solve_by_annealing
 from amalthea_uros.design.optimize.space import Choice, Kind, PriorityOrder, Space
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.settings import Settings
+from amalthea_uros.timing.basics.settings import Settings
 
 NAMES = tuple("ABCDEFGH")
 SPACE = Space(

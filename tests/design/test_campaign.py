@@ -28,7 +28,7 @@ from amalthea_uros.errors import InvalidArgumentError, WriteError
 from amalthea_uros.services.inputs import open_system
 from amalthea_uros.services.simulate import SimulationJob
 from amalthea_uros.simulate.options import Options
-from amalthea_uros.timing.settings import Settings
+from amalthea_uros.timing.basics.settings import Settings
 
 
 def runs(count):

@@ -10,7 +10,7 @@ import amalthea_uros as amuros
 from amalthea_uros.analyze.impact import figures
 from amalthea_uros.design.changes.kinds import KINDS
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.timing.settings import Settings
+from amalthea_uros.timing.basics.settings import Settings
 
 SAMPLES = ROOT / "samples"
 #: A value for each key that no sample has; what depends on the names of a model is in `value_for`.

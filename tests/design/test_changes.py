@@ -16,7 +16,7 @@ from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf import activities, distributions, events, hardware, mapping, os, software, stimuli
 from amalthea_uros.perf.system import System
 from amalthea_uros.services.inputs import open_system
-from amalthea_uros.timing.settings import Settings
+from amalthea_uros.timing.basics.settings import Settings
 
 MHZ = Fraction(10**6)
 MS = 10**9

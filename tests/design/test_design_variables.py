@@ -6,7 +6,7 @@ from amalthea_uros import InvalidArgumentError, Settings, analyze, build, diff, 
 from amalthea_uros.analyze.results import Quantity
 from amalthea_uros.design.optimize.problem import Conclusion
 from amalthea_uros.services.optimized_model import write_proposal
-from amalthea_uros.timing.settings import Memory
+from amalthea_uros.timing.basics.settings import Memory
 from amalthea_uros.units import MICROSECOND as US
 
 HARDWARE = """

@@ -15,7 +15,7 @@ from amalthea_uros.services import improvements as improvements_module
 from amalthea_uros.services.analyze import analyze_files
 from amalthea_uros.services.explain import explain
 from amalthea_uros.services.improvements import improvements
-from amalthea_uros.timing.settings import Settings
+from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
 

@@ -10,7 +10,7 @@ from amalthea_uros.measure.event_chains import ChainSteps
 from amalthea_uros.measure.jobs import JobWalk
 from amalthea_uros.measure.series import Counts
 from amalthea_uros.simulate.system import simulate_system
-from amalthea_uros.timing.job_metric import JobMetric
+from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.trace.recorder import Recorder
 from amalthea_uros.trace.table import Entity, EntityKind, EventKind
 from amalthea_uros.units import MICROSECOND

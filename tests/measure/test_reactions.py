@@ -3,7 +3,7 @@
 import numpy as np
 
 from amalthea_uros.measure.reactions import reactions
-from amalthea_uros.timing.chain_quantity import ChainQuantity as Q
+from amalthea_uros.timing.basics.quantities import ChainQuantity as Q
 
 S, R = False, True
 

@@ -11,7 +11,7 @@ from opponent.systems import PlainSystem
 from opponent.to_perf import MICROSECOND, to_perf
 
 from amalthea_uros.simulate.options import Options
-from amalthea_uros.timing.job_times import Job
+from amalthea_uros.timing.observed.job_times import Job
 from amalthea_uros.trace.table import EntityKind, EventKind
 
 _BEGINS = (EventKind.START, EventKind.RESUME, EventKind.POLL_PARKING)

@@ -24,7 +24,7 @@ from amalthea_uros.simulate.program.program import Program
 from amalthea_uros.simulate.results import MetricObservation
 from amalthea_uros.simulate.rows import STIMULUS, Observation
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.job_times import Job as Column
+from amalthea_uros.timing.observed.job_times import Job as Column
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

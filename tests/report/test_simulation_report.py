@@ -21,7 +21,7 @@ from amalthea_uros.simulate.results import (
     RunnableObservation,
     Simulation,
 )
-from amalthea_uros.timing.job_metric import JobMetric
+from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
 from amalthea_uros.units import SECOND

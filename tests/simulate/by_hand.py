@@ -7,7 +7,7 @@ from opponent.simulation import Recording, record
 
 from amalthea_uros.perf.conditions import Condition
 from amalthea_uros.simulate.options import Options
-from amalthea_uros.timing.job_times import Job
+from amalthea_uros.timing.observed.job_times import Job
 from amalthea_uros.trace.table import EventKind
 from amalthea_uros.units import MICROSECOND as US
 

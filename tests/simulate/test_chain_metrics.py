@@ -17,8 +17,8 @@ from amalthea_uros.analyze.chains.job_chains import build_job_chains
 from amalthea_uros.analyze.chains.read_write_times import ReadWriteTimes
 from amalthea_uros.simulate.metrics.chains import RouteMetrics, add_rows, chain_observation
 from amalthea_uros.simulate.rows import RESPONSE, STIMULUS
-from amalthea_uros.timing import route_latencies
-from amalthea_uros.timing.chain_quantity import ChainQuantity as Q
+from amalthea_uros.timing.basics.quantities import ChainQuantity as Q
+from amalthea_uros.timing.observed import chain_latencies
 
 MAX_JOBS = 1500
 
@@ -246,7 +246,7 @@ def literal(observed):
     start = {stamp: time for time, kind, stamp in observed if kind == STIMULUS}
     outputs = [(time, stamp) for time, kind, stamp in observed if kind == RESPONSE]
     answers = {k: next((time for time, stamp in outputs if stamp >= k), None) for k in start}
-    found = {quantity: [] for quantity in route_latencies.MEASURED}
+    found = {quantity: [] for quantity in chain_latencies.MEASURED}
     for k, answer in answers.items():
         if answer is not None:
             found[Q.REDUCED_REACTION_TIME].append(answer - start[k])
@@ -289,7 +289,7 @@ def test_the_latencies_are_as_defined_in_any_chunks(observed, cuts):
 def test_what_is_no_longer_kept_is_counted_in_any_chunks(observed, cuts, window):
     edges = [0, *sorted(cuts), len(observed)]
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(route_latencies, "WINDOW", window)
+        patch.setattr(chain_latencies, "WINDOW", window)
         whole, chunked = RouteMetrics(1), RouteMetrics(1)
         whole.add(rows(observed))
         for first, end in pairwise(edges):

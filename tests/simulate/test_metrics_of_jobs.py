@@ -14,8 +14,8 @@ from amalthea_uros.simulate.metrics.distributions import Distributions
 from amalthea_uros.simulate.metrics.histogram import MAX_BINS, BinCounts
 from amalthea_uros.simulate.metrics.jobs import JobMetrics, add_rows
 from amalthea_uros.simulate.results import CountObservation
-from amalthea_uros.timing.job_metric import JobMetric
-from amalthea_uros.timing.job_times import BETWEEN, OWN, Job
+from amalthea_uros.timing.basics.quantities import JobMetric
+from amalthea_uros.timing.observed.job_times import BETWEEN, OWN, Job
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
 

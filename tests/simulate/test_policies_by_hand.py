@@ -7,7 +7,7 @@ from by_hand import allocated, built, play
 from hand_made_systems import CORES, Proc, ticks
 
 from amalthea_uros.perf.os import Duration, Parameter, Parent, Policy, Scheduler
-from amalthea_uros.timing.job_times import Job
+from amalthea_uros.timing.observed.job_times import Job
 from amalthea_uros.trace.table import EventKind
 from amalthea_uros.units import MICROSECOND as US
 

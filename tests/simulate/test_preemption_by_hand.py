@@ -8,7 +8,7 @@ from amalthea_uros.perf.activities import Call, Group, SchedulePoint, Terminate
 from amalthea_uros.perf.os import Parameter, Policy, Scheduler
 from amalthea_uros.perf.software import Preemption, Runnable
 from amalthea_uros.perf.stimuli import Counter
-from amalthea_uros.timing.job_times import Job
+from amalthea_uros.timing.observed.job_times import Job
 from amalthea_uros.trace.table import EventKind
 
 COOPERATIVE = {"preemption": Preemption.COOPERATIVE}

@@ -10,9 +10,8 @@ from amalthea_uros import describe
 from amalthea_uros.simulate import machine_code
 from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.simulate.system import simulate_system
-from amalthea_uros.timing.chain_quantity import ChainQuantity
-from amalthea_uros.timing.job_metric import JobMetric
-from amalthea_uros.timing.settings import Settings
+from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
+from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.trace.table import EventKind
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS

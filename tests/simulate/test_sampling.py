@@ -29,7 +29,7 @@ from amalthea_uros.simulate.sampling.quantiles import sampling_assumption, varia
 from amalthea_uros.simulate.sampling.random_source import RandomSource
 from amalthea_uros.simulate.sampling.streams import choices, durations, permutations, values
 from amalthea_uros.simulate.sampling.variate import UnknownValueError
-from amalthea_uros.timing.means import mean
+from amalthea_uros.timing.demand.means import mean
 
 #: Bounds so far apart that rounding to whole numbers does not matter.
 WIDE = 10**9

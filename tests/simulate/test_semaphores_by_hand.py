@@ -5,7 +5,7 @@ from hand_made_systems import Proc, locked, release, request, ticks
 
 from amalthea_uros.perf.activities import Waiting
 from amalthea_uros.perf.os import Semaphore, SemaphoreKind
-from amalthea_uros.timing.job_times import Job
+from amalthea_uros.timing.observed.job_times import Job
 
 
 def test_two_users_at_a_time():

@@ -16,8 +16,7 @@ from amalthea_uros.design.changes.sweep import parse_sweep
 from amalthea_uros.services.simulate import simulate, simulate_campaign
 from amalthea_uros.simulate import machine_code
 from amalthea_uros.simulate.options import Options
-from amalthea_uros.timing.chain_quantity import ChainQuantity
-from amalthea_uros.timing.job_metric import JobMetric
+from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
 from amalthea_uros.units import SECOND

@@ -6,7 +6,7 @@ from hand_made_systems import Proc, ticks
 
 from amalthea_uros.perf.activities import Call, ClearEvent, ServerCall, ServerCallKind, SetEvent, WaitEvent, Waiting
 from amalthea_uros.perf.software import OsEvent, Runnable
-from amalthea_uros.timing.job_times import Job
+from amalthea_uros.timing.observed.job_times import Job
 
 A_AND_B = (OsEvent(name="a"), OsEvent(name="b"))
 

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from amalthea_uros.perf.stimuli import ClockFunction, ClockStep, ClockSteps, Curve
-from amalthea_uros.timing.clock_areas import CurveArea, UnknownClockError, clock_area
+from amalthea_uros.timing.event_models.clock_areas import CurveArea, UnknownClockError, clock_area
 from amalthea_uros.units import SECOND
 
 

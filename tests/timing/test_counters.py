@@ -18,7 +18,7 @@ from amalthea_uros.perf.software import Runnable, Software, Task
 from amalthea_uros.perf.stimuli import Counter, Periodic, Stimuli
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.counters import composed, first_effect, of_one_in
+from amalthea_uros.timing.jobs.counters import composed, first_effect, of_one_in
 from amalthea_uros.units import MICROSECOND, MILLISECOND
 
 JOBS, MANY_JOBS = 120, 60_000

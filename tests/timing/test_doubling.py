@@ -21,12 +21,12 @@ from amalthea_uros.perf.events import (
     Sequence,
 )
 from amalthea_uros.perf.software import Label, Runnable
-from amalthea_uros.timing.counters import CallSites, reached
 from amalthea_uros.timing.dataflow import paths as dataflow_paths
 from amalthea_uros.timing.dataflow.chains import UnfoldError, unfold
 from amalthea_uros.timing.dataflow.events import EventLocator, UnresolvedError
 from amalthea_uros.timing.dataflow.paths import paths
-from amalthea_uros.timing.dataflow.positions import positions
+from amalthea_uros.timing.jobs.counters import CallSites, reached
+from amalthea_uros.timing.jobs.positions import positions
 from amalthea_uros.units import MICROSECOND as US
 
 
@@ -54,7 +54,7 @@ class TestCalls:
 
     def test_an_event_inside_too_many_calls_is_not_located(self, monkeypatch):
         followed = []
-        monkeypatch.setattr("amalthea_uros.timing.dataflow.positions._Walk.through", lambda *_: followed.append(1))
+        monkeypatch.setattr("amalthea_uros.timing.jobs.positions._Walk.through", lambda *_: followed.append(1))
         event = RunnableEvent(name="end", runnable="R60", change=RunnableChange.TERMINATE)
         locator = EventLocator(calling(60, events=(event,)))
         for _ in range(3):

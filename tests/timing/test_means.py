@@ -20,7 +20,7 @@ from amalthea_uros.perf.distributions import (
     highest,
     lowest,
 )
-from amalthea_uros.timing.means import exact_sum, mean
+from amalthea_uros.timing.demand.means import exact_sum, mean
 
 ANY_NUMBER = st.floats(allow_nan=True, allow_infinity=True)
 BOUNDS = st.tuples(st.integers(0, 10**20), st.integers(0, 10**20)).map(sorted)

@@ -28,8 +28,8 @@ from amalthea_uros.perf.os import OperatingSystem, Os, Overhead, Policy, Schedul
 from amalthea_uros.perf.software import Label, Runnable, Software, Task
 from amalthea_uros.perf.stimuli import InterProcess, Periodic, Stimuli
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.settings import Memory as MemoryMode
-from amalthea_uros.timing.settings import Settings
+from amalthea_uros.timing.basics.settings import Memory as MemoryMode
+from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import MICROSECOND as US
 
 

@@ -5,7 +5,7 @@ import pytest
 from amalthea_uros import analyze
 from amalthea_uros.perf.os import Duration
 from amalthea_uros.spec.os import Os, SleepTicks
-from amalthea_uros.timing.settings import Memory, Settings
+from amalthea_uros.timing.basics.settings import Memory, Settings
 from amalthea_uros.units import MICROSECOND, MILLISECOND
 from amalthea_uros.uros.rtos import slept
 

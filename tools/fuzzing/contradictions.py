@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from amalthea_uros.analyze.results import Analysis, ChainResult, ProcessResult, RequirementResult
 from amalthea_uros.judge.verdict import ObservedVerdict, Verdict
 from amalthea_uros.simulate.results import ChainObservation, ProcessObservation, RequirementObservation, Simulation
+from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.timing.dataflow.chains import UnfoldError, forks, unfold
-from amalthea_uros.timing.job_metric import JobMetric
 
 
 def contradictions(analysis: Analysis, simulation: Simulation) -> Iterator[str]:

@@ -15,9 +15,9 @@ from amalthea_uros.analyze.response_times.schedule import Jobs
 from amalthea_uros.perf.activities import Communication, Execute, ExecutionNeed
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.dataflow.events import JobPhase
-from amalthea_uros.timing.dataflow.positions import ActivityPosition
 from amalthea_uros.timing.dataflow.stages import At, Boundary, Fire, Pass, Read, Stage, Write
-from amalthea_uros.timing.multiframe import MultiframeDemand
+from amalthea_uros.timing.demand.multiframe import MultiframeDemand
+from amalthea_uros.timing.jobs.positions import ActivityPosition
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:

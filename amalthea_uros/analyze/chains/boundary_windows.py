@@ -14,7 +14,7 @@ from amalthea_uros.analyze.results import Response
 from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.timing.dataflow.events import JobPhase
 from amalthea_uros.timing.dataflow.stages import Boundary, Stage
-from amalthea_uros.timing.multiframe import MultiframeDemand
+from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.units import Time
 
 

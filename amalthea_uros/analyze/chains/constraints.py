@@ -40,14 +40,14 @@ from amalthea_uros.perf.constraints import (
     RepetitionConstraint,
 )
 from amalthea_uros.perf.events import EventChain, LabelChange, LabelEvent
-from amalthea_uros.timing.counters import is_always
+from amalthea_uros.timing.activation.releases import known_releases
+from amalthea_uros.timing.basics.quantities import jitter_of
 from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.links import LinkKind
 from amalthea_uros.timing.dataflow.routes import Route, corresponding, routes
+from amalthea_uros.timing.dataflow.runnable_order import are_activated_together, has_counted_effect, order_scope
 from amalthea_uros.timing.event_models import EventModel, Periodic, can_be_dense, is_strictly_periodic
-from amalthea_uros.timing.jitter import jitter_of
-from amalthea_uros.timing.releases import known_releases
-from amalthea_uros.timing.runnable_order import are_activated_together, has_counted_effect, order_scope
+from amalthea_uros.timing.jobs.counters import is_always
 from amalthea_uros.units import Time, time_text
 
 _REACTION = (Quantity.MIN_FIRST_TO_FIRST, Quantity.MAX_REDUCED_REACTION_TIME)

@@ -13,14 +13,14 @@ from amalthea_uros.analyze.chains.timed_stage import TimedStage
 from amalthea_uros.analyze.results import ChainResult, Claim, Quantity, Value
 from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.perf.events import EventChain
-from amalthea_uros.timing.clocks import controller_of_core
+from amalthea_uros.timing.activation.phases import Occurrence, unknown_phases
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.dataflow.chains import Unfolded, UnfoldError, combined, empty_sets, sequences, unfold
 from amalthea_uros.timing.dataflow.events import UnraisedError, UnresolvedError
 from amalthea_uros.timing.dataflow.links import LinkKind
 from amalthea_uros.timing.dataflow.routes import Route, UnlinkedError, route_text, routes_of_ways
 from amalthea_uros.timing.dataflow.stages import Stage, common_communication, stages
-from amalthea_uros.timing.phases import Occurrence, unknown_phases
+from amalthea_uros.timing.scheduling.allocation import controller_of_core
 
 
 @dataclass(slots=True)

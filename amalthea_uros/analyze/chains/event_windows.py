@@ -9,10 +9,10 @@ from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.judge.evidence import Ends
 from amalthea_uros.perf.events import Event, EventSet
-from amalthea_uros.timing.counters import is_always
+from amalthea_uros.timing.activation.releases import known_releases
 from amalthea_uros.timing.dataflow.events import EventOccurrence, JobPhase
-from amalthea_uros.timing.dataflow.skipping import can_be_skipped
-from amalthea_uros.timing.releases import known_releases
+from amalthea_uros.timing.jobs.counters import is_always
+from amalthea_uros.timing.jobs.positions import can_be_skipped
 from amalthea_uros.units import Time
 
 

@@ -25,11 +25,11 @@ from amalthea_uros.analyze.results import Analysis, ChainResult, Quantity, Requi
 from amalthea_uros.analyze.ways.results import Way
 from amalthea_uros.perf.constraints import LatencyConstraint
 from amalthea_uros.perf.events import EventChain
-from amalthea_uros.timing.counters import ALWAYS
+from amalthea_uros.timing.activation.phases import unknown_phases
+from amalthea_uros.timing.activation.releases import known_releases
 from amalthea_uros.timing.dataflow.routes import Route, route_text
 from amalthea_uros.timing.dataflow.stages import Stage
-from amalthea_uros.timing.phases import unknown_phases
-from amalthea_uros.timing.releases import known_releases
+from amalthea_uros.timing.jobs.counters import ALWAYS
 from amalthea_uros.units import Time
 
 _REACTIONS = (Quantity.MAX_REACTION_TIME, Quantity.MAX_REDUCED_REACTION_TIME)

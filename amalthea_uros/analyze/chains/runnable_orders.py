@@ -8,17 +8,17 @@ from amalthea_uros.analyze.chains.event_windows import EventWindows
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import Call
 from amalthea_uros.perf.constraints import OrderConstraint, Ordering
+from amalthea_uros.timing.activation.releases import known_releases
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.dataflow.events import EventOccurrence, JobPhase
-from amalthea_uros.timing.dataflow.positions import ActivityPosition, ends_early
-from amalthea_uros.timing.releases import known_releases
-from amalthea_uros.timing.runnable_order import (
+from amalthea_uros.timing.dataflow.runnable_order import (
     OrderScope,
     called_runnable,
     is_in_fixed_order,
     is_once_per_job,
     satisfies_order,
 )
+from amalthea_uros.timing.jobs.positions import ActivityPosition, ends_early
 from amalthea_uros.units import Time
 
 

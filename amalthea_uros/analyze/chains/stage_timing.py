@@ -31,16 +31,15 @@ from amalthea_uros.perf.activities import Communication, Trigger
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Counter, EventTriggered, InterProcess, Periodic
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.activation.releases import known_releases, latest_first_release
+from amalthea_uros.timing.basics.limits import LIMIT
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.counters import ALWAYS, composed, first_effect, is_always, max_distance
 from amalthea_uros.timing.dataflow.events import EventOccurrence, JobPhase
-from amalthea_uros.timing.dataflow.positions import ActivityPosition
-from amalthea_uros.timing.dataflow.skipping import can_be_skipped
 from amalthea_uros.timing.dataflow.stages import NEXT_JOB, SAME_JOB, At, Boundary, Fire, Pass, Read, Stage
-from amalthea_uros.timing.demand import MAX_TIME_BASE
-from amalthea_uros.timing.limits import LIMIT
-from amalthea_uros.timing.multiframe import MultiframeDemand
-from amalthea_uros.timing.releases import known_releases, latest_first_release
+from amalthea_uros.timing.demand.model import MAX_TIME_BASE
+from amalthea_uros.timing.demand.multiframe import MultiframeDemand
+from amalthea_uros.timing.jobs.counters import ALWAYS, composed, first_effect, is_always, max_distance
+from amalthea_uros.timing.jobs.positions import ActivityPosition, can_be_skipped
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ import numpy as np
 from amalthea_uros.analyze.chains.bounds.chain_task import ChainTask
 from amalthea_uros.analyze.chains.read_write_times import ReadWriteTimes
 from amalthea_uros.perf.stimuli import Counter
-from amalthea_uros.timing.counters import first_effect, is_always
+from amalthea_uros.timing.jobs.counters import first_effect, is_always
 from amalthea_uros.units import Time
 
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 from amalthea_uros.analyze.response_times.busy_window import Interference
 from amalthea_uros.analyze.response_times.kernel import greatest_fixed_point
 from amalthea_uros.analyze.response_times.task import Task
-from amalthea_uros.timing.limits import LIMIT
+from amalthea_uros.timing.basics.limits import LIMIT
 from amalthea_uros.units import Time
 
 

@@ -13,9 +13,8 @@ from amalthea_uros.analyze.response_times.supply import FULL, Supply
 from amalthea_uros.analyze.response_times.task import Task
 from amalthea_uros.analyze.results import Response
 from amalthea_uros.perf.software import Preemption
-from amalthea_uros.timing.notes import Notes
-from amalthea_uros.timing.preemption import is_preemptive, preemption
-from amalthea_uros.timing.scheduling import EqualPriority, Rank, ScheduledProcess, Server
+from amalthea_uros.timing.basics.notes import Notes
+from amalthea_uros.timing.scheduling.ranks import EqualPriority, Rank, ScheduledProcess, Server, is_preemptive, preemption
 from amalthea_uros.units import Time
 
 

@@ -20,12 +20,10 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from amalthea_uros.perf.software import Preemption
-from amalthea_uros.timing.critical_sections import Protection
-from amalthea_uros.timing.demand import DemandModel
-from amalthea_uros.timing.preemption import preemption
-from amalthea_uros.timing.process_stretches import ProcessStretches
-from amalthea_uros.timing.scheduling import EqualPriority, Rank, ScheduledProcess, SchedulingContext
-from amalthea_uros.timing.stretches import KeptOff, Stretches
+from amalthea_uros.timing.blocking.critical_sections import Protection
+from amalthea_uros.timing.blocking.regions import KeptOff, ProcessStretches, Stretches
+from amalthea_uros.timing.demand.model import DemandModel
+from amalthea_uros.timing.scheduling.ranks import EqualPriority, Rank, ScheduledProcess, SchedulingContext, preemption
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:

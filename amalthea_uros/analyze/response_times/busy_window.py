@@ -16,8 +16,8 @@ import numpy as np
 from amalthea_uros.analyze.response_times.kernel import MAX_STEPS, demand_in, least_fixed_point
 from amalthea_uros.analyze.response_times.supply import FULL, Supply
 from amalthea_uros.analyze.response_times.task import Task
+from amalthea_uros.timing.basics.limits import LIMIT
 from amalthea_uros.timing.event_models import Periodic, is_strictly_periodic
-from amalthea_uros.timing.limits import LIMIT
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:

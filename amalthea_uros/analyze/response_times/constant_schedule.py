@@ -17,10 +17,9 @@ from amalthea_uros.analyze.results import Claim, Response
 from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.perf.activities import SchedulePoint
 from amalthea_uros.perf.software import Preemption, Task
-from amalthea_uros.timing.critical_sections import Protection
-from amalthea_uros.timing.preemption import preemption
-from amalthea_uros.timing.releases import known_releases
-from amalthea_uros.timing.scheduling import ScheduledProcess
+from amalthea_uros.timing.activation.releases import known_releases
+from amalthea_uros.timing.blocking.critical_sections import Protection
+from amalthea_uros.timing.scheduling.ranks import ScheduledProcess, preemption
 from amalthea_uros.units import Time
 
 METHOD = "schedule until it repeats, fixed priorities, non-preemptive, constant execution times"

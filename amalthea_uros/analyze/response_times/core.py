@@ -15,13 +15,12 @@ from amalthea_uros.analyze.results import Claim, Response
 from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.perf.os import Policy
 from amalthea_uros.perf.software import Preemption
+from amalthea_uros.timing.activation.releases import known_releases
 from amalthea_uros.timing.context import TimingContext
+from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.event_models import EventModel, Periodic, rescaled
-from amalthea_uros.timing.multiframe import MultiframeDemand
-from amalthea_uros.timing.preemption import is_preemptive, preemption
-from amalthea_uros.timing.releases import known_releases
-from amalthea_uros.timing.scheduling import EqualPriority, Rank, ScheduledProcess, Server
-from amalthea_uros.timing.stretches import ends_with_execution
+from amalthea_uros.timing.jobs.executed import ends_with_execution
+from amalthea_uros.timing.scheduling.ranks import EqualPriority, Rank, ScheduledProcess, Server, is_preemptive, preemption
 
 
 def responses_on(core: str, solution: Solution) -> dict[str, Response]:

@@ -24,8 +24,7 @@ from amalthea_uros.perf.distributions import highest
 from amalthea_uros.perf.software import Preemption
 from amalthea_uros.perf.stimuli import Periodic, RelativePeriodic
 from amalthea_uros.timing.event_models import Sporadic, rescaled
-from amalthea_uros.timing.preemption import is_preemptive, preemption
-from amalthea_uros.timing.scheduling import EqualPriority, ScheduledProcess
+from amalthea_uros.timing.scheduling.ranks import EqualPriority, ScheduledProcess, is_preemptive, preemption
 from amalthea_uros.units import Time
 
 

@@ -17,7 +17,7 @@ from amalthea_uros.analyze.response_times.fixed_priority import max_jobs, unboun
 from amalthea_uros.analyze.response_times.kernel import MAX_STEPS
 from amalthea_uros.analyze.response_times.task import Task
 from amalthea_uros.analyze.results import Claim, Response
-from amalthea_uros.timing.limits import LIMIT
+from amalthea_uros.timing.basics.limits import LIMIT
 from amalthea_uros.units import Time
 
 METHOD = "busy window, earliest deadline first"

@@ -16,11 +16,10 @@ from math import lcm
 from amalthea_uros.analyze.response_times.blocking import Blocking
 from amalthea_uros.analyze.results import Claim, Response
 from amalthea_uros.analyze.solution import Solution
+from amalthea_uros.timing.activation.releases import known_releases
+from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.event_models import EventModel, rescaled
-from amalthea_uros.timing.multiframe import MultiframeDemand
-from amalthea_uros.timing.preemption import is_preemptive
-from amalthea_uros.timing.releases import known_releases
-from amalthea_uros.timing.scheduling import EqualPriority, ScheduledProcess
+from amalthea_uros.timing.scheduling.ranks import EqualPriority, ScheduledProcess, is_preemptive
 from amalthea_uros.units import Time
 
 METHOD = "busy windows at known releases"

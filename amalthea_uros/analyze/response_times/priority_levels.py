@@ -11,7 +11,7 @@ from amalthea_uros.analyze.response_times.busy_window import Interference
 from amalthea_uros.analyze.response_times.supply import FULL, Supply
 from amalthea_uros.analyze.response_times.task import Task
 from amalthea_uros.analyze.results import Claim, Response
-from amalthea_uros.timing.scheduling import EqualPriority
+from amalthea_uros.timing.scheduling.ranks import EqualPriority
 from amalthea_uros.units import Time
 
 

@@ -19,8 +19,8 @@ import numpy as np
 
 from amalthea_uros.analyze.response_times.kernel import Whole, dispatch
 from amalthea_uros.analyze.results import Claim, Response
-from amalthea_uros.timing.limits import LIMIT
-from amalthea_uros.timing.multiframe import MultiframeDemand
+from amalthea_uros.timing.basics.limits import LIMIT
+from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:

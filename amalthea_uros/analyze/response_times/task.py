@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.event_models import EventModel
-from amalthea_uros.timing.multiframe import MultiframeDemand
-from amalthea_uros.timing.scheduling import EqualPriority
+from amalthea_uros.timing.scheduling.ranks import EqualPriority
 from amalthea_uros.units import Time
 
 

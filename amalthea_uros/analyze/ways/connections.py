@@ -11,7 +11,7 @@ from amalthea_uros.perf.network import Transmission
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.dataflow.events import EventOccurrence
 from amalthea_uros.timing.dataflow.links import LinkKind
-from amalthea_uros.timing.dataflow.positions import ActivityPosition
+from amalthea_uros.timing.jobs.positions import ActivityPosition
 
 
 @dataclass(frozen=True, slots=True)

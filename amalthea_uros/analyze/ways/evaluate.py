@@ -14,7 +14,7 @@ from amalthea_uros.executors.bounds.publications import sending_times
 from amalthea_uros.executors.bounds.transmissions import arrival_jitter
 from amalthea_uros.executors.results import ExecutorResult
 from amalthea_uros.perf.constraints import LatencyConstraint
-from amalthea_uros.timing.crossing import crosses
+from amalthea_uros.timing.dataflow.routes import crosses
 
 
 def evaluate_ways(solution: Solution) -> tuple[Results[ExecutorResult], Results[Way]]:

@@ -12,7 +12,7 @@ from amalthea_uros.perf.network import Transmission
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.dataflow.chains import UnfoldError, sequences, unfold
 from amalthea_uros.timing.dataflow.events import EventOccurrence, UnresolvedError
-from amalthea_uros.timing.dataflow.positions import ActivityPosition
+from amalthea_uros.timing.jobs.positions import ActivityPosition
 
 
 class UnknownWayError(Exception):

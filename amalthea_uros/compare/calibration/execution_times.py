@@ -20,7 +20,7 @@ from amalthea_uros.design.description.yaml_values import Value
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.measure.series import Kind
 from amalthea_uros.perf.distributions import highest, lowest
-from amalthea_uros.timing.job_metric import JobMetric
+from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.units import NANOSECOND, Time, time_text
 from amalthea_uros.uros.demand import times_of
 from amalthea_uros.uros.executors.serving import stated_executors

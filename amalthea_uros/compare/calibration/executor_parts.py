@@ -15,7 +15,7 @@ from amalthea_uros.compare.calibration.samples import Measured
 from amalthea_uros.design.description.places import Places
 from amalthea_uros.measure.series import Kind
 from amalthea_uros.measure.statistics import statistics_of
-from amalthea_uros.timing.job_metric import JobMetric
+from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.units import Time
 from amalthea_uros.uros.executors.serving import stated_executors
 

@@ -16,7 +16,7 @@ from amalthea_uros.design.description.places import Places
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.measure.series import Kind
 from amalthea_uros.names import listed
-from amalthea_uros.timing.job_metric import JobMetric
+from amalthea_uros.timing.basics.quantities import JobMetric
 
 
 def findings_of(

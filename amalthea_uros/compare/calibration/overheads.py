@@ -12,7 +12,7 @@ from amalthea_uros.compare.calibration.stated_overheads import stated_overhead, 
 from amalthea_uros.compare.calibration.values import CalibratedValue, Outcome, calibrated
 from amalthea_uros.design.description.described import Described
 from amalthea_uros.design.description.places import Assignment
-from amalthea_uros.timing.job_metric import JobMetric
+from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.units import time_text
 
 _QUANTITIES = (JobMetric.NET_EXECUTION_TIME, "duration")

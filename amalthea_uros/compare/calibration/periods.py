@@ -18,7 +18,7 @@ from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.stimuli import Periodic
 from amalthea_uros.perf.system import System
 from amalthea_uros.spec.application import Subscription
-from amalthea_uros.timing.job_metric import JobMetric
+from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.units import Rounding, Time, rounded, rounded_time_text, time_text
 
 #: The distances that show a period; those of activations first, since starts are delayed by others.

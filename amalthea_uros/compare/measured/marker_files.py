@@ -31,7 +31,7 @@ from amalthea_uros.measure.markers import (
 )
 from amalthea_uros.measure.series import Kind
 from amalthea_uros.spec.nodes import Mapping, Node, Place, Scalar, Source, read_nodes
-from amalthea_uros.timing.job_metric import JobMetric
+from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.units import Time, parse_duration, parse_time
 
 _COMMON = ("kind", "quantity", "baseline")

@@ -14,7 +14,7 @@ from amalthea_uros.design.campaign.sending import system_bytes, system_from
 from amalthea_uros.design.changes.apply import apply
 from amalthea_uros.design.changes.change import Change
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.settings import Settings
+from amalthea_uros.timing.basics.settings import Settings
 
 SCHEDULABLE, GROWTH = "schedulable", "maximum_growth"
 

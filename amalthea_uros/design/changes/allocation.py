@@ -10,7 +10,7 @@ from amalthea_uros.design.changes.key import ISR_ALLOCATIONS, TASK_ALLOCATIONS, 
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.names import require
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.allocation import allocated_cores, scheduler_cores
+from amalthea_uros.timing.scheduling.allocation import allocated_cores, scheduler_cores
 
 
 @dataclass(frozen=True, slots=True)

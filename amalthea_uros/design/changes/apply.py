@@ -14,7 +14,7 @@ from amalthea_uros.design.changes.kinds import FIRST_KEYS, KINDS
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.names import require
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.settings import Settings
+from amalthea_uros.timing.basics.settings import Settings
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,9 +14,8 @@ from amalthea_uros.perf.activities import Activity, Call, Demand, Execute, Execu
 from amalthea_uros.perf.distributions import Boundaries, Constant, Distribution, Sampling, highest, lowest
 from amalthea_uros.perf.software import Task
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.allocation import allocated_cores
-from amalthea_uros.timing.clocks import frequency_of
-from amalthea_uros.timing.stretches import executed
+from amalthea_uros.timing.jobs.executed import executed
+from amalthea_uros.timing.scheduling.allocation import allocated_cores, frequency_of
 from amalthea_uros.units import Frequency, down, ticks_of_time, up
 
 _TICKS = re.compile(r"(\d{1,18})\s*ticks?", re.ASCII)

@@ -23,8 +23,8 @@ from amalthea_uros.design.changes.key import (
 from amalthea_uros.design.changes.values import duration, one_of, positive_frequency, positive_number, whole_number
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.software import Preemption
-from amalthea_uros.timing.clocks import frequency_of
-from amalthea_uros.timing.phases import sources
+from amalthea_uros.timing.activation.phases import sources
+from amalthea_uros.timing.scheduling.allocation import frequency_of
 from amalthea_uros.units import Frequency, frequency_text, time_text
 
 

@@ -11,9 +11,8 @@ from amalthea_uros.design.changes.values import duration, positive_duration
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Arrivals, Counter
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.arrivals import nominal_period
-from amalthea_uros.timing.phases import counters, first_time, with_counters
-from amalthea_uros.timing.releases import known_releases
+from amalthea_uros.timing.activation.phases import counters, first_time, nominal_period, with_counters
+from amalthea_uros.timing.activation.releases import known_releases
 from amalthea_uros.units import Time, time_text
 
 

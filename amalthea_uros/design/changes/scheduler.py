@@ -11,7 +11,7 @@ from amalthea_uros.design.changes.values import duration, positive_duration, who
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.os import SERVERS, Duration, Parameter, Parent, Scheduler
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.scheduling import CAPACITY, PERIOD, standard_policy
+from amalthea_uros.timing.scheduling.ranks import CAPACITY, PERIOD, standard_policy
 from amalthea_uros.units import Time, time_text
 
 V = TypeVar("V")

@@ -11,7 +11,7 @@ from amalthea_uros.design.changes.change import Change
 from amalthea_uros.design.changes.key import UNSET, Configuration, Kind
 from amalthea_uros.design.changes.kinds import KINDS
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.settings import Settings
+from amalthea_uros.timing.basics.settings import Settings
 
 
 class Happening(StrEnum):

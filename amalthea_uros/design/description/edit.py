@@ -16,7 +16,7 @@ from amalthea_uros.design.description.places import Assignment, Places
 from amalthea_uros.errors import InvalidArgumentError, ReadError
 from amalthea_uros.perf.stimuli import Periodic
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.settings import Settings
+from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import time_text
 
 #: Changes of what a description states otherwise than a system does; there is no other way to them that could be compared.

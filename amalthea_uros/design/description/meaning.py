@@ -9,10 +9,8 @@ from typing import TypeAlias
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Arrivals, Counter
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.allocation import allocated_cores
-from amalthea_uros.timing.arrivals import nominal_period
-from amalthea_uros.timing.clocks import frequency_of
-from amalthea_uros.timing.phases import counters, first_time, with_counters
+from amalthea_uros.timing.activation.phases import counters, first_time, nominal_period, with_counters
+from amalthea_uros.timing.scheduling.allocation import allocated_cores, frequency_of
 from amalthea_uros.units import Time
 
 #: An object and what is compared of it -> the value.

@@ -13,8 +13,7 @@ from amalthea_uros.design.optimize.rules import Rule, period_of
 from amalthea_uros.design.optimize.space import PriorityOrder
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.arrivals import nominal_period
-from amalthea_uros.timing.phases import counters, first_time
+from amalthea_uros.timing.activation.phases import counters, first_time, nominal_period
 from amalthea_uros.units import Time, time_text
 
 

@@ -15,7 +15,7 @@ from amalthea_uros.design.optimize.quantities import Dimension, Figures, check_q
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.constraints import LatencyConstraint, LatencyKind
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.allocation import allocated_cores
+from amalthea_uros.timing.scheduling.allocation import allocated_cores
 from amalthea_uros.units import Time
 
 FORM, EXAMPLE = "a goal or OBJECT.QUANTITY", "factor-to-output.max_reduced_reaction_time"

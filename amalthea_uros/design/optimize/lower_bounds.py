@@ -16,10 +16,9 @@ from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.results import Analysis
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.arrivals import nominal_period
+from amalthea_uros.timing.activation.phases import counters, nominal_period
+from amalthea_uros.timing.activation.releases import known_releases, response_time_limits
 from amalthea_uros.timing.dataflow.stages import Stage
-from amalthea_uros.timing.phases import counters
-from amalthea_uros.timing.releases import known_releases, response_time_limits
 from amalthea_uros.units import Time
 
 

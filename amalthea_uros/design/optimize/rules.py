@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.releases import known_releases
+from amalthea_uros.timing.activation.releases import known_releases
 from amalthea_uros.units import DataSize, Time
 
 

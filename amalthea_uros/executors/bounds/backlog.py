@@ -31,8 +31,7 @@ from amalthea_uros.perf.executors import Publication
 from amalthea_uros.perf.network import Direction, Purpose, Span, Transmission
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.event_models import EventModel
-from amalthea_uros.timing.event_models.aggregated import Multiplied
-from amalthea_uros.timing.event_models.output import Delayed
+from amalthea_uros.timing.event_models.derived import Delayed, Multiplied
 from amalthea_uros.units import Time
 
 #: More unread messages are considered unbounded: rounds are then hardly faster than messages.

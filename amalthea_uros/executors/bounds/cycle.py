@@ -45,7 +45,7 @@ from amalthea_uros.executors.semantics.readiness import (
 from amalthea_uros.executors.semantics.suspension import NONE, Suspension, in_sequence, longest_of, suspension_of
 from amalthea_uros.perf.executors import Executor, Handle, LoopKind
 from amalthea_uros.perf.network import Span
-from amalthea_uros.timing.notes import UnknownDemandError
+from amalthea_uros.timing.basics.notes import UnknownDemandError
 from amalthea_uros.units import Time
 
 #: After which the number of heartbeats in a wait is considered unbounded.

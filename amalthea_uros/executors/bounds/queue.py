@@ -32,7 +32,7 @@ from amalthea_uros.executors.semantics.protocol import acknowledgements, parts
 from amalthea_uros.executors.semantics.readiness import messages, sharing
 from amalthea_uros.perf.executors import Handle
 from amalthea_uros.timing.event_models import EventModel, aggregated
-from amalthea_uros.timing.event_models.aggregated import Multiplied
+from amalthea_uros.timing.event_models.derived import Multiplied
 from amalthea_uros.units import SECOND, Time
 
 #: A busy period with more messages is considered unbounded: rounds are then hardly faster than messages.

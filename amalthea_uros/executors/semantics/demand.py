@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 from amalthea_uros.perf.activities import Activity, Call
 from amalthea_uros.perf.executors import Executor, Handle
+from amalthea_uros.timing.basics.notes import UnknownDemandError
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.notes import UnknownDemandError
 from amalthea_uros.units import Interval, Time
 
 _NONE = Interval(Time(0), Time(0))

@@ -29,9 +29,9 @@ from collections.abc import Iterable
 from amalthea_uros.executors.semantics.readiness import can_defer, is_message, messages, shares_session, starts_alone, timers
 from amalthea_uros.perf.executors import Executor, Handle, HandleKind, LoopKind
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.event_models import EventModel, Sporadic
-from amalthea_uros.timing.settings import Settings
 from amalthea_uros.units import MILLISECOND, Interval, Time
 
 #: `rclc_sleep_ms` sleeps whole milliseconds.

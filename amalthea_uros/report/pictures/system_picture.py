@@ -21,9 +21,9 @@ from amalthea_uros.report.pictures.svg import Markup, element, number, text, too
 from amalthea_uros.report.pictures.system_layout import BOX, DrawnWire, Layout, Point, Wire, lay_out
 from amalthea_uros.report.pictures.text_widths import elided
 from amalthea_uros.report.pictures.verdict_marks import MARK, draw_verdict, verdict_entries
-from amalthea_uros.timing.allocation import allocated_cores
+from amalthea_uros.timing.activation.load import activation_rates, loads
 from amalthea_uros.timing.dataflow.links import LinkKind
-from amalthea_uros.timing.load import activation_rates, loads
+from amalthea_uros.timing.scheduling.allocation import allocated_cores
 from amalthea_uros.units import Rounding
 
 #: With more processes, the picture shows cores and the flows between them; with more flows, one line for all data of a process.

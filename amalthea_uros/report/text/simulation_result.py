@@ -19,8 +19,7 @@ from amalthea_uros.simulate.results import (
     RequirementObservation,
     Simulation,
 )
-from amalthea_uros.timing.chain_quantity import ChainQuantity
-from amalthea_uros.timing.job_metric import JobMetric
+from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
 from amalthea_uros.units import NANOSECOND, Rounding, Time, percent_text, rounded_time_text, time_text
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from amalthea_uros.perf.stimuli import Scenario
 from amalthea_uros.perf.system import System
 from amalthea_uros.simulate.arrivals.occurrences import LONGEST, Block, Blocks, UnknownArrivalError
-from amalthea_uros.timing.clock_areas import ClockArea, UnknownClockError, clock_area
+from amalthea_uros.timing.event_models.clock_areas import ClockArea, UnknownClockError, clock_area
 
 #: Crossings are calculated one by one.
 _BLOCK = 64

@@ -11,8 +11,8 @@ import numpy as np
 from amalthea_uros.simulate.metrics.distributions import Distributions
 from amalthea_uros.simulate.results import ChainObservation, MetricObservation, RouteObservation
 from amalthea_uros.simulate.rows import RESPONSE, Observation
-from amalthea_uros.timing.chain_quantity import ChainQuantity
-from amalthea_uros.timing.route_latencies import MEASURED, SAME, RouteLatencies
+from amalthea_uros.timing.basics.quantities import ChainQuantity
+from amalthea_uros.timing.observed.chain_latencies import MEASURED, SAME, RouteLatencies
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -10,8 +10,8 @@ import numpy as np
 
 from amalthea_uros.simulate.metrics.distributions import Distributions
 from amalthea_uros.simulate.results import WITH_HISTOGRAM, CountObservation, MetricObservation
-from amalthea_uros.timing.job_metric import JobMetric
-from amalthea_uros.timing.job_times import BETWEEN, OWN, Job, own_times, times_between
+from amalthea_uros.timing.basics.quantities import JobMetric
+from amalthea_uros.timing.observed.job_times import BETWEEN, OWN, Job, own_times, times_between
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:

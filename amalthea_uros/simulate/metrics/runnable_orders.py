@@ -17,7 +17,7 @@ from amalthea_uros.perf.constraints import OrderConstraint, Ordering
 from amalthea_uros.perf.events import ProcessChange, ProcessEvent, RunnableChange
 from amalthea_uros.simulate.limited_values import LimitedQuantity
 from amalthea_uros.simulate.program.watches import Source
-from amalthea_uros.timing.runnable_order import satisfies_order
+from amalthea_uros.timing.dataflow.runnable_order import satisfies_order
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

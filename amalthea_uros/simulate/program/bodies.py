@@ -12,8 +12,8 @@ from amalthea_uros.simulate.program.code import Code
 from amalthea_uros.simulate.program.hooks import Hooks
 from amalthea_uros.simulate.program.obstacles import NotSimulatedError
 from amalthea_uros.simulate.program.parts import Parts
-from amalthea_uros.timing.notes import UnknownDemandError
-from amalthea_uros.timing.settings import Memory
+from amalthea_uros.timing.basics.notes import UnknownDemandError
+from amalthea_uros.timing.basics.settings import Memory
 from amalthea_uros.trace.table import EntityKind, EventKind
 
 

@@ -22,11 +22,10 @@ from amalthea_uros.simulate.program.parts import Parts
 from amalthea_uros.simulate.program.resources import Resources, constant
 from amalthea_uros.simulate.program.watches import Source
 from amalthea_uros.simulate.sampling.streams import Stream
+from amalthea_uros.timing.basics.settings import Memory
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.counter_flaws import flaw_of_activity
-from amalthea_uros.timing.counters import reached
-from amalthea_uros.timing.multiframe import Frame
-from amalthea_uros.timing.settings import Memory
+from amalthea_uros.timing.demand.multiframe import Frame
+from amalthea_uros.timing.jobs.counters import flaw_of_activity, reached
 
 #: A program with more operations is not built.
 MAX_OPERATIONS = 1_000_000

@@ -30,13 +30,12 @@ from amalthea_uros.simulate.operations import ENTER, LEAVE, MARK, PUBLISH, PUT, 
 from amalthea_uros.simulate.program.hooks import Hooks, Operation
 from amalthea_uros.simulate.program.obstacles import NotSimulatedError
 from amalthea_uros.simulate.program.resources import Resources
-from amalthea_uros.timing.crossing import crosses
 from amalthea_uros.timing.dataflow.chains import UnfoldError, unfold
 from amalthea_uros.timing.dataflow.events import JobPhase, UnresolvedError
 from amalthea_uros.timing.dataflow.links import LinkKind
-from amalthea_uros.timing.dataflow.positions import ActivityPosition
-from amalthea_uros.timing.dataflow.routes import Route, route_text, routes_of_ways
+from amalthea_uros.timing.dataflow.routes import Route, crosses, route_text, routes_of_ways
 from amalthea_uros.timing.dataflow.stages import At, Fire, Pass, Read, Stage, Write, stages
+from amalthea_uros.timing.jobs.positions import ActivityPosition
 from amalthea_uros.trace.table import EntityKind
 
 #: Links whose effect is not followed, because the model does not say when it takes place.

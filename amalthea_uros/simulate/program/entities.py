@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from amalthea_uros.perf.software import Isr
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.arrivals import arriving
+from amalthea_uros.timing.activation.phases import arriving
 from amalthea_uros.trace.table import Entity, EntityKind
 
 

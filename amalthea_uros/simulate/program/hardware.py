@@ -39,7 +39,7 @@ from amalthea_uros.simulate.layout import (
 )
 from amalthea_uros.simulate.program.resources import Resources
 from amalthea_uros.simulate.program.scheduling import Dispatching
-from amalthea_uros.timing.scheduling import standard_policy
+from amalthea_uros.timing.scheduling.ranks import standard_policy
 from amalthea_uros.trace.table import EntityKind
 
 #: Places for what a sporadic server gets back.

@@ -24,10 +24,9 @@ from amalthea_uros.simulate.program.hooks import Hooks
 from amalthea_uros.simulate.program.obstacles import NotSimulatedError
 from amalthea_uros.simulate.program.resources import Resources
 from amalthea_uros.simulate.sampling.random_source import RandomSource
-from amalthea_uros.timing.arrivals import nominal_period
-from amalthea_uros.timing.counters import first_effect
-from amalthea_uros.timing.phases import own_counters
-from amalthea_uros.timing.releases import known_releases
+from amalthea_uros.timing.activation.phases import nominal_period, own_counters
+from amalthea_uros.timing.activation.releases import known_releases
+from amalthea_uros.timing.jobs.counters import first_effect
 from amalthea_uros.trace.table import EntityKind
 from amalthea_uros.units import Time
 

@@ -54,11 +54,10 @@ from amalthea_uros.simulate.program.obstacles import NotSimulatedError
 from amalthea_uros.simulate.program.parts import Parts
 from amalthea_uros.simulate.program.resources import Resources
 from amalthea_uros.simulate.program.scheduling import Dispatched
-from amalthea_uros.timing.critical_sections import protection_of
-from amalthea_uros.timing.notes import UnknownDemandError
-from amalthea_uros.timing.preemption import preemption
-from amalthea_uros.timing.scheduling import EqualPriority
-from amalthea_uros.timing.stated_demand import states_execution_time
+from amalthea_uros.timing.basics.notes import UnknownDemandError
+from amalthea_uros.timing.blocking.critical_sections import protection_of
+from amalthea_uros.timing.jobs.executed import states_execution_time
+from amalthea_uros.timing.scheduling.ranks import EqualPriority, preemption
 from amalthea_uros.trace.table import EntityKind
 
 #: Places for activations of each process to begin with.

@@ -46,9 +46,9 @@ from amalthea_uros.simulate.sampling.random_source import RandomSource
 from amalthea_uros.simulate.sampling.streams import Same, Stream, choices, durations, permutations, values
 from amalthea_uros.simulate.sampling.variate import UnknownValueError
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.counters import first_effect
-from amalthea_uros.timing.multiframe import Frame
-from amalthea_uros.timing.server_calls import servers
+from amalthea_uros.timing.demand.multiframe import Frame
+from amalthea_uros.timing.jobs.counters import first_effect
+from amalthea_uros.timing.jobs.server_calls import servers
 from amalthea_uros.trace.table import EntityKind
 from amalthea_uros.units import Time
 

@@ -9,17 +9,17 @@ from amalthea_uros.perf.mapping import TaskAllocation
 from amalthea_uros.perf.os import SERVERS, Policy
 from amalthea_uros.perf.software import Preemption
 from amalthea_uros.simulate.program.obstacles import NotSimulatedError
-from amalthea_uros.timing.allocation import allocated_cores
+from amalthea_uros.timing.activation.releases import response_time_limits
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.preemption import preemption
-from amalthea_uros.timing.releases import response_time_limits
-from amalthea_uros.timing.scheduling import (
+from amalthea_uros.timing.scheduling.allocation import allocated_cores
+from amalthea_uros.timing.scheduling.ranks import (
     EqualPriority,
     NotSchedulableError,
     Rank,
     ScheduledProcess,
     Scheduling,
     Server,
+    preemption,
     standard_policy,
 )
 

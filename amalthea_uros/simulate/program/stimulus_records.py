@@ -27,7 +27,7 @@ from amalthea_uros.simulate.program.parts import Parts
 from amalthea_uros.simulate.program.resources import Resources
 from amalthea_uros.simulate.program.watches import Source
 from amalthea_uros.simulate.sampling.random_source import RandomSource
-from amalthea_uros.timing.activation import UnknownActivationError
+from amalthea_uros.timing.activation.activations import UnknownActivationError
 from amalthea_uros.trace.table import EntityKind
 
 

@@ -31,7 +31,7 @@ from amalthea_uros.perf.events import (
 )
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.dataflow.events import EventLocator
-from amalthea_uros.timing.runnable_order import OrderScope, order_scope
+from amalthea_uros.timing.dataflow.runnable_order import OrderScope, order_scope
 from amalthea_uros.trace.table import EventKind
 
 #: The kinds of transitions of a process.

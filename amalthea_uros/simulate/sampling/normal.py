@@ -12,7 +12,7 @@ from amalthea_uros.simulate.sampling.density import NEGLIGIBLE, POINTS, quantile
 from amalthea_uros.simulate.sampling.quantile_table import tabulated
 from amalthea_uros.simulate.sampling.roots import root
 from amalthea_uros.simulate.sampling.variate import Equal, Shaped, Variate
-from amalthea_uros.timing.means import mean
+from amalthea_uros.timing.demand.means import mean
 
 #: Values with a smaller deviation are equal, as they are whole numbers.
 _NO_DEVIATION = 1e-9

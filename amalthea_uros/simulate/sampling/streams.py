@@ -19,7 +19,7 @@ from amalthea_uros.simulate.sampling.fixed_point import scaled
 from amalthea_uros.simulate.sampling.quantiles import GREATEST, NO_PARAMETERS, check, variate
 from amalthea_uros.simulate.sampling.random_source import RandomSource
 from amalthea_uros.simulate.sampling.variate import UnknownValueError, Variate
-from amalthea_uros.timing.means import mean
+from amalthea_uros.timing.demand.means import mean
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -40,8 +40,8 @@ from amalthea_uros.perf.events import (
 )
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.counters import CallSites
-from amalthea_uros.timing.dataflow.positions import ActivityPosition, TooComplexError, positions
+from amalthea_uros.timing.jobs.counters import CallSites
+from amalthea_uros.timing.jobs.positions import ActivityPosition, TooComplexError, positions
 
 #: The class of the events that an activity can raise, and the name of the object that it accesses.
 _Accessed: TypeAlias = tuple[type[Event], str]

@@ -31,8 +31,8 @@ from amalthea_uros.perf.events import Event, RunnableChange, RunnableEvent
 from amalthea_uros.perf.stimuli import EventTriggered
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.dataflow.events import EventLocator, EventOccurrence, JobPhase
-from amalthea_uros.timing.dataflow.positions import ActivityPosition
-from amalthea_uros.timing.server_calls import with_direct_calls
+from amalthea_uros.timing.jobs.positions import ActivityPosition
+from amalthea_uros.timing.jobs.server_calls import with_direct_calls
 
 #: The names of the objects that an activity accesses in one way; empty for most activities.
 NamesOf = Callable[[ActivityPosition], tuple[str, ...]]

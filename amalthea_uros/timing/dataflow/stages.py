@@ -13,11 +13,11 @@ from itertools import pairwise
 from amalthea_uros.perf.activities import Communication, Group
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Counter
-from amalthea_uros.timing.counters import ALWAYS
 from amalthea_uros.timing.dataflow.events import EventOccurrence, JobPhase
 from amalthea_uros.timing.dataflow.links import Link, LinkKind, communication_of
-from amalthea_uros.timing.dataflow.positions import ActivityPosition
 from amalthea_uros.timing.dataflow.routes import Route
+from amalthea_uros.timing.jobs.counters import ALWAYS
+from amalthea_uros.timing.jobs.positions import ActivityPosition
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,21 +1,22 @@
 """Event models: how many events can occur in a window, and how close together they can be."""
 
-from amalthea_uros.timing.event_models.aggregated import (
+from amalthea_uros.timing.event_models.base import NEVER, EventModel
+from amalthea_uros.timing.event_models.derived import (
     AggregatedEventModel,
+    Delayed,
     Downsampled,
     Multiplied,
+    OutputEventModel,
     Rescaled,
     Thinned,
     aggregated,
     rescaled,
     thinned,
 )
-from amalthea_uros.timing.event_models.base import NEVER, EventModel
-from amalthea_uros.timing.event_models.burst import Pattern
-from amalthea_uros.timing.event_models.curve import Curve
-from amalthea_uros.timing.event_models.output import Delayed, OutputEventModel
 from amalthea_uros.timing.event_models.periodic import (
     Conditional,
+    Curve,
+    Pattern,
     Periodic,
     Single,
     Sporadic,

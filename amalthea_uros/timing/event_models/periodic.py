@@ -1,9 +1,11 @@
-"""Periodic and sporadic events, and events that occur once."""
+"""Event models of stimuli: periodic and sporadic events, patterns such as bursts, arrival curves, and single events."""
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 
 from amalthea_uros.timing.event_models.base import NEVER, EventModel
 from amalthea_uros.units import Time
@@ -88,3 +90,89 @@ class Single(EventModel):
     def rate(self) -> Fraction:
         """See `EventModel`."""
         return Fraction(0)
+
+
+@dataclass(frozen=True)
+class Pattern(EventModel):
+    """A list of events that repeats with a period.
+
+    Attributes
+    ----------
+    times : ascending, within the period
+    longest_at_start : the maximum time between two events while some of the list do not occur yet
+    """
+
+    period: Time
+    times: tuple[Time, ...]
+    longest_at_start: Time = 0
+
+    def delta_min(self, count: int) -> Time:
+        """See `EventModel`."""
+        if count < 2:
+            return 0
+        rounds, distances = divmod(count - 1, len(self.times))
+        return rounds * self.period + self._shortest[distances]
+
+    def eta_plus(self, window: Time) -> int:
+        """See `EventModel`."""
+        if window <= 0:
+            return 0
+        rounds, rest = divmod(window - 1, self.period)
+        return rounds * len(self.times) + bisect_right(self._shortest, rest)
+
+    @cached_property
+    def _shortest(self) -> list[Time]:
+        """Minimum time of so many consecutive distances, for less than one period."""
+        twice = (*self.times, *(time + self.period for time in self.times))
+        length = len(self.times)
+        return [min(twice[i + distances] - twice[i] for i in range(length)) for distances in range(length)]
+
+    @property
+    def rate(self) -> Fraction:
+        """See `EventModel`."""
+        return Fraction(len(self.times), self.period)
+
+    @property
+    def max_interarrival(self) -> Time:
+        """See `EventModel`."""
+        ends = (*self.times[1:], self.times[0] + self.period)
+        return max(self.longest_at_start, *(end - start for start, end in zip(self.times, ends, strict=True)))
+
+
+@dataclass(frozen=True)
+class Curve(EventModel):
+    """Events with given minimum distances for some counts.
+
+    Attributes
+    ----------
+    distances : (count, minimum time from the first to the last of that many consecutive events)
+    """
+
+    distances: tuple[tuple[int, Time], ...]
+
+    @cached_property
+    def _densest(self) -> tuple[int, Time]:
+        """The entry that bounds the long-run rate, as (count - 1, time)."""
+        return max(((count - 1, time) for count, time in self.distances), key=lambda entry: Fraction(entry[1], entry[0]))
+
+    def delta_min(self, count: int) -> Time:
+        """See `EventModel`; distances add up over consecutive groups of events."""
+        spacings, time = self._densest
+        # The densest entry repeats; the rest is the best combination of entries.
+        rounds, rest = divmod(max(0, count - 1), spacings)
+        return rounds * time + self._combined[rest]
+
+    @cached_property
+    def _combined(self) -> list[Time]:
+        """Minimum time of so many spacings between events, for fewer than the densest entry has."""
+        best = [0]
+        for reached in range(1, self._densest[0]):
+            usable = [(count - 1, time) for count, time in self.distances if count - 1 <= reached]
+            best.append(max((best[reached - spacing] + time for spacing, time in usable), default=best[reached - 1]))
+        return best
+
+    @property
+    def rate(self) -> Fraction:
+        """See `EventModel`."""
+        spacings, time = self._densest
+        return Fraction(spacings, time) if time else Fraction(NEVER)

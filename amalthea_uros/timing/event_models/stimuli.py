@@ -8,11 +8,9 @@ from itertools import pairwise
 from amalthea_uros.perf import stimuli as perf
 from amalthea_uros.perf.distributions import highest, lowest
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.basics.limits import LIMIT
 from amalthea_uros.timing.event_models.base import EventModel
-from amalthea_uros.timing.event_models.burst import Pattern
-from amalthea_uros.timing.event_models.curve import Curve
-from amalthea_uros.timing.event_models.periodic import Periodic, Single, Sporadic
-from amalthea_uros.timing.limits import LIMIT
+from amalthea_uros.timing.event_models.periodic import Curve, Pattern, Periodic, Single, Sporadic
 from amalthea_uros.units import SECOND, Frequency, Time
 
 #: Stimuli with more occurrences are not analysed.

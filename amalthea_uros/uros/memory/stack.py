@@ -16,7 +16,7 @@ from amalthea_uros.perf.activities import Call, walk
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.perf.software import Preemption, Task
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.allocation import allocated_cores, effective_priority
+from amalthea_uros.timing.scheduling.allocation import allocated_cores, effective_priority
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -20,7 +20,7 @@ from amalthea_uros.analyze.results import EXPLAINED, Claim, Quantity
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.activities import Communication
 from amalthea_uros.perf.hardware import StructureKind
-from amalthea_uros.timing.settings import Settings
+from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import MICROSECOND as US
 
 

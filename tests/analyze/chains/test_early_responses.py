@@ -11,7 +11,7 @@ from amalthea_uros.perf.events import ProcessChange, ProcessEvent
 from amalthea_uros.perf.software import Label
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.system import simulate_system
-from amalthea_uros.timing.chain_quantity import ChainQuantity
+from amalthea_uros.timing.basics.quantities import ChainQuantity
 from amalthea_uros.units import MICROSECOND as US
 
 VARYING = Execute(demand=Demand(Boundaries(lower=2, upper=3)))

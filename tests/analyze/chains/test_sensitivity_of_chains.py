@@ -9,7 +9,7 @@ from test_chain_systems import END, START, at, read, system, ticks, write
 from amalthea_uros.analyze.sensitivity import sensitivity
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.constraints import Constraints, LatencyConstraint, LatencyKind
-from amalthea_uros.timing.settings import Settings
+from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import MICROSECOND as US
 
 

@@ -22,7 +22,7 @@ from amalthea_uros.services.analyze import analyze_files
 from amalthea_uros.services.simulate import simulate_files
 from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.simulate.results import RequirementObservation, Simulation
-from amalthea_uros.timing.job_metric import JobMetric
+from amalthea_uros.timing.basics.quantities import JobMetric
 
 #: The runs that are compared: how values are chosen, and the seed.
 RUNS = ((Mode.WORST, 1), (Mode.BEST, 1), (Mode.SAMPLED, 1), (Mode.SAMPLED, 2))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from amalthea_uros.timing.limits import LIMIT
+from amalthea_uros.timing.basics.limits import LIMIT
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:

@@ -25,11 +25,10 @@ from amalthea_uros.executors.semantics.loops import timing_context
 from amalthea_uros.perf.constraints import LatencyConstraint, TimeLimit, TimeMetric
 from amalthea_uros.perf.stimuli import RelativePeriodic
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.critical_sections import Protection
-from amalthea_uros.timing.phases import unknown_phases
-from amalthea_uros.timing.preemption import is_preemptive
-from amalthea_uros.timing.releases import known_releases
-from amalthea_uros.timing.scheduling import EqualPriority
+from amalthea_uros.timing.activation.phases import unknown_phases
+from amalthea_uros.timing.activation.releases import known_releases
+from amalthea_uros.timing.blocking.critical_sections import Protection
+from amalthea_uros.timing.scheduling.ranks import EqualPriority, is_preemptive
 from amalthea_uros.units import Time
 
 #: At most so many vectors are compared, and so many judged.

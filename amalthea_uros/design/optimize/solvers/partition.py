@@ -24,11 +24,10 @@ from amalthea_uros.executors.semantics.loops import timing_context
 from amalthea_uros.judge.verdict import FAILURES, Verdict
 from amalthea_uros.perf.stimuli import EventTriggered, InterProcess
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.allocation import allocated_cores
-from amalthea_uros.timing.critical_sections import Protection
-from amalthea_uros.timing.preemption import is_preemptive
-from amalthea_uros.timing.scheduling import EqualPriority
-from amalthea_uros.timing.settings import Memory
+from amalthea_uros.timing.basics.settings import Memory
+from amalthea_uros.timing.blocking.critical_sections import Protection
+from amalthea_uros.timing.scheduling.allocation import allocated_cores
+from amalthea_uros.timing.scheduling.ranks import EqualPriority, is_preemptive
 
 #: All exchanges of at most so many cores are tried.
 MAX_EXCHANGED = 5

@@ -12,7 +12,7 @@ from amalthea_uros.report.process_order import by_core_and_priority
 from amalthea_uros.report.simulated import REMINDER, closing_line, duration_text
 from amalthea_uros.services.report import ReportContent
 from amalthea_uros.simulate.results import ChainObservation, MetricObservation, ProcessObservation, Simulation
-from amalthea_uros.timing.chain_quantity import ChainQuantity
+from amalthea_uros.timing.basics.quantities import ChainQuantity
 
 #: The quantities of chains that are both computed and observed.
 BOUNDED = {

@@ -26,8 +26,8 @@ from amalthea_uros.simulate.operations import (
 from amalthea_uros.simulate.program.activities.obstacles import check_executing
 from amalthea_uros.simulate.program.code import Label
 from amalthea_uros.simulate.program.obstacles import NotSimulatedError
-from amalthea_uros.timing.counts import count_of
-from amalthea_uros.timing.dataflow.positions import MAX_CALL_DEPTH
+from amalthea_uros.timing.jobs.counts import count_of
+from amalthea_uros.timing.jobs.executed import MAX_CALL_DEPTH
 
 if TYPE_CHECKING:
     from amalthea_uros.simulate.program.body import Body

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from amalthea_uros.perf.activities import Execute, ExecutionNeed, Incomplete
 from amalthea_uros.simulate.program.obstacles import NotSimulatedError
-from amalthea_uros.timing.settings import Memory
+from amalthea_uros.timing.basics.settings import Memory
 
 if TYPE_CHECKING:
     from amalthea_uros.simulate.program.body import Body

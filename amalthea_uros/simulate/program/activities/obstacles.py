@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from amalthea_uros.perf.activities import SenderReceiverAccess, ServerCall
 from amalthea_uros.simulate.program.obstacles import NotSimulatedError
-from amalthea_uros.timing.server_calls import obstacle
+from amalthea_uros.timing.jobs.server_calls import obstacle
 
 if TYPE_CHECKING:
     from amalthea_uros.simulate.program.body import Body

@@ -27,7 +27,7 @@ from amalthea_uros.simulate.operations import (
     WAIT_EVENT,
 )
 from amalthea_uros.simulate.program.obstacles import NotSimulatedError
-from amalthea_uros.timing.critical_sections import spinlocks_of, waits_actively
+from amalthea_uros.timing.blocking.critical_sections import spinlocks_of, waits_actively
 
 if TYPE_CHECKING:
     from amalthea_uros.simulate.program.body import Body

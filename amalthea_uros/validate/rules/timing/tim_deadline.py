@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.timing.releases import response_time_limits
+from amalthea_uros.timing.activation.releases import response_time_limits
 from amalthea_uros.units import Time, time_text
 from amalthea_uros.validate.rule import Problem, SystemRule
 from amalthea_uros.validate.system_context import SystemContext

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import TaskAllocation
-from amalthea_uros.timing.scheduling import is_by_priority
+from amalthea_uros.timing.scheduling.ranks import is_by_priority
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
 from amalthea_uros.validate.scheduling import deciding, policy, priority

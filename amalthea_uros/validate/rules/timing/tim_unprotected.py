@@ -9,10 +9,10 @@ from typing import NamedTuple
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.perf.activities import AccessKind, Communication, LabelAccess, Protection, SenderReceiverAccess
 from amalthea_uros.perf.software import Label
-from amalthea_uros.timing.allocation import operating_system_of
-from amalthea_uros.timing.critical_sections import exclusively_held
+from amalthea_uros.timing.blocking.critical_sections import exclusively_held
 from amalthea_uros.timing.dataflow.events import UnresolvedError
-from amalthea_uros.timing.dataflow.positions import ActivityPosition
+from amalthea_uros.timing.jobs.positions import ActivityPosition
+from amalthea_uros.timing.scheduling.allocation import operating_system_of
 from amalthea_uros.validate.rule import Problem, SystemRule
 from amalthea_uros.validate.system_context import SystemContext
 from amalthea_uros.validate.wording import joined

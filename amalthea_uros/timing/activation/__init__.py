@@ -1,0 +1,1 @@
+"""When processes are activated, and the load of the cores that follows."""

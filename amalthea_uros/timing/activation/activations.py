@@ -1,0 +1,326 @@
+"""The activations of processes: by external stimuli, and by triggers and events of other processes.
+
+Processes that a job triggers on paths that exclude each other take together as long as the longest path.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+from fractions import Fraction
+from itertools import chain, groupby
+from typing import NamedTuple, TypeAlias
+
+from amalthea_uros.perf.activities import Trigger
+from amalthea_uros.perf.events import CustomEvent, Event, ModeLabelEvent, RunnableChange, RunnableEvent
+from amalthea_uros.perf.network import Purpose
+from amalthea_uros.perf.software import Process
+from amalthea_uros.perf.stimuli import Counter, EventTriggered, InterProcess, Stimulus
+from amalthea_uros.perf.system import System
+from amalthea_uros.timing.dataflow.events import UnresolvedError
+from amalthea_uros.timing.dataflow.links import Dataflow
+from amalthea_uros.timing.demand.job_paths import most_in_a_job
+from amalthea_uros.timing.event_models import Delayed, Downsampled, EventModel, Multiplied, aggregated, thinned
+from amalthea_uros.timing.event_models.stimuli import event_model_of
+from amalthea_uros.timing.jobs.counters import CounterFlaws, is_always
+from amalthea_uros.timing.jobs.positions import ActivityPosition
+from amalthea_uros.units import Time
+
+
+class UnknownActivationError(Exception):
+    """The activation pattern of a process is unknown or unbounded; the text says why."""
+
+
+#: The event model of the completions of a process, given a function that computes that of its activations.
+Output: TypeAlias = Callable[[Process, Callable[[], EventModel]], EventModel]
+
+
+def as_activated(_process: Process, activations: Callable[[], EventModel]) -> EventModel:
+    """The output of processes without execution time; its rate is right."""
+    return activations()
+
+
+class Effect(NamedTuple):
+    """What an activity triggers.
+
+    Attributes
+    ----------
+    share : of the times at which the activity is executed
+    """
+
+    position: ActivityPosition
+    stimulus: str
+    share: Fraction
+
+
+class Cause(NamedTuple):
+    """A process that triggers a stimulus.
+
+    Attributes
+    ----------
+    position : of the activity that triggers it
+    counter : if only every n-th time counts
+    """
+
+    position: ActivityPosition
+    counter: Counter | None = None
+
+    @property
+    def process(self) -> Process:
+        """The process that triggers it."""
+        return self.position.process
+
+    @property
+    def is_each_time(self) -> bool:
+        """Whether each job that reaches the activity triggers it once, and no counter decides which jobs do."""
+        jobs = self.position.counter
+        return self.counter is None and self.position.times == 1 and jobs is not None and is_always(jobs)
+
+
+@dataclass(slots=True)
+class Activations:
+    """The event models of the activations of all processes."""
+
+    system: System
+    dataflow: Dataflow
+    flaws: CounterFlaws = field(init=False)
+    _incomplete: str = ""
+    _triggers: dict[str, list[Cause]] = field(default_factory=dict)
+    _effects: dict[str, list[Effect]] | None = None
+    _triggering: dict[str, dict[str, None]] = field(default_factory=dict)
+    _activated: dict[str, list[str]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.flaws = CounterFlaws(self.system)
+        if not any(isinstance(stimulus, InterProcess | EventTriggered) for stimulus in self.system.stimuli.stimuli):
+            return
+        for name in self.system.processes:
+            try:
+                positions = self.dataflow.events.positions(name)
+            except UnresolvedError as error:
+                self._incomplete = str(error)
+                continue
+            for position in positions:
+                if isinstance(position.activity, Trigger) and position.times != 0:
+                    causes = self._triggers.setdefault(position.activity.stimulus, [])
+                    causes.append(Cause(position, position.activity.counter))
+
+    def of(self, process: Process, output: Output = as_activated) -> EventModel:
+        """The event model of the activations of a process.
+
+        Parameters
+        ----------
+        output : gives the completions of processes
+
+        Raises
+        ------
+        UnknownActivationError : it is never activated, or its activations are unbounded.
+        """
+        return self._of_process(process, output, ())
+
+    def _of_process(self, process: Process, output: Output, above: tuple[str, ...]) -> EventModel:
+        if process.name in above:
+            raise UnknownActivationError(f"it is triggered in a cycle: {' -> '.join((*above, process.name))}")
+        found = tuple(self._of_stimulus(name, output, (*above, process.name)) for name in process.stimuli)
+        if not found:
+            raise UnknownActivationError(self._why_never(process))
+        return self._answered(process, aggregated(found))
+
+    def _why_never(self, process: Process) -> str:
+        """Why a process has no stimulus."""
+        transmission = self.system.transmissions.get(process.name)
+        if transmission is None or transmission.purpose is not Purpose.DATA or transmission.agent.most is not None:
+            return "it has no stimulus"
+        agent = self.system.network.agent
+        return f"how much later {agent!r} sends one message than another is not stated: 'middleware.agent.to_controller'"
+
+    def _answered(self, process: Process, messages: EventModel) -> EventModel:
+        """The activations of an acknowledgement: the receiver of the message sends it some time later."""
+        transmission = self.system.transmissions.get(process.name)
+        if transmission is None or transmission.purpose is not Purpose.ACKNOWLEDGEMENT:
+            return messages
+        answer = transmission.agent
+        if answer.most is None:
+            raise UnknownActivationError(f"how long {self.system.network.agent!r} takes to acknowledge a message is not stated")
+        return Delayed(messages, answer.most - answer.least) if answer.most > answer.least else messages
+
+    def _of_stimulus(self, name: str, output: Output, above: tuple[str, ...]) -> EventModel:
+        stimulus = self.system.stimuli_by_name.get(name)
+        if stimulus is None:
+            raise UnknownActivationError(f"the stimulus {name!r} is not defined in the model")
+        found = self._occurrences(stimulus, output, above)
+        return found if stimulus.condition is None else thinned(found)
+
+    def _occurrences(self, stimulus: Stimulus, output: Output, above: tuple[str, ...]) -> EventModel:
+        """The occurrences of a stimulus, as if its condition were always true."""
+        name = stimulus.name
+        if not isinstance(stimulus, InterProcess | EventTriggered):
+            stated = event_model_of(stimulus, self.system)
+            if stated is None:
+                raise UnknownActivationError(f"the rate of the stimulus {name!r} is unbounded")
+            return stated
+        if self._incomplete:
+            raise UnknownActivationError(f"the processes that trigger {name!r} are unknown: {self._incomplete}")
+        causes = self.causes(stimulus)
+        if not causes:
+            raise UnknownActivationError(f"no process triggers {name!r}")
+        if flaw := self.flaws.of_stimulus(name):
+            raise UnknownActivationError(flaw)
+        by_process = groupby(sorted(causes, key=_process_name), key=_process_name)
+        caused = (self._caused_by_process(list(group), output, above) for _, group in by_process)
+        return _counted(aggregated(tuple(chain.from_iterable(caused))), stimulus.counter)
+
+    def _caused_by_process(self, causes: Sequence[Cause], output: Output, above: tuple[str, ...]) -> Iterator[EventModel]:
+        """The events that the activities of a process cause: those of one path of a job, if others exclude it."""
+        if all(cause.is_each_time for cause in causes) and (most := self.most_in_a_job(causes)) < len(causes):
+            events = self._caused_by(causes[0], output, above)
+            yield events if most == 1 else Multiplied(events, most)
+        else:
+            yield from (self._caused_by(cause, output, above) for cause in causes)
+
+    def most_in_a_job(self, causes: Sequence[Cause]) -> int:
+        """How many of some activities of a process a job can reach; each one reaches an activity once at most."""
+        numbers = sorted(cause.position.number for cause in causes)
+        positions = self.dataflow.events.positions(causes[0].process.name)
+        return most_in_a_job(positions, dict.fromkeys(numbers, 1))
+
+    def causes(self, stimulus: InterProcess | EventTriggered) -> list[Cause]:
+        """The activities that trigger a stimulus, or raise its events.
+
+        Raises
+        ------
+        UnknownActivationError : they can occur otherwise, too, or it is unknown where.
+        """
+        if isinstance(stimulus, InterProcess):
+            return self._triggers.get(stimulus.name, [])
+        found: list[Cause] = []
+        for name in stimulus.events:
+            event = self.system.events_by_name.get(name)
+            if event is None:
+                raise UnknownActivationError(f"the event {name!r} is not defined in the model")
+            self._check(event)
+            causes = [Cause(position) for position in self.dataflow.events.raising(event) if position.times != 0]
+            if not causes and isinstance(event, CustomEvent):
+                raise UnknownActivationError(f"no activity in the model raises the event {name!r}")
+            found += causes
+        return found
+
+    def effects(self, process: str) -> Sequence[Effect]:
+        """What the activities of a process trigger, in order, as far as it is known."""
+        if self._effects is None:
+            self._effects = {}
+            for stimulus in self.system.stimuli.stimuli:
+                if isinstance(stimulus, InterProcess | EventTriggered):
+                    with suppress(UnknownActivationError):
+                        for cause in self.causes(stimulus):
+                            self._triggering.setdefault(stimulus.name, {})[cause.process.name] = None
+                            if self.flaws.of_stimulus(stimulus.name):
+                                continue
+                            share = _share(cause.counter) * _share(stimulus.counter)
+                            self._effects.setdefault(cause.process.name, []).append(
+                                Effect(cause.position, stimulus.name, share)
+                            )
+            for found in self._effects.values():
+                found.sort(key=lambda effect: effect.position.number)
+        return self._effects.get(process, ())
+
+    def triggering(self, process: str) -> Iterator[str]:
+        """The processes whose activities activate a process, as far as it is known."""
+        self.effects(process)
+        for stimulus in self.system.processes[process].stimuli:
+            yield from self._triggering.get(stimulus, ())
+
+    def activated(self, stimulus: str) -> Sequence[str]:
+        """The processes that a stimulus activates."""
+        if not self._activated:
+            for process in self.system.processes.values():
+                for name in process.stimuli:
+                    self._activated.setdefault(name, []).append(process.name)
+        return self._activated.get(stimulus, ())
+
+    def external_rate(self, process: Process) -> Fraction:
+        """Maximum number of activations per picosecond that no process triggers, in the long run.
+
+        Raises
+        ------
+        UnknownActivationError : it is unbounded.
+        """
+        stimuli = [self.system.stimuli_by_name.get(name) for name in process.stimuli]
+        names = [each.name for each in stimuli if each is not None and not isinstance(each, InterProcess | EventTriggered)]
+        return sum((self._of_stimulus(name, as_activated, ()).rate for name in names), Fraction(0))
+
+    def _check(self, event: Event) -> None:
+        """Refuse events that have other causes than activities of processes."""
+        if isinstance(event, RunnableEvent) and event.change not in (RunnableChange.START, RunnableChange.TERMINATE):
+            raise UnknownActivationError(f"the rate of the event {event.name!r} is unbounded")
+        if isinstance(event, ModeLabelEvent):
+            assigned = {mode.label for stimulus in self.system.stimuli.stimuli for mode in stimulus.assignments}
+            if event.label is None or event.label in assigned:
+                raise UnknownActivationError(f"stimuli also raise the event {event.name!r}")
+
+    def _caused_by(self, cause: Cause, output: Output, above: tuple[str, ...]) -> EventModel:
+        """The events that a process causes between its start and its end."""
+        times = cause.position.times
+        if times is None:
+            raise UnknownActivationError(
+                f"the maximum number of times that a job of {cause.process.name!r} triggers it is unknown"
+            )
+        found = _counted(output(cause.process, lambda: self._of_process(cause.process, output, above)), cause.position.counter)
+        return _counted(found if times == 1 else Multiplied(found, times), cause.counter)
+
+
+def _process_name(cause: Cause) -> str:
+    return cause.process.name
+
+
+def _share(counter: Counter | None) -> Fraction:
+    return Fraction(1, 1 if counter is None else counter.prescaler)
+
+
+def _counted(events: EventModel, counter: Counter | None) -> EventModel:
+    return Downsampled(events, counter.prescaler) if counter is not None and counter.prescaler > 1 else events
+
+
+@dataclass(frozen=True, slots=True)
+class TriggeredTogether:
+    """Processes of which each job of another process triggers some, each once at most, and nothing else triggers them.
+
+    Attributes
+    ----------
+    cause : the process that triggers them
+    numbers : by their names, those of the activities that do
+    """
+
+    cause: str
+    numbers: Mapping[str, Sequence[int]]
+
+    def longest(self, demands: Mapping[str, Time], activations: Activations, modes: Mapping[str, str]) -> Time:
+        """What those that one job triggers demand together at most.
+
+        Parameters
+        ----------
+        demands : of those that count
+        """
+        triggered: dict[int, Time] = {}
+        for name, demand in demands.items():
+            for number in self.numbers.get(name, ()):
+                triggered[number] = triggered.get(number, 0) + demand
+        positions = activations.dataflow.events.positions(self.cause)
+        return most_in_a_job(positions, dict(sorted(triggered.items())), modes)
+
+
+def triggered_together(activations: Activations) -> list[TriggeredTogether]:
+    """All processes that others trigger in this way."""
+    found: dict[str, dict[str, list[int]]] = {}
+    system = activations.system
+    for process in system.processes.values():
+        stimulus = system.stimuli_by_name.get(process.stimuli[0]) if len(process.stimuli) == 1 else None
+        if not isinstance(stimulus, InterProcess) or stimulus.counter is not None:
+            continue
+        causes = activations.causes(stimulus)
+        triggering = {cause.process.name for cause in causes}
+        if len(triggering) == 1 and all(cause.is_each_time for cause in causes) and activations.most_in_a_job(causes) == 1:
+            numbers = [cause.position.number for cause in causes]
+            found.setdefault(min(triggering), {})[process.name] = numbers
+    return [TriggeredTogether(cause, numbers) for cause, numbers in found.items() if len(numbers) > 1]

@@ -1,0 +1,157 @@
+"""The load of cores: what the jobs of all processes demand in the long run, each with what it triggers."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+from amalthea_uros.perf.activities import Activity
+from amalthea_uros.perf.system import System
+from amalthea_uros.timing.activation.activations import Activations, Effect, UnknownActivationError
+from amalthea_uros.timing.basics.notes import UnknownDemandError
+from amalthea_uros.timing.dataflow.links import Dataflow
+from amalthea_uros.timing.demand.job_paths import NOTHING, JobDemand, JobPaths, total
+from amalthea_uros.timing.demand.model import DemandModel
+from amalthea_uros.timing.demand.multiframe import MultiframeDemand
+
+
+def activation_rates(system: System, activations: Activations) -> Mapping[str, Fraction]:
+    """Maximum number of activations per picosecond of each process, in the long run; processes without a bound are left out."""
+    found: dict[str, Fraction] = {}
+    for process in system.processes.values():
+        with suppress(UnknownActivationError):
+            found[process.name] = activations.of(process).rate
+    return found
+
+
+def suppressible(system: System, activations: Activations) -> frozenset[str]:
+    """The processes of which conditions of stimuli may suppress activations."""
+    found = set()
+    for process in system.processes.values():
+        with suppress(UnknownActivationError):
+            if activations.of(process).can_be_suppressed:
+                found.add(process.name)
+    return frozenset(found)
+
+
+@dataclass(frozen=True, slots=True)
+class CoreLoad:
+    """The load of a core by some processes.
+
+    Attributes
+    ----------
+    demands : of the processes that count, on the core
+    """
+
+    core: str
+    demands: Mapping[str, MultiframeDemand]
+    activations: Activations
+    demand_model: DemandModel
+    _of_jobs: dict[str, JobDemand] = field(default_factory=dict)
+
+    def load(self, rates: Mapping[str, Fraction]) -> JobDemand:
+        """The load, as a share of the core.
+
+        Parameters
+        ----------
+        rates : activations per picosecond of each process that no process triggers
+        """
+        per_time = total(self.of_job(name).every(rates[name]) for name in self._causing() if rates.get(name))
+        return per_time.every(Fraction(1, self.demand_model.time_base(self.core)))
+
+    def _causing(self) -> Iterable[str]:
+        """The processes that count, and those that trigger them, others in between included."""
+        found = dict.fromkeys(self.demands)
+        pending = list(found)
+        while pending:
+            for name in self.activations.triggering(pending.pop()):
+                if name not in found:
+                    found[name] = None
+                    pending.append(name)
+        return found
+
+    def of_job(self, process: str) -> JobDemand:
+        """The demand of a job of a process, with all that it triggers."""
+        if process not in self._of_jobs:
+            self._of_jobs[process] = NOTHING  # what is triggered in a circle counts once
+            self._of_jobs[process] = self._of_job(process)
+        return self._of_jobs[process]
+
+    def _of_job(self, process: str) -> JobDemand:
+        demand = self.demands.get(process)
+        own = NOTHING if demand is None else JobDemand.of(demand)
+        triggered: dict[int, JobDemand] = {}
+        for effect in self.activations.effects(process):
+            caused = self._caused(effect)
+            if caused != NOTHING:
+                triggered[effect.position.number] = triggered.get(effect.position.number, NOTHING) + caused
+        if not triggered:
+            return own
+        model = self.activations.system.processes[process]
+        positions = self.activations.dataflow.events.positions(process)
+
+        def of_activities(*activities: Activity) -> JobDemand:
+            if demand is None:
+                return NOTHING
+            return JobDemand.of(self.demand_model.of_activities(model, activities, self.core))
+
+        paths = JobPaths(positions, triggered, of_activities, self.demand_model.settings.modes)
+        # Overheads of the operating system and copies of labels are not in the activities.
+        return paths.demand() + own + of_activities(*model.activities).every(-1)
+
+    def _caused(self, effect: Effect) -> JobDemand:
+        return total(map(self.of_job, self.activations.activated(effect.stimulus))).every(effect.share)
+
+
+def loads(
+    cores: Mapping[str, frozenset[str]], rates: Mapping[str, Fraction], demand_model: DemandModel, uncertain: Collection[str]
+) -> Mapping[str, Mapping[str, Fraction]]:
+    """The worst-case utilisation of its core by each process with a single core, as far as it is certain of each one alone.
+
+    Processes with unknown demand or activation rate are left out, and what modes may exclude.
+
+    Parameters
+    ----------
+    cores : on which each process can run
+    rates : activations per picosecond
+    uncertain : processes that may be activated less often, such as those that execute rounds of executors
+    """
+    found: dict[str, dict[str, Fraction]] = {}
+    for core, demands in _demands(cores, demand_model, uncertain).items():
+        for name in (name for name in demands if name in rates):
+            share = demands[name].mean_occurring * rates[name] / demand_model.time_base(core)
+            found.setdefault(core, {})[name] = share
+    return found
+
+
+def certain_loads(
+    cores: Mapping[str, frozenset[str]], activations: Activations, demand_model: DemandModel, uncertain: Collection[str]
+) -> Mapping[str, Fraction]:
+    """The worst-case load of each core, as far as it is certain, by processes with a single core; see `loads`."""
+    if demand_model.system is not activations.system:
+        activations = Activations(demand_model.system, Dataflow(demand_model.system))
+    rates: dict[str, Fraction] = {}
+    for process in demand_model.system.processes.values():
+        with suppress(UnknownActivationError):
+            rates[process.name] = activations.external_rate(process)
+    return {
+        core: CoreLoad(core, demands, activations, demand_model).load(rates).certain
+        for core, demands in _demands(cores, demand_model, uncertain).items()
+    }
+
+
+def _demands(
+    cores: Mapping[str, frozenset[str]], demand_model: DemandModel, uncertain: Collection[str]
+) -> Mapping[str, Mapping[str, MultiframeDemand]]:
+    """The known demands of the processes of each core that run nowhere else."""
+    found: dict[str, dict[str, MultiframeDemand]] = {}
+    for name, allowed in cores.items():
+        process = demand_model.system.processes.get(name)
+        if process is None or len(allowed) > 1 or name in uncertain:
+            continue
+        (core,) = allowed
+        with suppress(UnknownDemandError):
+            found.setdefault(core, {})[name] = demand_model.of_process(process, core)
+    return found

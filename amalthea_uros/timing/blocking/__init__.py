@@ -1,0 +1,1 @@
+"""Where jobs keep others from executing."""

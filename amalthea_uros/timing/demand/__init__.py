@@ -1,0 +1,1 @@
+"""How long the jobs of processes execute."""

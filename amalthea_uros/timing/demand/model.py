@@ -1,0 +1,492 @@
+"""Execution demand of processes: the sum over their activity graphs, with ticks converted to time on a core.
+
+A tick is often not a whole number of picoseconds. To avoid rounding before the end, demand on a core is counted in its time base: the
+largest fraction of a picosecond of which a tick is a multiple (a third of a picosecond at 300 MHz). Of several branches, the longest
+counts in the worst case and the shortest in the best case. A call that is executed only every n-th time is a separate frame, so that
+it does not increase the demand of jobs without it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from math import ceil, floor, inf
+
+from amalthea_uros._internal.graphs import bottom_up
+from amalthea_uros.perf.activities import (
+    AccessKind,
+    Activity,
+    Call,
+    Count,
+    Demand,
+    Execute,
+    ExecutionNeed,
+    Group,
+    Incomplete,
+    LabelAccess,
+    Loop,
+    Migrate,
+    ModeAccess,
+    ProbabilitySwitch,
+    Receive,
+    Send,
+    SenderReceiverAccess,
+    ServerCall,
+    Switch,
+    Terminate,
+    WaitEvent,
+    walk,
+)
+from amalthea_uros.perf.distributions import Distribution, highest, lowest
+from amalthea_uros.perf.os import Scheduler
+from amalthea_uros.perf.software import Isr, Process, Runnable
+from amalthea_uros.perf.stimuli import Counter
+from amalthea_uros.perf.system import System
+from amalthea_uros.timing.basics.limits import LIMIT
+from amalthea_uros.timing.basics.notes import Notes, UnknownDemandError
+from amalthea_uros.timing.basics.settings import Memory, Settings
+from amalthea_uros.timing.demand.means import exact_sum, mean
+from amalthea_uros.timing.demand.memory import MemoryAccess
+from amalthea_uros.timing.demand.multiframe import Frame, MultiframeDemand
+from amalthea_uros.timing.demand.overheads import Overheads
+from amalthea_uros.timing.jobs.counters import CallSites, CounterFlaws, UncountableError, first_effect, is_always
+from amalthea_uros.timing.jobs.counts import count_of, is_average
+from amalthea_uros.timing.jobs.executed import MAX_CALL_DEPTH
+from amalthea_uros.timing.jobs.modes import holds
+from amalthea_uros.timing.jobs.positions import ActivityPosition, TooComplexError, ends_early, positions
+from amalthea_uros.timing.jobs.server_calls import obstacle, servers, with_direct_calls
+from amalthea_uros.timing.scheduling.allocation import frequency_of
+from amalthea_uros.units import Frequency, Time, time_of_ticks
+
+#: With a finer time base, times could exceed 64-bit integers.
+MAX_TIME_BASE = 1000
+
+
+@dataclass(slots=True)
+class DemandModel:
+    """The demand of the processes of a system."""
+
+    system: System
+    notes: Notes
+    settings: Settings = field(default_factory=Settings)
+    memory: MemoryAccess = field(init=False)
+    overheads: Overheads = field(init=False)
+    sites: CallSites = field(init=False)
+    flaws: CounterFlaws = field(init=False)
+    _servers: Mapping[str, tuple[str, ...]] | None = None
+    _time_bases: dict[str, int] = field(default_factory=dict)
+    _times_of_ticks: dict[tuple[str, Fraction], int | Fraction] = field(default_factory=dict)
+    _of_runnables: dict[tuple[str, str], tuple[Frame, ...]] = field(default_factory=dict)
+    _in_preparation: set[str] = field(default_factory=set)
+
+    def __post_init__(self) -> None:
+        self.system = with_direct_calls(self.system)
+        self.memory = MemoryAccess(self.system, self.notes, self.frequency)
+        self.overheads = Overheads(self.system)
+        self.sites = CallSites(self.system)
+        self.flaws = CounterFlaws(self.system)
+
+    def time_base(self, core: str) -> int:
+        """Time units per picosecond on a core; 1 if they would be too small, and then demand is rounded outwards."""
+        if core not in self._time_bases:
+            frequency = self.frequency(core)
+            fineness = 1 if frequency is None else (time_of_ticks(1, frequency) * self.settings.scale).denominator
+            self._time_bases[core] = fineness if fineness <= MAX_TIME_BASE else 1
+        return self._time_bases[core]
+
+    def frequency(self, core: str) -> Frequency | None:
+        """The clock frequency of a core; None if it is unknown."""
+        if core in self.settings.frequencies:
+            return self.settings.frequencies[core]
+        return frequency_of(self.system.cores[core].clock, self.system)
+
+    def of_process(self, process: Process, core: str) -> MultiframeDemand:
+        """Demand of the jobs of a process on a core, in its time base.
+
+        Raises
+        ------
+        UnknownDemandError : some demand is unbounded, or the frequency of the core is unknown.
+        """
+        if flaw := self.flaws.of_process(process):
+            raise UnknownDemandError(flaw)
+        if Terminate in self.system.activity_classes and any(map(ends_early, self._positions(process))):
+            raise UnknownDemandError("it can terminate before its last activity, which cannot be analysed")
+        frames = self._frames(process.activities, core, ())
+        if self.settings.memory is Memory.IMPLICIT:
+            frames += [frame for _, frame in self.copies(process, core)]
+        if isinstance(process, Isr):
+            frames += [self._ticks(demand, core) for demand in self.overheads.of_isr(process, core) if demand is not None]
+        return MultiframeDemand(_scaled(_summed(frames), self._growth(process)))
+
+    def of_activities(self, process: Process, activities: Sequence[Activity], core: str) -> MultiframeDemand:
+        """Demand of some activities of a process, without overheads of the process; raises as `of_process`."""
+        return MultiframeDemand(_scaled(_summed(self._frames(activities, core, ())), self._growth(process)))
+
+    def of_position(self, position: ActivityPosition, core: str, including: bool) -> MultiframeDemand:
+        """Demand that jobs have executed when they reach a position, or have left it; raises as `of_process`."""
+        frames: list[Frame] = []
+        for depth, (activities, index) in enumerate(position.outer, start=1):
+            is_last = depth == len(position.outer)
+            here = self._frames(activities[: index + (including and is_last)], core, ())
+            for outer, at in reversed(position.outer[: depth - 1]):
+                call = outer[at]
+                if isinstance(call, Call):
+                    here = [counted for frame in here if (counted := self._counted(frame, call)) is not None]
+            frames += here
+        return MultiframeDemand(_scaled(_summed(frames), self._growth(position.process)))
+
+    def of_decision(self, scheduler: Scheduler, core: str) -> MultiframeDemand:
+        """Demand of one decision of a scheduler; raises as `of_process`."""
+        # The decisions for all tasks count.
+        frames = [_any_time(frame) for frame in self._frames(scheduler.overhead, core, ())]
+        return MultiframeDemand(_scaled(_summed(frames), self.settings.growth))
+
+    def _growth(self, process: Process) -> Fraction:
+        """The factor on the worst-case execution times of a process."""
+        return self.settings.growth * self.settings.factors.get(process.name, 1)
+
+    def access(self, core: str, label: str, kind: AccessKind, times: Count | float | None) -> Frame:
+        """The demand of an access to a label, or to its copy, which can be anywhere on the way to the label; raises as `of_process`."""
+        found = self.memory.frame(core, label, kind, count_of(times), self.settings.scale * self.time_base(core))
+        return _at_most(found) if self.settings.memory is Memory.IMPLICIT else found
+
+    def copies(self, process: Process, core: str) -> list[tuple[AccessKind, Frame]]:
+        """Copies of the labels that a process accesses, at its start (reads), and of those that it writes, at its end.
+
+        Also a label that is only written is copied at the start, because a job need not write it, or all of it.
+        """
+        self.notes.assume("each label that a job accesses is copied at its start, and each one that it writes also at its end")
+        self.notes.assume("an access to the copy of a label takes no longer than one to the label")
+        certain: dict[tuple[str, AccessKind], bool] = {}
+        for position in self._positions(process):
+            if isinstance(position.activity, LabelAccess | SenderReceiverAccess):
+                for kind in dict.fromkeys((AccessKind.READ, position.activity.kind)):
+                    key = (position.activity.label, kind)
+                    is_certain = position.is_certain and position.counter is not None and is_always(position.counter)
+                    certain[key] = certain.get(key, False) or is_certain
+        time_base = self.settings.scale * self.time_base(core)
+        frames = [
+            (key[1], self.memory.frame(core, *key, count_of(1), time_base), is_certain) for key, is_certain in certain.items()
+        ]
+        return [(kind, frame if is_certain else _at_most(frame)) for kind, frame, is_certain in frames]
+
+    def _positions(self, process: Process) -> Sequence[ActivityPosition]:
+        """Everything that the jobs of a process do."""
+        try:
+            return positions(process, self.system, self.sites)
+        except TooComplexError as error:
+            raise UnknownDemandError(str(error)) from None
+
+    def _frames(self, activities: Iterable[Activity], core: str, above: tuple[str, ...]) -> list[Frame]:
+        # Most activities are accesses.
+        timeless = LabelAccess if self.settings.memory is Memory.NONE else ()
+        taking_time = (activity for activity in activities if not isinstance(activity, timeless))
+        return [frame for activity in taking_time for frame in self._with_services(activity, core, above)]
+
+    def _with_services(self, activity: Activity, core: str, above: tuple[str, ...]) -> Iterator[Frame]:
+        """The frames of one activity and of the OS services that it calls."""
+        yield from self._of(activity, core, above)
+        for demand in self.overheads.of_activity(activity, core):
+            yield self._ticks(demand, core)
+
+    def _of(self, activity: Activity, core: str, above: tuple[str, ...]) -> Sequence[Frame]:
+        """The frames of one activity; activities without execution time have none."""
+        match activity:
+            case Execute(demand=demand):
+                return [self._ticks(demand, core)]
+            case ExecutionNeed(needs=needs):
+                scale = self.settings.scale
+                return [self._time(need, self.ticks_per_unit(name, core) * scale, core) for name, need in needs]
+            case LabelAccess(label=label, kind=kind, times=times) if self.settings.memory is not Memory.NONE:
+                self._require_maximum(times)
+                return [self.access(core, label, kind, times)]
+            case Send(channel=channel, elements=elements) if self.settings.memory is not Memory.NONE:
+                return [self.access(core, channel, AccessKind.WRITE, max(1, elements))]
+            case Receive(channel=channel, elements=elements, at_least=least) if self.settings.memory is not Memory.NONE:
+                most = max(1, elements)
+                return [self.access(core, channel, AccessKind.READ, Count(least=min(least, most), mean=most, most=most))]
+            case ModeAccess() if self.settings.memory is not Memory.NONE:
+                self.notes.assume("accesses to mode labels take no time")
+            case Call():
+                return self._call(activity, core, above)
+            case Group(activities=inner):
+                return self._frames(inner, core, above)
+            case ProbabilitySwitch(branches=branches):
+                weights = [branch.weight for branch in branches]
+                each_occurs = not any(weights) or all(weights)
+                alternatives = [self._frames(branch.activities, core, above) for branch in branches]
+                return _one_of(alternatives, weights, each_occurs, is_chance=True)
+            case Switch():
+                alternatives = [self._frames(inner, core, above) for inner in self.possible_branches(activity)]
+                # The modes can exclude branches, or combinations of them.
+                return _one_of(alternatives, [1.0] * len(alternatives), each_occurs=len(alternatives) == 1, is_chance=False)
+            case Loop(condition=condition):
+                if holds(condition, self.settings.modes) is False:
+                    return []
+                raise UnknownDemandError("it contains a loop without an upper bound on the number of iterations")
+            case ServerCall() | SenderReceiverAccess() if reason := self._obstacle(activity):
+                raise UnknownDemandError(reason)
+            case SenderReceiverAccess(label=label, kind=kind) if self.settings.memory is not Memory.NONE:
+                return [self.access(core, label, kind, None)]
+            case WaitEvent():
+                raise UnknownDemandError("it waits for events without a timeout, so there is no upper bound")
+            case Incomplete(reason=reason, is_access=is_access) if not is_access or self.settings.memory is not Memory.NONE:
+                raise UnknownDemandError(f"it contains {reason}")
+            case Migrate():
+                raise UnknownDemandError("it migrates to another scheduler, which cannot be analysed")
+        return []
+
+    def _obstacle(self, activity: ServerCall | SenderReceiverAccess) -> str:
+        """Why the time that a server call or a notifying access takes is unknown."""
+        if self._servers is None:
+            self._servers = servers(self.system)
+        return obstacle(activity, self._servers)
+
+    def possible_branches(self, switch: Switch) -> list[tuple[Activity, ...]]:
+        """The branches that can be taken, given the known modes."""
+        found: list[tuple[Activity, ...]] = []
+        for case in switch.cases:
+            value = holds(case.condition, self.settings.modes)
+            if value is not False:
+                found.append(case.activities)
+            if value:
+                return found
+        return [*found, switch.default or ()]
+
+    def _ticks(self, demand: Demand, core: str) -> Frame:
+        return self._time(self.ticks(demand, core), self.settings.scale, core)
+
+    def ticks(self, demand: Demand, core: str) -> Distribution[int]:
+        """The ticks of a demand on a core; raises as `of_process`."""
+        ticks = dict(demand.by_core_type).get(self.system.cores[core].type or "", demand.ticks)
+        if ticks is None:
+            raise UnknownDemandError(f"ticks have no value for the core {core!r}")
+        return ticks
+
+    def _call(self, call: Call, core: str, above: tuple[str, ...]) -> Sequence[Frame]:
+        runnable = self.system.runnables.get(call.runnable)
+        if runnable is None:
+            raise UnknownDemandError(f"the runnable {call.runnable!r} is not defined in the model")
+        if runnable.name in above:
+            raise UnknownDemandError(f"the runnable {runnable.name!r} calls itself")
+        if len(above) > MAX_CALL_DEPTH:
+            raise UnknownDemandError(f"calls are nested deeper than {MAX_CALL_DEPTH} levels")
+        frames = self._runnable(runnable, core, above)
+        match runnable.condition and holds(runnable.condition, self.settings.modes):
+            case False:
+                return []
+            case None if runnable.condition is not None:
+                frames = [replace(_any_time(frame), best=0, is_certain=not frame.worst, least=0) for frame in frames]
+        if call.times is not None:
+            self._require_maximum(call.times)
+            frames = [_repeated(frame, call.times) for frame in frames]
+        return [counted for frame in frames if (counted := self._counted(frame, call)) is not None]
+
+    def _require_maximum(self, times: Count | float | None) -> None:
+        """Check that the maximum of a number of calls or accesses is known; raises as `of_process`."""
+        if is_average(times):
+            raise UnknownDemandError(f"a number of calls or accesses, {times:g}, is an average without a maximum")
+        if isinstance(times, float):
+            self.notes.assume("a single whole number of calls or accesses is exact")
+
+    def _runnable(self, runnable: Runnable, core: str, above: tuple[str, ...]) -> Sequence[Frame]:
+        """The frames of a runnable, by its own executions."""
+        key = (runnable.name, core)
+        if key not in self._of_runnables:
+            self._prepare(runnable, core)
+        if key not in self._of_runnables:
+            inner = self._frames(runnable.activities, core, (*above, runnable.name))
+            self._of_runnables[key] = _summed(inner)
+        return self._of_runnables[key]
+
+    def _counted(self, frame: Frame, call: Call) -> Frame | None:
+        """A frame of a called runnable in the executions of the caller; None if it is never executed."""
+        if frame.is_always and call.counter is None:
+            return Frame(worst=frame.worst, best=frame.best, average=frame.average, offset=1, least=frame.least)
+        inner = Counter(prescaler=frame.prescaler, offset=frame.offset, is_phase_known=frame.is_certain)
+        try:
+            counter = self.sites.lifted(call, inner)
+        except UncountableError:
+            prescaler = frame.prescaler * (call.counter.prescaler if call.counter else 1)
+            return Frame(worst=frame.worst, best=0, average=frame.average / prescaler, is_certain=False, least=frame.least)
+        if counter is None:
+            return None
+        is_certain = frame.is_certain and counter.is_phase_known
+        return replace(
+            frame,
+            best=0 if counter.jitter else frame.best,
+            prescaler=counter.prescaler,
+            offset=first_effect(counter),
+            is_certain=is_certain,
+            jitter=counter.jitter,
+        )
+
+    def _prepare(self, runnable: Runnable, core: str) -> None:
+        """Find the frames of the called runnables first, innermost first, which avoids deep recursion."""
+        if core in self._in_preparation:
+            return
+        self._in_preparation.add(core)
+        for name in bottom_up([runnable.name], self._called)[:-1]:
+            if (name, core) not in self._of_runnables:
+                with suppress(UnknownDemandError):
+                    frames = self._frames(self.system.runnables[name].activities, core, (name,))
+                    self._of_runnables[name, core] = _summed(frames)
+        self._in_preparation.remove(core)
+
+    def _called(self, runnable: str) -> list[str]:
+        """The runnables that a runnable calls directly."""
+        activities = walk(self.system.runnables[runnable].activities)
+        called = (activity.runnable for activity in activities if isinstance(activity, Call))
+        return [name for name in called if name in self.system.runnables]
+
+    def _time(self, ticks: Distribution[int], factor: Fraction, core: str) -> Frame:
+        """The demand of ticks, or of units that take `factor` ticks each, in the time base."""
+        tick = self.time_of_tick(factor, core)
+        worst, best = highest(ticks), lowest(ticks)
+        if worst is None or best is None:
+            raise UnknownDemandError("a distribution of ticks has no bounds")
+        # What an invalid value stands for is unknown.
+        if best < 0:
+            raise UnknownDemandError("a number of ticks is negative")
+        if best > worst:
+            raise UnknownDemandError("the minimum of a number of ticks is greater than the maximum")
+        if worst * tick > LIMIT:
+            raise UnknownDemandError("an execution time exceeds 13 days")
+        return Frame(worst=ceil(worst * tick), best=floor(best * tick), average=mean(ticks) * tick)
+
+    def time_of_tick(self, factor: Fraction, core: str) -> int | Fraction:
+        """The time units that `factor` ticks of a core take: usually a whole number, with which it is quicker to calculate.
+
+        Raises
+        ------
+        UnknownDemandError : the frequency of the core is unknown.
+        """
+        key = (core, factor)
+        if key not in self._times_of_ticks:
+            frequency = self.frequency(core)
+            if frequency is None:
+                raise UnknownDemandError(f"the clock frequency of the core {core!r} is unknown")
+            found = time_of_ticks(1, frequency) * factor * self.time_base(core)
+            self._times_of_ticks[key] = int(found) if found.denominator == 1 else found
+        return self._times_of_ticks[key]
+
+    def ticks_per_unit(self, need: str, core: str) -> Fraction:
+        """Ticks per unit of an execution need: the value of the feature, or its inverse for instructions per cycle.
+
+        Raises
+        ------
+        UnknownDemandError : the type of the core does not define them.
+        """
+        kind = next((t for t in self.system.hardware.core_types if t.name == self.system.cores[core].type), None)
+        for feature in kind.features if kind else ():
+            if feature.category == need:
+                if not 0 < feature.value < inf:
+                    raise UnknownDemandError(f"{feature.name!r} of the type of the core {core!r} is not positive and finite")
+                is_rate = feature.name.startswith("IPC")
+                return 1 / Fraction(feature.value) if is_rate else Fraction(feature.value)
+        if need == "Instructions":
+            self.notes.assume("an instruction takes one tick unless the core type specifies it")
+            return Fraction(1)
+        raise UnknownDemandError(f"the type of the core {core!r} does not define the ticks for {need!r}")
+
+
+def _summed(frames: Sequence[Frame]) -> tuple[Frame, ...]:
+    """The frames of the same jobs added up."""
+    found: dict[tuple[int, int, bool, int], list[Frame]] = {}
+    for frame in frames:
+        found.setdefault((frame.prescaler, frame.offset, frame.is_certain, frame.jitter), []).append(frame)
+    return tuple(same[0] if len(same) == 1 else _sum(same) for same in found.values())
+
+
+def _sum(same: Sequence[Frame]) -> Frame:
+    return replace(
+        same[0],
+        worst=sum(frame.worst for frame in same),
+        best=sum(frame.best for frame in same),
+        average=exact_sum(frame.average for frame in same),
+        least=_least(sum(frame.occurring for frame in same), same),
+    )
+
+
+def _least(occurring: Time, frames: Iterable[Frame]) -> Time | None:
+    """The field of a frame that is made of others; None if all of them certainly occur."""
+    return None if all(frame.least is None for frame in frames) else occurring
+
+
+def _scaled(frames: tuple[Frame, ...], growth: Fraction) -> tuple[Frame, ...]:
+    """Frames with greater worst cases, so that they cover all smaller factors; with a factor below 1, best cases are smaller, too."""
+    if growth == 1:
+        return frames
+    return tuple(
+        replace(
+            frame,
+            worst=ceil(frame.worst * growth),
+            best=floor(frame.best * min(growth, Fraction(1))),
+            average=frame.average * growth,
+            least=None if frame.least is None else ceil(frame.least * growth),
+        )
+        for frame in frames
+    )
+
+
+def _at_most(access: Frame) -> Frame:
+    """The demand of an access that may take no time."""
+    return Frame(worst=access.worst, best=0, average=access.average)
+
+
+def _any_time(frame: Frame) -> Frame:
+    """A frame on unknown jobs: any job may execute it, and any job may not."""
+    if frame.is_always or (frame.prescaler == 1 and not frame.is_certain):
+        return frame
+    return Frame(worst=frame.worst, best=0, average=frame.average / frame.prescaler, is_certain=False, least=frame.least)
+
+
+def _repeated(frame: Frame, times: Count | float) -> Frame:
+    """A frame that is executed several times."""
+    minimum, average, maximum = count_of(times)
+    return replace(
+        frame,
+        worst=frame.worst * maximum,
+        best=frame.best * minimum,
+        average=frame.average * average,
+        least=None if frame.least is None else frame.least * maximum,
+    )
+
+
+def _one_of(
+    alternatives: Sequence[Sequence[Frame]], weights: Sequence[float], each_occurs: bool, *, is_chance: bool
+) -> Sequence[Frame]:
+    """One frame that bounds all alternatives.
+
+    Parameters
+    ----------
+    each_occurs : whether each job can take any of them
+    is_chance : whether they are chosen at random, so that each one occurs some time; otherwise modes choose
+    """
+    plain = [[_any_time(frame) for frame in frames] for frames in alternatives]
+    worst = [sum(frame.worst for frame in frames) for frames in plain]
+    best = [sum(frame.best for frame in frames) for frames in plain]
+    average = [sum((frame.average for frame in frames), Fraction(0)) for frames in plain]
+    total = sum(map(Fraction, weights))
+    if not worst:
+        return []
+    if not total:
+        weights, total = [1.0] * len(worst), Fraction(len(worst))
+    weighted = sum((value * Fraction(weight) for value, weight in zip(average, weights, strict=True)), Fraction(0))
+    is_certain = all(frame.is_certain for frames in plain for frame in frames)
+    is_same = max(worst) == min(best)
+    occurring = [sum(frame.occurring for frame in frames) for frames in plain]
+    # Of alternatives that modes choose, some may never occur; one of them does.
+    likely = [value for value, weight in zip(occurring, weights, strict=True) if weight]
+    least = max(likely) if is_chance else min(occurring)
+    return [
+        Frame(
+            worst=max(worst),
+            best=min(best),
+            average=weighted / total,
+            is_certain=is_certain and (each_occurs or is_same),
+            least=None if least == max(worst) else least,
+        )
+    ]

@@ -1,0 +1,1 @@
+"""Times of jobs and latencies of chains in a simulation or a measurement."""

@@ -1,0 +1,1 @@
+"""Where processes run, and in which order."""

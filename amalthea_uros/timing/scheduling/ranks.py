@@ -1,0 +1,475 @@
+"""The core or server that executes a process, the policy, the rank, and the preemption mode.
+
+Hierarchies of schedulers follow the help of APP4MC on hierarchical scheduling: the parent decides first, by the parameters of the
+association; a child decides only while it is served. The priorities of all levels form a rank that is compared from left to right.
+Processes below a server share its budget.
+"""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from enum import StrEnum
+from functools import partial
+
+from amalthea_uros.perf.mapping import TaskAllocation
+from amalthea_uros.perf.os import SERVERS, Duration, Parameter, ParameterValue, Policy, Scheduler
+from amalthea_uros.perf.software import Preemption, Process, Task
+from amalthea_uros.perf.stimuli import Periodic
+from amalthea_uros.perf.system import System
+from amalthea_uros.timing.basics.notes import Notes
+from amalthea_uros.timing.scheduling.allocation import deciding_scheduler, effective_priority
+from amalthea_uros.units import Time
+
+#: The parameter of OSEK schedulers, which is mandatory in APP4MC; 0 was the value of a task without group when it was an attribute
+#: (`osekTaskGroup`, until 0.8.0).
+_GROUP, _NO_GROUP = "taskGroup", 0
+
+#: Policies that serve the highest priority first, as far as there is an analysis for them.
+_BY_PRIORITY = {Policy.FIXED_PRIORITY_PREEMPTIVE, Policy.OSEK, Policy.PRIORITY_BASED_ROUND_ROBIN}
+#: Other names of policies, in lower case; since AMALTHEA 2.0 only the name identifies a policy.
+_ALIASES = {
+    **{policy.lower(): policy for policy in Policy},
+    "fpp": Policy.FIXED_PRIORITY_PREEMPTIVE,
+    "fixed priority preemptive": Policy.FIXED_PRIORITY_PREEMPTIVE,
+    "autosar": Policy.OSEK,
+    "edf": Policy.EARLIEST_DEADLINE_FIRST,
+    "deadline monotonic": Policy.DEADLINE_MONOTONIC,
+    "rate monotonic": Policy.RATE_MONOTONIC,
+}
+#: Names of the parameters of servers: those of the standard definitions, and those of AMALTHEA until 1.2.
+CAPACITY = ("capacity", "maxBudget")
+PERIOD = ("period", "replenishment")
+
+#: Order of service, compared from left to right: interrupts before tasks, then the priorities from the outermost scheduler inwards.
+Rank = tuple[int, ...]
+
+
+def standard_policy(name: str | None) -> str | None:
+    """The standard name of a policy; that of the model if it is none of these."""
+    return _ALIASES.get((name or "").lower(), name)
+
+
+def is_by_priority(name: str | None) -> bool:
+    """Whether a policy serves the highest priority first."""
+    return standard_policy(name) in _BY_PRIORITY | {Policy.FIXED_PRIORITY_WITH_BUDGETS}
+
+
+class EqualPriority(StrEnum):
+    """Order of service among equal priorities."""
+
+    FIFO = "first come, first served"
+    EDF = "earliest deadline first"
+    ROUND_ROBIN = "round robin"
+    UNKNOWN = "an order that is not stated"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SchedulingContext:
+    """How something is scheduled.
+
+    Attributes
+    ----------
+    server : whose budget it uses; None: it runs on the core itself
+    rank : higher is served first
+    equal_priority, slice : how tasks of the same rank share the core
+    group : its members do not preempt each other
+    """
+
+    core: str = ""
+    server: str | None = None
+    rank: Rank = (0,)
+    equal_priority: EqualPriority = EqualPriority.FIFO
+    deadline: Time | None = None
+    slice: Time = 0
+    group: str | None = None
+
+    @property
+    def urgency(self) -> Rank:
+        """The rank, followed by the deadline under EDF."""
+        return (*self.rank, -(self.deadline or 0)) if self.equal_priority is EqualPriority.EDF else self.rank
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ScheduledProcess(SchedulingContext):
+    """A process on a core."""
+
+    process: Process
+    is_isr: bool
+    priority: int | None
+
+    @property
+    def name(self) -> str:
+        """The name of the process."""
+        return self.process.name
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Server(SchedulingContext):
+    """A scheduler with a budget in each period, in which it serves its tasks."""
+
+    scheduler: Scheduler
+    budget: Time
+    period: Time
+
+    @property
+    def name(self) -> str:
+        """The name of the scheduler."""
+        return self.scheduler.name
+
+
+class NotSchedulableError(Exception):
+    """The scheduling of a process is unknown or cannot be analysed; the text says why."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Parameters:
+    """The parameters of a process or scheduler for the scheduler above it.
+
+    Attributes
+    ----------
+    owner : what they belong to, for messages
+    """
+
+    owner: str
+    priority: int | None
+    deadline: Time | None
+    period: Time | None
+    parameters: Sequence[Parameter]
+
+    def required(self, value: int | None, what: str) -> int:
+        """A value that must be set; times must be greater than 0."""
+        if value is None or (what != "priority" and value <= 0):
+            raise NotSchedulableError(f"{self.owner} has no {what}")
+        return value
+
+    def of(self, scheduler: Scheduler, *names: str) -> ParameterValue | None:
+        """The first of the named parameters that is set, here or for the whole scheduler."""
+        return _of(scheduler, self.parameters, *names)
+
+
+def _of(scheduler: Scheduler, parameters: Sequence[Parameter], *names: str) -> ParameterValue | None:
+    values = {p.name: p.values[0] for p in (*scheduler.parameters, *parameters) if len(p.values) == 1}
+    return next((values[name] for name in names if name in values), None)
+
+
+@dataclass(slots=True)
+class Scheduling:
+    """Finds the scheduling of processes.
+
+    Attributes
+    ----------
+    limits : response-time limits of requirements, the deadlines to judge by where none is stated
+    """
+
+    system: System
+    notes: Notes
+    limits: Mapping[str, Time] = field(default_factory=dict)
+    servers: dict[str, Server] = field(default_factory=dict)
+    _served: Counter[str] = field(init=False, default_factory=Counter)
+    _without_priority: dict[str, str] | None = field(init=False, default=None)
+    _roots_of: defaultdict[str, list[str]] = field(init=False, default_factory=partial(defaultdict, list))
+
+    def task(self, allocation: TaskAllocation) -> ScheduledProcess:
+        """The scheduling of a task.
+
+        Raises
+        ------
+        NotSchedulableError : its scheduling cannot be analysed.
+        """
+        found = self.on_any_core(allocation)
+        return replace(found, core=self._core(self.system.schedulers[allocation.scheduler], allocation.cores))
+
+    def on_any_core(self, allocation: TaskAllocation) -> ScheduledProcess:
+        """The same, without a core: several ones can execute it."""
+        process = self.system.processes.get(allocation.task)
+        scheduler = self.system.schedulers.get(allocation.scheduler)
+        if process is None or scheduler is None:
+            raise NotSchedulableError(f"the scheduler {allocation.scheduler!r} is not defined, or was left out when reading")
+        deadline = self.limits.get(process.name) if allocation.deadline is None else allocation.deadline
+        # A limit is what is wished for; the scheduler knows only the deadline that the allocation states.
+        parameters = _Parameters("it", allocation.priority, allocation.deadline, self._period(process), allocation.parameters)
+        found = self._under(scheduler, parameters, ())
+        return ScheduledProcess(
+            process=process,
+            server=found.server,
+            is_isr=False,
+            priority=allocation.priority,
+            deadline=deadline,
+            rank=found.rank,
+            equal_priority=found.equal_priority,
+            slice=found.slice,
+            group=found.group,
+        )
+
+    def _period(self, process: Process) -> Time | None:
+        stimuli = [self.system.stimuli_by_name.get(name) for name in process.stimuli]
+        return min((stimulus.period for stimulus in stimuli if isinstance(stimulus, Periodic)), default=None)
+
+    def _under(self, scheduler: Scheduler, parameters: _Parameters, above: tuple[str, ...]) -> SchedulingContext:
+        """The scheduling of a task or child scheduler of a scheduler."""
+        if scheduler.name in above:
+            raise NotSchedulableError("its schedulers are nested in a cycle")
+        above = (*above, scheduler.name)
+        policy = self._policy(scheduler)
+        if policy == Policy.GROUPING:
+            return self._in_group(scheduler, parameters, above)
+        if policy in SERVERS:
+            return self._in_server(scheduler, parameters, above)
+        base = self._of_scheduler(scheduler, above)
+        if base.equal_priority is not EqualPriority.FIFO:
+            message = f"{scheduler.name!r} cannot be analysed: its parent schedules by {base.equal_priority}"
+            self.notes.warning("ANA002", message, scheduler)
+            raise NotSchedulableError(f"the parent of its scheduler {scheduler.name!r} schedules by {base.equal_priority}")
+        if policy is None:
+            message = f"the scheduler {scheduler.name!r} has no policy, so its tasks are not analysed"
+            self.notes.warning("ANA001", message, scheduler)
+            raise NotSchedulableError(f"its scheduler {scheduler.name!r} has no policy")
+        if policy in _NEEDING_PRIORITY and parameters.priority is None and self._serves_one(scheduler):
+            # Nothing competes with what is alone.
+            parameters = replace(parameters, priority=0)
+        by_policy = _BY_POLICY.get(policy)
+        if by_policy is None:
+            message = f"the policy {policy!r} of the scheduler {scheduler.name!r} cannot be analysed"
+            self.notes.warning("ANA002", message, scheduler)
+            raise NotSchedulableError(f"there is no analysis for the policy {policy} of its scheduler {scheduler.name!r}")
+        if policy in _NEEDING_PRIORITY and self._lacks_priorities(scheduler):
+            return replace(base, rank=(*base.rank, 0), equal_priority=EqualPriority.UNKNOWN)
+        if policy == Policy.OSEK and parameters.of(scheduler, _GROUP) == _NO_GROUP:
+            self.notes.assume(f"task group {_NO_GROUP} of OSEK schedulers means that a task is in no group")
+        return by_policy(scheduler, parameters, base)
+
+    def _in_server(self, scheduler: Scheduler, parameters: _Parameters, above: tuple[str, ...]) -> SchedulingContext:
+        """The scheduling of a task or scheduler in the budget of a server, by priority."""
+        server = self._server(scheduler, above)
+        if self._lacks_priorities(scheduler):
+            return SchedulingContext(server=server.name, rank=(0,), equal_priority=EqualPriority.UNKNOWN)
+        if parameters.priority is None and self._serves_one(scheduler):
+            return SchedulingContext(server=server.name, rank=())
+        return SchedulingContext(server=server.name, rank=(parameters.required(parameters.priority, "priority"),))
+
+    def _lacks_priorities(self, scheduler: Scheduler) -> bool:
+        """Whether a scheduler decides for tasks only, and some of them have no priority: then it may serve them in any order."""
+        return self.without_priority(scheduler.name) != "" and not self._serves_one(scheduler) and self._serves_tasks(scheduler)
+
+    def without_priority(self, scheduler: str) -> str:
+        """A task without a priority for which a scheduler decides; "" if there is none."""
+        if self._without_priority is None:
+            self._without_priority = {}
+            for task in self.system.mapping.tasks:
+                deciding = deciding_scheduler(task.scheduler, self.system)
+                if deciding is not None and effective_priority(task, self.system) is None:
+                    self._without_priority.setdefault(deciding.name, task.task)
+        return self._without_priority.get(scheduler, "")
+
+    def _serves_tasks(self, scheduler: Scheduler) -> bool:
+        """Whether a scheduler decides for no other scheduler that decides something itself."""
+        tasks = Counter(
+            deciding.name
+            for task in self.system.mapping.tasks
+            if (deciding := deciding_scheduler(task.scheduler, self.system)) is not None
+        )
+        return tasks[scheduler.name] == self._served[scheduler.name]
+
+    def _serves_one(self, scheduler: Scheduler) -> bool:
+        """Whether a scheduler decides for a single task or scheduler; groupings decide nothing."""
+        if not self._served:
+            self._served = Counter(self._deciders())
+        return self._served[scheduler.name] == 1
+
+    def _deciders(self) -> Iterator[str]:
+        """The schedulers that decide for each task, and for each scheduler that decides something itself."""
+        below = [
+            other.parent.scheduler
+            for other in self.system.schedulers.values()
+            if other.parent is not None and standard_policy(other.policy) != Policy.GROUPING
+        ]
+        for name in (*below, *(task.scheduler for task in self.system.mapping.tasks)):
+            deciding = deciding_scheduler(name, self.system)
+            if deciding is not None:
+                yield deciding.name
+
+    def _policy(self, scheduler: Scheduler) -> str | None:
+        """The standard name of the policy of a scheduler."""
+        standard = standard_policy(scheduler.policy)
+        if standard == scheduler.policy:
+            return standard
+        self.notes.assume(f"the policy {scheduler.policy!r} is interpreted as {standard}")
+        return standard
+
+    def _in_group(self, scheduler: Scheduler, parameters: _Parameters, above: tuple[str, ...]) -> SchedulingContext:
+        """The scheduling in a grouping: its parent decides, by the parameters of the process, or else of the group."""
+        if scheduler.parent is None:
+            raise NotSchedulableError(f"the grouping {scheduler.name!r} has no parent scheduler")
+        parent, of_group = self._parent(scheduler)
+        merged = _Parameters(
+            owner=parameters.owner,
+            priority=of_group.priority if parameters.priority is None else parameters.priority,
+            deadline=of_group.deadline if parameters.deadline is None else parameters.deadline,
+            period=parameters.period,
+            parameters=(*of_group.parameters, *parameters.parameters),
+        )
+        return self._under(parent, merged, above)
+
+    def _of_scheduler(self, scheduler: Scheduler, above: tuple[str, ...]) -> SchedulingContext:
+        """The scheduling of a scheduler itself; its rank precedes those of its tasks."""
+        if scheduler.parent is None:
+            return SchedulingContext()
+        parent, parameters = self._parent(scheduler)
+        if scheduler.policy not in SERVERS and self._is_shared(parent, parameters.priority):
+            message = f"{scheduler.name!r} shares its priority in {parent.name!r} with others"
+            self.notes.warning("ANA002", message, scheduler)
+            raise NotSchedulableError(f"its scheduler {scheduler.name!r} shares its priority in {parent.name!r} with others")
+        return self._under(parent, parameters, above)
+
+    def _parent(self, scheduler: Scheduler) -> tuple[Scheduler, _Parameters]:
+        assert scheduler.parent is not None
+        parent = self.system.schedulers.get(scheduler.parent.scheduler)
+        if parent is None:
+            raise NotSchedulableError(f"the parent scheduler of {scheduler.name!r} is not defined in the model")
+        association = scheduler.parent
+        period = _time(_of(scheduler, association.parameters, *PERIOD))
+        deadline = period if association.deadline is None else association.deadline
+        owner = f"its scheduler {scheduler.name!r}, below {parent.name!r},"
+        return parent, _Parameters(owner, association.priority, deadline, period, association.parameters)
+
+    def _is_shared(self, parent: Scheduler, priority: int | None) -> bool:
+        """Whether several schedulers or tasks have a priority, under a policy that uses it."""
+        policy = standard_policy(parent.policy)
+        if policy not in _BY_PRIORITY and policy not in SERVERS:
+            return False
+        children = [s for s in self.system.schedulers.values() if s.parent is not None and s.parent.scheduler == parent.name]
+        priorities = [child.parent.priority for child in children if child.parent is not None]
+        priorities += [task.priority for task in self.system.mapping.tasks if task.scheduler == parent.name]
+        return priorities.count(priority) > 1
+
+    def _server(self, scheduler: Scheduler, above: tuple[str, ...]) -> Server:
+        if scheduler.name not in self.servers:
+            found = self._of_scheduler(scheduler, above)
+            stated = scheduler.parent.parameters if scheduler.parent else ()
+            parameters = _Parameters(f"the server {scheduler.name!r}", None, None, None, stated)
+            self.servers[scheduler.name] = Server(
+                scheduler=scheduler,
+                budget=parameters.required(_time(parameters.of(scheduler, *CAPACITY)), "capacity"),
+                period=parameters.required(_time(parameters.of(scheduler, *PERIOD)), "period"),
+                core=self._core(scheduler, ()),
+                server=found.server,
+                rank=found.rank,
+                equal_priority=found.equal_priority,
+                deadline=found.deadline,
+                slice=found.slice,
+            )
+        return self.servers[scheduler.name]
+
+    def _core(self, scheduler: Scheduler, wanted: tuple[str, ...]) -> str:
+        root, served = scheduler, scheduler.cores
+        while root.parent is not None and root.parent.scheduler in self.system.schedulers:
+            root = self.system.schedulers[root.parent.scheduler]
+            served = served or root.cores
+        cores = [core for core in served if core in wanted] if wanted else list(served)
+        if len(cores) != 1:
+            reason = _no_single_core(scheduler, served, wanted, cores)
+            self.notes.warning("ANA002", f"tasks of the scheduler {scheduler.name!r} are not analysed: {reason}", scheduler)
+            raise NotSchedulableError(reason)
+        others = [name for name in self._roots().get(cores[0], ()) if name != root.name]
+        if others:
+            message = f"the core {cores[0]!r} is shared by the schedulers {root.name!r} and {others[0]!r}"
+            self.notes.warning("ANA002", message, scheduler)
+            raise NotSchedulableError(f"its core {cores[0]!r} is shared by the schedulers {root.name!r} and {others[0]!r}")
+        return cores[0]
+
+    def _roots(self) -> Mapping[str, Sequence[str]]:
+        """The schedulers of each core that are below no other one; asked for each task, and so found once."""
+        if not self._roots_of:
+            for scheduler in self.system.schedulers.values():
+                for core in dict.fromkeys(scheduler.cores) if scheduler.parent is None else ():
+                    self._roots_of[core].append(scheduler.name)
+        return self._roots_of
+
+    def isr(self, name: str, controller_name: str, priority: int | None) -> ScheduledProcess:
+        """The scheduling of an interrupt service routine; raises as `task`."""
+        process = self.system.processes.get(name)
+        controller = self.system.interrupt_controllers.get(controller_name)
+        if process is None or controller is None:
+            raise NotSchedulableError(
+                f"the interrupt controller {controller_name!r} is not defined, or was left out when reading"
+            )
+        if len(controller.cores) != 1:
+            cores = f"several cores can execute it: {', '.join(controller.cores)}"
+            raise NotSchedulableError(cores if controller.cores else f"{controller_name!r} is not responsible for a core")
+        if controller.overhead:
+            raise NotSchedulableError(
+                f"{controller_name!r} executes work of its own at each interrupt, which cannot be analysed"
+            )
+        rank = (1, priority or 0)
+        return ScheduledProcess(process=process, core=controller.cores[0], is_isr=True, priority=priority, rank=rank)
+
+
+def _time(value: ParameterValue | None) -> Time | None:
+    return value.time if isinstance(value, Duration) else None
+
+
+def _no_single_core(scheduler: Scheduler, served: Sequence[str], wanted: Sequence[str], cores: Sequence[str]) -> str:
+    """Why it is not one core that executes a task."""
+    if cores:
+        return f"several cores can execute it: {', '.join(cores)}"
+    if not served:
+        return f"its scheduler {scheduler.name!r} is not responsible for a core"
+    return (
+        f"its affinity is to {', '.join(wanted)}, but its scheduler {scheduler.name!r} is responsible for {', '.join(served)}"
+    )
+
+
+# Policies
+
+
+def _fixed_priority(_scheduler: Scheduler, parameters: _Parameters, base: SchedulingContext) -> SchedulingContext:
+    return replace(base, rank=(*base.rank, parameters.required(parameters.priority, "priority")))
+
+
+def _osek(scheduler: Scheduler, parameters: _Parameters, base: SchedulingContext) -> SchedulingContext:
+    found, group = _fixed_priority(scheduler, parameters, base), parameters.of(scheduler, _GROUP)
+    return found if group in (None, _NO_GROUP) else replace(found, group=f"{scheduler.name}/{group}")
+
+
+def _round_robin(scheduler: Scheduler, parameters: _Parameters, base: SchedulingContext) -> SchedulingContext:
+    found = _fixed_priority(scheduler, parameters, base)
+    length = parameters.required(_time(parameters.of(scheduler, "timeSliceLength")), "timeSliceLength")
+    return replace(found, equal_priority=EqualPriority.ROUND_ROBIN, slice=length)
+
+
+def _deadline_monotonic(_scheduler: Scheduler, parameters: _Parameters, base: SchedulingContext) -> SchedulingContext:
+    return replace(base, rank=(*base.rank, -parameters.required(parameters.deadline, "deadline")))
+
+
+def _rate_monotonic(scheduler: Scheduler, parameters: _Parameters, base: SchedulingContext) -> SchedulingContext:
+    period = _time(parameters.of(scheduler, "period")) or parameters.period
+    return replace(base, rank=(*base.rank, -parameters.required(period, "period")))
+
+
+def _earliest_deadline_first(_scheduler: Scheduler, parameters: _Parameters, base: SchedulingContext) -> SchedulingContext:
+    return replace(base, equal_priority=EqualPriority.EDF, deadline=parameters.required(parameters.deadline, "deadline"))
+
+
+#: The policies for which what they serve needs a priority.
+_NEEDING_PRIORITY = (Policy.FIXED_PRIORITY_PREEMPTIVE, Policy.OSEK, Policy.PRIORITY_BASED_ROUND_ROBIN)
+#: The scheduling by each policy.
+_BY_POLICY: Mapping[str, Callable[[Scheduler, _Parameters, SchedulingContext], SchedulingContext]] = {
+    Policy.FIXED_PRIORITY_PREEMPTIVE: _fixed_priority,
+    Policy.OSEK: _osek,
+    Policy.PRIORITY_BASED_ROUND_ROBIN: _round_robin,
+    Policy.DEADLINE_MONOTONIC: _deadline_monotonic,
+    Policy.RATE_MONOTONIC: _rate_monotonic,
+    Policy.EARLIEST_DEADLINE_FIRST: _earliest_deadline_first,
+}
+
+
+def preemption(item: ScheduledProcess) -> Preemption:
+    """The preemption mode of a process; an ISR is preempted only by interrupts of higher priority."""
+    return item.process.preemption if isinstance(item.process, Task) else Preemption.PREEMPTIVE
+
+
+def is_preemptive(item: ScheduledProcess) -> bool:
+    """Whether every process of higher rank can preempt a process immediately."""
+    return preemption(item) is Preemption.PREEMPTIVE and item.group is None
