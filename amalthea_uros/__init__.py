@@ -40,23 +40,20 @@ if TYPE_CHECKING:
     from amalthea_uros import errors as errors
     from amalthea_uros import perf as perf
     from amalthea_uros import units as units
-    from amalthea_uros.analyze.assignment import Proposal as Proposal
-    from amalthea_uros.analyze.assignment import propose_priorities as propose_priorities
     from amalthea_uros.analyze.impact import Effect as Effect
     from amalthea_uros.analyze.impact import Impact as Impact
     from amalthea_uros.analyze.impact import ImpactRow as ImpactRow
-    from amalthea_uros.analyze.results import Analysis as Analysis
-    from amalthea_uros.analyze.results import CallbackResult as CallbackResult
-    from amalthea_uros.analyze.results import ChainResult as ChainResult
-    from amalthea_uros.analyze.results import Claim as Claim
-    from amalthea_uros.analyze.results import JobMetric as JobMetric
-    from amalthea_uros.analyze.results import Metric as Metric
-    from amalthea_uros.analyze.results import ProcessorResult as ProcessorResult
-    from amalthea_uros.analyze.results import ProcessResult as ProcessResult
-    from amalthea_uros.analyze.results import Quantity as Quantity
-    from amalthea_uros.analyze.results import RequirementResult as RequirementResult
-    from amalthea_uros.analyze.results import Response as Response
-    from amalthea_uros.analyze.results import Value as Value
+    from amalthea_uros.analyze.priorities.assignment import Proposal as Proposal
+    from amalthea_uros.analyze.priorities.assignment import propose_priorities as propose_priorities
+    from amalthea_uros.analyze.results.analysis import Analysis as Analysis
+    from amalthea_uros.analyze.results.chains import ChainResult as ChainResult
+    from amalthea_uros.analyze.results.chains import Quantity as Quantity
+    from amalthea_uros.analyze.results.chains import Value as Value
+    from amalthea_uros.analyze.results.processes import CallbackResult as CallbackResult
+    from amalthea_uros.analyze.results.processes import Metric as Metric
+    from amalthea_uros.analyze.results.processes import ProcessorResult as ProcessorResult
+    from amalthea_uros.analyze.results.processes import ProcessResult as ProcessResult
+    from amalthea_uros.analyze.results.requirements import RequirementResult as RequirementResult
     from amalthea_uros.analyze.sensitivity import Sensitivity as Sensitivity
     from amalthea_uros.analyze.sensitivity import sensitivity as sensitivity
     from amalthea_uros.analyze.system import analyze_system as analyze_system
@@ -153,9 +150,12 @@ if TYPE_CHECKING:
     from amalthea_uros.simulate.options import Mode as Mode
     from amalthea_uros.simulate.options import Options as Options
     from amalthea_uros.simulate.results import Simulation as Simulation
+    from amalthea_uros.timing.basics.quantities import JobMetric as JobMetric
     from amalthea_uros.timing.basics.settings import Memory as Memory
     from amalthea_uros.timing.basics.settings import Settings as Settings
     from amalthea_uros.timing.dataflow.paths import paths as paths
+    from amalthea_uros.timing.response import Claim as Claim
+    from amalthea_uros.timing.response import Response as Response
     from amalthea_uros.trace.table import Entity as Entity
     from amalthea_uros.trace.table import EntityKind as EntityKind
     from amalthea_uros.trace.table import EventKind as EventKind
@@ -167,22 +167,26 @@ if TYPE_CHECKING:
     from amalthea_uros.xmi.save import save as save
 
 _NAMES = {
-    "analyze.assignment": ("Proposal", "propose_priorities"),
+    "analyze.priorities.assignment": ("Proposal", "propose_priorities"),
     "executors.results": ("ExecutorResult", "HandleResult", "Hop", "HopKind", "Loss"),
     "analyze.impact": ("Effect", "Impact", "ImpactRow"),
-    "analyze.results": (
-        "Analysis",
-        "CallbackResult",
+    "analyze.results.analysis": ("Analysis",),
+    "analyze.results.chains": (
         "ChainResult",
-        "Claim",
-        "JobMetric",
+        "Quantity",
+        "Value",
+    ),
+    "analyze.results.processes": (
+        "CallbackResult",
         "Metric",
         "ProcessResult",
         "ProcessorResult",
-        "Quantity",
-        "RequirementResult",
+    ),
+    "analyze.results.requirements": ("RequirementResult",),
+    "timing.basics.quantities": ("JobMetric",),
+    "timing.response": (
+        "Claim",
         "Response",
-        "Value",
     ),
     "analyze.sensitivity": ("Sensitivity", "sensitivity"),
     "judge.summary": ("Schedulable", "Summary"),

@@ -25,9 +25,9 @@ from random_orders import all_orders, random_sets  # noqa: E402
 from thesis_designs import changes_of, choose_periods  # noqa: E402
 
 from amalthea_uros import extract, load  # noqa: E402
-from amalthea_uros.analyze.assignment import Outcome, propose_priorities  # noqa: E402
-from amalthea_uros.analyze.priority_orders import with_priorities  # noqa: E402
-from amalthea_uros.analyze.results import Analysis  # noqa: E402
+from amalthea_uros.analyze.priorities.assignment import Outcome, propose_priorities  # noqa: E402
+from amalthea_uros.analyze.priorities.orders import with_priorities  # noqa: E402
+from amalthea_uros.analyze.results.analysis import Analysis  # noqa: E402
 from amalthea_uros.analyze.system import analyze_system  # noqa: E402
 from amalthea_uros.design.optimize.problem import Conclusion, Goal, SearchResult  # noqa: E402
 from amalthea_uros.design.optimize.solvers.annealing import solve_by_annealing  # noqa: E402

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from hand_made_systems import Proc, system, ticks
 
-from amalthea_uros.analyze.propagation import solve
+from amalthea_uros.analyze.response_times.propagation import solve
 from amalthea_uros.executors.bounds.evaluate import evaluate_executors
 from amalthea_uros.executors.semantics.loops import timing_context
 from amalthea_uros.perf.activities import Call, Chance, ProbabilitySwitch

@@ -8,7 +8,7 @@ from hand_made_systems import Proc, system
 from looping_executors import combined, guard, message, timer
 from played_executors import Spans, play
 
-from amalthea_uros.analyze.propagation import solve
+from amalthea_uros.analyze.response_times.propagation import solve
 from amalthea_uros.executors.bounds.evaluate import evaluate_executors
 from amalthea_uros.executors.semantics.loops import timing_context
 from amalthea_uros.perf.activities import Call, Chance, Demand, Execute, ProbabilitySwitch

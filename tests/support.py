@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from amalthea_uros import describe, extract, load
-from amalthea_uros.analyze.results import Analysis
+from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.metamodel.defaults import defaults_of
 from amalthea_uros.metamodel.element import Element

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from hand_made_systems import READ, WRITE, Proc, access, chain, system, ticks
 
-from amalthea_uros.analyze.propagation import solve
+from amalthea_uros.analyze.response_times.propagation import solve
 from amalthea_uros.analyze.ways.evaluate import evaluate_ways
 from amalthea_uros.executors.semantics.loops import timing_context
 from amalthea_uros.perf.activities import Call, Chance, ProbabilitySwitch

@@ -15,7 +15,7 @@ from amalthea_uros.analyze.chains import job_chains
 from amalthea_uros.analyze.chains.read_write_times import ReadWriteTimes
 from amalthea_uros.analyze.response_times import schedule
 from amalthea_uros.analyze.response_times.schedule import PeriodicTask
-from amalthea_uros.analyze.results import Quantity
+from amalthea_uros.analyze.results.chains import Quantity
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 
 TASKS = (

@@ -14,24 +14,25 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from amalthea_uros.analyze import metrics
-from amalthea_uros.analyze.chains.completed_work import times_of_completion
-from amalthea_uros.analyze.chains.core_schedule import CoreSchedule, CoreSchedules
 from amalthea_uros.analyze.executor_results import callback_results
-from amalthea_uros.analyze.metrics import Span
+from amalthea_uros.analyze.response_times import metrics
+from amalthea_uros.analyze.response_times.core_schedule import CoreSchedule, CoreSchedules, times_of_completion
+from amalthea_uros.analyze.response_times.metrics import Span
 from amalthea_uros.analyze.response_times.schedule import demand_cycle, demand_table, demands_of_jobs
-from amalthea_uros.analyze.results import CallbackResult, Claim, JobMetric, Metric, Response
-from amalthea_uros.analyze.solution import Solution
+from amalthea_uros.analyze.response_times.solution import Solution
+from amalthea_uros.analyze.results.processes import CallbackResult, Metric
 from amalthea_uros.executors.results import ExecutorResult
 from amalthea_uros.perf.activities import Activity, Call, ServerCall, Terminate
 from amalthea_uros.perf.constraints import Bound, TimeLimit, TimeMetric
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Counter
+from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.jobs.counters import first_effect, is_always, min_distance, takes_effect
 from amalthea_uros.timing.jobs.positions import ActivityPosition
+from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:

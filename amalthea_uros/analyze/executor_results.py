@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
-from amalthea_uros.analyze.process_evidence import judged, worst_response
-from amalthea_uros.analyze.results import CallbackResult, Claim, JobMetric, Metric, ProcessResult, Response
+from amalthea_uros.analyze.constraints.process_evidence import judged, worst_response
+from amalthea_uros.analyze.results.processes import CallbackResult, Metric, ProcessResult
 from amalthea_uros.executors.bounds.solved_system import METHOD
 from amalthea_uros.executors.results import ExecutorResult, HandleResult
 from amalthea_uros.judge.evidence import ProcessEvidence, ProvedLoss
 from amalthea_uros.perf.software import Process
+from amalthea_uros.timing.basics.quantities import JobMetric
+from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.units import Time
 
 #: Others are about activations by stimuli.

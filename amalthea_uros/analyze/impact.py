@@ -15,18 +15,12 @@ from functools import partial
 from typing import TypeAlias
 
 from amalthea_uros._internal.shown import Shown
-from amalthea_uros.analyze.results import (
-    Analysis,
-    CallbackResult,
-    ChainResult,
-    Claim,
-    ProcessorResult,
-    ProcessResult,
-    Quantity,
-    RequirementResult,
-    Response,
-)
+from amalthea_uros.analyze.results.analysis import Analysis
+from amalthea_uros.analyze.results.chains import ChainResult, Quantity
+from amalthea_uros.analyze.results.processes import CallbackResult, ProcessorResult, ProcessResult
+from amalthea_uros.analyze.results.requirements import RequirementResult
 from amalthea_uros.judge.verdict import Failure, Verdict
+from amalthea_uros.timing.response import Claim, Response
 
 #: The value of a figure.
 Amount: TypeAlias = int | Fraction | StrEnum

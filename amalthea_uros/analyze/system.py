@@ -6,19 +6,22 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 
+from amalthea_uros._internal.by_name import Results
 from amalthea_uros.analyze.callbacks import CallbackEvaluator
-from amalthea_uros.analyze.chains.constraints import ConstraintEvaluator
-from amalthea_uros.analyze.chains.core_schedule import CoreSchedules
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.chains.job_chains import JobBudget
+from amalthea_uros.analyze.constraints.evaluator import ConstraintEvaluator
+from amalthea_uros.analyze.constraints.process_evidence import evidence_of, judged
+from amalthea_uros.analyze.constraints.requirements import evaluate_requirements
 from amalthea_uros.analyze.executor_results import METRICS_OF_ROUNDS, of_rounds
-from amalthea_uros.analyze.metrics import MetricEvaluator
-from amalthea_uros.analyze.phases import Phases, merged, merged_chain
-from amalthea_uros.analyze.process_evidence import evidence_of, judged
-from amalthea_uros.analyze.propagation import solve
-from amalthea_uros.analyze.requirements import evaluate_requirements
-from amalthea_uros.analyze.results import Analysis, ChainResult, Claim, ProcessorResult, ProcessResult, Response, Results
-from amalthea_uros.analyze.solution import Solution
+from amalthea_uros.analyze.phases.merged import Phases, merged, merged_chain
+from amalthea_uros.analyze.response_times.core_schedule import CoreSchedules
+from amalthea_uros.analyze.response_times.metrics import MetricEvaluator
+from amalthea_uros.analyze.response_times.propagation import solve
+from amalthea_uros.analyze.response_times.solution import Solution
+from amalthea_uros.analyze.results.analysis import Analysis
+from amalthea_uros.analyze.results.chains import ChainResult
+from amalthea_uros.analyze.results.processes import ProcessorResult, ProcessResult
 from amalthea_uros.analyze.ways.chain_results import chain_result
 from amalthea_uros.analyze.ways.evaluate import evaluate_ways
 from amalthea_uros.analyze.ways.results import Way
@@ -48,6 +51,7 @@ from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.demand.overheads import COUNTED
 from amalthea_uros.timing.event_models import EventModel
 from amalthea_uros.timing.jobs.executed import states_mean
+from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.timing.scheduling.allocation import allocated_cores
 from amalthea_uros.timing.scheduling.ranks import EqualPriority, ScheduledProcess, preemption
 from amalthea_uros.units import Rounding, percent_text, rounded_time_text

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import click
 
-from amalthea_uros.analyze.results import EXPLAINED, Quantity
+from amalthea_uros.analyze.results.chains import EXPLAINED, Quantity
 from amalthea_uros.cli.failing import FAILING, fail_on_option
 from amalthea_uros.cli.files import INPUT, OUTPUT_FILE
 from amalthea_uros.cli.output import (

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from amalthea_uros.analyze.results import Analysis
+from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.activation.phases import (

@@ -11,8 +11,10 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import NamedTuple
 
-from amalthea_uros.analyze.metrics import merged
-from amalthea_uros.analyze.results import Analysis, ChainResult, Claim, Metric, Quantity
+from amalthea_uros.analyze.response_times.metrics import merged
+from amalthea_uros.analyze.results.analysis import Analysis
+from amalthea_uros.analyze.results.chains import ChainResult, Quantity
+from amalthea_uros.analyze.results.processes import Metric
 from amalthea_uros.compare.agreement import Prediction, measured_values
 from amalthea_uros.compare.results import PredictionClaim, Statistic
 from amalthea_uros.compare.simulated import Run
@@ -20,6 +22,7 @@ from amalthea_uros.measure.series import Kind
 from amalthea_uros.measure.statistics import Statistics
 from amalthea_uros.simulate.results import MetricObservation, Simulation
 from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
+from amalthea_uros.timing.response import Claim
 from amalthea_uros.units import Time, time_text
 
 #: The predictions of a quantity.

@@ -7,9 +7,9 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from amalthea_uros.analyze.impact import Figure, Goal, Impact, Part, Unit, compare, verdict_figure
-from amalthea_uros.analyze.results import Claim
 from amalthea_uros.judge.verdict import ObservedVerdict
 from amalthea_uros.timing.basics.quantities import ChainQuantity
+from amalthea_uros.timing.response import Claim
 
 if TYPE_CHECKING:
     from amalthea_uros.simulate.results import ChainObservation, ProcessObservation, RequirementObservation, Simulation

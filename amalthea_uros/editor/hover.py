@@ -6,13 +6,15 @@ from collections.abc import Iterable, Iterator
 from io import StringIO
 
 from amalthea_uros._internal.files import overlaid
-from amalthea_uros.analyze.results import Analysis, ProcessResult, Response
+from amalthea_uros.analyze.results.analysis import Analysis
+from amalthea_uros.analyze.results.processes import ProcessResult
 from amalthea_uros.editor.document import Document
 from amalthea_uros.errors import AmurosError
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.report.text.explanation import write
 from amalthea_uros.services.analyze import AnalysisResult, analyze_files
 from amalthea_uros.services.explain import explain
+from amalthea_uros.timing.response import Response
 from amalthea_uros.units import Rounding, Time, rounded_time_text, time_text
 
 #: In characters. The analysis of larger texts takes too long to be repeated while somebody types.

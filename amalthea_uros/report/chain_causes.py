@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.analyze.chains.explanation import Hop
-from amalthea_uros.analyze.chains.hop_causes import Cause, CauseKind
+from amalthea_uros.analyze.explanations.chains import Hop
+from amalthea_uros.analyze.explanations.hop_causes import Cause, CauseKind
 from amalthea_uros.units import time_text
 
 

@@ -7,8 +7,10 @@ from collections.abc import Iterable
 from fractions import Fraction
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.analyze.process_evidence import worst_response
-from amalthea_uros.analyze.results import Judged, ProcessorResult, RequirementResult, SystemSummary
+from amalthea_uros.analyze.constraints.process_evidence import worst_response
+from amalthea_uros.analyze.results.analysis import Judged, SystemSummary
+from amalthea_uros.analyze.results.processes import ProcessorResult
+from amalthea_uros.analyze.results.requirements import RequirementResult
 from amalthea_uros.judge.evidence import Ends
 from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.judge.verdict import Failure

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 
-from amalthea_uros.analyze.results import Analysis
+from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.perf.software import Isr, Process
 from amalthea_uros.perf.stimuli import EventTriggered, InterProcess, Periodic
 from amalthea_uros.perf.system import System

@@ -8,11 +8,15 @@ from fractions import Fraction
 from math import inf
 from typing import TypeAlias
 
-from amalthea_uros.analyze.results import Analysis, ChainResult, Claim, Judged, ProcessResult, Quantity, RequirementResult
+from amalthea_uros.analyze.results.analysis import Analysis, Judged
+from amalthea_uros.analyze.results.chains import ChainResult, Quantity
+from amalthea_uros.analyze.results.processes import ProcessResult
+from amalthea_uros.analyze.results.requirements import RequirementResult
 from amalthea_uros.judge.causes import quantity_of
 from amalthea_uros.judge.summary import urgency
 from amalthea_uros.judge.verdict import FAILURES, WORST_FIRST, Verdict
 from amalthea_uros.timing.basics.quantities import jitter_name
+from amalthea_uros.timing.response import Claim
 from amalthea_uros.units import Rounding, Time, number_text, rounded, rounded_time_text, time_text
 
 #: Sorts the worst first.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from amalthea_uros.analyze.results import ChainResult, Quantity, Value
+from amalthea_uros.analyze.results.chains import ChainResult, Quantity, Value
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.units import Rounding, rounded_time_text
 

@@ -9,9 +9,9 @@ from io import StringIO
 from pathlib import Path
 
 from amalthea_uros._internal.shown import Cell, Record
-from amalthea_uros.analyze.assignment import Proposal
 from amalthea_uros.analyze.impact import Impact
-from amalthea_uros.analyze.results import Analysis
+from amalthea_uros.analyze.priorities.assignment import Proposal
+from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.design.changes.apply import Difference
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.report.by_result import module_for, rendered_in

@@ -9,16 +9,12 @@ from typing import Any
 
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros._internal.shown import Record
-from amalthea_uros.analyze.assignment import Proposal
 from amalthea_uros.analyze.impact import Impact
-from amalthea_uros.analyze.results import (
-    Analysis,
-    CallbackResult,
-    ChainResult,
-    ProcessorResult,
-    ProcessResult,
-    RequirementResult,
-)
+from amalthea_uros.analyze.priorities.assignment import Proposal
+from amalthea_uros.analyze.results.analysis import Analysis
+from amalthea_uros.analyze.results.chains import ChainResult
+from amalthea_uros.analyze.results.processes import CallbackResult, ProcessorResult, ProcessResult
+from amalthea_uros.analyze.results.requirements import RequirementResult
 from amalthea_uros.analyze.sensitivity import Sensitivity
 from amalthea_uros.analyze.ways.results import Way
 from amalthea_uros.compare.results import Comparison, ComparisonRow, DistributionRow, MeasuredLimit

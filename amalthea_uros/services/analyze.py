@@ -11,7 +11,8 @@ from amalthea_uros._internal.paths import StrPath
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.impact import Impact, impact
 from amalthea_uros.analyze.response_times.kernel import report_machine_code
-from amalthea_uros.analyze.results import Analysis, ChainResult
+from amalthea_uros.analyze.results.analysis import Analysis
+from amalthea_uros.analyze.results.chains import ChainResult
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.design.changes.apply import Difference, apply
 from amalthea_uros.design.changes.change import Change
@@ -29,10 +30,9 @@ from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
-    from amalthea_uros.analyze.assignment import Proposal
-    from amalthea_uros.analyze.callback_explanation import CallbackExplanation
-    from amalthea_uros.analyze.chains.explanation import ChainExplanation
-    from amalthea_uros.analyze.explanation import ProcessExplanation
+    from amalthea_uros.analyze.explanations.chains import ChainExplanation
+    from amalthea_uros.analyze.explanations.processes import CallbackExplanation, ProcessExplanation
+    from amalthea_uros.analyze.priorities.assignment import Proposal
     from amalthea_uros.analyze.sensitivity import Sensitivity
     from amalthea_uros.services.improvements import Improvements
     from amalthea_uros.services.what_if import Changes
@@ -188,7 +188,7 @@ def _sensitivity(analysis: Analysis) -> Sensitivity:
 
 
 def _proposals(analysis: Analysis) -> tuple[Proposal, ...]:
-    from amalthea_uros.analyze.assignment import propose_priorities
+    from amalthea_uros.analyze.priorities.assignment import propose_priorities
 
     return tuple(propose_priorities(analysis))
 

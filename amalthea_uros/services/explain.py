@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from amalthea_uros.analyze.callback_explanation import explain_callback
-from amalthea_uros.analyze.chains.explanation import explain_chain
-from amalthea_uros.analyze.explanation import explain_process
-from amalthea_uros.analyze.results import Quantity
+from amalthea_uros.analyze.explanations.chains import explain_chain
+from amalthea_uros.analyze.explanations.processes import explain_callback, explain_process
+from amalthea_uros.analyze.results.chains import Quantity
 from amalthea_uros.names import require
 from amalthea_uros.services.analyze import Analyzed, Explanation, analysis_result
 from amalthea_uros.services.improvements import check_explained, improvements_of

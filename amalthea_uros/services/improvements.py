@@ -7,9 +7,10 @@ from dataclasses import dataclass, field
 from itertools import islice
 
 from amalthea_uros._internal.shown import Shown
-from amalthea_uros.analyze.chains.explanation import ChainExplanation, explain_chain
+from amalthea_uros.analyze.explanations.chains import ChainExplanation, explain_chain
 from amalthea_uros.analyze.impact import Amount, Effect, Figure, Part, Unit, impact
-from amalthea_uros.analyze.results import EXPLAINED, Analysis, Claim, Quantity
+from amalthea_uros.analyze.results.analysis import Analysis
+from amalthea_uros.analyze.results.chains import EXPLAINED, Quantity
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.design.changes.apply import Difference, apply, describe
 from amalthea_uros.design.changes.key import Configuration
@@ -18,6 +19,7 @@ from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.names import require
 from amalthea_uros.services.analyze import AnalysisResult, Analyzed, analysis_result
 from amalthea_uros.timing.activation.phases import counters, nominal_period
+from amalthea_uros.timing.response import Claim
 from amalthea_uros.units import Time, time_text
 
 #: The analyses of changed systems: at most so many, fewer for systems with many processes, but always some.

@@ -9,7 +9,7 @@ from time import monotonic
 
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.impact import Effect, Impact, ImpactRow, impact
-from amalthea_uros.analyze.results import Analysis
+from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.design.changes.apply import Difference
 from amalthea_uros.design.changes.change import Change

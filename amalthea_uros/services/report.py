@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.files import STANDARD_INPUT
 from amalthea_uros._internal.paths import StrPath, is_description
-from amalthea_uros.analyze.results import Analysis
+from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.design.changes.apply import Difference, apply, describe
 from amalthea_uros.diagnostics import Finding, Severity

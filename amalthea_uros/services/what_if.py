@@ -9,7 +9,7 @@ from typing import TypeAlias
 from amalthea_uros._internal.paths import StrPath
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.impact import Impact, impact
-from amalthea_uros.analyze.results import Analysis
+from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.design.changes.apply import Difference, apply
 from amalthea_uros.design.changes.change import EXAMPLE, FORM, Change, parse_change, split_target

@@ -13,8 +13,8 @@ from support import ROOT
 from test_system import system, ticks
 
 from amalthea_uros import describe
-from amalthea_uros.analyze.assignment import Outcome, propose_priorities
-from amalthea_uros.analyze.priority_orders import lowest_first, with_priorities
+from amalthea_uros.analyze.priorities.assignment import Outcome, propose_priorities
+from amalthea_uros.analyze.priorities.orders import lowest_first, with_priorities
 from amalthea_uros.analyze.response_times import priority_levels
 from amalthea_uros.analyze.response_times.task import Task as AnalysedTask
 from amalthea_uros.analyze.sensitivity import max_growth, sensitivity

@@ -11,7 +11,7 @@ from lxml import etree
 from support import SHARED
 from test_system import system
 
-from amalthea_uros.analyze.results import Quantity
+from amalthea_uros.analyze.results.chains import Quantity
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.activities import AccessKind, Call, Communication, Demand, Execute, LabelAccess
 from amalthea_uros.perf.distributions import Boundaries, Uniform

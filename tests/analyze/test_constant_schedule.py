@@ -10,10 +10,10 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from amalthea_uros.analyze.response_times.constant_schedule import ASSUMPTION
-from amalthea_uros.analyze.results import Claim
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.activities import Demand, Execute, SchedulePoint
 from amalthea_uros.perf.distributions import Boundaries
+from amalthea_uros.timing.response import Claim
 from amalthea_uros.units import MICROSECOND as US
 
 

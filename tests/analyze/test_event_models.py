@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from support import SHARED
 
-from amalthea_uros.analyze.propagation import completions
 from amalthea_uros.analyze.response_times import non_preemptive, priority_levels
+from amalthea_uros.analyze.response_times.propagation import completions
 from amalthea_uros.analyze.response_times.task import Task
 from amalthea_uros.perf import stimuli as perf
 from amalthea_uros.perf.distributions import Constant, Uniform

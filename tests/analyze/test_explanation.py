@@ -8,11 +8,10 @@ from support import ROOT
 from test_system import system, ticks
 
 from amalthea_uros import describe
-from amalthea_uros.analyze.callback_explanation import explain_callback
-from amalthea_uros.analyze.execution_shares import ACCESSES, OTHER, OVERHEADS, OWN
-from amalthea_uros.analyze.explanation import explain_process
+from amalthea_uros.analyze.explanations.execution_shares import ACCESSES, OTHER, OVERHEADS, OWN
+from amalthea_uros.analyze.explanations.origins import OriginKind
+from amalthea_uros.analyze.explanations.processes import explain_callback, explain_process
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.analyze.unknown_origins import OriginKind
 from amalthea_uros.perf.activities import Call, Case, Group, Loop, Switch, WaitEvent
 from amalthea_uros.perf.mapping import TaskAllocation
 from amalthea_uros.perf.os import Duration, Parameter, Parent, Policy, Scheduler

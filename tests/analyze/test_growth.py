@@ -9,12 +9,11 @@ from fractions import Fraction
 import pytest
 from hand_made_systems import READ, US, WRITE, access, ticks
 
-from amalthea_uros.analyze import propagation
-from amalthea_uros.analyze.chains.core_schedule import CoreSchedules
-from amalthea_uros.analyze.propagation import solve
-from amalthea_uros.analyze.requirements import evaluate_requirements
-from amalthea_uros.analyze.response_times import schedule
-from amalthea_uros.analyze.results import Results
+from amalthea_uros._internal.by_name import Results
+from amalthea_uros.analyze.constraints.requirements import evaluate_requirements
+from amalthea_uros.analyze.response_times import propagation, schedule
+from amalthea_uros.analyze.response_times.core_schedule import CoreSchedules
+from amalthea_uros.analyze.response_times.propagation import solve
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.activities import Call, Demand, Execute, RaiseEvent, Trigger
 from amalthea_uros.perf.constraints import Constraints, DataAgeConstraint, Requirement, TimeLimit, TimeMetric

@@ -7,9 +7,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from amalthea_uros.analyze.impact import Effect, Figure, Goal, Impact, Part, Unit, _of_requirement, compare, verdict_figure
-from amalthea_uros.analyze.results import Claim, RequirementResult
+from amalthea_uros.analyze.results.requirements import RequirementResult
 from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.judge.verdict import Failure, Verdict
+from amalthea_uros.timing.response import Claim
 
 GOOD = (Verdict.MET, Schedulable.YES)
 OPEN = (Verdict.UNKNOWN, Schedulable.UNKNOWN, None)

@@ -11,8 +11,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from support import ROOT, analysis_of
 
-from amalthea_uros.analyze import metrics
-from amalthea_uros.analyze.results import JobMetric, Metric
+from amalthea_uros.analyze.response_times import metrics
+from amalthea_uros.analyze.results.processes import Metric
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.activities import (
     Call,
@@ -33,6 +33,7 @@ from amalthea_uros.perf.software import Runnable, Software, Task
 from amalthea_uros.perf.stimuli import Counter, Periodic, Stimuli
 from amalthea_uros.perf.system import System
 from amalthea_uros.services.analyze import analyze
+from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.units import MICROSECOND as US
 
 #: Figure 6.6 of S. R. Bappanadu, "Modeling and Timing Analysis of Micro-ROS Application on an Off-Road Vehicle Control Unit",

@@ -10,15 +10,16 @@ from hand_made_systems import READ, WRITE, Proc, access, chain, system, ticks
 from support import ROOT, SHARED
 
 from amalthea_uros import Settings, analyze_system, build_model, describe, extract
-from amalthea_uros.analyze import phases
-from amalthea_uros.analyze.assignment import propose_priorities
-from amalthea_uros.analyze.explanation import shares
-from amalthea_uros.analyze.results import Claim, Verdict
+from amalthea_uros.analyze.explanations.processes import shares
+from amalthea_uros.analyze.phases import merged as phases
+from amalthea_uros.analyze.priorities.assignment import propose_priorities
 from amalthea_uros.analyze.sensitivity import max_growth
+from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.perf.activities import Call
 from amalthea_uros.perf.events import ProcessChange, ProcessEvent, RunnableChange, RunnableEvent, Segment, Sequence
 from amalthea_uros.perf.software import Label, Runnable
 from amalthea_uros.perf.stimuli import Counter
+from amalthea_uros.timing.response import Claim
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
 from amalthea_uros.units import time_text

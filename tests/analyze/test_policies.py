@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from system_strategies import systems
 
-from amalthea_uros.analyze.assignment import propose_priorities
+from amalthea_uros.analyze.priorities.assignment import propose_priorities
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.perf import conditions, hardware, mapping, os

@@ -8,8 +8,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from amalthea_uros.analyze.response_times import priority_levels
-from amalthea_uros.analyze.response_times.supply import Budget
-from amalthea_uros.analyze.response_times.task import Task
+from amalthea_uros.analyze.response_times.task import Budget, Task
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.event_models import Periodic
 from amalthea_uros.timing.scheduling.ranks import EqualPriority

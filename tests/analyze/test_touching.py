@@ -9,9 +9,8 @@ from dataclasses import replace
 import pytest
 from hand_made_systems import READ, WRITE, Proc, access, chain, locked, system, ticks
 
-from amalthea_uros.analyze.results import Claim, JobMetric
+from amalthea_uros.analyze.explanations.origins import origins
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.analyze.unknown_origins import origins
 from amalthea_uros.perf.activities import Group, Incomplete, Migrate, Trigger, WaitEvent
 from amalthea_uros.perf.events import ProcessChange, ProcessEvent
 from amalthea_uros.perf.mapping import IsrAllocation
@@ -20,6 +19,8 @@ from amalthea_uros.perf.software import Isr, Label, OsEvent, Preemption
 from amalthea_uros.perf.stimuli import Periodic
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.system import simulate_system
+from amalthea_uros.timing.basics.quantities import JobMetric
+from amalthea_uros.timing.response import Claim
 from amalthea_uros.units import MICROSECOND as US
 
 WAIT = WaitEvent(events=("E",))

@@ -13,12 +13,12 @@ from support import SHARED
 from test_system import system, ticks
 
 import amalthea_uros as amuros
-from amalthea_uros.analyze.results import Claim
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.mapping import TaskAllocation
 from amalthea_uros.perf.os import Policy
 from amalthea_uros.perf.software import Preemption, Task
 from amalthea_uros.perf.stimuli import Periodic
+from amalthea_uros.timing.response import Claim
 from amalthea_uros.units import MICROSECOND as US
 
 NO_PRIORITY = SHARED / "vectors" / "verdicts" / "no-priority.amxmi"

@@ -6,7 +6,8 @@ from fractions import Fraction
 
 from design_systems import system_of, with_chain
 
-from amalthea_uros.analyze.results import Analysis, Quantity
+from amalthea_uros.analyze.results.analysis import Analysis
+from amalthea_uros.analyze.results.chains import Quantity
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.design.changes.apply import apply
 from amalthea_uros.design.changes.key import Configuration

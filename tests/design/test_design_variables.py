@@ -3,7 +3,7 @@
 import pytest
 
 from amalthea_uros import InvalidArgumentError, Settings, analyze, build, diff, optimize
-from amalthea_uros.analyze.results import Quantity
+from amalthea_uros.analyze.results.chains import Quantity
 from amalthea_uros.design.optimize.problem import Conclusion
 from amalthea_uros.services.optimized_model import write_proposal
 from amalthea_uros.timing.basics.settings import Memory

@@ -6,7 +6,7 @@ import pytest
 from effort import every
 from support import ROOT
 
-from amalthea_uros.analyze.results import Quantity
+from amalthea_uros.analyze.results.chains import Quantity
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.design.changes.apply import apply
 from amalthea_uros.perf.activities import Communication

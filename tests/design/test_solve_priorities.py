@@ -6,7 +6,7 @@ from design_systems import DESIGN, system_of
 from effort import IS_THOROUGH
 from random_orders import all_orders, random_sets
 
-from amalthea_uros.analyze.assignment import Outcome, propose_priorities
+from amalthea_uros.analyze.priorities.assignment import Outcome, propose_priorities
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.design.optimize.problem import Conclusion
 from amalthea_uros.design.optimize.solvers.priorities import solve_priorities

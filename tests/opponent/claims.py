@@ -12,8 +12,9 @@ from opponent.observation import Observation, observe
 from opponent.systems import PlainSystem
 from opponent.to_perf import MICROSECOND, to_perf
 
-from amalthea_uros.analyze.results import Analysis, Claim
+from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.timing.response import Claim
 
 #: How many readings are played at first, and at most to confirm a suspicion: systems with hundreds of them are not worth the time.
 FEW_READINGS, MOST_READINGS = 4, 48

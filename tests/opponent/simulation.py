@@ -12,7 +12,7 @@ from opponent.observation import Horizon
 from opponent.systems import PlainSystem
 from opponent.to_perf import MICROSECOND, to_perf
 
-from amalthea_uros.analyze.results import Analysis
+from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.system import System
 from amalthea_uros.simulate import machine_code

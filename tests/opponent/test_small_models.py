@@ -13,7 +13,7 @@ from fuzzing.contradictions import contradictions
 from support import SHARED
 
 from amalthea_uros import analyze, simulate
-from amalthea_uros.analyze.results import Analysis
+from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.simulate.results import Simulation
 
 VERDICTS = SHARED / "vectors" / "verdicts"

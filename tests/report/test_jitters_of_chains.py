@@ -3,7 +3,7 @@
 from support import ROOT
 
 import amalthea_uros as amuros
-from amalthea_uros.analyze.results import Quantity
+from amalthea_uros.analyze.results.chains import Quantity
 from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.report.judged import decisive_quantity, judged_rows, requirements_of
 

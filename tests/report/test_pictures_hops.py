@@ -8,7 +8,7 @@ from support import ROOT
 from svg_reading import SVG, assert_readable, parsed, scale, texts
 
 from amalthea_uros import Quantity, analyze_files
-from amalthea_uros.analyze.chains.explanation import explain_chain
+from amalthea_uros.analyze.explanations.chains import explain_chain
 from amalthea_uros.report.pictures.chain_hops import MOST_HOPS, draw_hops
 from amalthea_uros.units import MILLISECOND
 

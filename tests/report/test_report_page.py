@@ -12,7 +12,7 @@ from lxml import html
 from support import ROOT, analysis_of
 
 from amalthea_uros import am, load, report, save
-from amalthea_uros.analyze.results import Quantity
+from amalthea_uros.analyze.results.chains import Quantity
 from amalthea_uros.perf.activities import Migrate
 from amalthea_uros.report.closing_line import closing_line
 from amalthea_uros.report.html.blocks import table

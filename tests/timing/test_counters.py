@@ -7,7 +7,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from amalthea_uros.analyze.results import Claim
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.activities import Call, Chance, Demand, Execute, Group, ProbabilitySwitch
 from amalthea_uros.perf.distributions import Constant
@@ -19,6 +18,7 @@ from amalthea_uros.perf.stimuli import Counter, Periodic, Stimuli
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.jobs.counters import composed, first_effect, of_one_in
+from amalthea_uros.timing.response import Claim
 from amalthea_uros.units import MICROSECOND, MILLISECOND
 
 JOBS, MANY_JOBS = 120, 60_000

@@ -6,7 +6,7 @@ from fractions import Fraction
 import pytest
 
 from amalthea_uros import analyze_system
-from amalthea_uros.analyze.results import Quantity
+from amalthea_uros.analyze.results.chains import Quantity
 from amalthea_uros.perf.activities import (
     AccessKind,
     Call,

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from amalthea_uros.analyze.results import Analysis, ChainResult, ProcessResult, RequirementResult
+from amalthea_uros.analyze.results.analysis import Analysis
+from amalthea_uros.analyze.results.chains import ChainResult
+from amalthea_uros.analyze.results.processes import ProcessResult
+from amalthea_uros.analyze.results.requirements import RequirementResult
 from amalthea_uros.judge.verdict import ObservedVerdict, Verdict
 from amalthea_uros.simulate.results import ChainObservation, ProcessObservation, RequirementObservation, Simulation
 from amalthea_uros.timing.basics.quantities import JobMetric

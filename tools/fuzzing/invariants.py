@@ -14,7 +14,7 @@ from lxml import etree
 from templating import ROOT
 
 from amalthea_uros._internal.paths import is_description
-from amalthea_uros.analyze.results import Analysis
+from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.diagnostics import Location, Severity
 from amalthea_uros.difference.comparison import ChangeKind
 from amalthea_uros.errors import AmurosError, WriteError

@@ -8,7 +8,7 @@ from random import Random
 
 from templating import ROOT
 
-from amalthea_uros.analyze.results import Analysis
+from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.judge.verdict import Verdict
 from fuzzing.commands import require
 

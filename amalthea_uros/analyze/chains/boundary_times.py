@@ -1,4 +1,8 @@
-"""The times at which the jobs of a stage reach its boundaries, in a schedule."""
+"""The times at which the jobs of a stage reach its boundaries: in a schedule, or by response times.
+
+Where the schedule is not known, a job is at a position at the earliest when it has executed what comes before it, and at the latest
+when what comes after it still fits into the response time, or when the busy window of the part up to the position ends.
+"""
 
 from __future__ import annotations
 
@@ -8,16 +12,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from amalthea_uros.analyze.chains import completed_work
-from amalthea_uros.analyze.chains.completed_work import Busy
 from amalthea_uros.analyze.response_times import schedule
+from amalthea_uros.analyze.response_times.core_schedule import Busy, times_of_completion
+from amalthea_uros.analyze.response_times.partial import time_until_executed
 from amalthea_uros.analyze.response_times.schedule import Jobs
+from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.perf.activities import Communication, Execute, ExecutionNeed
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.dataflow.events import JobPhase
 from amalthea_uros.timing.dataflow.stages import At, Boundary, Fire, Pass, Read, Stage, Write
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.jobs.positions import ActivityPosition
+from amalthea_uros.timing.response import Response
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
@@ -62,7 +68,7 @@ class BoundaryTimes:
         if not position.is_certain:
             return jobs.begins if self.busy_above is None else self.busy_above.resumption(jobs.ends)
         executed = self._executed(position, including=kind(boundary) is JobPhase.AFTER)
-        completions = completed_work.times_of_completion(jobs, executed)
+        completions = times_of_completion(jobs, executed)
         if self.busy_above is None or (kind(boundary) is JobPhase.AFTER and self._ends_with_execution(position)):
             return completions
         # A job that has not executed anything has just got the core.
@@ -137,3 +143,82 @@ def is_inside(boundary: Boundary) -> bool:
 def is_logical(boundary: Boundary) -> bool:
     """Whether a boundary depends only on releases and periods."""
     return isinstance(boundary, Read | Write | At) and boundary.communication is Communication.LET
+
+
+@dataclass(frozen=True, slots=True)
+class BoundaryWindows:
+    """When the jobs of a stage reach its boundaries, relative to their releases; times are in `unit` parts of a picosecond.
+
+    Attributes
+    ----------
+    response : of its process, with a bounded worst case
+    period : of its process, where a boundary is the end of the period
+    """
+
+    solution: Solution
+    stage: Stage
+    response: Response
+    unit: int
+    period: Time = 0
+
+    def earliest(self, boundary: Boundary) -> Time:
+        """A lower bound."""
+        match kind(boundary):
+            case JobPhase.ACTIVATION | JobPhase.START:
+                return 0
+            case JobPhase.END:
+                return self.response.best * self.unit
+            case None:
+                return self.period
+        before = self._before(boundary)
+        return 0 if before is None else before.best * self.unit // self._time_base
+
+    def latest(self, boundary: Boundary) -> Time:
+        """An upper bound."""
+        worst = (self.response.worst or 0) * self.unit
+        match kind(boundary):
+            case JobPhase.ACTIVATION:
+                return 0
+            case JobPhase.START:
+                # After its start a job still executes its whole demand.
+                return self._latest_after(0, self._demand.best)
+            case JobPhase.END:
+                return worst
+            case None:
+                return self.period
+        before = self._before(boundary)
+        if before is None:
+            return worst
+        # Overheads of the job that belong to no activity may all come first.
+        process = self.stage.process
+        everything = self.solution.context.demand_model.of_activities(process, process.activities, self._core)
+        return self._latest_after(before.worst + self._demand.worst - everything.worst, everything.best - before.best)
+
+    def _latest_after(self, executed: Time, left: Time) -> Time:
+        """When a job has executed at most one demand and has at least another one left."""
+        worst = (self.response.worst or 0) * self.unit
+        part = time_until_executed(self.stage.process.name, executed, self.solution)
+        if part is None:
+            return max(0, worst - left * self.unit // self._time_base)
+        found = -(-part * self.unit // self._time_base)
+        return min(found, worst - left * self.unit // self._time_base) if left else found
+
+    @property
+    def _demand(self) -> MultiframeDemand:
+        return self.solution.context.demands[self.stage.process.name]
+
+    @property
+    def _time_base(self) -> int:
+        return self.solution.context.time_base(self.stage.process.name)
+
+    def _before(self, boundary: Boundary) -> MultiframeDemand | None:
+        """The demand of a job before a boundary inside it; None if that is uncertain."""
+        position = position_of(boundary)
+        if position is None or not position.is_certain:
+            return None
+        model = self.solution.context.demand_model
+        return model.of_position(position, self._core, including=kind(boundary) is JobPhase.AFTER)
+
+    @property
+    def _core(self) -> str:
+        return self.solution.context.scheduled[self.stage.process.name].core

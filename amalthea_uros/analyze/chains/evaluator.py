@@ -7,11 +7,11 @@ from dataclasses import dataclass, field
 
 from amalthea_uros._internal.failures import failure
 from amalthea_uros.analyze.chains.job_chains import TOO_MANY_JOBS, JobBudget
+from amalthea_uros.analyze.chains.read_write_times import TimedStage
 from amalthea_uros.analyze.chains.route_latencies import RouteLatencies
 from amalthea_uros.analyze.chains.stage_timing import StageTiming, UnboundedStageError
-from amalthea_uros.analyze.chains.timed_stage import TimedStage
-from amalthea_uros.analyze.results import ChainResult, Claim, Quantity, Value
-from amalthea_uros.analyze.solution import Solution
+from amalthea_uros.analyze.response_times.solution import Solution
+from amalthea_uros.analyze.results.chains import ChainResult, Quantity, Value
 from amalthea_uros.perf.events import EventChain
 from amalthea_uros.timing.activation.phases import Occurrence, unknown_phases
 from amalthea_uros.timing.context import TimingContext
@@ -20,6 +20,7 @@ from amalthea_uros.timing.dataflow.events import UnraisedError, UnresolvedError
 from amalthea_uros.timing.dataflow.links import LinkKind
 from amalthea_uros.timing.dataflow.routes import Route, UnlinkedError, route_text, routes_of_ways
 from amalthea_uros.timing.dataflow.stages import Stage, common_communication, stages
+from amalthea_uros.timing.response import Claim
 from amalthea_uros.timing.scheduling.allocation import controller_of_core
 
 

@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING
 from amalthea_uros.analyze.chains import job_chains
 from amalthea_uros.analyze.chains.bounds import becker, bi, davare, duerr, hamann, kloda
 from amalthea_uros.analyze.chains.bounds.chain_task import ChainTask
+from amalthea_uros.analyze.chains.read_write_times import TimedStage
 from amalthea_uros.analyze.chains.stage_timing import UnboundedStageError, in_picoseconds
-from amalthea_uros.analyze.chains.timed_stage import TimedStage
-from amalthea_uros.analyze.results import Claim, Quantity, Value
+from amalthea_uros.analyze.results.chains import Quantity, Value
+from amalthea_uros.timing.response import Claim
 from amalthea_uros.units import Time
 
 _Make = Callable[[Quantity, "Time | float"], Value]

@@ -16,17 +16,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from amalthea_uros.analyze.chains import let
-from amalthea_uros.analyze.chains.boundary_times import BoundaryTimes, is_inside, is_logical, kind
-from amalthea_uros.analyze.chains.boundary_windows import BoundaryWindows
+from amalthea_uros.analyze.chains.boundary_times import BoundaryTimes, BoundaryWindows, is_inside, is_logical, kind
 from amalthea_uros.analyze.chains.bounds.chain_task import ChainTask
-from amalthea_uros.analyze.chains.core_schedule import CoreSchedules
-from amalthea_uros.analyze.chains.read_write_times import ReadWriteTimes
-from amalthea_uros.analyze.chains.timed_stage import ReadWriteBounds, TimedStage
+from amalthea_uros.analyze.chains.read_write_times import ReadWriteBounds, ReadWriteTimes, TimedStage, let_times
 from amalthea_uros.analyze.response_times.blocking import Blocking
+from amalthea_uros.analyze.response_times.core_schedule import CoreSchedules
 from amalthea_uros.analyze.response_times.schedule import MAX_JOBS
-from amalthea_uros.analyze.results import Response
-from amalthea_uros.analyze.solution import Solution
+from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.perf.activities import Communication, Trigger
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Counter, EventTriggered, InterProcess, Periodic
@@ -40,6 +36,7 @@ from amalthea_uros.timing.demand.model import MAX_TIME_BASE
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.jobs.counters import ALWAYS, composed, first_effect, is_always, max_distance
 from amalthea_uros.timing.jobs.positions import ActivityPosition, can_be_skipped
+from amalthea_uros.timing.response import Response
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
@@ -369,7 +366,7 @@ class StageTiming:
 
     def _logical(self, releases: Periodic) -> ReadWriteBounds:
         period, offset = releases.period * self.unit, releases.offset * self.unit
-        times = let.read_write_times(period, offset, period)
+        times = let_times(period, offset, period)
         return ReadWriteBounds(pessimistic=times, optimistic=times, steady_state_start=offset, is_logical=True)
 
     def _by_schedule(self, stage: Stage, releases: Periodic) -> ReadWriteBounds | None:

@@ -6,14 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from amalthea_uros.analyze.response_times import edf, fixed_priority, non_preemptive, unknown_order
-from amalthea_uros.analyze.response_times.best_case import best_response
 from amalthea_uros.analyze.response_times.blocking import Blocking
 from amalthea_uros.analyze.response_times.busy_window import Interference
-from amalthea_uros.analyze.response_times.supply import FULL, Supply
-from amalthea_uros.analyze.response_times.task import Task
-from amalthea_uros.analyze.results import Response
+from amalthea_uros.analyze.response_times.fixed_priority import best_response
+from amalthea_uros.analyze.response_times.task import FULL, Supply, Task
 from amalthea_uros.perf.software import Preemption
 from amalthea_uros.timing.basics.notes import Notes
+from amalthea_uros.timing.response import Response
 from amalthea_uros.timing.scheduling.ranks import EqualPriority, Rank, ScheduledProcess, Server, is_preemptive, preemption
 from amalthea_uros.units import Time
 

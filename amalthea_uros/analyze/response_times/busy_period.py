@@ -11,9 +11,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from amalthea_uros.analyze.response_times.busy_window import Interference, demand_rate
-from amalthea_uros.analyze.response_times.supply import Supply
-from amalthea_uros.analyze.response_times.task import Task
-from amalthea_uros.analyze.results import Claim, Response
+from amalthea_uros.analyze.response_times.task import Supply, Task
+from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.units import Time
 
 METHOD = "longest busy period, of jobs that exclude each other the longest"

@@ -14,8 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from amalthea_uros.analyze.response_times.kernel import MAX_STEPS, demand_in, least_fixed_point
-from amalthea_uros.analyze.response_times.supply import FULL, Supply
-from amalthea_uros.analyze.response_times.task import Task
+from amalthea_uros.analyze.response_times.task import FULL, Supply, Task
 from amalthea_uros.timing.basics.limits import LIMIT
 from amalthea_uros.timing.event_models import Periodic, is_strictly_periodic
 from amalthea_uros.units import Time

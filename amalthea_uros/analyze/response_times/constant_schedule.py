@@ -13,12 +13,12 @@ from fractions import Fraction
 from heapq import heapify, heappop, heappush
 from math import lcm
 
-from amalthea_uros.analyze.results import Claim, Response
-from amalthea_uros.analyze.solution import Solution
+from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.perf.activities import SchedulePoint
 from amalthea_uros.perf.software import Preemption, Task
 from amalthea_uros.timing.activation.releases import known_releases
 from amalthea_uros.timing.blocking.critical_sections import Protection
+from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.timing.scheduling.ranks import ScheduledProcess, preemption
 from amalthea_uros.units import Time
 

@@ -9,10 +9,8 @@ from itertools import groupby
 from amalthea_uros.analyze.response_times import busy_period, priority_levels, schedule, unknown_order
 from amalthea_uros.analyze.response_times.blocked_window import BlockedWindow
 from amalthea_uros.analyze.response_times.blocking import Blocking
-from amalthea_uros.analyze.response_times.supply import FULL, Budget, Supply
-from amalthea_uros.analyze.response_times.task import Task
-from amalthea_uros.analyze.results import Claim, Response
-from amalthea_uros.analyze.solution import Solution
+from amalthea_uros.analyze.response_times.solution import Solution
+from amalthea_uros.analyze.response_times.task import FULL, Budget, Supply, Task
 from amalthea_uros.perf.os import Policy
 from amalthea_uros.perf.software import Preemption
 from amalthea_uros.timing.activation.releases import known_releases
@@ -20,6 +18,7 @@ from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.event_models import EventModel, Periodic, rescaled
 from amalthea_uros.timing.jobs.executed import ends_with_execution
+from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.timing.scheduling.ranks import EqualPriority, Rank, ScheduledProcess, Server, is_preemptive, preemption
 
 

@@ -18,8 +18,8 @@ from math import gcd
 from amalthea_uros.analyze.response_times import fixed_priority, non_preemptive
 from amalthea_uros.analyze.response_times.blocking import Blocking
 from amalthea_uros.analyze.response_times.busy_window import Interference
+from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.response_times.task import Task
-from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.perf.distributions import highest
 from amalthea_uros.perf.software import Preemption
 from amalthea_uros.perf.stimuli import Periodic, RelativePeriodic

@@ -16,11 +16,13 @@ from amalthea_uros.analyze.response_times.busy_window import Interference
 from amalthea_uros.analyze.response_times.fixed_priority import max_jobs, unbounded
 from amalthea_uros.analyze.response_times.kernel import MAX_STEPS
 from amalthea_uros.analyze.response_times.task import Task
-from amalthea_uros.analyze.results import Claim, Response
 from amalthea_uros.timing.basics.limits import LIMIT
+from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.units import Time
 
 METHOD = "busy window, earliest deadline first"
+#: First come, first served is the same with equal deadlines.
+FIFO_METHOD = "busy window, fixed priorities, first come first served within one"
 SOURCE = "Spuri 1996"
 
 

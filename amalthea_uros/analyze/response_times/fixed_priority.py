@@ -8,15 +8,21 @@ tasks", Real-Time Systems 6, 1994: the q-th job of the window ends at the least 
 
 and its response time is w minus its earliest activation. Jobs are examined until one ends before the next can be activated. For
 non-preemptive tasks see `non_preemptive`.
+
+Best cases after O. Redell and M. Sanfridson, "Exact best-case response time analysis of fixed priority scheduled tasks", ECRTS 2002:
+the greatest fixed point of R = C + sum over higher priorities of C_j * (ceil(R / T_j) - 1), the interference that is unavoidable in R.
+Tasks with jitter or without a maximum time between activations are ignored; then the value is a lower bound. It holds once all tasks
+have been released: the first jobs of a system can run before other tasks have started.
 """
 
 from __future__ import annotations
 
-from amalthea_uros.analyze.response_times.best_case import best_response
 from amalthea_uros.analyze.response_times.busy_window import Interference, demand_rate
+from amalthea_uros.analyze.response_times.kernel import greatest_fixed_point
 from amalthea_uros.analyze.response_times.task import Task
-from amalthea_uros.analyze.results import Claim, Response
+from amalthea_uros.timing.basics.limits import LIMIT
 from amalthea_uros.timing.event_models import Periodic
+from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.units import Time, percent_text
 
 METHOD = "busy window, fixed priorities, preemptive"
@@ -87,3 +93,15 @@ def unbounded(best: Time, higher: Interference, task: Task, method: str, source:
     if higher.supply.rate < 1:
         reason += f", and their server provides {percent_text(higher.supply.rate, 1)} %"
     return Response(worst=None, best=best, method=method, source=source, reason=reason, is_overload=True)
+
+
+def best_response(task: Task, higher: Interference) -> Time:
+    """A lower bound of the response time once all tasks have been released; exact for periodic tasks with unknown offsets."""
+    own, rows = task.demand.best, higher.rows
+    if higher.best_rate >= 1 or not higher.is_countable:
+        return own
+    # There is no greater fixed point, because R <= C + rate * R.
+    start = int(own / (1 - higher.best_rate)) + 1
+    if start > LIMIT:
+        return own
+    return greatest_fixed_point(own, start, rows.periods, rows.best, higher.row_count)

@@ -18,7 +18,7 @@ from collections.abc import Sequence
 from amalthea_uros.analyze.response_times.busy_window import Interference
 from amalthea_uros.analyze.response_times.fixed_priority import max_jobs, unbounded
 from amalthea_uros.analyze.response_times.task import Task
-from amalthea_uros.analyze.results import Claim, Response
+from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.units import Time
 
 METHOD = "busy period, fixed priorities, non-preemptive"

@@ -13,8 +13,8 @@ from __future__ import annotations
 from amalthea_uros.analyze.response_times import fixed_priority
 from amalthea_uros.analyze.response_times.blocking import Blocking
 from amalthea_uros.analyze.response_times.busy_window import Interference
+from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.response_times.task import Task
-from amalthea_uros.analyze.solution import Solution
 from amalthea_uros.timing.event_models import rescaled
 from amalthea_uros.timing.scheduling.ranks import ScheduledProcess
 from amalthea_uros.units import Time

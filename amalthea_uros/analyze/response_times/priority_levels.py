@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
 from itertools import groupby
 from typing import Protocol
 
-from amalthea_uros.analyze.response_times import edf, fifo, fixed_priority, round_robin, unknown_order
+from amalthea_uros.analyze.response_times import edf, fixed_priority, round_robin, unknown_order
 from amalthea_uros.analyze.response_times.busy_window import Interference
-from amalthea_uros.analyze.response_times.supply import FULL, Supply
-from amalthea_uros.analyze.response_times.task import Task
-from amalthea_uros.analyze.results import Claim, Response
+from amalthea_uros.analyze.response_times.task import FULL, Supply, Task
+from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.timing.scheduling.ranks import EqualPriority
 from amalthea_uros.units import Time
 
@@ -31,7 +31,7 @@ class EqualPriorityMethod(Protocol):
 
 #: The method for tasks of equal priority.
 METHODS: Mapping[EqualPriority, EqualPriorityMethod] = {
-    EqualPriority.FIFO: fifo.response_time,
+    EqualPriority.FIFO: partial(edf.response_time, method=edf.FIFO_METHOD),
     EqualPriority.EDF: edf.response_time,
     EqualPriority.ROUND_ROBIN: round_robin.response_time,
     EqualPriority.UNKNOWN: unknown_order.response_time,

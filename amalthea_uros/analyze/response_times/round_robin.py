@@ -17,10 +17,9 @@ from fractions import Fraction
 from amalthea_uros.analyze.response_times.busy_window import Interference, demand_rate
 from amalthea_uros.analyze.response_times.fixed_priority import max_jobs, unbounded
 from amalthea_uros.analyze.response_times.kernel import MAX_STEPS
-from amalthea_uros.analyze.response_times.supply import FULL
-from amalthea_uros.analyze.response_times.task import Task
-from amalthea_uros.analyze.results import Claim, Response
+from amalthea_uros.analyze.response_times.task import FULL, Task
 from amalthea_uros.timing.basics.limits import LIMIT
+from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.units import Time
 
 METHOD = "busy window, round robin"

@@ -1,8 +1,14 @@
-"""A process as the methods for response times see it."""
+"""A process as the methods for response times see it, and the supply of its core: all of its time, or the budget of a server.
+
+The supply of a server is bounded as that of a periodic resource (I. Shin and I. Lee, "Periodic resource model for compositional
+real-time guarantees", RTSS 2003; R. I. Davis and A. Burns, "Hierarchical fixed priority pre-emptive scheduling", RTSS 2005).
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
+from typing import ClassVar
 
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.event_models import EventModel
@@ -32,3 +38,52 @@ class Task:
     deadline: Time = 0
     slice: Time = 0
     activation_limit: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Full:
+    """All of the time of a core.
+
+    Attributes
+    ----------
+    rate : share of the core in the long run
+    """
+
+    rate: ClassVar[Fraction] = Fraction(1)
+
+    def time_for(self, demand: Time) -> Time:
+        """Maximum time until the demand has been served."""
+        return demand
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Budget:
+    """A budget in each period.
+
+    Attributes
+    ----------
+    wait : maximum time without supply before the first budget
+    is_needed_at_end : whether jobs can have accesses left once their demand is served: these take no time, but where a budget ends
+        just then, they wait for the next one
+    """
+
+    budget: Time
+    period: Time
+    wait: Time
+    is_needed_at_end: bool = False
+
+    @property
+    def rate(self) -> Fraction:
+        """See `Full`."""
+        return Fraction(self.budget, self.period)
+
+    def time_for(self, demand: Time) -> Time:
+        """See `Full`; each further budget that is needed adds a gap."""
+        if demand <= 0:
+            return 0
+        gaps = demand // self.budget if self.is_needed_at_end else -(-demand // self.budget) - 1
+        return self.wait + gaps * (self.period - self.budget) + demand
+
+
+Supply = Full | Budget
+FULL = Full()

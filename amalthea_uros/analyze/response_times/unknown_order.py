@@ -18,7 +18,7 @@ from dataclasses import replace
 from amalthea_uros.analyze.response_times import fixed_priority
 from amalthea_uros.analyze.response_times.busy_window import Interference
 from amalthea_uros.analyze.response_times.task import Task
-from amalthea_uros.analyze.results import Claim, Response
+from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.units import Time
 
 METHOD = "busy window, any order of priorities"

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from amalthea_uros.analyze.results import ChainResult, Claim, Quantity, Value
+from amalthea_uros.analyze.results.chains import ChainResult, Quantity, Value
 from amalthea_uros.analyze.ways.results import METHOD, SOURCE, Way
+from amalthea_uros.timing.response import Claim
 
 _WHY = "bounds: the worst cases of the hops need not occur together"
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
-from amalthea_uros.analyze.solution import Solution
+from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.ways.callbacks import CallbackHops
 from amalthea_uros.analyze.ways.passages import PassageHops
 from amalthea_uros.analyze.ways.results import Way

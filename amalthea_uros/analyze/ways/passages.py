@@ -14,7 +14,7 @@ from enum import Enum
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.chains.route_latencies import RouteLatencies
 from amalthea_uros.analyze.chains.stage_timing import UnboundedStageError
-from amalthea_uros.analyze.results import Quantity, Value
+from amalthea_uros.analyze.results.chains import Quantity, Value
 from amalthea_uros.analyze.ways.stations import Passage
 from amalthea_uros.executors.results import Hop, HopKind, Part
 from amalthea_uros.perf.events import Event, ProcessChange, ProcessEvent

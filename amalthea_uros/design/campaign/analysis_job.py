@@ -6,7 +6,7 @@ from collections import Counter
 from dataclasses import dataclass
 
 from amalthea_uros.analyze.impact import Figure, Unit, figures
-from amalthea_uros.analyze.results import Analysis
+from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.sensitivity import max_growth
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.design.campaign.run import Record, Run, Value

@@ -6,7 +6,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
-from amalthea_uros.analyze.results import Analysis, Claim, Judged, Quantity
+from amalthea_uros.analyze.results.analysis import Analysis, Judged
+from amalthea_uros.analyze.results.chains import Quantity
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.design.optimize.candidate import Candidate
 from amalthea_uros.design.optimize.designs import Designs
@@ -18,6 +19,7 @@ from amalthea_uros.design.optimize.quantities import FROM_ARRIVAL, Figures, Rang
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.response import Claim
 
 #: No less than the reduced reaction time.
 _AT_LEAST_REACTION = (Quantity.MAX_REDUCED_REACTION_TIME, Quantity.MAX_REACTION_TIME, FROM_ARRIVAL)

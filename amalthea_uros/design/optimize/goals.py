@@ -6,7 +6,8 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from amalthea_uros.analyze.results import Analysis, JobMetric, Quantity
+from amalthea_uros.analyze.results.analysis import Analysis
+from amalthea_uros.analyze.results.chains import Quantity
 from amalthea_uros.design.changes.change import split_target
 from amalthea_uros.design.optimize.candidate import Candidate
 from amalthea_uros.design.optimize.limits import Limit
@@ -15,6 +16,7 @@ from amalthea_uros.design.optimize.quantities import Dimension, Figures, check_q
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.constraints import LatencyConstraint, LatencyKind
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.timing.scheduling.allocation import allocated_cores
 from amalthea_uros.units import Time
 

@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass
 from fractions import Fraction
 
-from amalthea_uros.analyze.results import Analysis
+from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.design.changes.change import split_target
 from amalthea_uros.design.optimize.problem import Feasibility
 from amalthea_uros.design.optimize.quantities import Amount, Dimension, Figures, Range, check_quantity, dimension

@@ -9,12 +9,16 @@ from fractions import Fraction
 from typing import TypeAlias
 
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
-from amalthea_uros.analyze.process_evidence import worst_response
-from amalthea_uros.analyze.results import Analysis, ChainResult, Claim, JobMetric, Metric, ProcessResult, Quantity
+from amalthea_uros.analyze.constraints.process_evidence import worst_response
+from amalthea_uros.analyze.results.analysis import Analysis
+from amalthea_uros.analyze.results.chains import ChainResult, Quantity
+from amalthea_uros.analyze.results.processes import Metric, ProcessResult
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.judge.evidence import Ends
 from amalthea_uros.names import require
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.basics.quantities import JobMetric
+from amalthea_uros.timing.response import Claim
 
 #: Of a chain that begins with a message: from its arrival, which can be just after a job that looks for messages was activated.
 FROM_ARRIVAL = "max_time_from_arrival"

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from amalthea_uros.analyze.results import ProcessResult, RequirementResult
+from amalthea_uros.analyze.results.processes import ProcessResult
+from amalthea_uros.analyze.results.requirements import RequirementResult
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.judge.verdict import ObservedVerdict, Verdict

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from amalthea_uros.analyze.results import Analysis
+from amalthea_uros.analyze.results.analysis import Analysis
 
 
 def methods(analysis: Analysis) -> tuple[str, ...]:

@@ -6,23 +6,17 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import Any
 
-from amalthea_uros.analyze.results import (
-    Analysis,
-    CallbackResult,
-    ChainResult,
-    JobMetric,
-    Metric,
-    ProcessorResult,
-    ProcessResult,
-    RequirementResult,
-    Value,
-)
+from amalthea_uros.analyze.results.analysis import Analysis
+from amalthea_uros.analyze.results.chains import ChainResult, Value
+from amalthea_uros.analyze.results.processes import CallbackResult, Metric, ProcessorResult, ProcessResult
+from amalthea_uros.analyze.results.requirements import RequirementResult
 from amalthea_uros.report.closing_line import closing_line
 from amalthea_uros.report.findings import finding_json, joined
 from amalthea_uros.report.json import changes, explanation, impact
 from amalthea_uros.report.json.executors import executor_json
 from amalthea_uros.report.json.ways import way_json
 from amalthea_uros.services.analyze import AnalysisResult
+from amalthea_uros.timing.basics.quantities import JobMetric
 
 
 def content(result: AnalysisResult) -> dict[str, Any]:

@@ -5,12 +5,10 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from amalthea_uros.analyze.callback_explanation import CallbackExplanation
-from amalthea_uros.analyze.chains.executions import Execution
-from amalthea_uros.analyze.chains.explanation import ChainExplanation, Hop
-from amalthea_uros.analyze.chains.hop_causes import Cause
-from amalthea_uros.analyze.execution_shares import ExecutionShare
-from amalthea_uros.analyze.explanation import ProcessExplanation
+from amalthea_uros.analyze.explanations.chains import ChainExplanation, Hop
+from amalthea_uros.analyze.explanations.execution_shares import ExecutionShare
+from amalthea_uros.analyze.explanations.hop_causes import Cause, Execution
+from amalthea_uros.analyze.explanations.processes import CallbackExplanation, ProcessExplanation
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.report.chain_causes import cause_text
 from amalthea_uros.report.json import changes

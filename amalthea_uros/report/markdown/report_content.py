@@ -7,7 +7,7 @@ from itertools import islice
 
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.analyze.impact import impact
-from amalthea_uros.analyze.results import Quantity
+from amalthea_uros.analyze.results.chains import Quantity
 from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.report.closing_line import closing_line
 from amalthea_uros.report.judged import judged_rows, limit_text, margin_text, requirements_of, why, worst_chains

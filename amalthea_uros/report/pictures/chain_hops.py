@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.analyze.chains.explanation import ChainExplanation, Hop
-from amalthea_uros.analyze.results import Claim
+from amalthea_uros.analyze.explanations.chains import ChainExplanation, Hop
 from amalthea_uros.report.pictures.arrows import arrows_at, draw_activations
 from amalthea_uros.report.pictures.page import MARGIN, TOP, WIDTH, LegendEntry, document, draw_legend
 from amalthea_uros.report.pictures.style import ARROW_END, PALETTE, SMALL_SIZE, TEXT_SIZE
 from amalthea_uros.report.pictures.svg import Markup, element, joined, number, text, tooltip
 from amalthea_uros.report.pictures.text_widths import elided, text_width
 from amalthea_uros.report.pictures.time_axis import HEIGHT, TimeAxis, draw_grid, draw_time_axis
+from amalthea_uros.timing.response import Claim
 from amalthea_uros.units import Time, time_text
 
 #: Pixels: of a lane and its boxes, of what is above the lanes, and of the labels at the left.

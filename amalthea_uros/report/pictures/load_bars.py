@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.analyze.results import Analysis, ProcessorResult
+from amalthea_uros.analyze.results.analysis import Analysis
+from amalthea_uros.analyze.results.processes import ProcessorResult
 from amalthea_uros.report.load_text import load_text
 from amalthea_uros.report.pictures.page import MARGIN, TOP, WIDTH, LegendEntry, document, draw_legend
 from amalthea_uros.report.pictures.style import TEXT_SIZE, UNKNOWN

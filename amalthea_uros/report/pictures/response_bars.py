@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.analyze.results import Analysis, ProcessResult
+from amalthea_uros.analyze.results.analysis import Analysis
+from amalthea_uros.analyze.results.processes import ProcessResult
 from amalthea_uros.judge.summary import urgency
 from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.report.pictures.page import MARGIN, TOP, WIDTH, LegendEntry, document, draw_legend

@@ -9,7 +9,8 @@ from fractions import Fraction
 from itertools import pairwise
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.analyze.results import Analysis, ProcessorResult
+from amalthea_uros.analyze.results.analysis import Analysis
+from amalthea_uros.analyze.results.processes import ProcessorResult
 from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.perf.software import Isr, Process
 from amalthea_uros.perf.system import System

@@ -5,7 +5,9 @@ from __future__ import annotations
 from fractions import Fraction
 from math import ceil
 
-from amalthea_uros.analyze.results import Analysis, ProcessorResult, ProcessResult, RequirementResult
+from amalthea_uros.analyze.results.analysis import Analysis
+from amalthea_uros.analyze.results.processes import ProcessorResult, ProcessResult
+from amalthea_uros.analyze.results.requirements import RequirementResult
 from amalthea_uros.judge.verdict import WORST_FIRST, Verdict
 from amalthea_uros.report.closing_line import closing_line
 from amalthea_uros.report.latencies import write_chains

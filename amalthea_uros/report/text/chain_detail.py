@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from amalthea_uros.analyze.results import Quantity
+from amalthea_uros.analyze.results.chains import Quantity
 from amalthea_uros.report.latencies import quantity_text, value_text
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.services.analyze import ChainDetail

@@ -7,12 +7,13 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.analyze.callback_explanation import CallbackExplanation
-from amalthea_uros.analyze.chains.explanation import ChainExplanation
-from amalthea_uros.analyze.execution_shares import ExecutionShare
-from amalthea_uros.analyze.explanation import ProcessExplanation
-from amalthea_uros.analyze.results import CallbackResult, Judged, ProcessResult, Response, Value
-from amalthea_uros.analyze.unknown_origins import OriginKind
+from amalthea_uros.analyze.explanations.chains import ChainExplanation
+from amalthea_uros.analyze.explanations.execution_shares import ExecutionShare
+from amalthea_uros.analyze.explanations.origins import OriginKind
+from amalthea_uros.analyze.explanations.processes import CallbackExplanation, ProcessExplanation
+from amalthea_uros.analyze.results.analysis import Judged
+from amalthea_uros.analyze.results.chains import Value
+from amalthea_uros.analyze.results.processes import CallbackResult, ProcessResult
 from amalthea_uros.executors.results import HandleResult
 from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.perf.executors import HandleKind
@@ -25,6 +26,7 @@ from amalthea_uros.report.text.executors import write_terms
 from amalthea_uros.report.ways import write_hops_of_way
 from amalthea_uros.services.analyze import Explanation
 from amalthea_uros.services.improvements import Improvements
+from amalthea_uros.timing.response import Response
 from amalthea_uros.units import Time, percent_text, time_text
 
 #: More executions of the worst case are only counted.

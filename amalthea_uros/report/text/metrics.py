@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from fractions import Fraction
 
-from amalthea_uros.analyze.results import CallbackResult, JobMetric, Metric, ProcessResult
+from amalthea_uros.analyze.results.processes import CallbackResult, Metric, ProcessResult
 from amalthea_uros.report.terminal import Terminal
+from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.units import Rounding, Time, rounded_time_text, time_text
 
 

@@ -8,7 +8,8 @@ from fractions import Fraction
 
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.analyze.impact import Impact, ImpactRow, Part
-from amalthea_uros.analyze.results import Analysis, RequirementResult
+from amalthea_uros.analyze.results.analysis import Analysis
+from amalthea_uros.analyze.results.requirements import RequirementResult
 from amalthea_uros.design.optimize.problem import Feasibility
 from amalthea_uros.design.optimize.quantities import Amount, Dimension, Range, dimension
 from amalthea_uros.judge.verdict import Verdict

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from amalthea_uros.analyze.assignment import Outcome, Proposal
+from amalthea_uros.analyze.priorities.assignment import Outcome, Proposal
 from amalthea_uros.report.terminal import Terminal
 
 

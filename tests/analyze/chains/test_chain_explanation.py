@@ -14,13 +14,14 @@ from test_chain_systems import END, START, at, read, system, ticks, write
 from amalthea_uros import describe
 from amalthea_uros.analyze.chains.bounds import becker, bi, davare, duerr, hamann, kloda, terms
 from amalthea_uros.analyze.chains.bounds.chain_task import ChainTask
-from amalthea_uros.analyze.chains.explanation import explain_chain
-from amalthea_uros.analyze.chains.hop_causes import CauseKind
-from amalthea_uros.analyze.results import EXPLAINED, Claim, Quantity
+from amalthea_uros.analyze.explanations.chains import explain_chain
+from amalthea_uros.analyze.explanations.hop_causes import CauseKind
+from amalthea_uros.analyze.results.chains import EXPLAINED, Quantity
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.activities import Communication
 from amalthea_uros.perf.hardware import StructureKind
 from amalthea_uros.timing.basics.settings import Settings
+from amalthea_uros.timing.response import Claim
 from amalthea_uros.units import MICROSECOND as US
 
 

@@ -9,7 +9,7 @@ from support import ROOT, SHARED
 from test_methods import cases
 
 from amalthea_uros import Settings, analyze_system, describe, extract, load
-from amalthea_uros.analyze.results import Quantity
+from amalthea_uros.analyze.results.chains import Quantity
 from amalthea_uros.perf.activities import (
     AccessKind,
     Call,

@@ -3,7 +3,7 @@
 import pytest
 from hand_made_systems import READ, WRITE, Proc, access, chain, system, ticks
 
-from amalthea_uros.analyze.results import Quantity
+from amalthea_uros.analyze.results.chains import Quantity
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.activities import Demand, Execute
 from amalthea_uros.perf.distributions import Boundaries

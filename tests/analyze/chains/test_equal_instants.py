@@ -3,13 +3,14 @@
 import pytest
 from hand_made_systems import READ, WRITE, Proc, access, chain, system, ticks
 
-from amalthea_uros.analyze.results import Claim, Quantity
+from amalthea_uros.analyze.results.chains import Quantity
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.events import ProcessChange, ProcessEvent
 from amalthea_uros.perf.software import Label
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.system import simulate_system
 from amalthea_uros.timing.basics.quantities import ChainQuantity
+from amalthea_uros.timing.response import Claim
 from amalthea_uros.units import MICROSECOND as US
 
 

@@ -4,8 +4,8 @@ from test_chain_systems import END, START, at, read, system, ticks, write
 
 from amalthea_uros import analyze_system
 from amalthea_uros.analyze.chains import evaluator, job_chains
-from amalthea_uros.analyze.results import Claim
 from amalthea_uros.analyze.sensitivity import max_growth
+from amalthea_uros.timing.response import Claim
 
 TASKS = [("A", 7, [ticks(1), write("L")]), ("B", 11, [read("L"), ticks(1)])]
 EVENTS = [at("A", START), at("B", END)]

@@ -11,8 +11,8 @@ from test_chain_systems import END, START, at, evaluate, read, system, ticks, wr
 
 from amalthea_uros import analyze_system
 from amalthea_uros.analyze.chains import job_chains
-from amalthea_uros.analyze.chains.event_windows import EventWindows
-from amalthea_uros.analyze.results import Verdict
+from amalthea_uros.analyze.constraints.events import EventWindows
+from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.perf.activities import Call, Chance, Communication, Count, Group, ProbabilitySwitch, Trigger
 from amalthea_uros.perf.constraints import Constraints, EventSynchronization, LatencyConstraint, LatencyKind
 from amalthea_uros.perf.distributions import Boundaries

@@ -14,10 +14,10 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from support import SHARED
 
-from amalthea_uros.analyze.chains import job_chains, let
+from amalthea_uros.analyze.chains import job_chains
 from amalthea_uros.analyze.chains.bounds import becker, bi, davare, duerr, hamann, kloda
 from amalthea_uros.analyze.chains.bounds.chain_task import ChainTask
-from amalthea_uros.analyze.chains.read_write_times import ReadWriteTimes
+from amalthea_uros.analyze.chains.read_write_times import ReadWriteTimes, let_times
 from amalthea_uros.analyze.response_times import priority_levels, schedule
 from amalthea_uros.analyze.response_times.schedule import PeriodicTask
 from amalthea_uros.analyze.response_times.task import Task
@@ -138,7 +138,7 @@ def test_published_bounds(case):
 def logically(periods, offsets=None):
     cycle = lcm(*periods)
     offsets = offsets or [0] * len(periods)
-    chain_times = [let.read_write_times(period, offset, cycle) for period, offset in zip(periods, offsets, strict=True)]
+    chain_times = [let_times(period, offset, cycle) for period, offset in zip(periods, offsets, strict=True)]
     return job_chains.build_job_chains(chain_times, max(offsets))
 
 

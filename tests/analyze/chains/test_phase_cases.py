@@ -13,10 +13,9 @@ from amalthea_uros import analyze_system, describe
 from amalthea_uros.analyze import system as analyses
 from amalthea_uros.analyze.chains import job_chains
 from amalthea_uros.analyze.chains.job_chains import JobBudget
-from amalthea_uros.analyze.phase_cases import PhaseCases, least_rotation
-from amalthea_uros.analyze.phases import Phases
-from amalthea_uros.analyze.propagation import solve
-from amalthea_uros.analyze.results import Claim
+from amalthea_uros.analyze.phases.cases import PhaseCases, least_rotation
+from amalthea_uros.analyze.phases.merged import Phases
+from amalthea_uros.analyze.response_times.propagation import solve
 from amalthea_uros.perf.activities import Call
 from amalthea_uros.perf.constraints import Bound, Constraints, LatencyConstraint, Requirement, TimeLimit, TimeMetric
 from amalthea_uros.perf.events import EventChain
@@ -24,6 +23,7 @@ from amalthea_uros.perf.software import Runnable
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.timing.activation.phases import unknown_phases
 from amalthea_uros.timing.context import TimingContext
+from amalthea_uros.timing.response import Claim
 from amalthea_uros.units import MICROSECOND as US
 
 PRESCALERS = st.sampled_from([2, 2, 3, 4, 6])

@@ -10,8 +10,8 @@ import pytest
 from hand_made_systems import ticks
 from ways_by_hand import ACK, CMD, MS, ODOM, US, Publication, Span, Wire, WireKind, board, tick, ways_of
 
-from amalthea_uros.analyze.propagation import solve
-from amalthea_uros.analyze.results import Quantity
+from amalthea_uros.analyze.response_times.propagation import solve
+from amalthea_uros.analyze.results.chains import Quantity
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.analyze.ways.evaluate import evaluate_ways
 from amalthea_uros.executors.bounds.backlog import Arriving, max_backlog

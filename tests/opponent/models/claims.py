@@ -15,7 +15,10 @@ from opponent.models.limits import Limit, limits_of, loose_limits_of, with_limit
 from opponent.models.reading import UnplayableError
 from opponent.models.variants import items_of
 
-from amalthea_uros.analyze.results import Analysis, ChainResult, ProcessResult, RequirementResult
+from amalthea_uros.analyze.results.analysis import Analysis
+from amalthea_uros.analyze.results.chains import ChainResult
+from amalthea_uros.analyze.results.processes import ProcessResult
+from amalthea_uros.analyze.results.requirements import RequirementResult
 from amalthea_uros.errors import AmurosError
 from amalthea_uros.judge.verdict import ObservedVerdict, Verdict
 from amalthea_uros.services.analyze import analyze_files

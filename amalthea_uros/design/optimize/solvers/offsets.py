@@ -13,7 +13,7 @@ from itertools import combinations, product
 from math import gcd, prod
 from typing import TypeAlias
 
-from amalthea_uros.analyze.results import JobMetric, Quantity
+from amalthea_uros.analyze.results.chains import Quantity
 from amalthea_uros.design.changes.change import Change
 from amalthea_uros.design.changes.key import Configuration
 from amalthea_uros.design.optimize.candidate import Candidate
@@ -27,6 +27,7 @@ from amalthea_uros.perf.stimuli import RelativePeriodic
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.activation.phases import unknown_phases
 from amalthea_uros.timing.activation.releases import known_releases
+from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.timing.blocking.critical_sections import Protection
 from amalthea_uros.timing.scheduling.ranks import EqualPriority, is_preemptive
 from amalthea_uros.units import Time

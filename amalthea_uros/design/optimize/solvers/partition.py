@@ -13,7 +13,7 @@ from fractions import Fraction
 from itertools import permutations, product
 
 from amalthea_uros.analyze.response_times.critical_instant import certain_response
-from amalthea_uros.analyze.results import Analysis
+from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.design.changes.change import Change
 from amalthea_uros.design.optimize.candidate import Candidate

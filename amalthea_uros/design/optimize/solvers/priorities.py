@@ -10,8 +10,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from itertools import chain, islice, permutations, product
 
-from amalthea_uros.analyze.priority_orders import Order, PriorityOrders
-from amalthea_uros.analyze.results import Analysis
+from amalthea_uros.analyze.priorities.orders import Order, PriorityOrders
+from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.design.optimize.candidate import UNCHANGED, Candidate, candidate
 from amalthea_uros.design.optimize.problem import Conclusion, Problem, SearchResult

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from amalthea_uros.analyze.impact import Effect, impact
-from amalthea_uros.analyze.results import Analysis
+from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.report.closing_line import closing_line
 from amalthea_uros.report.html.blocks import Badge, Block, Cell, Section, Sentences, Tone, table
 from amalthea_uros.services.impact_text import cells, unchanged_text

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from amalthea_uros.analyze.results import ProcessResult, Quantity
+from amalthea_uros.analyze.results.chains import Quantity
+from amalthea_uros.analyze.results.processes import ProcessResult
 from amalthea_uros.report.html.blocks import Block, Figure, Folded, Section, Sentences
 from amalthea_uros.report.html.times import at_least, at_most
 from amalthea_uros.report.judged import judged_rows, requirements_of, worst_chains

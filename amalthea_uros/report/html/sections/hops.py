@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from amalthea_uros.analyze.chains.explanation import ChainExplanation, Hop, explain_chain
-from amalthea_uros.analyze.results import Claim, Quantity
+from amalthea_uros.analyze.explanations.chains import ChainExplanation, Hop, explain_chain
+from amalthea_uros.analyze.results.chains import Quantity
 from amalthea_uros.report.html import shortened
 from amalthea_uros.report.html.blocks import Block, Figure, Folded, Heading, Section, Sentences, table
 from amalthea_uros.report.judged import LIMITED, decisive_quantity, requirements_of, worst_chains
 from amalthea_uros.report.latencies import value_text
 from amalthea_uros.report.pictures.chain_hops import draw_hops
 from amalthea_uros.services.report import ReportContent
+from amalthea_uros.timing.response import Claim
 from amalthea_uros.units import Time, time_text
 
 #: Chains that are explained, the worst first, and those of them that are seen at once.

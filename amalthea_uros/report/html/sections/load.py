@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from amalthea_uros.analyze.results import ProcessorResult
+from amalthea_uros.analyze.results.processes import ProcessorResult
 from amalthea_uros.report.html.blocks import Badge, Cell, Figure, Section, Tone, table
 from amalthea_uros.report.html.times import UNKNOWN
 from amalthea_uros.report.load_text import load_text

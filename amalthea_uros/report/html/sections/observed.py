@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.analyze.results import Quantity
+from amalthea_uros.analyze.results.chains import Quantity
 from amalthea_uros.report.html.badges import badge
 from amalthea_uros.report.html.blocks import Block, Cell, Section, Sentences, table
 from amalthea_uros.report.html.times import about, at_least, at_most

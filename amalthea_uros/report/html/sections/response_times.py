@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from amalthea_uros.analyze.explanation import ProcessExplanation, explain_process
-from amalthea_uros.analyze.results import ProcessResult
+from amalthea_uros.analyze.explanations.processes import ProcessExplanation, explain_process
+from amalthea_uros.analyze.results.processes import ProcessResult
 from amalthea_uros.report.html.badges import verdict_badge
 from amalthea_uros.report.html.blocks import Block, Cell, Figure, Folded, Section, Table, table
 from amalthea_uros.report.html.times import at_least, at_most, deadline_text

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from amalthea_uros.analyze.results import Analysis, ChainResult, Quantity
+from amalthea_uros.analyze.results.analysis import Analysis
+from amalthea_uros.analyze.results.chains import ChainResult, Quantity
 from amalthea_uros.report.html.badges import badge, verdict_badge
 from amalthea_uros.report.html.blocks import Block, Cell, Section, table
 from amalthea_uros.report.judged import judged_rows, limit_text, margin_text, requirements_of, why, worst_chains

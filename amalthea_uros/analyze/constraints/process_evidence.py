@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from amalthea_uros.analyze.results import Claim, ProcessResult
+from amalthea_uros.analyze.results.processes import ProcessResult
 from amalthea_uros.judge.evidence import Ends, ProcessEvidence, ProvedLoss
 from amalthea_uros.judge.limits import activation_limit, deadline_limit
 from amalthea_uros.judge.verdict import lost_jobs, prove_process
 from amalthea_uros.perf.software import Process, Task
 from amalthea_uros.timing.event_models import EventModel, can_be_dense
+from amalthea_uros.timing.response import Claim
 
 
 def worst_response(process: ProcessResult) -> Ends:

@@ -6,17 +6,19 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import TypeAlias
 
-from amalthea_uros.analyze import metrics
-from amalthea_uros.analyze.implausible_limits import note_implausible
-from amalthea_uros.analyze.process_evidence import worst_response
-from amalthea_uros.analyze.results import CallbackResult, JobMetric, Metric, ProcessResult, RequirementResult, Results
+from amalthea_uros._internal.by_name import Results
+from amalthea_uros.analyze.constraints.plausibility import note_implausible
+from amalthea_uros.analyze.constraints.process_evidence import worst_response
+from amalthea_uros.analyze.response_times import metrics
+from amalthea_uros.analyze.results.processes import CallbackResult, Metric, ProcessResult
+from amalthea_uros.analyze.results.requirements import RequirementResult
 from amalthea_uros.judge.evidence import Ends
 from amalthea_uros.judge.limits import SystemLimit, is_from_period, limits_of, nominal_period
 from amalthea_uros.judge.verdict import Verdict, prove, unknown
 from amalthea_uros.perf.constraints import Requirement, TimeMetric
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.notes import Notes
-from amalthea_uros.timing.basics.quantities import jitter_of
+from amalthea_uros.timing.basics.quantities import JobMetric, jitter_of
 from amalthea_uros.units import Time
 
 #: What the analysis computes; a running time is bounded by the net execution time, and each kind of waiting by all waiting.

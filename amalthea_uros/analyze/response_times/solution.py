@@ -8,16 +8,16 @@ from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from amalthea_uros.analyze.results import Response
 from amalthea_uros.perf.software import Task
 from amalthea_uros.perf.stimuli import EventTriggered, InterProcess
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.event_models import EventModel
+from amalthea_uros.timing.response import Response
 from amalthea_uros.timing.scheduling.ranks import Rank, ScheduledProcess
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
-    from amalthea_uros.analyze.executor_threads import ExecutorThread
+    from amalthea_uros.analyze.response_times.executor_threads import ExecutorThread
     from amalthea_uros.analyze.response_times.schedule import ExtremeCases, PeriodicTask
 
 
@@ -59,7 +59,7 @@ class Solution:
         ------
         UnknownError : it is not scheduled, or something unknown can delay it.
         """
-        from amalthea_uros.analyze.executor_threads import ExecutorThread
+        from amalthea_uros.analyze.response_times.executor_threads import ExecutorThread
 
         if task not in self._threads:
             self._threads[task] = ExecutorThread.of(task, self)

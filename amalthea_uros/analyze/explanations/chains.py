@@ -13,15 +13,15 @@ import numpy as np
 from amalthea_uros.analyze.chains import job_chains
 from amalthea_uros.analyze.chains.bounds import terms
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
-from amalthea_uros.analyze.chains.executions import Execution
-from amalthea_uros.analyze.chains.hop_causes import Cause, CauseKind, HopReasons, cause
 from amalthea_uros.analyze.chains.job_chains import JobBudget, backward, forward
-from amalthea_uros.analyze.chains.read_write_times import ReadWriteTimes, reach
+from amalthea_uros.analyze.chains.read_write_times import ReadWriteTimes, TimedStage, reach
 from amalthea_uros.analyze.chains.route_latencies import RouteLatencies
 from amalthea_uros.analyze.chains.stage_timing import StageTiming, UnboundedStageError
-from amalthea_uros.analyze.chains.timed_stage import TimedStage
-from amalthea_uros.analyze.phases import Phases
-from amalthea_uros.analyze.results import Analysis, ChainResult, Quantity, RequirementResult, Value
+from amalthea_uros.analyze.explanations.hop_causes import Cause, CauseKind, Execution, HopReasons, cause
+from amalthea_uros.analyze.phases.merged import Phases
+from amalthea_uros.analyze.results.analysis import Analysis
+from amalthea_uros.analyze.results.chains import ChainResult, Quantity, Value
+from amalthea_uros.analyze.results.requirements import RequirementResult
 from amalthea_uros.analyze.ways.results import Way
 from amalthea_uros.perf.constraints import LatencyConstraint
 from amalthea_uros.perf.events import EventChain

@@ -26,7 +26,7 @@ from amalthea_uros.timing.scheduling.ranks import ScheduledProcess
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
-    from amalthea_uros.analyze.solution import Solution
+    from amalthea_uros.analyze.response_times.solution import Solution
 
 
 @dataclass(frozen=True, slots=True)

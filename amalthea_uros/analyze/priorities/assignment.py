@@ -9,8 +9,8 @@ from itertools import islice, permutations
 from math import factorial
 
 from amalthea_uros._internal.shown import Shown
-from amalthea_uros.analyze.priority_orders import Order, PriorityOrders, with_priorities
-from amalthea_uros.analyze.results import Analysis, require_analysis
+from amalthea_uros.analyze.priorities.orders import Order, PriorityOrders, with_priorities
+from amalthea_uros.analyze.results.analysis import Analysis, require_analysis
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.judge.verdict import FAILURES, Verdict
 from amalthea_uros.timing.scheduling.ranks import ScheduledProcess

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from itertools import pairwise, product
 
-from amalthea_uros.analyze.chains.event_windows import EventWindows
+from amalthea_uros.analyze.constraints.events import EventWindows
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import Call
 from amalthea_uros.perf.constraints import OrderConstraint, Ordering

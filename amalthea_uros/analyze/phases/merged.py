@@ -9,22 +9,16 @@ from fractions import Fraction
 from operator import mul
 from typing import Any, TypeVar
 
+from amalthea_uros._internal.by_name import Results
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.analyze import metrics
-from amalthea_uros.analyze.phase_cases import Cases, PhaseCases
-from amalthea_uros.analyze.propagation import solve
-from amalthea_uros.analyze.results import (
-    Analysis,
-    CallbackResult,
-    ChainResult,
-    Claim,
-    ProcessResult,
-    RequirementResult,
-    Response,
-    Results,
-    Value,
-)
-from amalthea_uros.analyze.solution import Solution
+from amalthea_uros.analyze.phases.cases import Cases, PhaseCases
+from amalthea_uros.analyze.response_times import metrics
+from amalthea_uros.analyze.response_times.propagation import solve
+from amalthea_uros.analyze.response_times.solution import Solution
+from amalthea_uros.analyze.results.analysis import Analysis
+from amalthea_uros.analyze.results.chains import ChainResult, Value
+from amalthea_uros.analyze.results.processes import CallbackResult, ProcessResult
+from amalthea_uros.analyze.results.requirements import RequirementResult
 from amalthea_uros.executors.semantics.loops import timing_context
 from amalthea_uros.judge.evidence import Ends
 from amalthea_uros.judge.limits import SystemLimit
@@ -32,6 +26,7 @@ from amalthea_uros.judge.summary import summarize
 from amalthea_uros.judge.verdict import WORST_FIRST, prove
 from amalthea_uros.timing.activation.phases import Occurrence, phase_combinations, phase_count, with_phases
 from amalthea_uros.timing.basics.quantities import jitter_of
+from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.units import Time
 
 #: With more combinations of phases, or more jobs in all of them, any job can be the one that takes what comes from outside.

@@ -13,8 +13,7 @@ from dataclasses import dataclass
 from amalthea_uros.analyze.response_times.constant_schedule import constant_responses
 from amalthea_uros.analyze.response_times.core import responses_on
 from amalthea_uros.analyze.response_times.known_offsets import tightened
-from amalthea_uros.analyze.results import Response
-from amalthea_uros.analyze.solution import Solution
+from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.executors.semantics.loops import sleep_of, why_dense, workload
 from amalthea_uros.perf.activities import Trigger
 from amalthea_uros.perf.software import Process
@@ -23,6 +22,7 @@ from amalthea_uros.timing.basics.limits import MAX_INPUT
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.event_models import Delayed, EventModel, OutputEventModel, Periodic
+from amalthea_uros.timing.response import Response
 from amalthea_uros.timing.scheduling.ranks import ScheduledProcess
 from amalthea_uros.units import Time
 

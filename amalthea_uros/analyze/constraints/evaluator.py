@@ -17,12 +17,12 @@ import numpy as np
 
 from amalthea_uros._internal.failures import failure
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
-from amalthea_uros.analyze.chains.event_delays import exact_delays
-from amalthea_uros.analyze.chains.event_windows import EventWindows
-from amalthea_uros.analyze.chains.runnable_orders import holds_across, holds_in_each_job
 from amalthea_uros.analyze.chains.stage_timing import UnboundedStageError
-from amalthea_uros.analyze.implausible_limits import note_implausible
-from amalthea_uros.analyze.results import ChainResult, Claim, Quantity, RequirementResult, Value
+from amalthea_uros.analyze.constraints.events import EventWindows, exact_delays
+from amalthea_uros.analyze.constraints.plausibility import note_implausible
+from amalthea_uros.analyze.constraints.runnable_orders import holds_across, holds_in_each_job
+from amalthea_uros.analyze.results.chains import ChainResult, Quantity, Value
+from amalthea_uros.analyze.results.requirements import RequirementResult
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.judge.evidence import Ends
 from amalthea_uros.judge.limits import EventConstraint, SystemLimit, limits_of, without_number
@@ -48,6 +48,7 @@ from amalthea_uros.timing.dataflow.routes import Route, corresponding, routes
 from amalthea_uros.timing.dataflow.runnable_order import are_activated_together, has_counted_effect, order_scope
 from amalthea_uros.timing.event_models import EventModel, Periodic, can_be_dense, is_strictly_periodic
 from amalthea_uros.timing.jobs.counters import is_always
+from amalthea_uros.timing.response import Claim
 from amalthea_uros.units import Time, time_text
 
 _REACTION = (Quantity.MIN_FIRST_TO_FIRST, Quantity.MAX_REDUCED_REACTION_TIME)

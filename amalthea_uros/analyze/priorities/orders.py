@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from amalthea_uros.analyze.response_times.critical_instant import certain_response, keep_off_alike
-from amalthea_uros.analyze.results import Analysis, Claim
+from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.judge.verdict import FAILURES, Verdict
 from amalthea_uros.perf.software import Process
@@ -24,6 +24,7 @@ from amalthea_uros.timing.activation.releases import known_releases
 from amalthea_uros.timing.blocking.critical_sections import Protection
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.event_models import EventModel
+from amalthea_uros.timing.response import Claim
 from amalthea_uros.timing.scheduling.ranks import EqualPriority, ScheduledProcess, is_preemptive
 from amalthea_uros.units import Time, percent_text, time_text
 

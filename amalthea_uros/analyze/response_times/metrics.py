@@ -19,11 +19,13 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from amalthea_uros.analyze.chains.core_schedule import CoreSchedule, CoreSchedules
 from amalthea_uros.analyze.response_times import schedule
-from amalthea_uros.analyze.results import Claim, JobMetric, Metric, ProcessResult
-from amalthea_uros.analyze.solution import Solution
+from amalthea_uros.analyze.response_times.core_schedule import CoreSchedule, CoreSchedules
+from amalthea_uros.analyze.response_times.solution import Solution
+from amalthea_uros.analyze.results.processes import Metric, ProcessResult
+from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
+from amalthea_uros.timing.response import Claim
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:

@@ -1,4 +1,4 @@
-"""What the worst-case response time of a process consists of: its own execution, and the processes that interfere."""
+"""What the worst-case response times of processes and callbacks consist of: own execution, and interference."""
 
 from __future__ import annotations
 
@@ -8,16 +8,19 @@ from fractions import Fraction
 
 import numpy as np
 
-from amalthea_uros.analyze.chains.core_schedule import CoreSchedules
-from amalthea_uros.analyze.execution_shares import ExecutionShare, execution_shares
+from amalthea_uros.analyze.explanations.execution_shares import ExecutionShare, execution_shares
+from amalthea_uros.analyze.explanations.origins import Origin, origins
 from amalthea_uros.analyze.response_times import schedule
 from amalthea_uros.analyze.response_times.core import periodic_tasks
-from amalthea_uros.analyze.results import Analysis, CallbackResult, ProcessResult, Response
-from amalthea_uros.analyze.solution import Solution
-from amalthea_uros.analyze.unknown_origins import Origin, origins
+from amalthea_uros.analyze.response_times.core_schedule import CoreSchedules
+from amalthea_uros.analyze.response_times.solution import Solution
+from amalthea_uros.analyze.results.analysis import Analysis
+from amalthea_uros.analyze.results.processes import CallbackResult, ProcessResult
+from amalthea_uros.executors.results import HandleResult
 from amalthea_uros.judge.verdict import FAILURES, Verdict
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.jobs.counters import takes_effect
+from amalthea_uros.timing.response import Response
 from amalthea_uros.timing.scheduling.ranks import ScheduledProcess, Server
 from amalthea_uros.units import Time
 
@@ -188,3 +191,47 @@ def _in_window(solution: Solution, scheduled: ScheduledProcess, response: Respon
 def _adds_up(found: Sequence[Share], response: Response) -> bool:
     """Whether the shares add up to the interference, apart from one picosecond of rounding each."""
     return abs(sum(share.time for share in found) - response.terms.get("interference", 0)) <= len(found) + 1
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CallbackExplanation:
+    """What the response time of a callback consists of.
+
+    Attributes
+    ----------
+    process : whose jobs call it
+    execution : what these jobs execute up to the callback, in order, with the callback itself last
+    handles : in an executor that spins in a loop, the handles that call it; their terms take the response time apart
+    """
+
+    callback: CallbackResult
+    process: ProcessResult
+    execution: tuple[ExecutionShare, ...]
+    handles: tuple[HandleResult, ...] = ()
+
+
+def explain_callback(analysis: Analysis, name: str) -> tuple[CallbackExplanation, ...]:
+    """The explanation of a callback, for each process that calls it."""
+    return tuple(
+        CallbackExplanation(
+            callback=callback,
+            process=analysis.processes[callback.process],
+            execution=() if handles else _until(execution_shares(analysis.solution.context, callback.process), name),
+            handles=handles,
+        )
+        for callback in analysis.callbacks
+        if callback.name == name
+        for handles in [_handles(analysis, callback)]
+    )
+
+
+def _handles(analysis: Analysis, callback: CallbackResult) -> tuple[HandleResult, ...]:
+    """The handles of an executor that spins in a loop that call a callback."""
+    found = (executor for executor in analysis.executors if executor.task == callback.process)
+    return tuple(handle for executor in found for handle in executor.handles if handle.runnable == callback.name)
+
+
+def _until(shares: list[ExecutionShare], name: str) -> tuple[ExecutionShare, ...]:
+    """The shares up to the one of a runnable; all of them if a job calls it inside another runnable."""
+    index = next((number for number, share in enumerate(shares) if share.is_runnable and share.name == name), len(shares))
+    return tuple(shares[: index + 1])

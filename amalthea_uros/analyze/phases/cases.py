@@ -19,7 +19,7 @@ from typing import TypeAlias
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.response_times.core import periodic_tasks
 from amalthea_uros.analyze.response_times.schedule import fits, hyperperiod, steady_state_start
-from amalthea_uros.analyze.solution import Solution
+from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.perf.activities import Call, Trigger, walk
 from amalthea_uros.perf.constraints import LatencyConstraint
 from amalthea_uros.perf.events import EventChain

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from amalthea_uros.analyze.results import RequirementResult
+from amalthea_uros.analyze.results.requirements import RequirementResult
 from amalthea_uros.perf.constraints import TimeMetric
 from amalthea_uros.perf.named import Named
 from amalthea_uros.timing.basics.notes import Notes

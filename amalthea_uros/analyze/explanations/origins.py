@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import StrEnum
 
-from amalthea_uros.analyze.execution_shares import execution_shares
-from amalthea_uros.analyze.solution import Solution
+from amalthea_uros.analyze.explanations.execution_shares import execution_shares
+from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.perf.activities import Loop, WaitEvent, walk
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.scheduling.ranks import ScheduledProcess

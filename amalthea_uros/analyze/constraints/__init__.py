@@ -1,0 +1,1 @@
+"""The limits of a system: what is proved of the quantities that requirements and constraints limit."""

@@ -1,0 +1,1 @@
+"""Results over all phases of what comes from outside."""

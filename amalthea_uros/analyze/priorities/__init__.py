@@ -1,0 +1,1 @@
+"""Priorities with which all tasks of a core meet their deadlines."""

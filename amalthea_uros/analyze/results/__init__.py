@@ -1,0 +1,1 @@
+"""What an analysis finds: of processes, chains and requirements, and of the whole system."""

@@ -1,0 +1,90 @@
+"""The latencies of a chain."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from amalthea_uros._internal.shown import Shown
+from amalthea_uros.analyze.results.processes import bound_text
+from amalthea_uros.timing.response import Claim
+from amalthea_uros.units import Time
+
+
+class Quantity(StrEnum):
+    """An end-to-end latency of a chain."""
+
+    MAX_REACTION_TIME = "max_reaction_time"
+    MAX_REDUCED_REACTION_TIME = "max_reduced_reaction_time"
+    MAX_DATA_AGE = "max_data_age"
+    MAX_REDUCED_DATA_AGE = "max_reduced_data_age"
+    MAX_FIRST_TO_LAST = "max_first_to_last"
+    MAX_LAST_TO_FIRST = "max_last_to_first"
+    MIN_FIRST_TO_FIRST = "min_first_to_first"
+    MIN_LAST_TO_LAST = "min_last_to_last"
+    MIN_LAST_TO_FIRST = "min_last_to_first"
+    MEAN_REACTION_TIME = "mean_reaction_time"
+    MEAN_FIRST_TO_FIRST = "mean_first_to_first"
+    MEAN_LAST_TO_LAST = "mean_last_to_last"
+
+    @property
+    def is_upper(self) -> bool:
+        """Whether it is a maximum, so that bounds are upper bounds."""
+        return self.value.startswith("max")
+
+    @property
+    def is_mean(self) -> bool:
+        """Whether it is a mean."""
+        return self.value.startswith("mean")
+
+
+#: The quantities that can be explained.
+EXPLAINED: tuple[Quantity, ...] = (
+    Quantity.MAX_REACTION_TIME,
+    Quantity.MAX_REDUCED_REACTION_TIME,
+    Quantity.MAX_DATA_AGE,
+    Quantity.MAX_REDUCED_DATA_AGE,
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Value:
+    """A quantity by one method, in picoseconds; None if there is no finite value or it is unknown."""
+
+    quantity: Quantity
+    value: Time | None
+    claim: Claim
+    method: str
+    source: str
+    reason: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ChainResult(Shown):
+    """A chain.
+
+    Attributes
+    ----------
+    routes : readable texts: the events and the links between them
+    values : the tightest value of each quantity
+    all_values : the values of all methods
+    why : why the values are exact or only bounds
+    reason : why some or all values are missing
+    """
+
+    name: str
+    communication: str
+    routes: tuple[str, ...] = ()
+    values: tuple[Value, ...] = ()
+    all_values: tuple[Value, ...] = ()
+    why: str = ""
+    reason: str = ""
+
+    def __repr__(self) -> str:
+        shown = [value for value in self.values if value.quantity in EXPLAINED] or self.values
+        texts = [f"{value.quantity.replace('_', ' ')} {bound_text(value.value)} ({value.claim})" for value in shown]
+        return f"<ChainResult {self.name}: {', '.join(texts) or self.reason or 'no values'}>"
+
+    def value(self, quantity: Quantity) -> Value | None:
+        """The tightest value of a quantity."""
+        return next((value for value in self.values if value.quantity is quantity), None)
