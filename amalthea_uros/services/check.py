@@ -283,7 +283,7 @@ def _schema_findings(model: Model, rules: Collection[str]) -> list[Finding]:
     """The findings of the XML schema, if any of its rules is selected."""
     if set(rules).isdisjoint(registry.ids([Profile.SCHEMA])):
         return []
-    from amalthea_uros.xmi.schema_findings import schema_findings
+    from amalthea_uros.xmi.schema import schema_findings
 
     return [f for document in model.documents for f in schema_findings(document) if f.rule in rules]
 

@@ -40,7 +40,7 @@ def info(paths: StrPath | Iterable[StrPath], schema: bool = False) -> InfoResult
     opened = open_model(files)
     model, findings = opened.model, list(opened.findings)
     if schema:
-        from amalthea_uros.xmi.schema_findings import schema_findings
+        from amalthea_uros.xmi.schema import schema_findings
 
         findings += (finding for document in model.documents for finding in schema_findings(document))
     summary = summarise(model)

@@ -22,8 +22,7 @@ from amalthea_uros.services.migration import FileState, Kind, MigratedFile, Migr
 from amalthea_uros.services.migration_writer import Writer
 from amalthea_uros.xmi.files import FileText
 from amalthea_uros.xmi.load import SUFFIX
-from amalthea_uros.xmi.migrate.load import MigratedSet, failed, migrate_set
-from amalthea_uros.xmi.migrate.loss import losses_of_going_back
+from amalthea_uros.xmi.migrate.load import MigratedSet, failed, losses_of_going_back, migrate_set
 from amalthea_uros.xmi.migrate.sets import InputFile, sets_of
 from amalthea_uros.xmi.migrate.versions import VERSIONS
 from amalthea_uros.xmi.writer import document_text

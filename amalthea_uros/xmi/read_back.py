@@ -14,9 +14,8 @@ from amalthea_uros.metamodel.element import Element, extras_if_any
 from amalthea_uros.metamodel.model import Document
 from amalthea_uros.metamodel.naming import place
 from amalthea_uros.xmi import refusals
-from amalthea_uros.xmi.emf_serializer import EmfSerializer
+from amalthea_uros.xmi.emf_serializer import EmfSerializer, tag_of
 from amalthea_uros.xmi.header import Header, NotAModelError, read_header
-from amalthea_uros.xmi.kept_content import tag_of
 from amalthea_uros.xmi.plan import TYPE_PREFIX, ClassPlan, FeaturePlan
 from amalthea_uros.xmi.source_merger import SourceMerger
 

@@ -12,7 +12,9 @@ from lxml import etree
 
 from amalthea_uros._internal.resources import resource_folder
 from amalthea_uros._internal.similar import similar
+from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.metamodel.factfile import Kind
+from amalthea_uros.metamodel.model import Document
 from amalthea_uros.metamodel.versions import NAMESPACE_PREFIX, Facts, facts, spelled, supported_versions
 
 if TYPE_CHECKING:
@@ -22,6 +24,7 @@ if TYPE_CHECKING:
     import xmlschema
 
     from amalthea_uros.metamodel.factfile import FeatureFact
+
 
 #: Further problems are only counted.
 MAX_PROBLEMS = 100
@@ -362,3 +365,26 @@ class _Diagnosis:
             return "a number", None
         kind = "number" if number.java_type == "double" else "whole number"
         return f"a {kind} {'greater than' if number.exclusive else 'of at least'} {number.minimum}", None
+
+
+def schema_findings(document: Document) -> list[Finding]:
+    """The violations of the XML schema of its version in a file; none if the document has no file."""
+    source, path = document.source, document.path
+    if source is None or path is None:
+        return []
+    try:
+        # The file of a model that was migrated in memory still has its old version.
+        problems = validate(source.text.encode(), document.file_version)
+    except NoSchemaError as error:
+        return [Finding("XSD000", Severity.WARNING, str(error), Location(path))]
+    return [
+        Finding(
+            "XSD001",
+            Severity.ERROR,
+            problem.reason,
+            Location(path, problem.line, problem.column, source.line(problem.line)),
+            problem.advice or "",
+            problem.path,
+        )
+        for problem in problems
+    ]

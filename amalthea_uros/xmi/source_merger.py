@@ -15,9 +15,8 @@ from typing import Any, NamedTuple
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Document
 from amalthea_uros.metamodel.source import Source, attributes_of_tag
-from amalthea_uros.xmi.emf_serializer import Child, EmfSerializer, Href, Part
+from amalthea_uros.xmi.emf_serializer import Child, EmfSerializer, Href, Part, tag_of
 from amalthea_uros.xmi.escape import escape, unescape
-from amalthea_uros.xmi.kept_content import tag_of
 from amalthea_uros.xmi.plan import ClassPlan, reference_texts
 
 _NAME = re.compile(r"[^\s/>]+")

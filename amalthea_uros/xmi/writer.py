@@ -15,10 +15,9 @@ from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Document
 from amalthea_uros.metamodel.source import Prefixes, Source
 from amalthea_uros.metamodel.versions import NAMESPACE_PREFIX, version_key
-from amalthea_uros.xmi.emf_serializer import Child, EmfSerializer, Part, WritePlan
+from amalthea_uros.xmi.emf_serializer import Child, EmfSerializer, KeptContent, Part, WritePlan, used_prefixes
 from amalthea_uros.xmi.escape import escape
 from amalthea_uros.xmi.header import XMI_NAMESPACE, XSI_NAMESPACE
-from amalthea_uros.xmi.kept_content import KeptContent, used_prefixes
 from amalthea_uros.xmi.plan import ClassPlan, FeaturePlan
 from amalthea_uros.xmi.read_back import check_read_back
 from amalthea_uros.xmi.refusals import MAX_DEPTH

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from amalthea_uros.xmi.migrate.index import all_below
-from amalthea_uros.xmi.migrate.model_set import ModelSet, Tree
-from amalthea_uros.xmi.migrate.notes import Notes
-from amalthea_uros.xmi.migrate.postponed import bring_back, give_up
+from amalthea_uros.xmi.migrate.model_set import ModelSet, Tree, all_below
+from amalthea_uros.xmi.migrate.notes import Notes, bring_back, give_up
 from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps import DOWN, UP
 from amalthea_uros.xmi.migrate.versions import position

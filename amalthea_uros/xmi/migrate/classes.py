@@ -1,7 +1,8 @@
-"""The classes of objects that carry no `xsi:type`, by the tag of their element."""
+"""The classes of objects that carry no `xsi:type`, by the tag of their element, and the names of objects in references."""
 
 from __future__ import annotations
 
+from amalthea_uros.metamodel.naming import TYPE_MARK, encode
 from amalthea_uros.xmi.migrate.node import Node
 
 #: Tag -> classes that it stands for without `xsi:type`, in any version; only of objects that can be referred to. The first one is
@@ -101,3 +102,32 @@ def class_of(node: Node) -> str:
 def local_name(class_name: str) -> str:
     """The class without the package of ITEA versions."""
     return class_name.rpartition(":")[2]
+
+
+# Names of objects in references, for versions before 0.9.7 and for what is in no file
+
+#: Classes whose names are qualified by that of their container.
+_QUALIFIED = {
+    "ModeLiteral",
+    "HwPort",
+    "InterfacePort",
+    "FInterfacePort",
+    "HwFeature",
+    "HwConnection",
+    "ComponentInstance",
+    "ComponentPort",
+}
+
+
+def reference_text(node: Node) -> str:
+    """The text by which a reference names an object."""
+    class_name = class_of(node)
+    if node.is_proxy:
+        path = node.attributes["path"]
+    else:
+        holder = node.parent.name if node.parent is not None and class_name in _QUALIFIED else ""
+        path = f"{encode(holder)}/{encode(node.name)}" if holder else encode(node.name)
+    if not class_name:
+        return path
+    # ITEA 1.3.0 qualifies the class by its package: `sw.Label`.
+    return path + TYPE_MARK + class_name.replace(":", ".")

@@ -1,7 +1,9 @@
-"""What a migration did, thing by thing."""
+"""What a migration did, thing by thing, and what it brings back later."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from enum import StrEnum
 from typing import NamedTuple
 
@@ -78,3 +80,51 @@ class Notes:
     def to_check(self, node: Node, message: str, detail: str = "", attribute: str = "") -> None:
         """It is unchanged, but the newer version does not allow it, or reads it in another way."""
         self.add(Kind.TO_CHECK, node, message, detail, attribute)
+
+
+# What the published conversions lose at a step, and which is brought back as soon as the content goes beyond them
+
+#: The first version after those of which the content of ITEA versions was published as converted.
+BEYOND_ITEA = "0.7.1"
+
+#: The first version after those that the converters of APP4MC are published for.
+BEYOND_CONVERTERS = "0.9.6"
+
+
+@dataclass(frozen=True)
+class Postponed:
+    """Something that is not in the result up to a version, so that results up to there are comparable with the published ones.
+
+    Attributes
+    ----------
+    until : the version from which on it is there
+    restore : puts it where it belongs then
+    kind, node, message, detail, attribute : what is noted of it; if the migration ends before, it is lost
+    is_kept : whether it is also kept in another form, so that nothing is lost if the migration ends before
+    """
+
+    until: str
+    restore: Callable[[], object]
+    kind: Kind
+    node: Node
+    message: str
+    detail: str = ""
+    attribute: str = ""
+    is_kept: bool = False
+
+
+def bring_back(postponed: list[Postponed], version: str, notes: Notes) -> None:
+    """Restore what was postponed until a version."""
+    for one in postponed:
+        if one.until == version:
+            one.restore()
+            notes.add(one.kind, one.node, one.message, one.detail, one.attribute)
+    postponed[:] = [one for one in postponed if one.until != version]
+
+
+def give_up(postponed: list[Postponed], notes: Notes) -> None:
+    """Note what is not restored, because the migration ends before."""
+    for one in postponed:
+        if not one.is_kept:
+            notes.lost(one.node, one.message, one.detail, one.attribute)
+    postponed.clear()

@@ -7,8 +7,8 @@ from collections.abc import Iterable
 from amalthea_uros.metamodel.versions import NAMESPACE_PREFIX
 from amalthea_uros.xmi.escape import escape
 from amalthea_uros.xmi.header import XMI_NAMESPACE, XSI_NAMESPACE
+from amalthea_uros.xmi.migrate.classes import reference_text
 from amalthea_uros.xmi.migrate.model_set import Tree
-from amalthea_uros.xmi.migrate.names import reference_text
 from amalthea_uros.xmi.migrate.node import Node
 from amalthea_uros.xmi.migrate.versions import ITEA
 

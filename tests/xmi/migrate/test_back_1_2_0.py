@@ -4,7 +4,7 @@ import pytest
 from inline_models import InlineModels
 from migration import meaning, migrated, opened
 
-from amalthea_uros.xmi.migrate.index import all_below
+from amalthea_uros.xmi.migrate.model_set import all_below
 from amalthea_uros.xmi.migrate.notes import Kind
 from amalthea_uros.xmi.migrate.write import tree_text
 

@@ -6,8 +6,8 @@ from unittest.mock import patch
 from hypothesis import given
 from hypothesis import strategies as st
 
-from amalthea_uros.xmi.migrate import index as index_module
-from amalthea_uros.xmi.migrate.index import NodeIndex
+from amalthea_uros.xmi.migrate import model_set as index_module
+from amalthea_uros.xmi.migrate.model_set import NodeIndex
 from amalthea_uros.xmi.migrate.node import Node, remove_all
 
 _TAGS = ("a", "b", "c")

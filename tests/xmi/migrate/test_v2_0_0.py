@@ -4,7 +4,7 @@ import pytest
 from inline_models import InlineModels
 from migration import migrated
 
-from amalthea_uros.xmi.migrate.index import all_below
+from amalthea_uros.xmi.migrate.model_set import all_below
 from amalthea_uros.xmi.migrate.notes import Kind
 
 FLAGS = 'requiresParentScheduler="false" passesParametersUpwards="false" hasExactlyOneChild="false"'

@@ -1,12 +1,10 @@
-"""One module per step that changes more than the namespace."""
+"""One module per step that changes much, from the oldest version to the newest and back."""
 
 from __future__ import annotations
 
 from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps import (
-    back_1_2_0,
-    back_2_0_0,
-    back_2_2_0,
+    back,
     itea_1_2,
     itea_1_3,
     v0_7_0,
@@ -16,19 +14,14 @@ from amalthea_uros.xmi.migrate.steps import (
     v0_8_1,
     v0_8_3,
     v0_9_0,
-    v0_9_1,
     v0_9_3,
     v0_9_4,
     v0_9_5,
-    v0_9_6,
     v0_9_7,
-    v1_0_0,
     v1_2_0,
     v2_0_0,
-    v2_1_0,
     v3_0_0,
 )
-from amalthea_uros.xmi.migrate.steps.hardware.units import state_units
 
 #: From the oldest version to the newest.
 UP = (
@@ -41,23 +34,23 @@ UP = (
     v0_8_1.STEP,
     Step("0.8.1", "0.8.2"),
     v0_8_3.STEP,
-    v0_9_0.STEP,
-    v0_9_1.STEP,
+    v0_9_0.STEP_0_9_0,
+    v0_9_0.STEP_0_9_1,
     Step("0.9.1", "0.9.2"),
     v0_9_3.STEP,
     v0_9_4.STEP,
     v0_9_5.STEP,
-    v0_9_6.STEP,
-    v0_9_7.STEP,
-    Step("0.9.7", "0.9.8", state_units),
+    v0_9_7.STEP_0_9_6,
+    v0_9_7.STEP_0_9_7,
+    Step("0.9.7", "0.9.8", v0_9_0.state_units),
     Step("0.9.8", "0.9.9"),
-    v1_0_0.STEP,
+    v1_2_0.STEP_1_0_0,
     Step("1.0.0", "1.1.0"),
-    v1_2_0.STEP,
+    v1_2_0.STEP_1_2_0,
     v2_0_0.STEP,
-    v2_1_0.STEP,
+    v3_0_0.STEP_2_1_0,
     Step("2.1.0", "2.2.0"),
-    v3_0_0.STEP,
+    v3_0_0.STEP_3_0_0,
     Step("3.0.0", "3.1.0"),
     Step("3.1.0", "3.2.0"),
     Step("3.2.0", "3.3.0"),
@@ -68,8 +61,8 @@ DOWN = (
     Step("3.3.0", "3.2.0"),
     Step("3.2.0", "3.1.0"),
     Step("3.1.0", "3.0.0"),
-    back_2_2_0.STEP,
+    back.STEP_2_2_0,
     Step("2.2.0", "2.1.0"),
-    back_2_0_0.STEP,
-    back_1_2_0.STEP,
+    back.STEP_2_0_0,
+    back.STEP_1_2_0,
 )

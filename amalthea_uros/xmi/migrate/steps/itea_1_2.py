@@ -8,11 +8,9 @@ from functools import partial
 from amalthea_uros.xmi.migrate.classes import local_name
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node
-from amalthea_uros.xmi.migrate.notes import Kind, Notes
-from amalthea_uros.xmi.migrate.postponed import Postponed
+from amalthea_uros.xmi.migrate.notes import BEYOND_ITEA, Kind, Notes, Postponed
 from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.itea_tools import is_isr, sub_models
-from amalthea_uros.xmi.migrate.steps.later import BEYOND_ITEA
 
 
 def change(models: ModelSet, notes: Notes) -> None:

@@ -7,13 +7,172 @@ from decimal import Decimal
 from math import isfinite
 
 from amalthea_uros.xmi.migrate.model_set import ModelSet
-from amalthea_uros.xmi.migrate.node import Node
+from amalthea_uros.xmi.migrate.node import Node, remove_all
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.file_roots import wrap_roots
-from amalthea_uros.xmi.migrate.steps.v0_7_1_constraints import REMOVED_CONSTRAINTS, RENAMED_CONSTRAINTS, change_constraints
-from amalthea_uros.xmi.migrate.steps.v0_7_1_sections import change_sections
-from amalthea_uros.xmi.migrate.steps.v0_7_tools import names_of
+from amalthea_uros.xmi.migrate.steps.tools import content_of, free_key, names_of, remove_and_keep
+
+# Sections: their members name them, and no longer the other way round
+
+#: Reference of a section -> element of the members.
+_MEMBERS = {"labels": "labels", "runEntities": "runnables"}
+
+
+def change_sections(models: ModelSet, notes: Notes) -> None:
+    """Give labels and runnables their section, and map sections to memories in the new way."""
+    for section in models.nodes("sections"):
+        for reference, tag in _MEMBERS.items():
+            for member in section.references.pop(reference, ()):
+                _place(member, tag, section, notes)
+            if text := section.attributes.pop(reference, ""):
+                notes.lost(section, "members of a section that are no references", text, reference)
+        sizes = section.all("size")
+        remove_all(sizes)
+        for size in sizes:
+            notes.lost(section, "size of a section", content_of(size))
+    _change_mappings(models, notes)
+    _remove_constraints(models, notes)
+
+
+def _place(member: Node, tag: str, section: Node, notes: Notes) -> None:
+    if member.tag != tag:
+        why = "in no file of the set" if member.is_proxy else "of another kind"
+        notes.lost(section, f"member of a section that is {why}", names_of([member]))
+        return
+    placed = member.target("section")
+    if placed is None:
+        member.refer("section", section)
+        notes.moved(member, "member of a section -> reference of the member to the section", section.name)
+    elif placed is not section:
+        notes.lost(member, "another section of a label or runnable: only the first is kept", section.name)
+
+
+def _change_mappings(models: ModelSet, notes: Notes) -> None:
+    lost = []
+    for mapping in models.nodes("mapping"):
+        if mapping.type != "SectionMapping":
+            continue
+        if "section" not in mapping.references or "memory" not in mapping.references:
+            notes.lost(mapping, "mapping of a section", content_of(mapping))
+            lost.append(mapping)
+            continue
+        mapping.tag, mapping.type = "physicalSectionMapping", ""
+        mapping.rename("section", "origin")
+        mapping.rename("memoryPositionAddress", "startAddress")
+        notes.converted(mapping, "SectionMapping -> PhysicalSectionMapping", names_of(mapping.references["origin"]))
+    remove_all(lost)
+
+
+def _remove_constraints(models: ModelSet, notes: Notes) -> None:
+    constraints = [node for node in models.nodes("mappingConstraints") if node.type == "SectionMappingConstraint"]
+    # Without a condition for the memory a constraint says nothing.
+    kept = [node for node in constraints if node.child("hwConstraint") is not None]
+    for constraint in kept:
+        notes.kept(constraint, "constraint for the mapping of a section", names_of(constraint.references.get("section", ())))
+    remove_and_keep(kept, "0.7.1")
+    lost = [node for node in constraints if node.parent is not None]
+    for constraint in lost:
+        notes.lost(constraint, "constraint for the mapping of a section", content_of(constraint))
+    remove_all(lost)
+
+
+def name_mappings(models: ModelSet, notes: Notes) -> None:
+    """Name what was a SectionMapping, which had no name; what it is now needs one from 0.7.2 on."""
+    labels = models.origins.labels
+    mappings = models.parts("mappingModel", "physicalSectionMapping")
+    used = {mapping.name for mapping in mappings}
+    for mapping in mappings:
+        if mapping.name or labels[mapping.origin][0] != "mapping":
+            continue
+        ends = [target.name for name in ("origin", "memory") for target in mapping.references.get(name, ())]
+        mapping.attributes["name"] = free_key("_".join(filter(None, ends)) or "mapping", used)
+        used.add(mapping.name)
+        notes.defaulted(mapping, "name of a PhysicalSectionMapping", mapping.name)
+
+
+# Timing, affinity and sequencing constraints
+
+#: Old class -> new class.
+RENAMED_CONSTRAINTS = {
+    "AgeConstraint": "EventChainLatencyConstraint",
+    "ReactionConstraint": "EventChainLatencyConstraint",
+    "SynchronisationConstraint": "EventSynchronizationConstraint",
+}
+
+#: Classes without successor.
+REMOVED_CONSTRAINTS = frozenset({"OrderConstraint", "SchedulerPairingConstraint", "SchedulerSeparationConstraint"})
+
+_LATENCY_TYPES = {"AgeConstraint": "Age", "ReactionConstraint": "Reaction"}
+
+
+def change_constraints(models: ModelSet, notes: Notes) -> None:
+    """Change everything below constraintsModel."""
+    _rename_constraints(models, notes)
+    _remove_without_successor(models, notes)
+    for constraint in models.nodes("runnableSequencingConstraints"):
+        _change_groups(constraint, notes)
+
+
+def _rename_constraints(models: ModelSet, notes: Notes) -> None:
+    for constraint in models.nodes("timingConstraints"):
+        if constraint.type in _LATENCY_TYPES:
+            constraint.attributes["type"] = _LATENCY_TYPES[constraint.type]
+        elif constraint.type == "DelayConstraint" and "mappingType" not in constraint.attributes:
+            constraint.attributes["mappingType"] = "Reaction"
+            notes.defaulted(
+                constraint, "mappingType of a delay constraint: Reaction is what 0.7.0 meant", attribute="mappingType"
+            )
+        if constraint.type in RENAMED_CONSTRAINTS:
+            notes.renamed(constraint, f"{constraint.type} -> {RENAMED_CONSTRAINTS[constraint.type]}")
+    models.rename_classes(RENAMED_CONSTRAINTS)
+
+
+def _remove_without_successor(models: ModelSet, notes: Notes) -> None:
+    removed = [node for node in models.nodes("timingConstraints", "affinityConstraints") if node.type in REMOVED_CONSTRAINTS]
+    for constraint in removed:
+        message = f"{constraint.type}: there is no successor"
+        notes.kept(constraint, message, constraint.name)
+    remove_and_keep(removed, "0.7.1")
+
+
+def _change_groups(constraint: Node, notes: Notes) -> None:
+    entries = []
+    for group in constraint.all("runnableGroups"):
+        grouping = group.attributes.pop("groupingType", "")
+        if grouping == "atLeastOneOfThem":
+            notes.lost(
+                group,
+                "grouping of a runnable sequencing constraint: all of the runnables are meant now",
+                grouping,
+                "groupingType",
+            )
+        of_group = group.all("entries")
+        entries += of_group
+        # The same runnable once.
+        runnables = dict.fromkeys(target for entry in of_group for target in entry.references.pop("runnable", ()))
+        if runnables:
+            group.refer("runnables", *runnables)
+            notes.converted(group, "entries of a group of runnables -> references", names_of(runnables))
+    remove_all(entries)
+    _move_scope(constraint, entries, notes)
+
+
+def _move_scope(constraint: Node, entries: list[Node], notes: Notes) -> None:
+    """The scope of all entries can be that of the constraint; scopes that differ have no place any more."""
+    scopes = {tuple(entry.references.pop("processScope", ())) for entry in entries}
+    if len(scopes) == 1 and "processScope" not in constraint.references and (scope := next(iter(scopes))):
+        constraint.refer("processScope", *scope)
+        notes.moved(
+            constraint, "processScope of all entries -> processScope of the constraint", names_of(scope), "processScope"
+        )
+    elif any(scopes):
+        detail = names_of(dict.fromkeys(target for scope in scopes for target in scope))
+        notes.lost(constraint, "scopes of single runnables in a sequencing constraint", detail, "processScope")
+    for entry in entries:
+        if rest := content_of(entry):
+            notes.lost(constraint, "content of an entry of a group of runnables", rest)
+
 
 _SWITCHES = frozenset({"ModeSwitch", "ProbabiltitySwitch"})
 

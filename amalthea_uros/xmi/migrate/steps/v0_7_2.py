@@ -7,10 +7,189 @@ from amalthea_uros.xmi.migrate.node import Node, remove_all
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.file_roots import wrap_roots
-from amalthea_uros.xmi.migrate.steps.v0_7_1_sections import name_mappings
-from amalthea_uros.xmi.migrate.steps.v0_7_2_hardware import move_hardware
-from amalthea_uros.xmi.migrate.steps.v0_7_2_runnables import change_runnable_items
-from amalthea_uros.xmi.migrate.steps.v0_7_tools import content_of, relink
+from amalthea_uros.xmi.migrate.steps.tools import content_of, relink
+from amalthea_uros.xmi.migrate.steps.v0_7_1 import name_mappings
+
+# Hardware that property constraints contain: it is in the hardware model now, and they refer to it
+
+#: Element of propertyConstraintsModel -> element of hwModel.
+_DEFINITIONS = {"coreTypeDefinitions": "coreTypes", "memoryTypeDefinitions": "memoryTypes"}
+
+#: The containers of new cores and memories, with the names that APP4MC generates.
+_SYSTEM = ("system", "migration_gen_system")
+_MICROCONTROLLER = (_SYSTEM, ("ecus", "migration_gen_ecu"), ("microcontrollers", "migration_gen_microcontroller"))
+
+#: Element of a condition -> class of the condition, element of the hardware, and its containers.
+_PARTS = {"core": ("HwCoreProperty", "cores", _MICROCONTROLLER), "memory": ("HwMemoryProperty", "memories", (_SYSTEM,))}
+
+
+def move_hardware(models: ModelSet, notes: Notes) -> None:
+    """Move what has a new name to the hardware model, and let the rest mean the hardware of the same name."""
+    mover = _Mover(models, notes)
+    for tag, new_tag in _DEFINITIONS.items():
+        for definition in models.parts("propertyConstraintsModel", tag):
+            mover.move(definition, new_tag, ())
+    for tag, (condition_class, new_tag, containers) in _PARTS.items():
+        for part in models.nodes(tag):
+            condition = part.parent
+            if condition is None or condition.type != condition_class:
+                continue
+            meant = mover.move(part, new_tag, containers)
+            if meant is not None:
+                condition.references[tag] = [meant]
+    mover.finish()
+
+
+class _Mover:
+    """Moves hardware, and remembers what is there.
+
+    Attributes
+    ----------
+    known : hardware by element and name
+    moved : what goes into which container
+    removed : what is not needed
+    replaced : what is meant instead of it
+    """
+
+    def __init__(self, models: ModelSet, notes: Notes) -> None:
+        self.models, self.notes = models, notes
+        self.known: dict[tuple[str, str], Node] = {}
+        self.moved: dict[Node, list[Node]] = {}
+        self.removed: list[Node] = []
+        self.replaced: dict[Node, Node] = {}
+        for model in models.parts("hwModel"):
+            self.register(model)
+
+    def register(self, hardware: Node) -> None:
+        """Remember everything in it; of several things of one name the first."""
+        for node in hardware.walk():
+            if node.name:
+                self.known.setdefault((node.tag, node.name), node)
+
+    def move(self, node: Node, tag: str, containers: tuple[tuple[str, str], ...]) -> Node | None:
+        """Move hardware to a place below the hardware model, unless there is such a thing; what is meant by it now."""
+        if not node.name:
+            self.removed.append(node)
+            self.notes.lost(node, f"unnamed {node.tag} of a property constraint", content_of(node))
+            return None
+        known = self.known.get((tag, node.name))
+        if known is not None:
+            self.removed.append(node)
+            self.replace(node, known)
+            return known
+        self.notes.moved(node, f"{node.tag} of a property constraint -> {tag} of the hardware model", node.name)
+        holder = self.hardware_model()
+        for container, name in containers:
+            holder = _part(holder, container, name)
+        self.moved.setdefault(holder, []).append(node)
+        node.tag = tag
+        self.known[tag, node.name] = node
+        self.register(node)
+        return node
+
+    def replace(self, node: Node, known: Node) -> None:
+        """Let references to a node, and to what is in it, mean what has its name in the hardware model."""
+        self.replaced[node] = known
+        for part in node.walk():
+            if part is not node and (part.tag, part.name) in self.known:
+                self.replaced[part] = self.known[part.tag, part.name]
+        message = f"{node.tag} of a property constraint: the one of the same name in the hardware model is meant"
+        if node.children or node.references or not node.attributes.items() <= known.attributes.items():
+            self.notes.lost(node, f"{message}; what it states besides is dropped", content_of(node))
+        else:
+            self.notes.converted(node, message, node.name)
+
+    def hardware_model(self) -> Node:
+        """The first hardware model, else a new one in the first file, as in APP4MC."""
+        roots = [tree.root for tree in sorted(self.models.active, key=lambda tree: tree.path)]
+        models = [model for root in roots for model in root.all("hwModel")]
+        return models[0] if models else roots[0].add("hwModel")
+
+    def finish(self) -> None:
+        """Move and remove all at once, and let nothing refer to what is removed."""
+        for holder, nodes in self.moved.items():
+            holder.take(nodes)
+        remove_all(self.removed)
+        relink(self.models, self.replaced)
+
+
+def _part(holder: Node, tag: str, name: str) -> Node:
+    """The part of that name, made if there is none; a system of any name, as there is only one."""
+    for part in holder.all(tag):
+        if part.name == name or tag == "system":
+            return part
+    return holder.add(tag, name=name)
+
+
+# Items of runnables: instructions, groups and probability groups
+
+_ITEMS = ("runnableItems", "runnableItem", "items")
+
+_INSTRUCTIONS = frozenset({"InstructionsConstant", "InstructionsDeviation"})
+
+
+def change_runnable_items(models: ModelSet, notes: Notes) -> None:
+    """Change all items of runnables, however deep they are."""
+    items = models.nodes(*_ITEMS)
+    for item in items:
+        if item.type in _INSTRUCTIONS:
+            _wrap_instructions(item, notes)
+    for item in items:
+        if item.type == "ProbabilityGroup":
+            _make_switch(item, notes)
+        elif item.type == "Group":
+            _unwrap_items(item, notes)
+
+
+def _wrap_instructions(item: Node, notes: Notes) -> None:
+    """The item stays, and what it said becomes a part of it."""
+    default = Node("default", item.type, item.attributes, item.origin)
+    default.references = item.references
+    # Instructions have no custom properties any more.
+    moved = [child for child in item.children if child.tag != "customProperties"]
+    default.take(moved)
+    item.insert(default)
+    item.type, item.attributes, item.references = "RunnableInstructions", {}, {}
+    notes.converted(item, f"{default.type} -> RunnableInstructions with default")
+
+
+def _unwrap_items(group: Node, notes: Notes) -> None:
+    """Items of groups without the deviation around each of them."""
+    children: list[Node] = []
+    wrappers = []
+    for child in group.children:
+        if child.tag != "items" or child.type:
+            children.append(child)
+            continue
+        wrappers.append(child)
+        children += _unwrapped(child, notes)
+    if wrappers:
+        remove_all(wrappers)
+        group.set_children(children)
+
+
+def _unwrapped(wrapper: Node, notes: Notes) -> list[Node]:
+    items = wrapper.all("runnableItem")
+    properties = wrapper.all("customProperties") if items else []
+    remove_all([*items, *properties])
+    if items:
+        items[0].set_children([*properties, *items[0].children])
+    for item in items:
+        item.tag = "items"
+        notes.converted(item, "DeviationRunnableItem of a group -> the item itself")
+    if rest := ", ".join(filter(None, map(content_of, wrapper.children))):
+        notes.lost(wrapper, "deviation of an item of a group", rest)
+    return items
+
+
+def _make_switch(group: Node, notes: Notes) -> None:
+    group.type = "RunnableProbabilitySwitch"
+    notes.converted(group, "ProbabilityGroup -> RunnableProbabilitySwitch")
+    for entry in group.all("items"):
+        entry.tag = "entries"
+        for item in entry.all("runnableItem"):
+            item.tag = "items"
+
 
 #: Files that came from ITEA versions have the boolean of those.
 _STABILITY = {

@@ -7,7 +7,7 @@ from amalthea_uros.xmi.migrate.node import Node, remove_all
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.file_roots import wrap_roots
-from amalthea_uros.xmi.migrate.steps.v0_7_tools import (
+from amalthea_uros.xmi.migrate.steps.tools import (
     content_of,
     keep_as_properties,
     names_of,

@@ -3,16 +3,238 @@
 from __future__ import annotations
 
 from amalthea_uros.metamodel.naming import TYPE_MARK
-from amalthea_uros.xmi.migrate.classes import class_of
+from amalthea_uros.xmi.migrate.classes import class_of, reference_text
 from amalthea_uros.xmi.migrate.model_set import ModelSet
-from amalthea_uros.xmi.migrate.names import reference_text
 from amalthea_uros.xmi.migrate.node import Node, remove_all
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.step import Step
-from amalthea_uros.xmi.migrate.steps.properties import add_value
-from amalthea_uros.xmi.migrate.steps.v0_8_event_chains import contain_event_chains
-from amalthea_uros.xmi.migrate.steps.v0_8_priorities import move_priorities
-from amalthea_uros.xmi.migrate.steps.v0_8_schedulers import change_schedulers
+from amalthea_uros.xmi.migrate.steps.kept import strings
+from amalthea_uros.xmi.migrate.steps.tools import (
+    add_property,
+    add_value,
+    content_of,
+    free_key,
+    keys_of,
+    move_properties,
+    property_of,
+    property_text,
+    put_property,
+    text_value,
+)
+
+# Event chains in event chains, which cannot be referred to any more
+
+_CONSTRAINTS = ("EventChainLatencyConstraint", "EventChainSynchronizationConstraint")
+
+
+def contain_event_chains(models: ModelSet, notes: Notes) -> None:
+    """SubEventChain -> EventChainContainer; references to inner chains -> custom properties with the text of the reference."""
+    chains = [chain for tree in models.trees for chain in tree.root.find("constraintsModel", "eventChains")]
+    outer = {chain.name: chain for chain in chains if chain.name}
+    for item in models.nodes("segments", "strands"):
+        if item.type == "SubEventChain":
+            item.type = "EventChainContainer"
+            notes.renamed(item, "class renamed", "SubEventChain -> EventChainContainer")
+        elif item.type == "EventChainReference":
+            for text in _take_inner(item, "eventChain", outer):
+                add_property(item, "eventChain", text)
+                notes.kept(item, "reference to an inner event chain", text, "eventChain")
+    for constraint in models.parts("constraintsModel", "timingConstraints"):
+        if constraint.type in _CONSTRAINTS:
+            _keep_scope(constraint, outer, notes)
+
+
+def _keep_scope(constraint: Node, outer: dict[str, Node], notes: Notes) -> None:
+    texts = _take_inner(constraint, "scope", outer)
+    if not texts:
+        return
+    add_value(constraint, "scope", strings(texts, constraint))
+    notes.kept(constraint, "scope: reference to an inner event chain", ", ".join(texts), "scope")
+
+
+def _take_inner(node: Node, name: str, outer: dict[str, Node]) -> list[str]:
+    """Remove the targets of a reference that are inner chains; the texts that referred to them."""
+    targets = node.references.pop(name, [])
+    # One target elsewhere makes elements of all.
+    start = "amlt:/#" if any(target.root is not node.root for target in targets) else ""
+    kept: list[Node] = []
+    texts: list[str] = []
+    for target in targets:
+        if target.tag == "eventChains" or target.is_proxy:
+            kept.append(target)  # what is in no file, may be an outer one
+        elif target.name in outer:
+            kept.append(outer[target.name])  # from now on the name means that one
+        else:
+            texts.append(start + reference_text(target))
+    if kept:
+        node.references[name] = kept
+    return texts
+
+
+# Priorities of processes and of their allocations
+#
+# Until 0.8.0 processes and task allocations both had a priority, whose default 0 editors wrote as well. What is written as 0 is kept
+# where nothing else states the priority, because from 0.8.1 on 0 and no priority are different things.
+
+_PRIORITY = "priority"
+_GROUP = "osekTaskGroup"
+
+
+def move_priorities(models: ModelSet, notes: Notes) -> None:
+    """Priority of an allocation -> scheduling parameters; priority and task group of a process -> custom properties."""
+    allocated = _move_of_allocations(models, notes)
+    allocated |= _replace_defaults_of_isr_allocations(models, notes)
+    for tag in ("tasks", "isrs", "processPrototypes"):
+        for process in models.parts("swModel", tag):
+            _move_of_process(process, process in allocated, notes)
+    for task in models.parts("swModel", "tasks"):
+        _move_task_group(task, notes)
+
+
+def _move_of_allocations(models: ModelSet, notes: Notes) -> set[Node]:
+    """The tasks of which every allocation states a priority now."""
+    allocated: set[Node] = set()
+    unstated: set[Node | None] = set()
+    for allocation in models.parts("mappingModel", "taskAllocation"):
+        text = allocation.attributes.pop(_PRIORITY, None)
+        task = allocation.target("task")
+        if text is None:
+            unstated.add(task)
+            continue
+        own = _own(task)
+        if text == "0" and own not in ("", "0"):
+            # As scheduling parameter it would outdo the priority of the task from 2.0.0 on.
+            notes.converted(
+                allocation, "priority 0, the old default, left out: the priority of the task applies", own, _PRIORITY
+            )
+        else:
+            parameters = allocation.child_or_new("schedulingParameters")
+            parameters.attributes.setdefault(_PRIORITY, text)
+            notes.moved(allocation, "priority of a task allocation -> schedulingParameters", text, _PRIORITY)
+            if task is not None:
+                allocated.add(task)
+    return allocated - unstated
+
+
+def _replace_defaults_of_isr_allocations(models: ModelSet, notes: Notes) -> set[Node]:
+    """The ISRs of which every allocation states a priority; it stays an attribute there, also in the newest version."""
+    allocated: set[Node] = set()
+    unstated: set[Node | None] = set()
+    for allocation in models.parts("mappingModel", "isrAllocation"):
+        isr = allocation.target("isr")
+        if isr is None or _PRIORITY not in allocation.attributes:
+            unstated.add(isr)
+            continue
+        own = _own(isr)
+        if allocation.attributes[_PRIORITY] == "0" and own not in ("", "0"):
+            allocation.attributes[_PRIORITY] = own
+            notes.converted(
+                allocation, "priority 0, the old default, replaced: the priority of the ISR applies", own, _PRIORITY
+            )
+        allocated.add(isr)
+    return allocated - unstated
+
+
+def _move_of_process(process: Node, is_allocated: bool, notes: Notes) -> None:
+    text = process.attributes.pop(_PRIORITY, None)
+    if text is None:
+        return
+    if text != "0" or not is_allocated:
+        _state(process, _PRIORITY, text, notes)
+        notes.kept(process, "priority of a process", text, _PRIORITY)
+    elif is_allocated:
+        notes.converted(
+            process, "priority 0, the old default, left out: the priority of the allocation applies", attribute=_PRIORITY
+        )
+    else:
+        notes.lost(process, "priority 0 of a process", attribute=_PRIORITY)
+
+
+def _move_task_group(task: Node, notes: Notes) -> None:
+    text = task.attributes.pop(_GROUP, None)
+    if text == "0":
+        # Nothing is lost: a task without group is in group 0.
+        notes.converted(task, "OSEK task group 0, the old default, left out", attribute=_GROUP)
+    elif text is not None:
+        _state(task, _GROUP, text, notes)
+        notes.kept(task, "OSEK task group", text, _GROUP)
+
+
+def _state(process: Node, key: str, text: str, notes: Notes) -> None:
+    """Add a custom property that the step to 2.0.0 finds by its key: of another one of that key it would take the value."""
+    present = property_of(process, key)
+    if property_text(present) == text:
+        return
+    if present is not None:
+        present.attributes["key"] = free_key(key, keys_of(process))
+        notes.renamed(
+            present, f"custom property {key!r} gets another key: it is what the process states itself", present.get("key")
+        )
+    put_property(process, key, text_value(text, process))
+
+
+def _own(process: Node | None) -> str:
+    """The priority that a process states itself, also in a file that was migrated before."""
+    if process is None:
+        return ""
+    return process.get(_PRIORITY) or property_text(property_of(process, _PRIORITY)) or ""
+
+
+# Scheduling units, which are dissolved into their schedulers
+
+_HARDWARE, _SOFTWARE = "SchedulingHWUnit", "SchedulingSWUnit"
+
+
+def change_schedulers(models: ModelSet, notes: Notes) -> None:
+    """Dissolve the scheduling units; rename the parameters of user specific algorithms."""
+    for tag in ("taskSchedulers", "interruptControllers"):
+        for scheduler in models.parts("osModel", "operatingSystems", tag):
+            _rename_parameters(scheduler, notes)
+            _keep_priority(scheduler, scheduler, "scheduleUnitPriority", "scheduleUnitPriority", notes)
+            for unit in scheduler.all("schedulingUnit"):
+                _dissolve(unit, scheduler, notes)
+
+
+def _rename_parameters(scheduler: Node, notes: Notes) -> None:
+    for algorithm in scheduler.all("schedulingAlgorithm"):
+        if algorithm.type != "UserSpecificSchedulingAlgorithm":
+            continue
+        for parameter in algorithm.all("parameter"):
+            parameter.tag = "parameterExtensions"
+            notes.renamed(parameter, "parameter -> parameterExtensions", parameter.get("key"))
+
+
+def _keep_priority(holder: Node, scheduler: Node, attribute: str, key: str, notes: Notes) -> None:
+    text = holder.attributes.pop(attribute, None)
+    if text == "0":
+        notes.converted(holder, f"{attribute} 0, the old default, left out", attribute=attribute)
+    elif text is not None:
+        add_property(scheduler, key, text)
+        notes.kept(holder, f"{attribute} of a scheduling unit", text, attribute)
+
+
+def _dissolve(unit: Node, scheduler: Node, notes: Notes) -> None:
+    kind = unit.type or (_HARDWARE if unit.child("delay") else _SOFTWARE)
+    for entry in unit.all("customProperties"):
+        key = entry.attributes["key"] = f"{kind}_CustomProperty__{entry.get('key')}"
+        notes.moved(entry, "custom property of a scheduling unit -> scheduler", key)
+    move_properties(unit, scheduler)
+    delay = unit.child("delay")
+    if delay is not None:
+        notes.kept(delay, "delay of a scheduling unit", delay.get("value") + delay.get("unit"))
+        delay.type = "TimeObject"
+        add_value(scheduler, f"{_HARDWARE}___delay", delay)
+    for instructions in unit.all("instructions"):
+        instructions.tag = "default"
+        scheduler.add("computationItems", "RunnableInstructions", like=instructions).insert(instructions)
+        notes.moved(instructions, "instructions of a scheduling unit -> computationItems of the scheduler")
+    _keep_priority(unit, scheduler, "priority", f"{_SOFTWARE}___priority", notes)
+    for controller in unit.references.pop("interruptController", ()):
+        notes.lost(unit, "interrupt controller of a scheduling unit", reference_text(controller), "interruptController")
+    if rest := content_of(unit):
+        notes.lost(unit, "other content of a scheduling unit", rest)
+    unit.remove()
+
 
 _TRIGGER = "InterProcessTrigger"
 _STIMULUS = "InterProcessStimulus"

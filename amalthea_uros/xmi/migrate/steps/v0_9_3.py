@@ -8,9 +8,9 @@ from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node
 from amalthea_uros.xmi.migrate.notes import Kind, Notes
 from amalthea_uros.xmi.migrate.step import Step
+from amalthea_uros.xmi.migrate.steps.tools import by_class, keep_comments
 from amalthea_uros.xmi.migrate.steps.v0_9_3_ticks import Ticks
 from amalthea_uros.xmi.migrate.steps.v0_9_3_values import CONTINUOUS, TIME, Values
-from amalthea_uros.xmi.migrate.steps.v0_9_parts import by_class, keep_comments
 
 
 class _Place(NamedTuple):

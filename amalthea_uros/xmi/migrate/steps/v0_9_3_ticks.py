@@ -10,12 +10,9 @@ from functools import partial
 from amalthea_uros.xmi.data_types import parse_float
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node, remove_all
-from amalthea_uros.xmi.migrate.notes import Kind, Notes
-from amalthea_uros.xmi.migrate.postponed import Postponed
-from amalthea_uros.xmi.migrate.steps.later import BEYOND_CONVERTERS
-from amalthea_uros.xmi.migrate.steps.numbers import whole_number
+from amalthea_uros.xmi.migrate.notes import BEYOND_CONVERTERS, Kind, Notes, Postponed
+from amalthea_uros.xmi.migrate.steps.tools import insert_after, keep_comments, whole_number
 from amalthea_uros.xmi.migrate.steps.v0_9_3_values import Values
-from amalthea_uros.xmi.migrate.steps.v0_9_parts import insert_after, keep_comments
 
 #: The key of needs that are instructions, and the category of the feature that says how many of them a cycle executes.
 _INSTRUCTIONS = "Instructions"

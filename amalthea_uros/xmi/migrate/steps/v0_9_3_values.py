@@ -6,8 +6,7 @@ from typing import NamedTuple
 
 from amalthea_uros.xmi.migrate.node import Node
 from amalthea_uros.xmi.migrate.notes import Notes
-from amalthea_uros.xmi.migrate.steps.properties import add_property
-from amalthea_uros.xmi.migrate.steps.v0_9_parts import keep_comments
+from amalthea_uros.xmi.migrate.steps.tools import add_property, keep_comments
 
 DISCRETE, CONTINUOUS, TIME = "DiscreteValue", "ContinuousValue", "Time"
 

@@ -2,13 +2,120 @@
 
 from __future__ import annotations
 
+from decimal import Decimal, InvalidOperation
+from functools import partial
+from typing import NamedTuple
+
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node
-from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.notes import BEYOND_CONVERTERS, Kind, Notes, Postponed
 from amalthea_uros.xmi.migrate.step import Step
-from amalthea_uros.xmi.migrate.steps.properties import add_property
-from amalthea_uros.xmi.migrate.steps.v0_9_5_clocks import convert_clocks
-from amalthea_uros.xmi.migrate.steps.v0_9_parts import by_class, keep_comments
+from amalthea_uros.xmi.migrate.steps.tools import add_property, by_class, keep_comments, quantity_text
+
+# Clocks: they are described by frequencies now, whose units the older version does not state
+
+#: The key of the custom properties that keep the older definition, as APP4MC writes it.
+_KEY = "old_definition_v0.9.4"
+
+_MESSAGE = "the definition of a clock has no successor whose meaning is certain"
+
+
+class _Function(NamedTuple):
+    """The shape of a clock: its name since 0.9.5, and its numbers, in the order in which they are written down."""
+
+    curve: str
+    numbers: tuple[str, str]
+
+
+_FUNCTIONS = {
+    "ClockSinusFunction": _Function("sine", ("amplitude", "yOffset")),
+    "ClockTriangleFunction": _Function("triangle", ("max", "min")),
+}
+_TIMES = {"period": "period", "shift": "xOffset"}
+_LIST = "ClockMultiplierList"
+
+_CLASSES = {**dict.fromkeys(_FUNCTIONS, "ClockFunction"), _LIST: "ClockStepList"}
+
+
+def convert_clocks(models: ModelSet, notes: Notes) -> None:
+    """Convert scenarios and clocks; references to clocks follow."""
+    for node in models.nodes("scenario"):
+        _keep_recurrence(node, notes)
+    found = by_class(models, (*_FUNCTIONS, _LIST))
+    for node in models.proxies:
+        node.target_class = _CLASSES.get(node.target_class, node.target_class)
+    for name, function in _FUNCTIONS.items():
+        _postpone_curves(models, found[name])
+        _convert_functions(found[name], function, notes)
+    for node in found[_LIST]:
+        _convert_list(node, notes)
+
+
+def _keep_recurrence(scenario: Node, notes: Notes) -> None:
+    for recurrence in scenario.all("recurrence"):
+        text = f"recurrence={quantity_text(recurrence)}"
+        recurrence.remove()
+        keep_comments(recurrence, scenario)
+        add_property(scenario, _KEY, text)
+        notes.kept(recurrence, "the recurrence of a scenario has no successor", text)
+
+
+def _convert_functions(clocks: list[Node], function: _Function, notes: Notes) -> None:
+    for clock in clocks:
+        clock.type = "ClockFunction"
+        clock.attributes["curveType"] = function.curve
+        texts = [f"{name}={clock.attributes.pop(name)}" for name in function.numbers if name in clock.attributes]
+        for part in clock.all(*_TIMES):
+            texts.append(f"{part.tag}={quantity_text(part)}")
+            keep_comments(part, clock)
+            part.remove()
+        if texts:
+            add_property(clock, _KEY, " ".join(texts))
+            notes.kept(clock, _MESSAGE, " ".join(texts))
+
+
+def _postpone_curves(models: ModelSet, clocks: list[Node]) -> None:
+    """State the curves in the newer form, too, in versions for which the converters of APP4MC are not published."""
+    for clock in clocks:
+        parts = [_time(new, part) for old, new in _TIMES.items() for part in clock.all(old)]
+        parts += _frequencies(clock)
+        if parts:
+            message = "curve of a clock: the unit of its frequencies was not stated"
+            state = partial(clock.take, parts)
+            models.postponed.append(Postponed(BEYOND_CONVERTERS, state, Kind.TO_CHECK, clock, message, is_kept=True))
+
+
+def _time(tag: str, old: Node) -> Node:
+    return Node(tag, "", dict(old.attributes), old.origin)
+
+
+def _frequencies(clock: Node) -> list[Node]:
+    """Height and offset of the curve, as far as they are stated."""
+    amplitude, offset = _number(clock, "amplitude"), _number(clock, "yOffset")
+    highest, lowest = _number(clock, "max"), _number(clock, "min")
+    height = 2 * amplitude if amplitude is not None else None
+    if highest is not None and lowest is not None:
+        height = highest - lowest
+    stated = {"peakToPeak": height, "yOffset": offset if offset is not None else lowest}
+    return [Node(tag, "", {"value": str(value)}, clock.origin) for tag, value in stated.items() if value is not None]
+
+
+def _number(clock: Node, name: str) -> Decimal | None:
+    try:
+        number = Decimal(clock.get(name))
+    except InvalidOperation:
+        return None
+    return number if number.is_finite() else None
+
+
+def _convert_list(clock: Node, notes: Notes) -> None:
+    clock.type = "ClockStepList"
+    for entry in clock.all("entries"):
+        if "multiplier" in entry.attributes:
+            text = f"multiplier={entry.attributes.pop('multiplier')}"
+            add_property(entry, _KEY, text)
+            notes.kept(entry, _MESSAGE, text)
+
 
 _RENAMED = {
     "TaskRunnableCall": "RunnableCall",

@@ -6,11 +6,9 @@ from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node
 from amalthea_uros.xmi.migrate.notes import Notes
 from amalthea_uros.xmi.migrate.step import Step
-from amalthea_uros.xmi.migrate.steps.restored import restore_2_0_0
-from amalthea_uros.xmi.migrate.steps.scheduling_definitions import Definitions
-from amalthea_uros.xmi.migrate.steps.scheduling_parameters import convert_algorithms, convert_parameters
-from amalthea_uros.xmi.migrate.steps.scheduling_properties import convert_properties
-from amalthea_uros.xmi.migrate.steps.v0_9_6 import conditions_below
+from amalthea_uros.xmi.migrate.steps.kept import restore_2_0_0
+from amalthea_uros.xmi.migrate.steps.scheduling import Definitions, convert_algorithms, convert_parameters, convert_properties
+from amalthea_uros.xmi.migrate.steps.v0_9_7 import conditions_below
 
 
 def change(models: ModelSet, notes: Notes) -> None:
