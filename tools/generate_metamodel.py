@@ -5,8 +5,8 @@ Usage: python tools/generate_metamodel.py [TARGET]
 
 from __future__ import annotations
 
-import subprocess
 import sys
+import textwrap
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -55,15 +55,48 @@ def imports(classes: list[UnionClass], merged: Union, bases: bool) -> dict[str, 
     return {module: sorted(names) for module, names in sorted(found.items())}
 
 
+#: A feature is a line, however long; other lines have this width.
+WIDTH = 180
+
+
+def lines(names: list[str], indent: str = "    ") -> str:
+    """Names with commas, as many on a line as there is room for."""
+    return textwrap.fill(", ".join(names), WIDTH, initial_indent=indent, subsequent_indent=indent)
+
+
+def importing(module: str, names: list[str]) -> str:
+    """The import of names that are needed for types."""
+    start = f"    from amalthea_uros.metamodel.classes.{module} import "
+    line = start + ", ".join(names)
+    return line if len(line) <= WIDTH else f"{start}(\n{lines(names, ' ' * 8)},\n    )"
+
+
+def quoted(names: list[str]) -> list[str]:
+    """Names as string literals."""
+    return [f'"{name}"' for name in names]
+
+
 def render() -> dict[str, str]:
     """File name -> text of every generated module."""
     merged = union()
     environment = templates()
-    environment.filters["constant"] = constant_case
+    environment.filters |= {"constant": constant_case, "lines": lines, "quoted": quoted}
     by_module: dict[str, list[UnionClass]] = {}
     for cls in merged.classes.values():
         by_module.setdefault(cls.module, []).append(cls)
-    shared = {"merged": merged, "described": descriptions(), "versions": merged.versions, "all_versions": set(merged.versions)}
+    described = descriptions()
+
+    def described_features(cls: UnionClass) -> list[str]:
+        return [name for name in cls.features if f"{cls.name}.{name}" in described]
+
+    shared = {
+        "merged": merged,
+        "described": described,
+        "described_features": described_features,
+        "importing": importing,
+        "versions": merged.versions,
+        "all_versions": set(merged.versions),
+    }
     files = {"enums.py": environment.get_template("metamodel/enums.py.jinja").render(shared)}
     for module, classes in by_module.items():
         quantities = [cls for cls in classes if "Quantity" in cls.bases]
@@ -88,9 +121,6 @@ def main(target: Path) -> None:
     target.mkdir(parents=True, exist_ok=True)
     for name, text in render().items():
         (target / name).write_text(text, encoding="utf-8")
-    # A feature is a line, however long.
-    command = [sys.executable, "-m", "ruff", "format", "--quiet", "--isolated", "--line-length", "180"]
-    subprocess.run([*command, target], check=True)
 
 
 if __name__ == "__main__":

@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from amalthea_uros.metamodel.classes.stimuli import StimuliModel
     from amalthea_uros.metamodel.classes.sw import SWModel
 
-
 class IAnnotatable(Element, abstract=True):
     """Object that may carry custom properties.
 
@@ -35,10 +34,8 @@ class IAnnotatable(Element, abstract=True):
 
     custom_properties: list[CustomProperty] = containments("customProperties")
 
-
 class BaseObject(IAnnotatable, abstract=True):
     """Base of the classes whose objects may carry custom properties."""
-
 
 class Amalthea(BaseObject):
     """Root of a model; it holds at most one sub-model of each kind.
@@ -61,7 +58,6 @@ class Amalthea(BaseObject):
     config_model: ConfigModel | None = containment("configModel")
     measurement_model: MeasurementModel | None = containment("measurementModel")  # until 0.9.9
 
-
 class INamed(Element, abstract=True):
     """Object with a name.
 
@@ -72,24 +68,19 @@ class INamed(Element, abstract=True):
 
     name: str | None = attribute("name")
 
-
 class IReferable(INamed, abstract=True):
     """Named object to which others refer by name and class, so that names must be unique within a class."""
-
 
 class ReferableObject(IReferable, abstract=True):
     """Base of named objects to which others refer."""
 
-
 class ReferableBaseObject(IAnnotatable, IReferable, abstract=True):
     """Base of named objects to which others refer and which may carry custom properties."""
-
 
 class ITaggable(Element, abstract=True):
     """Object that may carry tags."""
 
     tags: list[Tag] = references("tags")
-
 
 class IDisplayName(Element, abstract=True):
     """Object with a second name for display.
@@ -101,12 +92,10 @@ class IDisplayName(Element, abstract=True):
 
     display_name: str | None = attribute("displayName")
 
-
 class IDescription(Element, abstract=True):
     """Object with a free text that describes it."""
 
     description: str | None = attribute("description")
-
 
 class INamespaceMember(Element, abstract=True):
     """Object whose name may be qualified by a namespace.

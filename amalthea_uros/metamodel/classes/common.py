@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from amalthea_uros.metamodel.classes.base import IReferable
     from amalthea_uros.metamodel.classes.enums import DataRateUnit, DataSizeUnit, FrequencyUnit, SamplingType, TimeUnit, VoltageUnit
 
-
 class CommonElements(BaseObject):
     """Sub-model of elements that other sub-models share, such as tags and classifiers."""
 
@@ -25,7 +24,6 @@ class CommonElements(BaseObject):
     namespaces: list[Namespace] = containments("namespaces")
     core_classifiers: list[CoreClassifier] = containments("coreClassifiers")
     memory_classifiers: list[MemoryClassifier] = containments("memoryClassifiers")
-
 
 class Tag(ReferableBaseObject, IDescription):
     """Mark that can be attached to objects, for instance to select them as a group.
@@ -37,7 +35,6 @@ class Tag(ReferableBaseObject, IDescription):
 
     tag_type: str | None = attribute("tagType")
 
-
 class Namespace(ReferableObject):
     """One segment of a qualified name; segments are nested.
 
@@ -48,18 +45,14 @@ class Namespace(ReferableObject):
 
     next_segments: list[Namespace] = containments("nextSegments")
 
-
 class Classifier(ReferableBaseObject, IDescription, abstract=True):
     """Property of a core or a memory that property constraints ask for."""
-
 
 class CoreClassifier(Classifier):
     """Property of processing units, attached to their definitions."""
 
-
 class MemoryClassifier(Classifier):
     """Property of memories, attached to their definitions."""
-
 
 class TransmissionPolicy(Element):
     """How data is transmitted in chunks and what the processing of the chunks costs.
@@ -75,18 +68,14 @@ class TransmissionPolicy(Element):
     chunk_processing_ticks: int | None = attribute("chunkProcessingTicks")
     transmit_ratio: float | None = attribute("transmitRatio")
 
-
 class Quantity(Element, abstract=True):
     """Number with a unit; a unit that is left out means undefined, never a standard unit."""
-
 
 class TimeComparable(Element, abstract=True):
     """Marker of values that can be compared with times."""
 
-
 class Value(Element, abstract=True):
     """Base of everything that a custom property or a scheduling parameter can hold."""
-
 
 class Time(Quantity, Value, TimeComparable):
     """Integer with a unit of time; negative values are legal unless the role of the time excludes them.
@@ -103,7 +92,6 @@ class Time(Quantity, Value, TimeComparable):
     def __init__(self, value: int | None = None, unit: TimeUnit | str | None = None) -> None:
         Element.__init__(self, value=number_of(value), unit=unit_of(TimeUnit, unit))
 
-
 class Frequency(Quantity):
     """Number of cycles per time, with a unit.
 
@@ -118,7 +106,6 @@ class Frequency(Quantity):
     def __init__(self, value: float | None = None, unit: FrequencyUnit | str | None = None) -> None:
         Element.__init__(self, value=number_of(value), unit=unit_of(FrequencyUnit, unit))
 
-
 class Voltage(Quantity):
     """Electrical potential with a unit."""
 
@@ -127,7 +114,6 @@ class Voltage(Quantity):
 
     def __init__(self, value: float | None = None, unit: VoltageUnit | str | None = None) -> None:
         Element.__init__(self, value=number_of(value), unit=unit_of(VoltageUnit, unit))
-
 
 class DataSize(Quantity):
     """Amount of data in bits or bytes, with decimal (kB) or binary (KiB) prefix.
@@ -144,10 +130,8 @@ class DataSize(Quantity):
     def __init__(self, value: int | None = None, unit: DataSizeUnit | str | None = None) -> None:
         Element.__init__(self, value=number_of(value), unit=unit_of(DataSizeUnit, unit))
 
-
 class DataRateComparable(Element, abstract=True):
     """Marker of values that can be compared with data rates."""
-
 
 class DataRate(Quantity, DataRateComparable):
     """Amount of data per second."""
@@ -158,77 +142,64 @@ class DataRate(Quantity, DataRateComparable):
     def __init__(self, value: int | None = None, unit: DataRateUnit | str | None = None) -> None:
         Element.__init__(self, value=number_of(value), unit=unit_of(DataRateUnit, unit))
 
-
 class CustomProperty(Element):
     """Map entry from a user-defined key to a value of any kind."""
 
     key: str | None = attribute("key")
     value: Value | None = containment("value")
 
-
 class ListObject(Value):
     """Value that is a list of values, which may be lists themselves."""
 
     values: list[Value] = containments("values")
-
 
 class MapObject(Value):
     """Value that is a map of keys to values. (since 1.2.0)"""
 
     entries: list[CustomProperty] = containments("entries")
 
-
 class StringObject(Value):
     """Value that is a text."""
 
     value: str | None = attribute("value")
-
 
 class BigIntegerObject(Value):
     """Value that is an integer of any size."""
 
     value: int | None = attribute("value")
 
-
 class ReferenceObject(Value):
     """Value that refers to an object of the model."""
 
     value: IReferable | None = reference("value")
-
 
 class IntegerObject(Value):
     """Value that is an integer of 32 bits."""
 
     value: int | None = attribute("value")
 
-
 class LongObject(Value):
     """Value that is an integer of 64 bits."""
 
     value: int | None = attribute("value")
-
 
 class FloatObject(Value):
     """Value that is a floating-point number of single precision."""
 
     value: float | None = attribute("value")
 
-
 class DoubleObject(Value):
     """Value that is a floating-point number of double precision."""
 
     value: float | None = attribute("value")
-
 
 class BooleanObject(Value):
     """Value that is true or false."""
 
     value: bool | None = attribute("value")
 
-
 class NumericStatistic(Element, abstract=True):
     """How often something happens, as one number or as minimum, average and maximum."""
-
 
 class MinAvgMaxStatistic(NumericStatistic):
     """Statistic of a minimum, an average and a maximum.
@@ -242,16 +213,13 @@ class MinAvgMaxStatistic(NumericStatistic):
     avg: float | None = attribute("avg")
     max: int | None = attribute("max")
 
-
 class SingleValueStatistic(NumericStatistic):
     """Statistic of one number, usually the average."""
 
     value: float | None = attribute("value")
 
-
 class ITimeDeviation(Element, abstract=True):
     """Time that varies, described as a constant, by bounds, by a histogram or by a distribution."""
-
 
 class TimeInterval(Element, abstract=True):
     """Base of deviations and entries with a lower and an upper bound.
@@ -265,12 +233,10 @@ class TimeInterval(Element, abstract=True):
     lower_bound: Time | None = containment("lowerBound")
     upper_bound: Time | None = containment("upperBound")
 
-
 class TimeConstant(ITimeDeviation):
     """Time that does not vary."""
 
     value: Time | None = containment("value")
-
 
 class TimeHistogram(ITimeDeviation):
     """Time described by intervals and how often each was seen.
@@ -282,7 +248,6 @@ class TimeHistogram(ITimeDeviation):
 
     entries: list[TimeHistogramEntry] = containments("entries")
 
-
 class TimeHistogramEntry(TimeInterval):
     """Interval of a histogram and the number of values in it.
 
@@ -293,10 +258,8 @@ class TimeHistogramEntry(TimeInterval):
 
     occurrences: int | None = attribute("occurrences")
 
-
 class BoundedTimeDistribution(TimeInterval, ITimeDeviation, abstract=True):
     """Base of time distributions that always have both bounds."""
-
 
 class TruncatedTimeDistribution(ITimeDeviation, abstract=True):
     """Base of time distributions that bounds may cut off.
@@ -310,7 +273,6 @@ class TruncatedTimeDistribution(ITimeDeviation, abstract=True):
     lower_bound: Time | None = containment("lowerBound")
     upper_bound: Time | None = containment("upperBound")
 
-
 class TimeBoundaries(BoundedTimeDistribution):
     """Time between two bounds, with a hint where between them the values lie.
 
@@ -320,7 +282,6 @@ class TimeBoundaries(BoundedTimeDistribution):
     """
 
     sampling_type: SamplingType | None = attribute("samplingType")
-
 
 class TimeStatistics(BoundedTimeDistribution):
     """Time known by its minimum, average and maximum, without a distribution.
@@ -332,10 +293,8 @@ class TimeStatistics(BoundedTimeDistribution):
 
     average: Time | None = containment("average")
 
-
 class TimeUniformDistribution(BoundedTimeDistribution):
     """Time whose values between the bounds are equally likely."""
-
 
 class TimeGaussDistribution(TruncatedTimeDistribution):
     """Normally distributed time, optionally truncated at bounds.
@@ -349,7 +308,6 @@ class TimeGaussDistribution(TruncatedTimeDistribution):
     mean: Time | None = containment("mean")
     sd: Time | None = containment("sd")
 
-
 class TimeWeibullEstimatorsDistribution(BoundedTimeDistribution):
     """Weibull distributed time given by its average and the probability of the upper bound.
 
@@ -361,7 +319,6 @@ class TimeWeibullEstimatorsDistribution(BoundedTimeDistribution):
 
     average: Time | None = containment("average")
     p_remain_promille: float | None = attribute("pRemainPromille")
-
 
 class TimeBetaDistribution(BoundedTimeDistribution):
     """Beta distributed time, scaled to the bounds.
@@ -375,10 +332,8 @@ class TimeBetaDistribution(BoundedTimeDistribution):
     alpha: float | None = attribute("alpha")
     beta: float | None = attribute("beta")
 
-
 class IDiscreteValueDeviation(Element, abstract=True):
     """Integer that varies, such as ticks, cycles or a count."""
-
 
 class DiscreteValueInterval(Element, abstract=True):
     """Base of deviations and entries with an integer lower and upper bound.
@@ -392,12 +347,10 @@ class DiscreteValueInterval(Element, abstract=True):
     lower_bound: int | None = attribute("lowerBound")
     upper_bound: int | None = attribute("upperBound")
 
-
 class DiscreteValueConstant(IDiscreteValueDeviation):
     """Integer that does not vary."""
 
     value: int | None = attribute("value")
-
 
 class DiscreteValueHistogram(IDiscreteValueDeviation):
     """Integer described by intervals and how often each was seen.
@@ -409,7 +362,6 @@ class DiscreteValueHistogram(IDiscreteValueDeviation):
 
     entries: list[DiscreteValueHistogramEntry] = containments("entries")
 
-
 class DiscreteValueHistogramEntry(DiscreteValueInterval):
     """Interval of a histogram and the number of values in it.
 
@@ -420,10 +372,8 @@ class DiscreteValueHistogramEntry(DiscreteValueInterval):
 
     occurrences: int | None = attribute("occurrences")
 
-
 class BoundedDiscreteValueDistribution(DiscreteValueInterval, IDiscreteValueDeviation, abstract=True):
     """Base of integer distributions that always have both bounds."""
-
 
 class TruncatedDiscreteValueDistribution(IDiscreteValueDeviation, abstract=True):
     """Base of integer distributions that bounds may cut off.
@@ -437,7 +387,6 @@ class TruncatedDiscreteValueDistribution(IDiscreteValueDeviation, abstract=True)
     lower_bound: int | None = attribute("lowerBound")
     upper_bound: int | None = attribute("upperBound")
 
-
 class DiscreteValueBoundaries(BoundedDiscreteValueDistribution):
     """Integer between two bounds, with a hint where between them the values lie.
 
@@ -447,7 +396,6 @@ class DiscreteValueBoundaries(BoundedDiscreteValueDistribution):
     """
 
     sampling_type: SamplingType | None = attribute("samplingType")
-
 
 class DiscreteValueStatistics(BoundedDiscreteValueDistribution):
     """Integer known by its minimum, average and maximum, without a distribution.
@@ -459,10 +407,8 @@ class DiscreteValueStatistics(BoundedDiscreteValueDistribution):
 
     average: float | None = attribute("average")
 
-
 class DiscreteValueUniformDistribution(BoundedDiscreteValueDistribution):
     """Integer whose values between the bounds are equally likely."""
-
 
 class DiscreteValueGaussDistribution(TruncatedDiscreteValueDistribution):
     """Normally distributed integer, optionally truncated at bounds.
@@ -476,7 +422,6 @@ class DiscreteValueGaussDistribution(TruncatedDiscreteValueDistribution):
     mean: float | None = attribute("mean")
     sd: float | None = attribute("sd")
 
-
 class DiscreteValueWeibullEstimatorsDistribution(BoundedDiscreteValueDistribution):
     """Weibull distributed integer given by its average and the probability of the upper bound.
 
@@ -488,7 +433,6 @@ class DiscreteValueWeibullEstimatorsDistribution(BoundedDiscreteValueDistributio
 
     average: float | None = attribute("average")
     p_remain_promille: float | None = attribute("pRemainPromille")
-
 
 class DiscreteValueBetaDistribution(BoundedDiscreteValueDistribution):
     """Beta distributed integer, scaled to the bounds.
@@ -502,10 +446,8 @@ class DiscreteValueBetaDistribution(BoundedDiscreteValueDistribution):
     alpha: float | None = attribute("alpha")
     beta: float | None = attribute("beta")
 
-
 class IContinuousValueDeviation(Element, abstract=True):
     """Real number that varies, such as a rate."""
-
 
 class ContinuousValueInterval(Element, abstract=True):
     """Base of deviations and entries with a real lower and upper bound.
@@ -519,12 +461,10 @@ class ContinuousValueInterval(Element, abstract=True):
     lower_bound: float | None = attribute("lowerBound")
     upper_bound: float | None = attribute("upperBound")
 
-
 class ContinuousValueConstant(IContinuousValueDeviation):
     """Real number that does not vary."""
 
     value: float | None = attribute("value")
-
 
 class ContinuousValueHistogram(IContinuousValueDeviation):
     """Real number described by intervals and how often each was seen.
@@ -536,7 +476,6 @@ class ContinuousValueHistogram(IContinuousValueDeviation):
 
     entries: list[ContinuousValueHistogramEntry] = containments("entries")
 
-
 class ContinuousValueHistogramEntry(ContinuousValueInterval):
     """Interval of a histogram and the number of values in it.
 
@@ -547,10 +486,8 @@ class ContinuousValueHistogramEntry(ContinuousValueInterval):
 
     occurrences: int | None = attribute("occurrences")
 
-
 class BoundedContinuousValueDistribution(ContinuousValueInterval, IContinuousValueDeviation, abstract=True):
     """Base of distributions of real numbers that always have both bounds."""
-
 
 class TruncatedContinuousValueDistribution(IContinuousValueDeviation, abstract=True):
     """Base of distributions of real numbers that bounds may cut off.
@@ -564,7 +501,6 @@ class TruncatedContinuousValueDistribution(IContinuousValueDeviation, abstract=T
     lower_bound: float | None = attribute("lowerBound")
     upper_bound: float | None = attribute("upperBound")
 
-
 class ContinuousValueBoundaries(BoundedContinuousValueDistribution):
     """Real number between two bounds, with a hint where between them the values lie.
 
@@ -574,7 +510,6 @@ class ContinuousValueBoundaries(BoundedContinuousValueDistribution):
     """
 
     sampling_type: SamplingType | None = attribute("samplingType")
-
 
 class ContinuousValueStatistics(BoundedContinuousValueDistribution):
     """Real number known by its minimum, average and maximum, without a distribution.
@@ -586,10 +521,8 @@ class ContinuousValueStatistics(BoundedContinuousValueDistribution):
 
     average: float | None = attribute("average")
 
-
 class ContinuousValueUniformDistribution(BoundedContinuousValueDistribution):
     """Real number whose values between the bounds are equally likely."""
-
 
 class ContinuousValueGaussDistribution(TruncatedContinuousValueDistribution):
     """Normally distributed real number, optionally truncated at bounds.
@@ -603,7 +536,6 @@ class ContinuousValueGaussDistribution(TruncatedContinuousValueDistribution):
     mean: float | None = attribute("mean")
     sd: float | None = attribute("sd")
 
-
 class ContinuousValueWeibullEstimatorsDistribution(BoundedContinuousValueDistribution):
     """Weibull distributed real number given by its average and the probability of the upper bound.
 
@@ -615,7 +547,6 @@ class ContinuousValueWeibullEstimatorsDistribution(BoundedContinuousValueDistrib
 
     average: float | None = attribute("average")
     p_remain_promille: float | None = attribute("pRemainPromille")
-
 
 class ContinuousValueBetaDistribution(BoundedContinuousValueDistribution):
     """Beta distributed real number, scaled to the bounds.
@@ -629,14 +560,11 @@ class ContinuousValueBetaDistribution(BoundedContinuousValueDistribution):
     alpha: float | None = attribute("alpha")
     beta: float | None = attribute("beta")
 
-
 class Mode(ReferableBaseObject, abstract=True):
     """Type of a mode label, which says what values it may take."""
 
-
 class NumericMode(Mode):
     """Mode whose values are integers."""
-
 
 class EnumMode(Mode):
     """Mode whose values are its literals.
@@ -647,7 +575,6 @@ class EnumMode(Mode):
     """
 
     literals: list[ModeLiteral] = containments("literals")
-
 
 class ModeLiteral(ReferableBaseObject):
     """One value of an enum mode."""

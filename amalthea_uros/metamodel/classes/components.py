@@ -16,25 +16,21 @@ if TYPE_CHECKING:
     from amalthea_uros.metamodel.classes.os import Semaphore
     from amalthea_uros.metamodel.classes.sw import AbstractProcess, Channel, Label, OsEvent, Runnable, TypeDefinition
 
-
 class IComponentContainer(Element, abstract=True):
     """Object that contains components."""
 
     components: list[Component] = containments("components")
-
 
 class IInterfaceContainer(Element, abstract=True):
     """Object that contains interfaces."""
 
     interfaces: list[MainInterface] = containments("interfaces")
 
-
 class ComponentsModel(BaseObject, IComponentContainer, IInterfaceContainer):
     """Sub-model of components, their interfaces and the systems they form."""
 
     structures: list[ComponentStructure] = containments("structures")
     systems: list[System] = containments("systems")
-
 
 class ISystem(Element, abstract=True):
     """Object built of connected component instances, such as a system or a composite.
@@ -47,7 +43,6 @@ class ISystem(Element, abstract=True):
     component_instances: list[ComponentInstance] = containments("componentInstances")
     connectors: list[Connector] = containments("connectors")
     grounded_ports: list[QualifiedPort] = containments("groundedPorts")
-
 
 class ComponentInterface(ReferableBaseObject, ITaggable, abstract=True):
     """Interface that ports provide or require, possibly divided into sub-interfaces.
@@ -62,12 +57,10 @@ class ComponentInterface(ReferableBaseObject, ITaggable, abstract=True):
     sub_interfaces: list[SubInterface] = containments("subInterfaces")
     datatype: TypeDefinition | None = reference("datatype")  # until 2.2.0
 
-
 class IComponentStructureMember(Element, abstract=True):
     """Object that can be sorted into the tree of component structures."""
 
     structure: ComponentStructure | None = reference("structure")
-
 
 class MainInterface(ComponentInterface, INamespaceMember, IComponentStructureMember):
     """Interface that stands by itself and not inside another one.
@@ -79,17 +72,14 @@ class MainInterface(ComponentInterface, INamespaceMember, IComponentStructureMem
 
     version: str | None = attribute("version")
 
-
 class SubInterface(ComponentInterface):
     """Part of an interface."""
-
 
 class ComponentPort(ReferableBaseObject, ITaggable):
     """Point of a component at which an interface is provided or required."""
 
     kind: InterfaceKind | None = attribute("kind")
     interface: ComponentInterface | None = reference("interface")
-
 
 class ComponentStructure(ReferableObject):
     """Node of a tree that sorts components and interfaces.
@@ -101,7 +91,6 @@ class ComponentStructure(ReferableObject):
 
     structure_type: str | None = attribute("structureType")
     sub_structures: list[ComponentStructure] = containments("subStructures")
-
 
 class Component(ReferableBaseObject, ITaggable, INamespaceMember, IComponentStructureMember):
     """Unit of software behind ports; it lists its processes, runnables and data and does not contain them.
@@ -119,14 +108,11 @@ class Component(ReferableBaseObject, ITaggable, INamespaceMember, IComponentStru
     semaphores: list[Semaphore] = references("semaphores")
     os_events: list[OsEvent] = references("osEvents")
 
-
 class Composite(Component, ISystem):
     """Component that is built of connected component instances."""
 
-
 class System(ReferableBaseObject, ITaggable, ISystem):
     """Top of an architecture, built of connected component instances."""
-
 
 class ComponentInstance(ReferableBaseObject, ITaggable):
     """Use of a component inside a system or composite.
@@ -137,7 +123,6 @@ class ComponentInstance(ReferableBaseObject, ITaggable):
     """
 
     type: Component | None = reference("type")
-
 
 class Connector(BaseObject, INamed, ITaggable):
     """Link between two ports inside a system or composite.
@@ -151,13 +136,11 @@ class Connector(BaseObject, INamed, ITaggable):
     target_port: QualifiedPort | None = containment("targetPort")
     implemented_interfaces: list[InterfaceChannel] = containments("implementedInterfaces")
 
-
 class InterfaceChannel(Element):
     """Map entry from an interface to the channel that implements it."""
 
     key: ComponentInterface | None = reference("key")
     value: Channel | None = reference("value")
-
 
 class QualifiedPort(BaseObject):
     """Port of a certain component instance.

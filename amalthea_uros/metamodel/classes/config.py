@@ -13,12 +13,10 @@ from amalthea_uros.metamodel.features import containments, reference
 if TYPE_CHECKING:
     from amalthea_uros.metamodel.classes.events import EntityEvent
 
-
 class ConfigModel(BaseObject):
     """Sub-model of settings for tools, such as the events to trace."""
 
     events_to_trace: list[EventConfig] = containments("eventsToTrace")
-
 
 class EventConfig(BaseObject, INamed):
     """Choice of one event for tracing."""

@@ -15,25 +15,13 @@ if TYPE_CHECKING:
     from amalthea_uros.metamodel.classes.common import Frequency, Tag, Time
     from amalthea_uros.metamodel.classes.components import Component
     from amalthea_uros.metamodel.classes.enums import (
-        CPUPercentageMetric,
-        CoherencyDirection,
-        CountMetric,
-        EventChainItemType,
-        FrequencyMetric,
-        LatencyType,
-        LimitType,
-        MappingType,
-        PercentageMetric,
-        RunnableOrderType,
-        Severity,
-        SynchronizationType,
-        TimeMetric,
+        CPUPercentageMetric, CoherencyDirection, CountMetric, EventChainItemType, FrequencyMetric, LatencyType, LimitType, MappingType, PercentageMetric, RunnableOrderType,
+        Severity, SynchronizationType, TimeMetric,
     )
     from amalthea_uros.metamodel.classes.events import EntityEvent, Event
     from amalthea_uros.metamodel.classes.hw import Memory, ProcessingUnit
     from amalthea_uros.metamodel.classes.os import Scheduler
     from amalthea_uros.metamodel.classes.sw import AbstractProcess, Label, Process, ProcessChain, Runnable, Section
-
 
 class ConstraintsModel(BaseObject):
     """Sub-model of event chains, constraints and requirements."""
@@ -47,7 +35,6 @@ class ConstraintsModel(BaseObject):
     data_coherency_groups: list[DataCoherencyGroup] = containments("dataCoherencyGroups")
     data_stability_groups: list[DataStabilityGroup] = containments("dataStabilityGroups")
     physical_section_constraints: list[PhysicalSectionConstraint] = containments("physicalSectionConstraints")
-
 
 class RunnableSequencingConstraint(ReferableBaseObject):
     """Demand that groups of runnables run in a given order.
@@ -63,18 +50,14 @@ class RunnableSequencingConstraint(ReferableBaseObject):
     runnable_groups: list[RunnableEntityGroup] = containments("runnableGroups")
     process_scope: list[AbstractProcess] = references("processScope")
 
-
 class AffinityConstraint(ReferableBaseObject, abstract=True):
     """Demand that objects are kept together on a target or apart."""
-
 
 class SeparationConstraint(AffinityConstraint, abstract=True):
     """Demand that objects are kept apart."""
 
-
 class PairingConstraint(AffinityConstraint, abstract=True):
     """Demand that objects are kept together."""
-
 
 class ProcessConstraint(Element, abstract=True):
     """Affinity constraint about processes.
@@ -86,7 +69,6 @@ class ProcessConstraint(Element, abstract=True):
 
     target: ProcessConstraintTarget | None = containment("target")
 
-
 class RunnableConstraint(Element, abstract=True):
     """Affinity constraint about runnables.
 
@@ -96,7 +78,6 @@ class RunnableConstraint(Element, abstract=True):
     """
 
     target: RunnableConstraintTarget | None = containment("target")
-
 
 class DataConstraint(Element, abstract=True):
     """Affinity constraint about labels.
@@ -108,7 +89,6 @@ class DataConstraint(Element, abstract=True):
 
     target: DataConstraintTarget | None = containment("target")
 
-
 class RunnableSeparationConstraint(SeparationConstraint, RunnableConstraint, BaseObject):
     """Demand that runnables of two groups share no target, or that those of one group avoid the targets.
 
@@ -118,7 +98,6 @@ class RunnableSeparationConstraint(SeparationConstraint, RunnableConstraint, Bas
     """
 
     groups: list[RunnableGroup] = containments("groups")
-
 
 class ProcessSeparationConstraint(SeparationConstraint, ProcessConstraint, BaseObject):
     """Demand that processes of two groups share no target, or that those of one group avoid the targets.
@@ -130,7 +109,6 @@ class ProcessSeparationConstraint(SeparationConstraint, ProcessConstraint, BaseO
 
     groups: list[ProcessGroup] = containments("groups")
 
-
 class DataSeparationConstraint(SeparationConstraint, DataConstraint, BaseObject):
     """Demand that labels of two groups share no memory, or that those of one group avoid the targets.
 
@@ -141,36 +119,29 @@ class DataSeparationConstraint(SeparationConstraint, DataConstraint, BaseObject)
 
     groups: list[LabelEntityGroup] = containments("groups")
 
-
 class RunnablePairingConstraint(PairingConstraint, RunnableConstraint, BaseObject):
     """Demand that all runnables of a group run on one of the targets together."""
 
     group: RunnableGroup | None = containment("group")
-
 
 class ProcessPairingConstraint(PairingConstraint, ProcessConstraint, BaseObject):
     """Demand that all processes of a group run on one of the targets together."""
 
     group: ProcessGroup | None = containment("group")
 
-
 class DataPairingConstraint(PairingConstraint, DataConstraint, BaseObject):
     """Demand that all labels of a group lie in one of the targets together."""
 
     group: LabelGroup | None = containment("group")
 
-
 class RunnableConstraintTarget(Element, abstract=True):
     """Where runnables may or may not run."""
-
 
 class ProcessConstraintTarget(Element, abstract=True):
     """Where processes may or may not run."""
 
-
 class DataConstraintTarget(Element, abstract=True):
     """Where labels may or may not lie."""
-
 
 class TargetMemory(DataConstraintTarget, BaseObject):
     """Memories as the target of an affinity constraint.
@@ -182,7 +153,6 @@ class TargetMemory(DataConstraintTarget, BaseObject):
 
     memories: list[Memory] = references("memories")
 
-
 class TargetCore(RunnableConstraintTarget, ProcessConstraintTarget, BaseObject):
     """Processing units as the target of an affinity constraint.
 
@@ -192,7 +162,6 @@ class TargetCore(RunnableConstraintTarget, ProcessConstraintTarget, BaseObject):
     """
 
     cores: list[ProcessingUnit] = references("cores")
-
 
 class TargetScheduler(RunnableConstraintTarget, ProcessConstraintTarget, BaseObject):
     """Schedulers as the target of an affinity constraint.
@@ -204,42 +173,34 @@ class TargetScheduler(RunnableConstraintTarget, ProcessConstraintTarget, BaseObj
 
     schedulers: list[Scheduler] = references("schedulers")
 
-
 class LabelGroup(Element, abstract=True):
     """Labels about which a constraint speaks."""
-
 
 class RunnableGroup(Element, abstract=True):
     """Runnables about which a constraint speaks."""
 
-
 class ProcessGroup(Element, abstract=True):
     """Processes about which a constraint speaks."""
-
 
 class LabelEntityGroup(LabelGroup, BaseObject):
     """Groups labels by listing them one by one."""
 
     labels: list[Label] = references("labels")
 
-
 class RunnableEntityGroup(RunnableGroup, BaseObject):
     """Groups runnables by listing them one by one."""
 
     runnables: list[Runnable] = references("runnables")
-
 
 class ProcessEntityGroup(ProcessGroup, BaseObject):
     """Groups processes by listing them one by one."""
 
     processes: list[Process] = references("processes")
 
-
 class TagGroup(RunnableGroup, ProcessGroup, BaseObject):
     """Groups all processes or runnables that carry a tag."""
 
     tag: Tag | None = reference("tag")
-
 
 class AbstractEventChain(BaseObject, INamed, abstract=True):
     """Cause-effect chain from a stimulus event to a response event, possibly refined by items.
@@ -259,18 +220,14 @@ class AbstractEventChain(BaseObject, INamed, abstract=True):
     item_type: EventChainItemType | None = attribute("itemType")
     min_items_completed: int | None = attribute("minItemsCompleted")
 
-
 class EventChain(AbstractEventChain, IReferable):
     """Event chain that constraints and other chains can refer to."""
-
 
 class SubEventChain(AbstractEventChain):
     """Event chain without an identity of its own, contained in another one."""
 
-
 class EventChainItem(Element, abstract=True):
     """Part of an event chain."""
-
 
 class EventChainReference(BaseObject, EventChainItem):
     """Part of an event chain that is an event chain defined elsewhere.
@@ -282,23 +239,19 @@ class EventChainReference(BaseObject, EventChainItem):
 
     event_chain: EventChain | None = reference("eventChain")
 
-
 class EventChainContainer(BaseObject, EventChainItem):
     """Part of an event chain that is defined on the spot."""
 
     event_chain: SubEventChain | None = containment("eventChain")
 
-
 class TimingConstraint(ReferableBaseObject, abstract=True):
     """Demand on when events occur."""
-
 
 class PhysicalSectionConstraint(ReferableBaseObject):
     """Demand that a section is placed only in certain memories."""
 
     section: Section | None = reference("section")
     memories: list[Memory] = references("memories")
-
 
 class SynchronizationConstraint(TimingConstraint, abstract=True):
     """Demand that events occur together, within a tolerance.
@@ -312,12 +265,10 @@ class SynchronizationConstraint(TimingConstraint, abstract=True):
     multiple_occurrences_allowed: bool | None = attribute("multipleOccurrencesAllowed")
     tolerance: Time | None = containment("tolerance")
 
-
 class EventSynchronizationConstraint(SynchronizationConstraint):
     """Demand that occurrences of several events lie in a common time window."""
 
     events: list[EntityEvent] = references("events")
-
 
 class EventChainSynchronizationConstraint(SynchronizationConstraint):
     """Demand that two event chains start together or end together.
@@ -330,7 +281,6 @@ class EventChainSynchronizationConstraint(SynchronizationConstraint):
 
     scope: list[EventChain] = references("scope")
     type: SynchronizationType | None = attribute("type")
-
 
 class DelayConstraint(TimingConstraint):
     """Demand on the time from a source event to a target event.
@@ -348,7 +298,6 @@ class DelayConstraint(TimingConstraint):
     upper: Time | None = containment("upper")
     lower: Time | None = containment("lower")
 
-
 class EventChainLatencyConstraint(TimingConstraint):
     """Limit of the reaction time or the data age of an event chain.
 
@@ -363,7 +312,6 @@ class EventChainLatencyConstraint(TimingConstraint):
     type: LatencyType | None = attribute("type")
     minimum: Time | None = containment("minimum")
     maximum: Time | None = containment("maximum")
-
 
 class RepetitionConstraint(TimingConstraint):
     """Demand on the distance of repeated occurrences of an event.
@@ -384,7 +332,6 @@ class RepetitionConstraint(TimingConstraint):
     jitter: Time | None = containment("jitter")
     period: Time | None = containment("period")
 
-
 class DataAgeConstraint(ReferableBaseObject):
     """Demand on how long a written value of a label is valid.
 
@@ -397,10 +344,8 @@ class DataAgeConstraint(ReferableBaseObject):
     label: Label | None = reference("label")
     data_age: DataAge | None = containment("dataAge")
 
-
 class DataAge(Element, abstract=True):
     """How long written data is valid."""
-
 
 class DataAgeCycle(DataAge):
     """Validity of data, counted in activations of the process that runs the writing runnable.
@@ -414,7 +359,6 @@ class DataAgeCycle(DataAge):
     minimum_cycle: int | None = attribute("minimumCycle")
     maximum_cycle: int | None = attribute("maximumCycle")
 
-
 class DataAgeTime(DataAge):
     """Validity of data as time after the write.
 
@@ -426,7 +370,6 @@ class DataAgeTime(DataAge):
 
     minimum_time: Time | None = containment("minimumTime")
     maximum_time: Time | None = containment("maximumTime")
-
 
 class Requirement(BaseObject, INamed, abstract=True):
     """Limit of a metric, with the severity of missing it.
@@ -440,30 +383,25 @@ class Requirement(BaseObject, INamed, abstract=True):
     severity: Severity | None = attribute("severity")
     limit: RequirementLimit | None = containment("limit")
 
-
 class ProcessRequirement(Requirement):
     """Requirement on a process; an upper limit of the response time is its deadline."""
 
     process: AbstractProcess | None = reference("process")
-
 
 class RunnableRequirement(Requirement):
     """Requirement on a runnable."""
 
     runnable: Runnable | None = reference("runnable")
 
-
 class ArchitectureRequirement(Requirement):
     """Requirement on a component."""
 
     component: Component | None = reference("component")
 
-
 class ProcessChainRequirement(Requirement):
     """Requirement on a process chain."""
 
     process_chain: ProcessChain | None = reference("processChain")
-
 
 class RequirementLimit(Element, abstract=True):
     """Metric and the bound it must keep.
@@ -474,7 +412,6 @@ class RequirementLimit(Element, abstract=True):
     """
 
     limit_type: LimitType | None = attribute("limitType")
-
 
 class CPUPercentageRequirementLimit(RequirementLimit):
     """Bound of a processor load, relative to the capacity of a processing unit.
@@ -489,13 +426,11 @@ class CPUPercentageRequirementLimit(RequirementLimit):
     limit_value: float | None = attribute("limitValue")
     hardware_context: ProcessingUnit | None = reference("hardwareContext")
 
-
 class FrequencyRequirementLimit(RequirementLimit):
     """Bound of how often something happens per time."""
 
     metric: FrequencyMetric | None = attribute("metric")
     limit_value: Frequency | None = containment("limitValue")
-
 
 class PercentageRequirementLimit(RequirementLimit):
     """Bound of a ratio.
@@ -508,13 +443,11 @@ class PercentageRequirementLimit(RequirementLimit):
     metric: PercentageMetric | None = attribute("metric")
     limit_value: float | None = attribute("limitValue")
 
-
 class CountRequirementLimit(RequirementLimit):
     """Bound of a count, such as that of activations."""
 
     metric: CountMetric | None = attribute("metric")
     limit_value: int | None = attribute("limitValue")
-
 
 class TimeRequirementLimit(RequirementLimit):
     """Bound of a time, such as the response time.
@@ -527,7 +460,6 @@ class TimeRequirementLimit(RequirementLimit):
 
     metric: TimeMetric | None = attribute("metric")
     limit_value: Time | None = containment("limitValue")
-
 
 class DataCoherencyGroup(ReferableBaseObject):
     """Labels that must be read or written coherently, as values that belong together.
@@ -542,7 +474,6 @@ class DataCoherencyGroup(ReferableBaseObject):
     scope: DataGroupScope | None = containment("scope")
     direction: CoherencyDirection | None = attribute("direction")
 
-
 class DataStabilityGroup(ReferableBaseObject):
     """Labels whose values must not change within a scope.
 
@@ -554,22 +485,18 @@ class DataStabilityGroup(ReferableBaseObject):
     labels: list[Label] = references("labels")
     scope: DataGroupScope | None = containment("scope")
 
-
 class DataGroupScope(Element, abstract=True):
     """Range of code in which data must be coherent or stable."""
-
 
 class ProcessScope(DataGroupScope):
     """Range of one process."""
 
     process: AbstractProcess | None = reference("process")
 
-
 class RunnableScope(DataGroupScope):
     """Range of one runnable."""
 
     runnable: Runnable | None = reference("runnable")
-
 
 class ComponentScope(DataGroupScope):
     """Range of one component."""

@@ -13,43 +13,31 @@ from amalthea_uros.metamodel.features import attribute, containments, reference,
 if TYPE_CHECKING:
     from amalthea_uros.metamodel.classes.components import Component
     from amalthea_uros.metamodel.classes.enums import (
-        ChannelEventType,
-        ComponentEventType,
-        LabelEventType,
-        ModeLabelEventType,
-        ProcessEventType,
-        RunnableEventType,
-        SemaphoreEventType,
+        ChannelEventType, ComponentEventType, LabelEventType, ModeLabelEventType, ProcessEventType, RunnableEventType, SemaphoreEventType,
     )
     from amalthea_uros.metamodel.classes.hw import ProcessingUnit
     from amalthea_uros.metamodel.classes.os import Semaphore
     from amalthea_uros.metamodel.classes.stimuli import Stimulus
     from amalthea_uros.metamodel.classes.sw import Channel, Label, ModeLabel, Process, ProcessChain, Runnable
 
-
 class EventModel(BaseObject):
     """Sub-model of the events that chains, constraints, stimuli and traces speak about."""
 
     events: list[Event] = containments("events")
 
-
 class Event(ReferableBaseObject, ITaggable, IDescription, abstract=True):
     """Something observable that happens at an instant."""
-
 
 class EventSet(Event):
     """Set of events that all must occur in any order; it is complete when the last one has occurred."""
 
     events: list[EntityEvent] = references("events")
 
-
 class EntityEvent(Event, abstract=True):
     """Event that happens to one object."""
 
-
 class TriggerEvent(EntityEvent, abstract=True):
     """Event that can fire an event stimulus."""
-
 
 class CustomEvent(TriggerEvent):
     """Event without predefined meaning, raised by a custom event trigger.
@@ -61,7 +49,6 @@ class CustomEvent(TriggerEvent):
 
     event_type: str | None = attribute("eventType")
 
-
 class StimulusEvent(EntityEvent):
     """Occurrence of a stimulus.
 
@@ -71,7 +58,6 @@ class StimulusEvent(EntityEvent):
     """
 
     entity: Stimulus | None = reference("entity")
-
 
 class ProcessEvent(EntityEvent):
     """Change of the state of a task or ISR; it cannot fire an event stimulus.
@@ -87,7 +73,6 @@ class ProcessEvent(EntityEvent):
     entity: Process | None = reference("entity")
     processing_unit: ProcessingUnit | None = reference("processingUnit")
 
-
 class ProcessChainEvent(EntityEvent):
     """Change of the state of a process chain.
 
@@ -101,7 +86,6 @@ class ProcessChainEvent(EntityEvent):
     event_type: ProcessEventType | None = attribute("eventType")
     entity: ProcessChain | None = reference("entity")
     processing_unit: ProcessingUnit | None = reference("processingUnit")
-
 
 class RunnableEvent(TriggerEvent):
     """Start, suspension, resumption or termination of a runnable.
@@ -119,7 +103,6 @@ class RunnableEvent(TriggerEvent):
     process: Process | None = reference("process")
     processing_unit: ProcessingUnit | None = reference("processingUnit")
 
-
 class LabelEvent(TriggerEvent):
     """Read or write access to a label.
 
@@ -135,7 +118,6 @@ class LabelEvent(TriggerEvent):
     entity: Label | None = reference("entity")
     runnable: Runnable | None = reference("runnable")
     process: Process | None = reference("process")
-
 
 class ModeLabelEvent(TriggerEvent):
     """Access to a mode label. (since 2.1.0)
@@ -153,7 +135,6 @@ class ModeLabelEvent(TriggerEvent):
     runnable: Runnable | None = reference("runnable")
     process: Process | None = reference("process")
 
-
 class ChannelEvent(TriggerEvent):
     """Sending to or receiving from a channel.
 
@@ -169,7 +150,6 @@ class ChannelEvent(TriggerEvent):
     entity: Channel | None = reference("entity")
     runnable: Runnable | None = reference("runnable")
     process: Process | None = reference("process")
-
 
 class SemaphoreEvent(EntityEvent):
     """Locking or unlocking of a semaphore.
@@ -188,7 +168,6 @@ class SemaphoreEvent(EntityEvent):
     runnable: Runnable | None = reference("runnable")
     process: Process | None = reference("process")
     processing_unit: ProcessingUnit | None = reference("processingUnit")
-
 
 class ComponentEvent(EntityEvent):
     """Start or end of a component, derived from its runnables.

@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from amalthea_uros.metamodel.classes.common import CoreClassifier, DataRate, DataSize, Frequency, IDiscreteValueDeviation, MemoryClassifier, Voltage
     from amalthea_uros.metamodel.classes.enums import CacheType, HwFeatureType, MemoryType, PortInterface, PortType, PuType, SchedPolicy, StructureType, WriteStrategy
 
-
 class HWModel(BaseObject):
     """Sub-model of the hardware with its definitions, structures and domains.
 
@@ -28,7 +27,6 @@ class HWModel(BaseObject):
     feature_categories: list[HwFeatureCategory] = containments("featureCategories")
     structures: list[HwStructure] = containments("structures")
     domains: list[HwDomain] = containments("domains")
-
 
 class HwStructure(ReferableBaseObject, ITaggable):
     """Part of the hardware, such as an ECU, microcontroller or cluster, that contains modules and further parts.
@@ -45,7 +43,6 @@ class HwStructure(ReferableBaseObject, ITaggable):
     modules: list[HwModule] = containments("modules")
     connections: list[HwConnection] = containments("connections")
 
-
 class HwModule(ReferableBaseObject, ITaggable, abstract=True):
     """Base of processing units, memories, caches and connection handlers.
 
@@ -58,10 +55,8 @@ class HwModule(ReferableBaseObject, ITaggable, abstract=True):
     power_domain: PowerDomain | None = reference("powerDomain")
     frequency_domain: FrequencyDomain | None = reference("frequencyDomain")
 
-
 class HwDomain(ReferableBaseObject, ITaggable, abstract=True):
     """Part of the hardware that shares a clock or a supply."""
-
 
 class FrequencyDomain(HwDomain):
     """Modules that share a clock.
@@ -75,7 +70,6 @@ class FrequencyDomain(HwDomain):
     default_value: Frequency | None = containment("defaultValue")
     clock_gating: bool | None = attribute("clockGating")
 
-
 class PowerDomain(HwDomain):
     """Modules that share a supply voltage.
 
@@ -87,14 +81,11 @@ class PowerDomain(HwDomain):
     default_value: Voltage | None = containment("defaultValue")
     power_gating: bool | None = attribute("powerGating")
 
-
 class HwDestination(IReferable, abstract=True):
     """Hardware that can be accessed, such as a memory or another processing unit."""
 
-
 class HwPathElement(IReferable, abstract=True):
     """Hardware that an access path can lead through."""
-
 
 class ProcessingUnit(HwModule, HwDestination, HwPathElement):
     """Core or accelerator that executes processes.
@@ -110,25 +101,21 @@ class ProcessingUnit(HwModule, HwDestination, HwPathElement):
     access_elements: list[HwAccessElement] = containments("accessElements")
     caches: list[Cache] = containments("caches")
 
-
 class Memory(HwModule, HwDestination):
     """Memory module into which labels and other elements are mapped."""
 
     definition: MemoryDefinition | None = reference("definition")
-
 
 class Cache(HwModule, HwPathElement):
     """Cache module, inside a processing unit or shared in a structure."""
 
     definition: CacheDefinition | None = reference("definition")
 
-
 class HwFeatureCategory(ReferableBaseObject, IDescription):
     """Kind of hardware feature; the keys of execution needs name it."""
 
     feature_type: HwFeatureType | None = attribute("featureType")
     features: list[HwFeature] = containments("features")
-
 
 class HwFeature(ReferableBaseObject):
     """Number that a processing unit definition has for a feature category.
@@ -139,7 +126,6 @@ class HwFeature(ReferableBaseObject):
     """
 
     value: float | None = attribute("value")
-
 
 class HwPort(ReferableBaseObject, ITaggable):
     """Point at which a module or structure is connected.
@@ -157,7 +143,6 @@ class HwPort(ReferableBaseObject, ITaggable):
     port_type: PortType | None = attribute("portType")
     port_interface: PortInterface | None = attribute("portInterface")
 
-
 class ConnectionHandler(HwModule, HwPathElement):
     """Bus, crossbar or other interconnect that arbitrates between transfers.
 
@@ -168,7 +153,6 @@ class ConnectionHandler(HwModule, HwPathElement):
 
     definition: ConnectionHandlerDefinition | None = reference("definition")
     internal_connections: list[HwConnection] = containments("internalConnections")
-
 
 class HwConnection(ReferableBaseObject, HwPathElement, ITaggable):
     """Link between two hardware ports.
@@ -185,7 +169,6 @@ class HwConnection(ReferableBaseObject, HwPathElement, ITaggable):
     data_rate: DataRate | None = containment("dataRate")
     port1: HwPort | None = reference("port1")
     port2: HwPort | None = reference("port2")
-
 
 class HwAccessElement(ITaggable, INamed):
     """What an access of a processing unit to a destination costs.
@@ -204,10 +187,8 @@ class HwAccessElement(ITaggable, INamed):
     write_latency: IDiscreteValueDeviation | None = containment("writeLatency")
     data_rate: DataRate | None = containment("dataRate")
 
-
 class HwDefinition(ReferableBaseObject, ITaggable, abstract=True):
     """Base of the types of hardware modules."""
-
 
 class ProcessingUnitDefinition(HwDefinition):
     """Type of a processing unit.
@@ -221,7 +202,6 @@ class ProcessingUnitDefinition(HwDefinition):
     pu_type: PuType | None = attribute("puType")
     features: list[HwFeature] = references("features")
     classifiers: list[CoreClassifier] = references("classifiers")
-
 
 class ConnectionHandlerDefinition(HwDefinition):
     """Type of a connection handler.
@@ -242,7 +222,6 @@ class ConnectionHandlerDefinition(HwDefinition):
     max_burst_size: int | None = attribute("maxBurstSize")
     max_concurrent_transfers: int | None = attribute("maxConcurrentTransfers")
 
-
 class MemoryDefinition(HwDefinition):
     """Type of a memory.
 
@@ -258,7 +237,6 @@ class MemoryDefinition(HwDefinition):
     data_rate: DataRate | None = containment("dataRate")
     memory_type: MemoryType | None = attribute("memoryType")
     classifiers: list[MemoryClassifier] = references("classifiers")
-
 
 class CacheDefinition(HwDefinition):
     """Type of a cache.
@@ -280,10 +258,8 @@ class CacheDefinition(HwDefinition):
     exclusive: bool | None = attribute("exclusive")
     hit_rate: float | None = attribute("hitRate")
 
-
 class HwPath(Element, abstract=True):
     """Way from a processing unit to a destination."""
-
 
 class HwAccessPath(HwPath, INamed):
     """Way of an access through connections, connection handlers and caches.

@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from amalthea_uros.metamodel.classes.os import InterruptController, ParameterExtension, Scheduler, TaskScheduler
     from amalthea_uros.metamodel.classes.sw import AbstractMemoryElement, ISR, Label, Runnable, Section, Task
 
-
 class MappingModel(BaseObject):
     """Sub-model that puts software on operating systems and hardware.
 
@@ -34,7 +33,6 @@ class MappingModel(BaseObject):
     physical_section_mapping: list[PhysicalSectionMapping] = containments("physicalSectionMapping")
     address_mapping_type: MemoryAddressMappingType | None = attribute("addressMappingType")
 
-
 class SchedulerAllocation(BaseObject):
     """Assignment of processing units to a scheduler.
 
@@ -47,7 +45,6 @@ class SchedulerAllocation(BaseObject):
     scheduler: Scheduler | None = reference("scheduler")
     responsibility: list[ProcessingUnit] = references("responsibility")
     executing_pu: ProcessingUnit | None = reference("executingPU")
-
 
 class TaskAllocation(BaseObject, ISchedulingParameterContainer):
     """Assignment of a task to a scheduler, with its scheduling parameters; a task has exactly one.
@@ -63,7 +60,6 @@ class TaskAllocation(BaseObject, ISchedulingParameterContainer):
     affinity: list[ProcessingUnit] = references("affinity")
     parameter_extensions: list[ParameterExtension] = containments("parameterExtensions")  # until 1.2.0
 
-
 class ISRAllocation(BaseObject):
     """Assignment of an ISR to an interrupt controller, on whose processing units it runs.
 
@@ -76,7 +72,6 @@ class ISRAllocation(BaseObject):
     controller: InterruptController | None = reference("controller")
     priority: int | None = attribute("priority")
 
-
 class RunnableAllocation(BaseObject):
     """Assignment of a runnable to a scheduler; by itself it does not make the runnable run.
 
@@ -87,7 +82,6 @@ class RunnableAllocation(BaseObject):
 
     scheduler: Scheduler | None = reference("scheduler")
     entity: Runnable | None = reference("entity")
-
 
 class MemoryMapping(BaseObject):
     """Placement of a label or another element in a memory; it decides what an access costs.
@@ -100,7 +94,6 @@ class MemoryMapping(BaseObject):
     abstract_element: AbstractMemoryElement | None = reference("abstractElement")
     memory: Memory | None = reference("memory")
     memory_position_address: int | None = attribute("memoryPositionAddress")
-
 
 class PhysicalSectionMapping(ReferableBaseObject):
     """Placement of sections in an address range of a memory.

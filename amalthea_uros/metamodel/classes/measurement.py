@@ -15,12 +15,10 @@ if TYPE_CHECKING:
     from amalthea_uros.metamodel.classes.constraints import EventChain
     from amalthea_uros.metamodel.classes.sw import Runnable, Task
 
-
 class MeasurementModel(BaseObject):
     """Sub-model of measured runtimes. (until 0.9.9)"""
 
     measurements: list[Measurement] = containments("measurements")
-
 
 class Measurement(BaseObject, abstract=True):
     """Measured runtimes of one object. (until 0.9.9)
@@ -34,18 +32,15 @@ class Measurement(BaseObject, abstract=True):
     runtimes: list[Time] = containments("runtimes")
     runtime_deviation: ITimeDeviation | None = containment("runtimeDeviation")
 
-
 class EventChainMeasurement(Measurement):
     """Measured runtimes of an event chain. (until 0.9.9)"""
 
     event_chain: EventChain | None = reference("eventChain")
 
-
 class TaskMeasurement(Measurement):
     """Measured runtimes of a task. (until 0.9.9)"""
 
     task: Task | None = reference("task")
-
 
 class RunnableMeasurement(Measurement):
     """Measured runtimes of a runnable. (until 0.9.9)"""

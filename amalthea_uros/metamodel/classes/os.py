@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from amalthea_uros.metamodel.classes.enums import AccessMultiplicity, DataStabilityLevel, OsDataConsistencyMode, ParameterType, SemaphoreType
     from amalthea_uros.metamodel.classes.sw import ComputationItem, Ticks
 
-
 class OSModel(BaseObject):
     """Sub-model of operating systems with their schedulers, semaphores and overheads."""
 
@@ -25,7 +24,6 @@ class OSModel(BaseObject):
     os_overheads: list[OsOverhead] = containments("osOverheads")
     scheduler_definitions: list[SchedulerDefinition] = containments("schedulerDefinitions")  # since 2.0.0
     scheduling_parameter_definitions: list[SchedulingParameterDefinition] = containments("schedulingParameterDefinitions")  # since 2.0.0
-
 
 class OsDataConsistency(BaseObject):
     """How an operating system keeps data consistent while processes preempt each other.
@@ -38,7 +36,6 @@ class OsDataConsistency(BaseObject):
     mode: OsDataConsistencyMode | None = attribute("mode")
     data_stability: DataStability | None = containment("dataStability")
     non_atomic_data_coherency: NonAtomicDataCoherency | None = containment("nonAtomicDataCoherency")
-
 
 class DataStability(Element):
     """Protection that keeps the values of labels unchanged for an interval.
@@ -55,7 +52,6 @@ class DataStability(Element):
     access_multiplicity: AccessMultiplicity | None = attribute("accessMultiplicity")
     level: DataStabilityLevel | None = attribute("level")
 
-
 class NonAtomicDataCoherency(Element):
     """Protection of data that cannot be accessed in one step.
 
@@ -68,7 +64,6 @@ class NonAtomicDataCoherency(Element):
     enabled: bool | None = attribute("enabled")
     algorithm: str | None = attribute("algorithm")
     access_multiplicity: AccessMultiplicity | None = attribute("accessMultiplicity")
-
 
 class Semaphore(ReferableBaseObject):
     """Lock that limits how many users hold it at the same time.
@@ -87,7 +82,6 @@ class Semaphore(ReferableBaseObject):
     ownership: bool | None = attribute("ownership")  # since 3.0.0
     priority_ceiling_protocol: bool | None = attribute("priorityCeilingProtocol")
 
-
 class ISchedulingParameterContainer(Element, abstract=True):
     """Object that gives values for scheduling parameters. (since 2.0.0)
 
@@ -97,7 +91,6 @@ class ISchedulingParameterContainer(Element, abstract=True):
     """
 
     scheduling_parameters: list[SchedulingParameter | SchedulingParameters] = containments("schedulingParameters")
-
 
 class Scheduler(ReferableBaseObject, ISchedulingParameterContainer, abstract=True):
     """Part of an operating system that decides what a processing unit executes.
@@ -111,7 +104,6 @@ class Scheduler(ReferableBaseObject, ISchedulingParameterContainer, abstract=Tru
     definition: SchedulerDefinition | None = reference("definition")  # since 2.0.0
     computation_items: list[ComputationItem] = containments("computationItems")
 
-
 class TaskScheduler(Scheduler):
     """Scheduler of tasks, possibly below another scheduler.
 
@@ -124,7 +116,6 @@ class TaskScheduler(Scheduler):
     parent_association: SchedulerAssociation | None = containment("parentAssociation")
     scheduling_algorithm: TaskSchedulingAlgorithm | None = containment("schedulingAlgorithm")  # until 1.2.0
 
-
 class SchedulerAssociation(ISchedulingParameterContainer):
     """Link from a scheduler to its parent, with the parameters the parent's algorithm needs for this child.
 
@@ -136,7 +127,6 @@ class SchedulerAssociation(ISchedulingParameterContainer):
     parent: TaskScheduler | None = reference("parent")
     parameter_extensions: list[ParameterExtension] = containments("parameterExtensions")  # until 1.2.0
 
-
 class InterruptController(Scheduler):
     """Scheduler of ISRs.
 
@@ -147,10 +137,8 @@ class InterruptController(Scheduler):
 
     scheduling_algorithm: InterruptSchedulingAlgorithm | None = containment("schedulingAlgorithm")  # until 1.2.0
 
-
 class OsDefinition(ReferableBaseObject, ITaggable, abstract=True):
     """Base of definitions that operating systems share. (since 2.0.0)"""
-
 
 class SchedulerDefinition(OsDefinition, IDescription):
     """Scheduling algorithm, known by its name, with the parameters it takes. (since 2.0.0)
@@ -170,7 +158,6 @@ class SchedulerDefinition(OsDefinition, IDescription):
     passes_parameters_upwards: bool | None = attribute("passesParametersUpwards")
     has_exactly_one_child: bool | None = attribute("hasExactlyOneChild")
 
-
 class SchedulingParameterDefinition(OsDefinition):
     """Name, type and default of a scheduling parameter, such as the priority. (since 2.0.0)
 
@@ -186,7 +173,6 @@ class SchedulingParameterDefinition(OsDefinition):
     mandatory: bool | None = attribute("mandatory")
     default_value: Value | None = containment("defaultValue")
 
-
 class SchedulingParameter(Element):
     """Map entry from a parameter definition to a value. (since 2.0.0)
 
@@ -198,14 +184,12 @@ class SchedulingParameter(Element):
     key: SchedulingParameterDefinition | None = reference("key")
     value: Value | None = containment("value")
 
-
 class OsOverhead(OsDefinition):
     """Execution cost of operating system functions, to be shared by operating systems."""
 
     api_overhead: OsAPIOverhead | None = containment("apiOverhead")
     isr_category1_overhead: OsISROverhead | None = containment("isrCategory1Overhead")
     isr_category2_overhead: OsISROverhead | None = containment("isrCategory2Overhead")
-
 
 class OsAPIOverhead(BaseObject):
     """Ticks that calls of operating system functions cost the caller.
@@ -243,7 +227,6 @@ class OsAPIOverhead(BaseObject):
     api_ioc_read: Ticks | None = containment("apiIocRead")
     api_ioc_write: Ticks | None = containment("apiIocWrite")
 
-
 class OsISROverhead(BaseObject):
     """Ticks that the operating system spends around an ISR.
 
@@ -255,7 +238,6 @@ class OsISROverhead(BaseObject):
 
     pre_execution_overhead: Ticks | None = containment("preExecutionOverhead")
     post_execution_overhead: Ticks | None = containment("postExecutionOverhead")
-
 
 class OperatingSystem(BaseObject, INamed):
     """Operating system with its task schedulers and interrupt controllers.
@@ -270,14 +252,12 @@ class OperatingSystem(BaseObject, INamed):
     interrupt_controllers: list[InterruptController] = containments("interruptControllers")
     os_data_consistency: OsDataConsistency | None = containment("osDataConsistency")
 
-
 class VendorOperatingSystem(OperatingSystem):
     """Operating system product with vendor and version."""
 
     os_name: str | None = attribute("osName")
     vendor: str | None = attribute("vendor")
     version: str | None = attribute("version")
-
 
 class SchedulingParameters(Element):
     """Scheduling parameters of a task or child scheduler as fixed fields. (until 1.2.0)
@@ -295,49 +275,38 @@ class SchedulingParameters(Element):
     max_budget: Time | None = containment("maxBudget")
     replenishment: Time | None = containment("replenishment")
 
-
 class ParameterExtension(Element):
     """Map entry from a key to a text, for parameters without a field. (until 1.2.0)"""
 
     key: str | None = attribute("key")
     value: str | None = attribute("value")
 
-
 class Algorithm(BaseObject, abstract=True):
     """Scheduling algorithm as an object. (until 1.2.0)"""
-
 
 class InterruptSchedulingAlgorithm(Algorithm, abstract=True):
     """Algorithm that an interrupt controller can use. (until 1.2.0)"""
 
-
 class TaskSchedulingAlgorithm(Algorithm, abstract=True):
     """Algorithm that a task scheduler can use. (until 1.2.0)"""
-
 
 class FixedPriority(TaskSchedulingAlgorithm, abstract=True):
     """Algorithm that keeps the priority of each task fixed. (until 1.2.0)"""
 
-
 class FixedPriorityPreemptive(FixedPriority):
     """Preemptive scheduling by fixed priority. (until 1.2.0)"""
-
 
 class FixedPriorityPreemptiveWithBudgetEnforcement(FixedPriority):
     """Preemptive scheduling by fixed priority with an execution budget per replenishment period. (until 1.2.0)"""
 
-
 class OSEK(FixedPriority):
     """Scheduling by fixed priority according to OSEK. (until 1.2.0)"""
-
 
 class DeadlineMonotonic(FixedPriority):
     """Scheduling by fixed priority in which the shortest deadline ranks highest. (until 1.2.0)"""
 
-
 class RateMonotonic(FixedPriority):
     """Scheduling by fixed priority in which the shortest period ranks highest. (until 1.2.0)"""
-
 
 class Pfair(TaskSchedulingAlgorithm, abstract=True):
     """Proportionate fair scheduling, which allots time in quanta. (until 1.2.0)
@@ -349,72 +318,55 @@ class Pfair(TaskSchedulingAlgorithm, abstract=True):
 
     quant_size_ns: int | None = attribute("quantSizeNs")
 
-
 class PfairPD2(Pfair):
     """Proportionate fair scheduling by the PD2 rule. (until 1.2.0)"""
-
 
 class PartlyPFairPD2(Pfair):
     """Variant named partly fair of proportionate fair scheduling by the PD2 rule. (until 1.2.0)"""
 
-
 class EarlyReleaseFairPD2(Pfair):
     """Early-release variant of proportionate fair scheduling by the PD2 rule. (until 1.2.0)"""
-
 
 class PartlyEarlyReleaseFairPD2(Pfair):
     """Variant named partly fair of early-release fair scheduling by the PD2 rule. (until 1.2.0)"""
 
-
 class DynamicPriority(TaskSchedulingAlgorithm, abstract=True):
     """Algorithm whose ranking of tasks changes at run time. (until 1.2.0)"""
-
 
 class LeastLocalRemainingExecutionTimeFirst(DynamicPriority):
     """Global scheduling in which the smallest local remaining execution time goes first. (until 1.2.0)"""
 
-
 class EarliestDeadlineFirst(DynamicPriority):
     """Scheduling in which the earliest absolute deadline goes first. (until 1.2.0)"""
-
 
 class PriorityBasedRoundRobin(DynamicPriority):
     """Scheduling by priority in which equal priorities share the processing unit in time slices. (until 1.2.0)"""
 
-
 class ReservationBasedServer(TaskSchedulingAlgorithm, abstract=True):
     """Scheduler that gives its tasks a budget of execution time. (until 1.2.0)"""
-
 
 class DeferrableServer(ReservationBasedServer):
     """Server whose budget is restored periodically and kept while it is idle. (until 1.2.0)"""
 
-
 class PollingPeriodicServer(ReservationBasedServer):
     """Server whose budget is available at its polling instants and lost when it is idle. (until 1.2.0)"""
-
 
 class SporadicServer(ReservationBasedServer):
     """Server whose budget comes back one period after it was consumed. (until 1.2.0)"""
 
-
 class ConstantBandwidthServer(ReservationBasedServer):
     """EDF server whose deadline is postponed when its budget is used up. (until 1.2.0)"""
-
 
 class ConstantBandwidthServerWithCASH(ReservationBasedServer):
     """Constant bandwidth server that reuses budget left over by other servers. (until 1.2.0)"""
 
-
 class Grouping(TaskSchedulingAlgorithm):
     """Logical group below a parent scheduler that takes no decisions itself. (until 1.2.0)"""
-
 
 class UserSpecificSchedulingAlgorithm(TaskSchedulingAlgorithm, InterruptSchedulingAlgorithm):
     """Algorithm of a tool or user, described by keys and texts. (until 1.2.0)"""
 
     parameter_extensions: list[ParameterExtension] = containments("parameterExtensions")
-
 
 class PriorityBased(InterruptSchedulingAlgorithm):
     """Scheduling of ISRs by the priority of their allocation. (until 1.2.0)"""

@@ -17,13 +17,11 @@ if TYPE_CHECKING:
     from amalthea_uros.metamodel.classes.events import TriggerEvent
     from amalthea_uros.metamodel.classes.sw import Channel, Counter, ModeLabel
 
-
 class StimuliModel(BaseObject):
     """Sub-model of the stimuli that activate processes, and of their clocks."""
 
     stimuli: list[Stimulus] = containments("stimuli")
     clocks: list[Clock] = containments("clocks")
-
 
 class Stimulus(ReferableBaseObject, ITaggable, abstract=True):
     """Source of activations; each occurrence activates all its processes at the same instant.
@@ -37,12 +35,10 @@ class Stimulus(ReferableBaseObject, ITaggable, abstract=True):
     set_mode_value_list: ModeValueList | None = containment("setModeValueList")
     execution_condition: ConditionDisjunction | ModeConditionDisjunction | None = containment("executionCondition")
 
-
 class ModeValueList(BaseObject):
     """List of assignments to mode labels."""
 
     entries: list[ModeAssignment] = containments("entries")
-
 
 class ModeValueMapEntry(Element):
     """Map entry from a mode label to a value.
@@ -55,7 +51,6 @@ class ModeValueMapEntry(Element):
     key: ModeLabel | None = reference("key")
     value: str | None = attribute("value")
 
-
 class ModeValue(BaseObject, abstract=True):
     """Mode label together with a value.
 
@@ -67,26 +62,20 @@ class ModeValue(BaseObject, abstract=True):
     label: ModeLabel | None = reference("label")
     value: str | None = attribute("value")
 
-
 class ModeAssignment(ModeValue):
     """Assignment of a value to a mode label."""
-
 
 class ConditionDisjunctionEntry(Element, abstract=True):
     """Entry of a disjunction, a single condition or a conjunction. (since 2.0.0)"""
 
-
 class Condition(ConditionDisjunctionEntry, abstract=True):
     """Single comparison that is true or false. (since 2.0.0)"""
-
 
 class ISatisfiable(Element, abstract=True):
     """Marker of conditions that can be evaluated. (2.0.0 to 2.2.0)"""
 
-
 class ModeConditionDisjunctionEntry(ISatisfiable, BaseObject, abstract=True):
     """Entry of a disjunction, a single condition on modes or a conjunction. (until 2.2.0)"""
-
 
 class ModeCondition(Condition, ModeConditionDisjunctionEntry, abstract=True):
     """Comparison that involves mode labels.
@@ -98,10 +87,8 @@ class ModeCondition(Condition, ModeConditionDisjunctionEntry, abstract=True):
 
     relation: RelationalOperator | None = attribute("relation")
 
-
 class ModeValueCondition(ModeValue, ModeCondition):
     """Comparison of a mode label with a value."""
-
 
 class ModeLabelCondition(ModeCondition):
     """Comparison of two mode labels, which should have the same mode.
@@ -115,18 +102,15 @@ class ModeLabelCondition(ModeCondition):
     label1: ModeLabel | None = reference("label1")
     label2: ModeLabel | None = reference("label2")
 
-
 class ConditionDisjunction(BaseObject):
     """Condition that is true if at least one of its entries is. (since 2.0.0)"""
 
     entries: list[ConditionDisjunctionEntry] = containments("entries")
 
-
 class ConditionConjunction(BaseObject, ConditionDisjunctionEntry):
     """Condition that is true if all of its entries are. (since 2.0.0)"""
 
     entries: list[Condition] = containments("entries")
-
 
 class ChannelFillCondition(BaseObject, Condition):
     """Comparison of the number of elements in a channel with a number. (since 2.0.0)
@@ -140,7 +124,6 @@ class ChannelFillCondition(BaseObject, Condition):
     relation: RelationalOperator | None = attribute("relation")  # since 2.1.0
     fill_level: int | None = attribute("fillLevel")
 
-
 class FixedPeriodic(Element, abstract=True):
     """Stimulus with a fixed period.
 
@@ -152,7 +135,6 @@ class FixedPeriodic(Element, abstract=True):
 
     recurrence: Time | None = containment("recurrence")
     offset: Time | None = containment("offset")
-
 
 class PeriodicStimulus(Stimulus, FixedPeriodic):
     """Periodic activation at offset + i * recurrence, shifted by jitter.
@@ -166,7 +148,6 @@ class PeriodicStimulus(Stimulus, FixedPeriodic):
     jitter: ITimeDeviation | None = containment("jitter")
     min_distance: Time | None = containment("minDistance")
 
-
 class RelativePeriodicStimulus(Stimulus):
     """Activation at a varying distance from the previous one, so that it drifts; also used for sporadic tasks.
 
@@ -178,7 +159,6 @@ class RelativePeriodicStimulus(Stimulus):
 
     offset: Time | None = containment("offset")
     next_occurrence: ITimeDeviation | None = containment("nextOccurrence")
-
 
 class VariableRateStimulus(Stimulus):
     """Activation at a rate that varies, given by statistics or by a clock.
@@ -198,7 +178,6 @@ class VariableRateStimulus(Stimulus):
     max_decrease_per_step: float | None = attribute("maxDecreasePerStep")
     scenario: Scenario | None = containment("scenario")
 
-
 class Scenario(BaseObject):
     """Way in which a clock drives a variable rate stimulus.
 
@@ -213,7 +192,6 @@ class Scenario(BaseObject):
     sampling_offset: float | None = attribute("samplingOffset")
     sampling_recurrence: float | None = attribute("samplingRecurrence")
 
-
 class PeriodicSyntheticStimulus(Stimulus, FixedPeriodic):
     """Activation by a list of times that is repeated with the period.
 
@@ -224,10 +202,8 @@ class PeriodicSyntheticStimulus(Stimulus, FixedPeriodic):
 
     occurrence_times: list[Time] = containments("occurrenceTimes")
 
-
 class CustomStimulus(Stimulus, IDescription):
     """Stimulus without predefined meaning, described by text and custom properties."""
-
 
 class SingleStimulus(Stimulus):
     """Activation that happens once.
@@ -239,7 +215,6 @@ class SingleStimulus(Stimulus):
 
     occurrence: Time | None = containment("occurrence")
 
-
 class InterProcessStimulus(Stimulus):
     """Activation by inter-process triggers that other processes execute.
 
@@ -249,7 +224,6 @@ class InterProcessStimulus(Stimulus):
     """
 
     counter: Counter | None = containment("counter")
-
 
 class PeriodicBurstStimulus(Stimulus, FixedPeriodic):
     """Several activations in a burst that is repeated with the period.
@@ -265,7 +239,6 @@ class PeriodicBurstStimulus(Stimulus, FixedPeriodic):
     occurrence_min_distance: Time | None = containment("occurrenceMinDistance")
     occurrence_count: int | None = attribute("occurrenceCount")
 
-
 class EventStimulus(Stimulus):
     """Activation by events, such as a write access or a custom event.
 
@@ -278,12 +251,10 @@ class EventStimulus(Stimulus):
     triggering_events: list[TriggerEvent] = references("triggeringEvents")
     counter: Counter | None = containment("counter")
 
-
 class ArrivalCurveStimulus(Stimulus):
     """Activation described only by limits of how close and how far apart occurrences are."""
 
     entries: list[ArrivalCurveEntry] = containments("entries")
-
 
 class ArrivalCurveEntry(BaseObject):
     """Limits of the time that a number of consecutive occurrences spans.
@@ -299,10 +270,8 @@ class ArrivalCurveEntry(BaseObject):
     lower_time_border: Time | None = containment("lowerTimeBorder")
     upper_time_border: Time | None = containment("upperTimeBorder")
 
-
 class Clock(ReferableBaseObject, abstract=True):
     """Frequency that varies over time."""
-
 
 class ClockFunction(Clock):
     """Clock whose frequency follows a sine or a triangle.
@@ -320,7 +289,6 @@ class ClockFunction(Clock):
     x_offset: Time | None = containment("xOffset")
     y_offset: Frequency | None = containment("yOffset")
 
-
 class ClockStepList(Clock):
     """Clock whose frequency changes in steps.
 
@@ -333,19 +301,16 @@ class ClockStepList(Clock):
     entries: list[ClockStep] = containments("entries")
     period: Time | None = containment("period")
 
-
 class ClockStep(BaseObject):
     """Frequency from a point in time on."""
 
     frequency: Frequency | None = containment("frequency")
     time: Time | None = containment("time")
 
-
 class ModeConditionDisjunction(BaseObject, ISatisfiable):
     """Condition on modes that is true if at least one of its entries is. (until 2.2.0)"""
 
     entries: list[ModeConditionDisjunctionEntry] = containments("entries")
-
 
 class ModeConditionConjunction(ModeConditionDisjunctionEntry):
     """Condition on modes that is true if all of its entries are. (until 2.2.0)"""

@@ -14,43 +14,18 @@ from amalthea_uros.metamodel.features import attribute, containment, containment
 
 if TYPE_CHECKING:
     from amalthea_uros.metamodel.classes.common import (
-        DataSize,
-        IContinuousValueDeviation,
-        IDiscreteValueDeviation,
-        ITimeDeviation,
-        Mode,
-        ModeLiteral,
-        NumericStatistic,
-        Time,
-        TransmissionPolicy,
+        DataSize, IContinuousValueDeviation, IDiscreteValueDeviation, ITimeDeviation, Mode, ModeLiteral, NumericStatistic, Time, TransmissionPolicy,
     )
     from amalthea_uros.metamodel.classes.components import ComponentPort
     from amalthea_uros.metamodel.classes.enums import (
-        ASILType,
-        AccessPrecedenceType,
-        ArithmeticOperator,
-        BlockingType,
-        DataStabilityLevel,
-        DirectionType,
-        ISRCategory,
-        LabelAccessDataStability,
-        LabelAccessEnum,
-        LabelAccessImplementation,
-        LabelDataStability,
-        ModeLabelAccessEnum,
-        OrderType,
-        Preemption,
-        ReceiveOperation,
-        RelationalOperator,
-        SemaphoreAccessEnum,
-        WaitEventType,
+        ASILType, AccessPrecedenceType, ArithmeticOperator, BlockingType, DataStabilityLevel, DirectionType, ISRCategory, LabelAccessDataStability, LabelAccessEnum,
+        LabelAccessImplementation, LabelDataStability, ModeLabelAccessEnum, OrderType, Preemption, ReceiveOperation, RelationalOperator, SemaphoreAccessEnum, WaitEventType,
         WaitingBehaviour,
     )
     from amalthea_uros.metamodel.classes.events import CustomEvent, TriggerEvent
     from amalthea_uros.metamodel.classes.hw import ProcessingUnitDefinition
     from amalthea_uros.metamodel.classes.os import Semaphore, TaskScheduler
     from amalthea_uros.metamodel.classes.stimuli import ConditionDisjunction, InterProcessStimulus, ModeConditionDisjunction, Stimulus
-
 
 class SWModel(BaseObject):
     """Sub-model of the software with its tasks, ISRs, runnables, labels and types.
@@ -76,7 +51,6 @@ class SWModel(BaseObject):
     modes: list[Mode] = containments("modes")
     mode_labels: list[ModeLabel] = containments("modeLabels")
 
-
 class AbstractMemoryElement(ReferableBaseObject, ITaggable, abstract=True):
     """Base of everything that takes up memory and can be mapped into one.
 
@@ -87,10 +61,8 @@ class AbstractMemoryElement(ReferableBaseObject, ITaggable, abstract=True):
 
     size: DataSize | None = containment("size")
 
-
 class AbstractProcess(AbstractMemoryElement, abstract=True):
     """Base of processes and of their prototypes."""
-
 
 class CustomEntity(AbstractMemoryElement, IDescription):
     """Element of the software without predefined meaning.
@@ -102,12 +74,10 @@ class CustomEntity(AbstractMemoryElement, IDescription):
 
     type_name: str | None = attribute("typeName")
 
-
 class ProcessChain(ReferableBaseObject):
     """List of processes that belong together; it does not say how they trigger each other."""
 
     processes: list[Process] = references("processes")
-
 
 class IExecutable(Element, abstract=True):
     """Object with a behaviour, that is a task, an ISR or a runnable. (since 1.2.0)
@@ -121,7 +91,6 @@ class IExecutable(Element, abstract=True):
     local_labels: list[LocalModeLabel] = containments("localLabels")  # since 2.1.0
     activity_graph: ActivityGraph | None = containment("activityGraph")
 
-
 class Process(AbstractProcess, IExecutable, abstract=True):
     """Base of tasks and ISRs, the units of activation.
 
@@ -131,7 +100,6 @@ class Process(AbstractProcess, IExecutable, abstract=True):
     """
 
     stimuli: list[Stimulus] = references("stimuli")
-
 
 class IActivityGraphItemContainer(Element, abstract=True):
     """Object that holds items of an activity graph.
@@ -143,14 +111,11 @@ class IActivityGraphItemContainer(Element, abstract=True):
 
     items: list[ActivityGraphItem] = containments("items")
 
-
 class ActivityGraph(BaseObject, IActivityGraphItemContainer):
     """Behaviour of a task, ISR or runnable as a sequence of items."""
 
-
 class ActivityGraphItem(BaseObject, abstract=True):
     """Step of an activity graph."""
-
 
 class Switch(ActivityGraphItem):
     """Branch on conditions. (since 2.0.0)
@@ -164,22 +129,18 @@ class Switch(ActivityGraphItem):
     entries: list[SwitchEntry] = containments("entries")
     default_entry: SwitchDefault | None = containment("defaultEntry")
 
-
 class SwitchEntry(BaseObject, INamed, IActivityGraphItemContainer):
     """Branch of a switch with its condition. (since 2.0.0)"""
 
     condition: ConditionDisjunction | None = containment("condition")
 
-
 class SwitchDefault(BaseObject, IActivityGraphItemContainer):
     """Branch of a switch for all other cases. (since 2.0.0)"""
-
 
 class ProbabilitySwitch(ActivityGraphItem):
     """Branch chosen at random."""
 
     entries: list[ProbabilitySwitchEntry] = containments("entries")
-
 
 class ProbabilitySwitchEntry(BaseObject, IActivityGraphItemContainer):
     """Branch of a probability switch with its weight.
@@ -191,7 +152,6 @@ class ProbabilitySwitchEntry(BaseObject, IActivityGraphItemContainer):
 
     probability: float | None = attribute("probability")
 
-
 class WhileLoop(ActivityGraphItem, IActivityGraphItemContainer):
     """Items that are repeated as long as a condition holds. (since 1.2.0)
 
@@ -201,7 +161,6 @@ class WhileLoop(ActivityGraphItem, IActivityGraphItemContainer):
     """
 
     condition: ConditionDisjunction | ModeConditionDisjunction | None = containment("condition")
-
 
 class Counter(BaseObject):
     """Prescaler that lets only every n-th execution take effect.
@@ -214,7 +173,6 @@ class Counter(BaseObject):
 
     prescaler: int | None = attribute("prescaler")
     offset: int | None = attribute("offset")
-
 
 class WaitEvent(ActivityGraphItem):
     """Waiting of the process for operating system events; it does not clear them.
@@ -231,7 +189,6 @@ class WaitEvent(ActivityGraphItem):
     waiting_behaviour: WaitingBehaviour | None = attribute("waitingBehaviour")
     counter: Counter | None = containment("counter")
 
-
 class SetEvent(ActivityGraphItem):
     """Setting of operating system events.
 
@@ -245,7 +202,6 @@ class SetEvent(ActivityGraphItem):
     process: Process | None = reference("process")
     counter: Counter | None = containment("counter")
 
-
 class ClearEvent(ActivityGraphItem):
     """Clearing of operating system events.
 
@@ -257,12 +213,10 @@ class ClearEvent(ActivityGraphItem):
     event_mask: EventMask | None = containment("eventMask")
     counter: Counter | None = containment("counter")
 
-
 class EventMask(BaseObject):
     """Set of operating system events."""
 
     events: list[OsEvent] = references("events")
-
 
 class OsEvent(ReferableBaseObject, ITaggable):
     """Event of the operating system (OSEK) that a process can set, clear and wait for.
@@ -273,7 +227,6 @@ class OsEvent(ReferableBaseObject, ITaggable):
     """
 
     communication_overhead_in_bit: int | None = attribute("communicationOverheadInBit")
-
 
 class InterProcessTrigger(ActivityGraphItem):
     """Firing of an inter-process stimulus, which activates all its processes.
@@ -286,7 +239,6 @@ class InterProcessTrigger(ActivityGraphItem):
     stimulus: InterProcessStimulus | None = reference("stimulus")
     counter: Counter | None = containment("counter")
 
-
 class EnforcedMigration(ActivityGraphItem):
     """Move of the task to another scheduler.
 
@@ -297,10 +249,8 @@ class EnforcedMigration(ActivityGraphItem):
 
     resource_owner: TaskScheduler | None = reference("resourceOwner")
 
-
 class SchedulePoint(ActivityGraphItem):
     """Explicit call of the scheduler, at which cooperative tasks can be preempted."""
-
 
 class TerminateProcess(ActivityGraphItem):
     """Immediate end of the process; it is not needed at the end of the graph.
@@ -311,7 +261,6 @@ class TerminateProcess(ActivityGraphItem):
     """
 
     counter: Counter | None = containment("counter")
-
 
 class Task(Process):
     """Process that the scheduler of an operating system dispatches.
@@ -325,7 +274,6 @@ class Task(Process):
     preemption: Preemption | None = attribute("preemption")
     multiple_task_activation_limit: int | None = attribute("multipleTaskActivationLimit")
 
-
 class ISR(Process):
     """Interrupt service routine, a process that an interrupt controller dispatches.
 
@@ -335,7 +283,6 @@ class ISR(Process):
     """
 
     category: ISRCategory | None = attribute("category")
-
 
 class ProcessPrototype(AbstractProcess):
     """Specification from which tasks are made; it never runs anything itself.
@@ -361,14 +308,12 @@ class ProcessPrototype(AbstractProcess):
     activation: Activation | None = reference("activation")
     runnable_calls: list[RunnableCall] = containments("runnableCalls")
 
-
 class ChainedProcessPrototype(BaseObject):
     """Link to a prototype that is chained to another."""
 
     prototype: ProcessPrototype | None = reference("prototype")
     apply: int | None = attribute("apply")
     offset: int | None = attribute("offset")
-
 
 class GeneralPrecedence(BaseObject, abstract=True):
     """Precedence between two runnables.
@@ -382,19 +327,16 @@ class GeneralPrecedence(BaseObject, abstract=True):
     origin: Runnable | None = reference("origin")
     target: Runnable | None = reference("target")
 
-
 class AccessPrecedenceSpec(GeneralPrecedence):
     """Precedence between two runnables due to a label that both access."""
 
     label: Label | None = reference("label")
     order_type: AccessPrecedenceType | None = attribute("orderType")
 
-
 class OrderPrecedenceSpec(GeneralPrecedence):
     """Precedence between two runnables that is stated directly."""
 
     order_type: OrderType | None = attribute("orderType")
-
 
 class IDependsOn(Element, abstract=True):
     """Object whose value is computed from other data.
@@ -405,7 +347,6 @@ class IDependsOn(Element, abstract=True):
     """
 
     depends_on: DataDependency | None = containment("dependsOn")
-
 
 class DataDependency(BaseObject):
     """Data from which a value is computed.
@@ -421,13 +362,11 @@ class DataDependency(BaseObject):
     parameters: list[RunnableParameter] = references("parameters")
     call_arguments: list[CallArgument] = references("callArguments")
 
-
 class RunnableParameter(ReferableBaseObject, IDependsOn):
     """Formal parameter of a runnable."""
 
     direction: DirectionType | None = attribute("direction")
     data_type: TypeDefinition | None = reference("dataType")
-
 
 class Runnable(AbstractMemoryElement, IExecutable, INamespaceMember):
     """Executable unit of software that runs in the context of the process that calls it.
@@ -448,7 +387,6 @@ class Runnable(AbstractMemoryElement, IExecutable, INamespaceMember):
     asil_level: ASILType | None = attribute("asilLevel")
     section: Section | None = reference("section")
 
-
 class Label(AbstractMemoryElement, IDisplayName, INamespaceMember):
     """Data element that runnables read and write.
 
@@ -468,7 +406,6 @@ class Label(AbstractMemoryElement, IDisplayName, INamespaceMember):
     stability_level: DataStabilityLevel | None = attribute("stabilityLevel")
     section: Section | None = reference("section")
 
-
 class Channel(AbstractMemoryElement, IDisplayName, INamespaceMember):
     """Queue of elements between runnables.
 
@@ -483,7 +420,6 @@ class Channel(AbstractMemoryElement, IDisplayName, INamespaceMember):
     default_elements: int | None = attribute("defaultElements")
     max_elements: int | None = attribute("maxElements")
 
-
 class ModeLabel(AbstractMemoryElement, IDisplayName):
     """Variable that holds a mode, on which branches and stimuli depend.
 
@@ -495,16 +431,13 @@ class ModeLabel(AbstractMemoryElement, IDisplayName):
     mode: Mode | None = reference("mode")
     initial_value: str | None = attribute("initialValue")
 
-
 class Section(ReferableBaseObject):
     """Named collection of labels and runnables that is placed in memory as a whole."""
 
     asil_level: ASILType | None = attribute("asilLevel")
 
-
 class ComputationItem(ActivityGraphItem, abstract=True):
     """Step that costs execution time; a scheduler may hold such steps as its overhead."""
-
 
 class ExecutionNeed(ActivityGraphItem):
     """Execution demand in units that hardware features convert to ticks.
@@ -516,7 +449,6 @@ class ExecutionNeed(ActivityGraphItem):
 
     needs: list[NeedEntry] = containments("needs")
 
-
 class NeedEntry(Element):
     """Map entry from the name of a hardware feature category to an amount.
 
@@ -527,7 +459,6 @@ class NeedEntry(Element):
 
     key: str | None = attribute("key")
     value: IDiscreteValueDeviation | None = containment("value")
-
 
 class Ticks(ComputationItem):
     """Execution demand in processor cycles; divided by the frequency of the processing unit it is a time.
@@ -541,13 +472,11 @@ class Ticks(ComputationItem):
     default: IDiscreteValueDeviation | None = containment("default")
     extended: list[TicksEntry] = containments("extended")
 
-
 class TicksEntry(Element):
     """Map entry from a processing unit definition to a number of cycles."""
 
     key: ProcessingUnitDefinition | None = reference("key")
     value: IDiscreteValueDeviation | None = containment("value")
-
 
 class ModeLabelAccess(ActivityGraphItem):
     """Reading or changing of a mode label.
@@ -563,7 +492,6 @@ class ModeLabelAccess(ActivityGraphItem):
     access: ModeLabelAccessEnum | None = attribute("access")
     value: str | None = attribute("value")
     step: int | None = attribute("step")
-
 
 class LabelAccess(ComputationItem, ITaggable, IDependsOn):
     """Reading or writing of a label.
@@ -583,7 +511,6 @@ class LabelAccess(ComputationItem, ITaggable, IDependsOn):
     data_stability: LabelAccessDataStability | None = attribute("dataStability")
     implementation: LabelAccessImplementation | None = attribute("implementation")
 
-
 class ChannelAccess(ActivityGraphItem, abstract=True):
     """Sending to or receiving from a channel.
 
@@ -597,10 +524,8 @@ class ChannelAccess(ActivityGraphItem, abstract=True):
     elements: int | None = attribute("elements")
     transmission_policy: TransmissionPolicy | None = containment("transmissionPolicy")
 
-
 class ChannelSend(ChannelAccess):
     """Writing of elements to a channel."""
-
 
 class ChannelReceive(ChannelAccess):
     """Reading of elements from a channel.
@@ -618,7 +543,6 @@ class ChannelReceive(ChannelAccess):
     element_index: int | None = attribute("elementIndex")
     lower_bound: int | None = attribute("lowerBound")
 
-
 class SemaphoreAccess(ActivityGraphItem):
     """Requesting or releasing of a semaphore.
 
@@ -632,7 +556,6 @@ class SemaphoreAccess(ActivityGraphItem):
     access: SemaphoreAccessEnum | None = attribute("access")
     waiting_behaviour: WaitingBehaviour | None = attribute("waitingBehaviour")
 
-
 class SenderReceiverCommunication(ActivityGraphItem, abstract=True):
     """Access to a label by sender-receiver communication.
 
@@ -645,10 +568,8 @@ class SenderReceiverCommunication(ActivityGraphItem, abstract=True):
     label: Label | None = reference("label")
     port: ComponentPort | None = reference("port")
 
-
 class SenderReceiverRead(SenderReceiverCommunication):
     """Reading by sender-receiver communication."""
-
 
 class SenderReceiverWrite(SenderReceiverCommunication):
     """Writing by sender-receiver communication.
@@ -660,13 +581,11 @@ class SenderReceiverWrite(SenderReceiverCommunication):
 
     notified_runnables: list[Runnable] = references("notifiedRunnables")
 
-
 class ServerCall(ActivityGraphItem, abstract=True):
     """Call of a runnable by client-server communication."""
 
     server_runnable: Runnable | None = reference("serverRunnable")
     port: ComponentPort | None = reference("port")
-
 
 class SynchronousServerCall(ServerCall):
     """Server call that waits until the server runnable has finished.
@@ -678,7 +597,6 @@ class SynchronousServerCall(ServerCall):
 
     waiting_behaviour: WaitingBehaviour | None = attribute("waitingBehaviour")
 
-
 class AsynchronousServerCall(ServerCall):
     """Server call that goes on at once.
 
@@ -689,7 +607,6 @@ class AsynchronousServerCall(ServerCall):
 
     result_runnable: Runnable | None = reference("resultRunnable")
 
-
 class GetResultServerCall(ServerCall):
     """Fetching of the result of an asynchronous server call.
 
@@ -699,7 +616,6 @@ class GetResultServerCall(ServerCall):
     """
 
     blocking_type: BlockingType | None = attribute("blockingType")
-
 
 class Group(ActivityGraphItem, INamed, IActivityGraphItemContainer):
     """Items of an activity graph under a common name.
@@ -713,7 +629,6 @@ class Group(ActivityGraphItem, INamed, IActivityGraphItemContainer):
     ordered: bool | None = attribute("ordered")
     interruptible: bool | None = attribute("interruptible")  # since 1.2.0
 
-
 class CallArgument(ReferableObject, IDependsOn):
     """Actual value for a parameter of the called runnable.
 
@@ -723,7 +638,6 @@ class CallArgument(ReferableObject, IDependsOn):
     """
 
     parameter: RunnableParameter | None = reference("parameter")
-
 
 class RunnableCall(ActivityGraphItem, ITaggable):
     """Execution of a runnable in the context of the calling process; the caller continues after it.
@@ -741,32 +655,26 @@ class RunnableCall(ActivityGraphItem, ITaggable):
     counter: Counter | None = containment("counter")
     statistic: RunEntityCallStatistic | None = containment("statistic")
 
-
 class CustomEventTrigger(ActivityGraphItem):
     """Raising of a custom event, which event stimuli can react to."""
 
     event: CustomEvent | None = reference("event")
 
-
 class DataType(Element, abstract=True):
     """Structure of data, as a compound or by reference to a definition."""
 
-
 class CompoundType(BaseObject, DataType, abstract=True):
     """Data type that is built of others."""
-
 
 class Struct(CompoundType, ITaggable):
     """Data type of several named entries."""
 
     entries: list[StructEntry] = containments("entries")
 
-
 class StructEntry(BaseObject, INamed, ITaggable):
     """Entry of a struct."""
 
     data_type: DataType | None = containment("dataType")
-
 
 class Array(CompoundType):
     """Data type of several elements of the same type.
@@ -779,7 +687,6 @@ class Array(CompoundType):
     number_elements: int | None = attribute("numberElements")
     data_type: DataType | None = containment("dataType")
 
-
 class Pointer(CompoundType):
     """Data type of a pointer.
 
@@ -790,12 +697,10 @@ class Pointer(CompoundType):
 
     data_type: DataType | None = containment("dataType")
 
-
 class TypeRef(BaseObject, DataType):
     """Data type that is defined elsewhere."""
 
     type_def: TypeDefinition | None = reference("typeDef")
-
 
 class Alias(BaseObject):
     """Name of a base type in a certain environment.
@@ -809,28 +714,23 @@ class Alias(BaseObject):
     target: str | None = attribute("target")
     alias: str | None = attribute("alias")
 
-
 class TypeDefinition(ReferableBaseObject, INamespaceMember, abstract=True):
     """Named data type."""
 
     size: DataSize | None = containment("size")
-
 
 class DataTypeDefinition(TypeDefinition):
     """Named data type that is built of others."""
 
     data_type: DataType | None = containment("dataType")
 
-
 class BaseTypeDefinition(TypeDefinition):
     """Elementary data type with its names in different environments."""
 
     aliases: list[Alias] = containments("aliases")
 
-
 class Activation(ReferableBaseObject, ITaggable, abstract=True):
     """Intended activation, a specification that never triggers anything; stimuli do that."""
-
 
 class PeriodicActivation(Activation):
     """Intended activation with a period.
@@ -846,7 +746,6 @@ class PeriodicActivation(Activation):
     recurrence: Time | None = containment("recurrence")
     offset: Time | None = containment("offset")
 
-
 class VariableRateActivation(Activation, IDescription):
     """Intended activation at a rate that varies.
 
@@ -859,7 +758,6 @@ class VariableRateActivation(Activation, IDescription):
     step: Time | None = containment("step")
     occurrences_per_step: IContinuousValueDeviation | None = containment("occurrencesPerStep")
 
-
 class SporadicActivation(Activation, IDescription):
     """Intended activation at irregular times.
 
@@ -869,7 +767,6 @@ class SporadicActivation(Activation, IDescription):
     """
 
     occurrence: ITimeDeviation | None = containment("occurrence")
-
 
 class SingleActivation(Activation):
     """Intended activation that happens once.
@@ -883,7 +780,6 @@ class SingleActivation(Activation):
     min: Time | None = containment("min")
     max: Time | None = containment("max")
 
-
 class EventActivation(Activation):
     """Intended activation by events.
 
@@ -895,10 +791,8 @@ class EventActivation(Activation):
     triggering_events: list[TriggerEvent] = references("triggeringEvents")
     counter: Counter | None = containment("counter")
 
-
 class CustomActivation(Activation, IDescription):
     """Intended activation without predefined meaning."""
-
 
 class LabelAccessStatistic(BaseObject):
     """How often a label is accessed and how often the cache is missed.
@@ -912,7 +806,6 @@ class LabelAccessStatistic(BaseObject):
     value: NumericStatistic | None = containment("value")
     cache_misses: NumericStatistic | None = containment("cacheMisses")
 
-
 class RunEntityCallStatistic(BaseObject):
     """How often a runnable is called.
 
@@ -922,7 +815,6 @@ class RunEntityCallStatistic(BaseObject):
     """
 
     statistic: NumericStatistic | None = containment("statistic")
-
 
 class LocalModeLabel(ReferableBaseObject):
     """Mode label that exists once per execution of a task, ISR or runnable. (since 2.1.0)
@@ -935,57 +827,47 @@ class LocalModeLabel(ReferableBaseObject):
     mode: Mode | None = reference("mode")
     default_value: str | None = attribute("defaultValue")
 
-
 class LocalModeValue(Element, abstract=True):
     """Local mode label together with a source of a value. (since 2.1.0)"""
 
     label: LocalModeLabel | None = reference("label")
     value_source: ILocalModeValueSource | None = containment("valueSource")
 
-
 class LocalModeLabelAssignment(LocalModeValue, ActivityGraphItem):
     """Assignment of a value to a local mode label. (since 2.1.0)"""
-
 
 class LocalModeCondition(LocalModeValue, Condition, IAnnotatable):
     """Comparison of a local mode label with a value. (since 2.1.0)"""
 
     relation: RelationalOperator | None = attribute("relation")
 
-
 class ILocalModeValueSource(Element, abstract=True):
     """Source of a value for a local mode label. (since 2.1.0)"""
-
 
 class ModeLiteralConst(ILocalModeValueSource):
     """Literal of an enum mode as a value. (since 2.1.0)"""
 
     value: ModeLiteral | None = reference("value")
 
-
 class IntegerConst(ILocalModeValueSource):
     """Integer as a value. (since 2.1.0)"""
 
     value: int | None = attribute("value")
-
 
 class ModeLabelRef(ILocalModeValueSource):
     """Current value of a mode label. (since 2.1.0)"""
 
     value: ModeLabel | None = reference("value")
 
-
 class LocalModeLabelRef(ILocalModeValueSource):
     """Current value of a local mode label. (since 2.1.0)"""
 
     value: LocalModeLabel | None = reference("value")
 
-
 class ChannelFillRef(ILocalModeValueSource):
     """Current number of elements in a channel as a value. (since 2.1.0)"""
 
     value: Channel | None = reference("value")
-
 
 class ArithmeticExpression(ILocalModeValueSource):
     """Value computed from two operands. (since 2.1.0)"""
@@ -994,13 +876,11 @@ class ArithmeticExpression(ILocalModeValueSource):
     operand2: ILocalModeValueSource | None = containment("operand2")
     operator: ArithmeticOperator | None = attribute("operator")
 
-
 class ModeLabelAssignment(ActivityGraphItem):
     """Assignment between a mode label and a local mode label. (since 2.1.0)"""
 
     global_label: ModeLabel | None = reference("globalLabel")
     local_label: LocalModeLabel | None = reference("localLabel")
-
 
 class ModeSwitch(ActivityGraphItem):
     """Branch on conditions on modes; Switch replaces it. (until 2.2.0)
@@ -1014,12 +894,10 @@ class ModeSwitch(ActivityGraphItem):
     entries: list[ModeSwitchEntry] = containments("entries")
     default_entry: ModeSwitchDefault | None = containment("defaultEntry")
 
-
 class ModeSwitchEntry(BaseObject, INamed, IActivityGraphItemContainer):
     """Branch of a mode switch with its condition. (until 2.2.0)"""
 
     condition: ModeConditionDisjunction | None = containment("condition")
-
 
 class ModeSwitchDefault(BaseObject, IActivityGraphItemContainer):
     """Branch of a mode switch for all other cases. (until 2.2.0)"""
