@@ -14,7 +14,7 @@ from amalthea_uros._internal.addresses import DOCUMENTATION, REPOSITORY
 from amalthea_uros.validate import registry
 
 FOLDERS = (ROOT / "docs", ROOT / "benchmarks")
-PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(page for folder in FOLDERS for page in sorted(folder.glob("*.md")))]
+PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(page for folder in FOLDERS for page in sorted(folder.rglob("*.md")))]
 BLOCK = re.compile(r"^```(?:(python|console)|\w+ title=\"([^\"]+)\")\n(.*?)^```", re.DOTALL | re.MULTILINE)
 
 

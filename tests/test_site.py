@@ -127,7 +127,7 @@ def test_every_page_is_in_the_navigation():
     text = (ROOT / "mkdocs.yml").read_text()
     listed = re.findall(r": ([\w./-]+\.(?:md|ipynb))$", text.partition("\nnav:")[2], re.MULTILINE)
     assert len(listed) == len(set(listed))
-    assert set(listed) >= {path.name for path in (ROOT / "docs").glob("*.md")}
+    assert set(listed) >= {str(path.relative_to(ROOT / "docs")) for path in (ROOT / "docs").rglob("*.md")}
     assert set(listed) >= {f"notebooks/{path.stem}.md" for path in NOTEBOOKS}
 
 
