@@ -133,9 +133,8 @@ def modules():
 
 
 def place(use):
-    """What a use is counted for: a page, or a room of the package."""
-    parts = Path(use.path).parts
-    return use.path if parts[0] != "amalthea_uros" else "/".join(parts[:2])
+    """What a use is counted for: a page, or the package."""
+    return use.path if use.path.endswith(".md") else "amalthea_uros"
 
 
 def all_uses():
