@@ -1,4 +1,8 @@
-"""The command `amuros` in a process of its own, as its user starts it."""
+"""The command `amuros` in a process of its own, as its user starts it.
+
+Python and the package take longer to start than most commands to run: where the system allows it, the process is a copy of this one,
+which has loaded them, and what they load and compile when they run for the first time. A thorough run starts each command anew.
+"""
 
 import os
 import runpy
@@ -7,23 +11,25 @@ import sys
 import traceback
 from collections.abc import Sequence
 from contextlib import suppress
+from functools import cache
+from importlib import import_module
 from pathlib import Path
-from tempfile import TemporaryFile
+from tempfile import TemporaryDirectory, TemporaryFile
 from typing import IO, NoReturn
 
+from click.testing import CliRunner
 from effort import IS_THOROUGH
+
+SAMPLE = Path(__file__).parents[1] / "samples" / "bodas-test-advanced.yaml"
 
 
 def amuros(*arguments: object, given: str = "", cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
-    """Run the command to its end, with a text at its standard input.
-
-    Python and the package take longer to start than most commands to run: where the system allows it, the process is a copy of this
-    one, which has loaded them. A thorough run starts each command anew.
-    """
+    """Run the command to its end, with a text at its standard input."""
     words = list(map(str, arguments))
     if IS_THOROUGH or not hasattr(os, "fork"):
         command = [sys.executable, "-m", "amalthea_uros", *words]
         return subprocess.run(command, input=given, capture_output=True, check=False, encoding="utf-8", cwd=cwd)
+    warm_up()
     reader, writer = os.pipe()
     with TemporaryFile("w+b") as out, TemporaryFile("w+b") as err:
         child = os.fork()
@@ -35,6 +41,20 @@ def amuros(*arguments: object, given: str = "", cwd: Path | None = None) -> subp
             stream.write(given.encode())
         _, status = os.waitpid(child, 0)
         return subprocess.CompletedProcess(words, os.waitstatus_to_exitcode(status), _text(out), _text(err))
+
+
+@cache
+def warm_up() -> None:
+    """Load what commands load."""
+    from amalthea_uros.cli.main import COMMANDS, cli
+
+    for command in COMMANDS:
+        import_module(f"amalthea_uros.cli.{command}" if command != "import" else "amalthea_uros.cli.import_")
+    with TemporaryDirectory() as folder:
+        for words in ("analyze", f"build -o {folder}/app.amxmi", "check", "simulate --duration 10ms"):
+            command, *options = words.split()
+            outcome = CliRunner().invoke(cli, [command, str(SAMPLE), *options])
+            assert outcome.exit_code == 0, outcome.output
 
 
 def become(words: list[str], cwd: Path | None, streams: Sequence[int]) -> NoReturn:

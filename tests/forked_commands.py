@@ -10,15 +10,12 @@ import select
 import socket
 import subprocess
 import sys
-from importlib import import_module
 from pathlib import Path
 from tempfile import TemporaryDirectory, TemporaryFile
 from typing import NoReturn
 
-from command import become
+from command import become, warm_up
 from effort import IS_THOROUGH
-
-from amalthea_uros.cli.main import COMMANDS
 
 _ADDRESS = "AMUROS_OF_TESTS"
 _CLIENT = f"""#!{sys.executable} -IS
@@ -46,8 +43,7 @@ def printed(line: str) -> str:
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
         ).stdout
-    for command in COMMANDS:
-        import_module(f"amalthea_uros.cli.{command}" if command != "import" else "amalthea_uros.cli.import_")
+    warm_up()
     with TemporaryDirectory() as folder, TemporaryFile("w+b") as out, _server(f"{folder}/socket") as server:
         client = Path(folder, "amuros")
         client.write_text(_CLIENT)
