@@ -11,7 +11,7 @@ from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.magnitudes import bits
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
-from amalthea_uros.validate.rules.app4mc._hardware import share_no_port
+from amalthea_uros.validate.rules.app4mc.ports import share_no_port
 
 
 def _check(element: HwAccessPath, context: Context) -> Iterator[str]:

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import TaskAllocation
 from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.examples import SCHEDULER
 from amalthea_uros.validate.rule import ModelRule
 from amalthea_uros.validate.scheduling import responsibilities
 
@@ -31,7 +32,7 @@ RULE = ModelRule(
     rationale="A task runs only on processing units that are in its affinity, if it has one, and in the responsibility of its "
     "scheduler. The APP4MC documentation requires at least one.",
     remedy="Add a processing unit of the scheduler to the affinity, or extend the responsibility of the scheduler.",
-    fails="""
+    fails=f"""
 <swModel>
   <tasks name="T"/>
 </swModel>
@@ -41,11 +42,7 @@ RULE = ModelRule(
     <modules xsi:type="am:ProcessingUnit" name="b"/>
   </structures>
 </hwModel>
-<osModel>
-  <operatingSystems name="OS">
-    <taskSchedulers name="S"/>
-  </operatingSystems>
-</osModel>
+{SCHEDULER}
 <mappingModel>
   <schedulerAllocation scheduler="S?type=TaskScheduler" responsibility="a?type=ProcessingUnit"/>
   <taskAllocation task="T?type=Task" scheduler="S?type=TaskScheduler" affinity="b?type=ProcessingUnit"/>

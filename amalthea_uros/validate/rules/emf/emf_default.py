@@ -12,7 +12,7 @@ from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.versions import facts
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
-from amalthea_uros.validate.rules.emf._facts import per_class, stored_features
+from amalthea_uros.validate.rules.emf.features import per_class, stored_features
 
 
 def _check(element: Amalthea, context: Context) -> Iterator[str]:

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import EventChain, EventChainReference
 from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.examples import TASK_EVENTS
 from amalthea_uros.validate.rule import ModelRule
 
 
@@ -43,12 +44,8 @@ RULE = ModelRule(
     check=_check,
     rationale="am2inc follows the references without end and crashes with a segmentation fault.",
     remedy="Remove the reference that closes the cycle.",
-    fails="""
-<eventModel>
-  <events xsi:type="am:ProcessEvent" name="a" entity="T?type=Task" eventType="start"/>
-  <events xsi:type="am:ProcessEvent" name="b" entity="T?type=Task" eventType="terminate"/>
-  <events xsi:type="am:CustomEvent" name="c"/>
-</eventModel>
+    fails=f"""
+{TASK_EVENTS}
 <swModel>
   <tasks name="T"/>
 </swModel>

@@ -8,6 +8,7 @@ from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import AbstractEventChain
 from amalthea_uros.validate.chains import parts
 from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.examples import TASK_EVENTS
 from amalthea_uros.validate.rule import ModelRule
 from amalthea_uros.validate.rules.inchron._chains import is_parallel
 
@@ -35,12 +36,8 @@ RULE = ModelRule(
     "response of the chain and the stimuli of the second and later segments.",
     remedy="Remove items without a chain, and let the segments lead without gaps from the stimulus of the chain to its "
     "response.",
-    fails="""
-<eventModel>
-  <events xsi:type="am:ProcessEvent" name="a" entity="T?type=Task" eventType="start"/>
-  <events xsi:type="am:ProcessEvent" name="b" entity="T?type=Task" eventType="terminate"/>
-  <events xsi:type="am:CustomEvent" name="c"/>
-</eventModel>
+    fails=f"""
+{TASK_EVENTS}
 <swModel>
   <tasks name="T"/>
 </swModel>

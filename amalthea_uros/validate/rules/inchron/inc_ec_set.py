@@ -9,8 +9,7 @@ from amalthea_uros.metamodel.classes import AbstractEventChain, Event, EventChai
 from amalthea_uros.validate.chains import parts
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import Downgraded, ModelRule
-from amalthea_uros.validate.rules.inchron._chains import is_parallel
-from amalthea_uros.validate.rules.inchron._events import is_converted
+from amalthea_uros.validate.rules.inchron._chains import is_converted, is_parallel
 
 
 def _check(element: AbstractEventChain, context: Context) -> Iterator[str | Downgraded]:

@@ -8,8 +8,7 @@ from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import AbstractEventChain, Event
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
-from amalthea_uros.validate.rules.inchron._chains import events_read
-from amalthea_uros.validate.rules.inchron._events import CONVERTED, is_converted, moments
+from amalthea_uros.validate.rules.inchron._chains import CONVERTED, events_read, is_converted, moments
 
 
 def _check(element: Event | AbstractEventChain, context: Context) -> Iterator[str]:

@@ -15,8 +15,7 @@ from amalthea_uros.metamodel.source import Prefixes
 from amalthea_uros.metamodel.versions import Facts, facts
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import Downgraded, ModelRule
-from amalthea_uros.validate.rules.inchron._importer import metamodel_of
-from amalthea_uros.validate.rules.inchron._tags import attributes_at, tag_of
+from amalthea_uros.validate.rules.inchron._importer import attributes_at, metamodel_of, tag_of
 
 _TAG = re.compile(r"<(?P<name>[^\s/>!?]+)").match
 

@@ -8,8 +8,8 @@ from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import Downgraded, ModelRule
-from amalthea_uros.validate.rules.inchron._ids import without_namespace
-from amalthea_uros.validate.rules.inchron._needed import is_needed
+from amalthea_uros.validate.rules.inchron._importer import without_namespace
+from amalthea_uros.validate.rules.inchron.missing_references import is_needed
 
 
 def _check(element: Element, context: Context) -> Iterator[str | Downgraded]:

@@ -13,8 +13,8 @@ from amalthea_uros.metamodel.model import Document
 from amalthea_uros.metamodel.naming import unique_name
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import Downgraded, ModelRule
-from amalthea_uros.validate.rules.inchron._ids import has_encoded_name, has_id, without_namespace
-from amalthea_uros.validate.rules.inchron._needed import is_needed
+from amalthea_uros.validate.rules.inchron._importer import has_encoded_name, has_id, without_namespace
+from amalthea_uros.validate.rules.inchron.missing_references import is_needed
 
 
 def _check(element: Amalthea, context: Context) -> Iterator[str | Downgraded]:

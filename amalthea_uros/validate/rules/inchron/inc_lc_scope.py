@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import EventChainLatencyConstraint
 from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.examples import TASK_EVENTS
 from amalthea_uros.validate.rule import ModelRule
 from amalthea_uros.validate.rules.inchron._chains import dropped
 
@@ -35,12 +36,8 @@ RULE = ModelRule(
   <timingConstraints xsi:type="am:EventChainLatencyConstraint" name="L"/>
 </constraintsModel>
 """,
-    passes="""
-<eventModel>
-  <events xsi:type="am:ProcessEvent" name="a" entity="T?type=Task" eventType="start"/>
-  <events xsi:type="am:ProcessEvent" name="b" entity="T?type=Task" eventType="terminate"/>
-  <events xsi:type="am:CustomEvent" name="c"/>
-</eventModel>
+    passes=f"""
+{TASK_EVENTS}
 <swModel>
   <tasks name="T"/>
 </swModel>

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import ISR, ISRAllocation, Task, TaskAllocation
 from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.examples import SCHEDULER
 from amalthea_uros.validate.rule import ModelRule
 
 
@@ -25,12 +26,8 @@ RULE = ModelRule(
     rationale="A process without an allocation silently gets no core or disappears. A process with several allocations is "
     "silently listed several times.",
     remedy="Allocate every task and every ISR exactly once.",
-    fails="""
-<osModel>
-  <operatingSystems name="OS">
-    <taskSchedulers name="S"/>
-  </operatingSystems>
-</osModel>
+    fails=f"""
+{SCHEDULER}
 <swModel>
   <tasks name="T"/>
 </swModel>

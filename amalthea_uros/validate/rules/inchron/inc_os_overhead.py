@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import OsOverhead, Scheduler, Ticks
 from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.examples import SCHEDULER
 from amalthea_uros.validate.rule import ModelRule
 
 
@@ -36,11 +37,7 @@ RULE = ModelRule(
   </operatingSystems>
 </osModel>
 """,
-    passes="""
-<osModel>
-  <operatingSystems name="OS">
-    <taskSchedulers name="S"/>
-  </operatingSystems>
-</osModel>
+    passes=f"""
+{SCHEDULER}
 """,
 )

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import ISR, ISRAllocation, Process, Task, TaskAllocation
 from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.examples import SCHEDULER
 from amalthea_uros.validate.rule import ModelRule
 
 
@@ -42,12 +43,8 @@ RULE = ModelRule(
   <tasks name="T"/>
 </swModel>
 """,
-    passes="""
-<osModel>
-  <operatingSystems name="OS">
-    <taskSchedulers name="S"/>
-  </operatingSystems>
-</osModel>
+    passes=f"""
+{SCHEDULER}
 <swModel>
   <tasks name="T"/>
 </swModel>

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import IDiscreteValueDeviation
 from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.examples import runnable_with
 from amalthea_uros.validate.quantities import bounds
 from amalthea_uros.validate.rule import ModelRule
 
@@ -25,16 +26,10 @@ RULE = ModelRule(
     check=_check,
     rationale="Without an upper bound there is no worst case; without a lower bound there is no best case.",
     remedy="Set the lower and the upper bound.",
-    fails="""
-<swModel>
-  <runnables name="R">
-    <activityGraph>
-      <items xsi:type="am:Ticks">
-        <default xsi:type="am:DiscreteValueGaussDistribution" mean="5" sd="1"/>
-      </items>
-    </activityGraph>
-  </runnables>
-</swModel>
-""",
+    fails=runnable_with("""
+<items xsi:type="am:Ticks">
+  <default xsi:type="am:DiscreteValueGaussDistribution" mean="5" sd="1"/>
+</items>
+"""),
     edits={'sd="1"': 'sd="1" lowerBound="1" upperBound="9"'},
 )

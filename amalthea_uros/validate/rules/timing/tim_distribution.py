@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import DiscreteValueWeibullEstimatorsDistribution
 from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.examples import runnable_with
 from amalthea_uros.validate.rule import ModelRule
 
 
@@ -28,16 +29,10 @@ RULE = ModelRule(
     rationale="A simulator has to replace the distribution, so its results do not match those computed from the average and "
     "the bounds.",
     remedy="Set an average strictly between the bounds, and a probability greater than 0 and less than 1000 per mille.",
-    fails="""
-<swModel>
-  <runnables name="R">
-    <activityGraph>
-      <items xsi:type="am:Ticks">
-        <default xsi:type="am:DiscreteValueWeibullEstimatorsDistribution" lowerBound="10" upperBound="90" average="90"/>
-      </items>
-    </activityGraph>
-  </runnables>
-</swModel>
-""",
+    fails=runnable_with("""
+<items xsi:type="am:Ticks">
+  <default xsi:type="am:DiscreteValueWeibullEstimatorsDistribution" lowerBound="10" upperBound="90" average="90"/>
+</items>
+"""),
     edits={'average="90"': 'average="50"'},
 )

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import WhileLoop
 from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.examples import runnable_with
 from amalthea_uros.validate.rule import ModelRule
 
 
@@ -22,15 +23,7 @@ RULE = ModelRule(
     check=_check,
     rationale="Without a maximum number of iterations there is no worst-case execution time.",
     remedy="Unroll the loop, or replace it by a call with a statistic of the number of iterations.",
-    fails="""
-<swModel>
-  <runnables name="R">
-    <activityGraph>
-      <items xsi:type="am:WhileLoop"/>
-    </activityGraph>
-  </runnables>
-</swModel>
-""",
+    fails=runnable_with('<items xsi:type="am:WhileLoop"/>'),
     edits={
         """<activityGraph>
       <items xsi:type="am:WhileLoop"/>

@@ -8,6 +8,7 @@ from math import ceil
 
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.units import number_text
+from amalthea_uros.validate.examples import SCHEDULER
 from amalthea_uros.validate.rule import Problem, SystemRule
 from amalthea_uros.validate.system_context import SystemContext
 from amalthea_uros.validate.wording import joined
@@ -36,7 +37,7 @@ RULE = SystemRule(
     rationale="If every job takes its worst-case execution time, more work is activated than the processing unit can execute: the "
     "response times of processes of low priority, and the latencies of chains through them, have no upper bound.",
     remedy="Shorten execution times, lengthen periods, move processes to other processing units, or use a faster one.",
-    fails="""
+    fails=f"""
 <hwModel>
   <domains xsi:type="am:FrequencyDomain" name="clock">
     <defaultValue value="1" unit="MHz"/>
@@ -45,11 +46,7 @@ RULE = SystemRule(
     <modules xsi:type="am:ProcessingUnit" name="core" frequencyDomain="clock?type=FrequencyDomain"/>
   </structures>
 </hwModel>
-<osModel>
-  <operatingSystems name="OS">
-    <taskSchedulers name="S"/>
-  </operatingSystems>
-</osModel>
+{SCHEDULER}
 <stimuliModel>
   <stimuli xsi:type="am:PeriodicStimulus" name="P">
     <recurrence value="1" unit="ms"/>

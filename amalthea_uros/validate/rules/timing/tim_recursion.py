@@ -8,6 +8,7 @@ from amalthea_uros._internal.graphs import circles
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import Runnable
 from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.examples import runnable_with
 from amalthea_uros.validate.execution import waited_for
 from amalthea_uros.validate.rule import ModelRule
 
@@ -50,15 +51,7 @@ RULE = ModelRule(
     check=_check,
     rationale="The execution time of the runnable is unbounded.",
     remedy="Break the cycle of calls.",
-    fails="""
-<swModel>
-  <runnables name="R">
-    <activityGraph>
-      <items xsi:type="am:RunnableCall" runnable="R?type=Runnable"/>
-    </activityGraph>
-  </runnables>
-</swModel>
-""",
+    fails=runnable_with('<items xsi:type="am:RunnableCall" runnable="R?type=Runnable"/>'),
     passes="""
 <swModel>
   <runnables name="R"/>

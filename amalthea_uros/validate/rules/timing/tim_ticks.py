@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import Ticks
 from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.examples import runnable_with
 from amalthea_uros.validate.rule import ModelRule
 from amalthea_uros.validate.scheduling import units
 from amalthea_uros.validate.wording import listed
@@ -30,15 +31,7 @@ RULE = ModelRule(
     check=_check,
     rationale="Ticks without a value take no time, or leave the execution time of everything that executes them unknown.",
     remedy="Set a default, or a value for each processing unit definition that executes the ticks.",
-    fails="""
-<swModel>
-  <runnables name="R">
-    <activityGraph>
-      <items xsi:type="am:Ticks"/>
-    </activityGraph>
-  </runnables>
-</swModel>
-""",
+    fails=runnable_with('<items xsi:type="am:Ticks"/>'),
     edits={
         'xsi:type="am:Ticks"/>': """xsi:type="am:Ticks">
         <default xsi:type="am:DiscreteValueConstant" value="1"/>

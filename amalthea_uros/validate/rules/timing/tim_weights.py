@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import ProbabilitySwitch
 from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.examples import runnable_with
 from amalthea_uros.validate.rule import ModelRule
 
 
@@ -23,16 +24,10 @@ RULE = ModelRule(
     check=_check,
     rationale="If all probabilities are 0, no branch can be chosen.",
     remedy="Give at least one branch a probability greater than 0.",
-    fails="""
-<swModel>
-  <runnables name="R">
-    <activityGraph>
-      <items xsi:type="am:ProbabilitySwitch">
-        <entries probability="0"/>
-      </items>
-    </activityGraph>
-  </runnables>
-</swModel>
-""",
+    fails=runnable_with("""
+<items xsi:type="am:ProbabilitySwitch">
+  <entries probability="0"/>
+</items>
+"""),
     edits={'probability="0"': 'probability="0.5"'},
 )
