@@ -97,7 +97,7 @@ if TYPE_CHECKING:
     from amalthea_uros.measure.series import Counts as Counts
     from amalthea_uros.measure.series import Measurement as Measurement
     from amalthea_uros.measure.series import Series as Series
-    from amalthea_uros.measure.statistics import Statistics as Statistics
+    from amalthea_uros.measure.series import Statistics as Statistics
     from amalthea_uros.metamodel.element import Element as Element
     from amalthea_uros.metamodel.model import Document as Document
     from amalthea_uros.metamodel.model import Model as Model
@@ -197,8 +197,7 @@ _NAMES = {
     "bridge.extract": ("Extraction", "extract"),
     "diagnostics": ("Finding", "Location", "Severity"),
     "errors": ("AmurosError", "InvalidArgumentError", "ReadError", "WriteError"),
-    "measure.series": ("Counts", "Measurement", "Series"),
-    "measure.statistics": ("Statistics",),
+    "measure.series": ("Counts", "Measurement", "Series", "Statistics"),
     "metamodel.element": ("Element",),
     "metamodel.model": ("Document", "Model", "Reference"),
     "design.optimize.problem": ("Conclusion", "SearchResult"),

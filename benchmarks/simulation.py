@@ -23,7 +23,7 @@ from amalthea_uros.perf.distributions import Constant
 from amalthea_uros.perf.hardware import Clock, Core, Hardware, Structure
 from amalthea_uros.perf.system import System
 from amalthea_uros.services.inputs import open_system
-from amalthea_uros.simulate import machine_code
+from amalthea_uros.simulate.kernel import machine_code
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.results import Simulation
 from amalthea_uros.simulate.system import simulate_system

@@ -2,12 +2,11 @@
 
 import numpy as np
 
-from amalthea_uros.measure.series import Kind, Measurement, Series
-from amalthea_uros.measure.statistics import statistics_of
+from amalthea_uros.measure.series import MeasuredKind, Measurement, Series, statistics_of
 from amalthea_uros.units import MICROSECOND, MILLISECOND
 
 
-def series(name, quantity, values, kind=Kind.PROCESS, **more):
+def series(name, quantity, values, kind=MeasuredKind.PROCESS, **more):
     """A series with these values."""
     found = np.array([round(value * MICROSECOND) for value in values], np.int64)
     return Series(kind=kind, name=name, quantity=quantity, values=found, statistics=statistics_of(found), **more)

@@ -8,13 +8,13 @@ from amalthea_uros.simulate.results import (
     ChainObservation,
     CoreObservation,
     CountObservation,
-    Histogram,
     MetricObservation,
+    ObservedOccurrence,
     ObservedVerdict,
-    Occurrence,
     ProcessObservation,
     RouteObservation,
     Simulation,
+    TimeHistogram,
 )
 from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
 from amalthea_uros.units import MICROSECOND as US
@@ -30,8 +30,8 @@ def observation(low, mean, high, histogram=None):
         mean=Fraction(mean),
         max=Fraction(high),
         std=2.5 * US,
-        at_min=Occurrence(instance=0, time=Fraction(0)),
-        at_max=Occurrence(instance=20, time=Fraction(20 * MS)),
+        at_min=ObservedOccurrence(instance=0, time=Fraction(0)),
+        at_max=ObservedOccurrence(instance=20, time=Fraction(20 * MS)),
         histogram=histogram,
     )
 
@@ -63,7 +63,7 @@ CONTROL = process("Control", (16 * US, 16_650_000, 29 * US), deadline=MS, verdic
 
 
 def latencies(low, reaction, age):
-    histogram = Histogram(start=Fraction(0), width=Fraction(10 * MS), counts=(100, 200))
+    histogram = TimeHistogram(start=Fraction(0), width=Fraction(10 * MS), counts=(100, 200))
     return {
         ChainQuantity.REDUCED_REACTION_TIME: observation(low * MS, 10_516_650_000, reaction * MS, histogram),
         ChainQuantity.REDUCED_DATA_AGE: observation(low * MS, 20_016_650_000, age * MS),

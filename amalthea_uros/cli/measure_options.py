@@ -12,7 +12,7 @@ import click
 from amalthea_uros.cli.files import INPUT
 from amalthea_uros.cli.parsed import Parsed
 from amalthea_uros.measure.markers import FORM, Marker, parse_marker
-from amalthea_uros.measure.window import Window
+from amalthea_uros.measure.window import MeasurementWindow
 from amalthea_uros.services.measure import MeasureOptions
 from amalthea_uros.units import Time, parse_duration, parse_time
 
@@ -82,7 +82,7 @@ def measure_options(function: Callable[..., None]) -> Callable[..., None]:
             baselines=dict(_baseline(text) for text in baselines),
             baseline_from=baseline_from,
             period=period,
-            window=Window(start_time or skip or 0, end_time),
+            window=MeasurementWindow(start_time or skip or 0, end_time),
         )
         function(reading=reading, **others)
 

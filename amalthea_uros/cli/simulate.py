@@ -33,7 +33,7 @@ from amalthea_uros.design.campaign.tables import table_format, write_table
 from amalthea_uros.design.changes import sweep as sweeping
 from amalthea_uros.design.changes.change import Change
 from amalthea_uros.services.simulate import CampaignResult, SimulationResult, plan_simulation, simulate_campaign, simulate_plan
-from amalthea_uros.simulate.options import Mode, Options
+from amalthea_uros.simulate.options import Options, SimulationMode
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import Time, parse_duration, parse_time, time_text
 
@@ -64,8 +64,8 @@ def _labels(text: str) -> tuple[str, ...]:
 @click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Seed of all random values.")
 @click.option(
     "--mode",
-    type=click.Choice([str(mode) for mode in Mode]),
-    default=str(Mode.SAMPLED),
+    type=click.Choice([str(mode) for mode in SimulationMode]),
+    default=str(SimulationMode.SAMPLED),
     show_default=True,
     help="How values that vary are chosen: at random, or always the longest demand and shortest distance (worst), the contrary "
     "(best), or the means (average).",
@@ -181,7 +181,7 @@ def command(
     outputs = beside_files(outputs, [*(("--trace", path) for path in traces), *pictures.files, ("--table", table)])
     _check_targets(traces, [*pictures.paths, *(path for _, path in outputs)], table)
     traced = (trace_window or (0, duration)) if traces else None
-    options = Options(duration=duration, seed=seed, mode=Mode(mode), settings=settings, traced=traced, labels=labels)
+    options = Options(duration=duration, seed=seed, mode=SimulationMode(mode), settings=settings, traced=traced, labels=labels)
     if is_campaign:
         campaign = _campaign(paths, options, changes, sweeps, runs, with_bus, workers, cluster)
         _show_campaign(campaign, table, outputs)

@@ -17,8 +17,7 @@ from math import sqrt
 from typing import NamedTuple
 
 from amalthea_uros.compare.results import Agreement, ComparisonRow, PredictionClaim, Statistic, is_bound
-from amalthea_uros.measure.series import Series
-from amalthea_uros.measure.statistics import Statistics
+from amalthea_uros.measure.series import Series, TimeStatistics
 from amalthea_uros.timing.stated_distributions import Basis
 from amalthea_uros.units import Time, time_text
 
@@ -73,7 +72,7 @@ class Rule:
         return ends.lower < predicted < ends.upper
 
 
-def measured_values(statistics: Statistics) -> Mapping[Statistic, Fraction]:
+def measured_values(statistics: TimeStatistics) -> Mapping[Statistic, Fraction]:
     """The statistics that are compared."""
     found = {
         Statistic.MIN: Fraction(statistics.min),

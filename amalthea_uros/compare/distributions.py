@@ -17,8 +17,7 @@ from amalthea_uros.compare.results import (
 )
 from amalthea_uros.compare.simulated import Run
 from amalthea_uros.measure.distances import Distance, distance
-from amalthea_uros.measure.series import Kind, Series
-from amalthea_uros.measure.statistics import Statistics
+from amalthea_uros.measure.series import MeasuredKind, Series, TimeStatistics
 from amalthea_uros.timing.stated_distributions import Basis
 from amalthea_uros.units import Time
 
@@ -55,11 +54,11 @@ def distributions(
         )
 
 
-def _simulated_values(runs: Sequence[Run]) -> Mapping[tuple[Kind, str, str], list[NDArray[np.int64]]]:
+def _simulated_values(runs: Sequence[Run]) -> Mapping[tuple[MeasuredKind, str, str], list[NDArray[np.int64]]]:
     """The values of each quantity in all runs where they differ, and those of all runs together."""
     import numpy as np
 
-    found: dict[tuple[Kind, str, str], dict[object, NDArray[np.int64]]] = {}
+    found: dict[tuple[MeasuredKind, str, str], dict[object, NDArray[np.int64]]] = {}
     for run in runs:
         for each in run.values.series:
             if each.values is not None and each.statistics is not None:
@@ -68,7 +67,7 @@ def _simulated_values(runs: Sequence[Run]) -> Mapping[tuple[Kind, str, str], lis
     return {key: [*each, np.concatenate(each)] if len(each) > 1 else each for key, each in samples.items()}
 
 
-def _key(statistics: Statistics) -> tuple[object, ...]:
+def _key(statistics: TimeStatistics) -> tuple[object, ...]:
     """Samples that differ in none of these are taken as equal."""
     return statistics.min, statistics.mean, statistics.max, statistics.variance
 

@@ -9,8 +9,7 @@ from amalthea_uros._internal.similar import did_you_mean
 from amalthea_uros.compare.results import Statistic
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.measure.baselines import with_baseline
-from amalthea_uros.measure.series import Kind, Measurement, Series
-from amalthea_uros.measure.statistics import Statistics
+from amalthea_uros.measure.series import MeasuredKind, Measurement, Series, TimeStatistics
 from amalthea_uros.names import require
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
@@ -64,7 +63,7 @@ class Target:
     """
 
     series: Series
-    kind: Kind
+    kind: MeasuredKind
     name: str
     quantity: str
     statistics: tuple[Statistic, ...] = tuple(Statistic)
@@ -104,14 +103,14 @@ def targets(measurement: Measurement, names: Names, system: System, with_overhea
     _check(measurement, names, system)
     for target in _targets(measurement, names, system):
         is_included = bool({"", target.name} & set(with_overhead))
-        if is_included and target.kind is Kind.PROCESS and target.series.baseline is not None:
+        if is_included and target.kind is MeasuredKind.PROCESS and target.series.baseline is not None:
             yield replace(target, series=with_baseline(target.series), is_with_baseline=True)
         else:
             yield target
 
 
 def _targets(measurement: Measurement, names: Names, system: System) -> Iterator[Target]:
-    used: set[tuple[Kind, str, str]] = set()
+    used: set[tuple[MeasuredKind, str, str]] = set()
     for meaning in names.meanings:
         parts = _measured(meaning.measured, measurement)
         used |= {(each.kind, each.name, each.quantity) for each in parts}
@@ -139,9 +138,9 @@ def _check(measurement: Measurement, names: Names, system: System) -> None:
     require("process, chain or runnable", (*names.renamed.values(), *(each.object for each in names.meanings)), known)
 
 
-def _kinds(name: str, system: System) -> list[Kind]:
+def _kinds(name: str, system: System) -> list[MeasuredKind]:
     """What the model has of a name."""
-    found = {Kind.PROCESS: system.processes, Kind.CHAIN: system.chains, Kind.RUNNABLE: system.runnables}
+    found = {MeasuredKind.PROCESS: system.processes, MeasuredKind.CHAIN: system.chains, MeasuredKind.RUNNABLE: system.runnables}
     return [kind for kind, items in found.items() if name in items]
 
 
@@ -151,7 +150,7 @@ def _named(series: Series, name: str, system: System) -> Target:
     if not kinds:
         known = dict.fromkeys((*system.processes, *system.chains, *system.runnables))
         return replace(target, reason=f"the model has no {name!r}; {_advice(series, name, known)}", is_unknown=True)
-    if series.kind is Kind.INTERVAL:
+    if series.kind is MeasuredKind.INTERVAL:
         if series.quantity == _DURATION:
             example = f"--as '{series.name}={name}.{JobMetric.RESPONSE_TIME}'"
             return replace(target, reason=f"a time between two markers can be several quantities; say which, e.g. {example}")
@@ -192,7 +191,7 @@ def _series(text: str, measurement: Measurement) -> Series | None:
 
 def _meant(meaning: Meaning, parts: Sequence[Series], system: System) -> Target:
     kind = _kinds(meaning.object, system)[0]
-    require("quantity", [meaning.quantity], tuple(ChainQuantity) if kind is Kind.CHAIN else tuple(JobMetric))
+    require("quantity", [meaning.quantity], tuple(ChainQuantity) if kind is MeasuredKind.CHAIN else tuple(JobMetric))
     series = replace(parts[0], kind=kind)
     target = Target(series=series, kind=kind, name=meaning.object, quantity=meaning.quantity)
     if len(parts) == 1:
@@ -204,7 +203,7 @@ def _meant(meaning: Meaning, parts: Sequence[Series], system: System) -> Target:
 def _sum(parts: Sequence[Series]) -> Series:
     """The mean of a sum."""
     found = [each.statistics for each in parts if each.statistics is not None]
-    total = Statistics(
+    total = TimeStatistics(
         count=min((each.count for each in found), default=0),
         min=sum(each.min for each in found),
         mean=sum((each.mean for each in found), start=found[0].mean * 0) if found else 0,  # type: ignore[arg-type]

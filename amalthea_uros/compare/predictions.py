@@ -18,8 +18,7 @@ from amalthea_uros.analyze.results.processes import Metric
 from amalthea_uros.compare.agreement import Prediction, measured_values
 from amalthea_uros.compare.results import PredictionClaim, Statistic
 from amalthea_uros.compare.simulated import Run
-from amalthea_uros.measure.series import Kind
-from amalthea_uros.measure.statistics import Statistics
+from amalthea_uros.measure.series import MeasuredKind, TimeStatistics
 from amalthea_uros.simulate.results import MetricObservation, Simulation
 from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
 from amalthea_uros.timing.response import Claim
@@ -75,7 +74,7 @@ class Predictor:
     in_phases: tuple[Analysis, ...] = ()
     overheads: Mapping[str, Time] = field(default_factory=dict)
 
-    def of(self, kind: Kind, name: str, quantity: str) -> Predictions:
+    def of(self, kind: MeasuredKind, name: str, quantity: str) -> Predictions:
         """The predictions of a quantity.
 
         Raises
@@ -92,7 +91,7 @@ class Predictor:
 
     # The analysis.
 
-    def _analyzed(self, kind: Kind, name: str, quantity: str) -> Iterator[tuple[Statistic, Prediction]]:
+    def _analyzed(self, kind: MeasuredKind, name: str, quantity: str) -> Iterator[tuple[Statistic, Prediction]]:
         if self.analysis is None:
             return
         yield from _extremes(_of(self.analysis, kind, name, quantity))
@@ -105,7 +104,7 @@ class Predictor:
 
     # The simulation.
 
-    def _simulated(self, kind: Kind, name: str, quantity: str) -> Iterator[tuple[Statistic, Prediction]]:
+    def _simulated(self, kind: MeasuredKind, name: str, quantity: str) -> Iterator[tuple[Statistic, Prediction]]:
         if not self.runs:
             return
         found = [values for run in self.runs if (values := _values(run, kind, name, quantity))]
@@ -130,28 +129,30 @@ class Predictor:
             method=f"{found.method}, plus {time_text(overhead)} of overhead",
         )
 
-    def _reason(self, kind: Kind, name: str, quantity: str) -> str:
+    def _reason(self, kind: MeasuredKind, name: str, quantity: str) -> str:
         """Why nothing is predicted."""
         stated = next(filter(None, self._stated_reasons(kind, name)), "")
-        known = tuple(ChainQuantity) if kind is Kind.CHAIN else tuple(JobMetric)
+        known = tuple(ChainQuantity) if kind is MeasuredKind.CHAIN else tuple(JobMetric)
         if quantity not in known:
             return f"{quantity!r} is no quantity of a {kind}; say what it is with --as '{name}.{quantity}={name}.QUANTITY'"
         what = quantity.replace("_", " ")
         return stated or f"neither analysis nor simulation has the {what} of {name!r}"
 
-    def _stated_reasons(self, kind: Kind, name: str) -> Iterator[str]:
+    def _stated_reasons(self, kind: MeasuredKind, name: str) -> Iterator[str]:
         if self.analysis is not None:
             analysis = self.analysis
-            yield from (each.reason for each in analysis.processes if (kind, each.name) == (Kind.PROCESS, name))
-            yield from (each.reason for each in analysis.callbacks if (kind, each.name) == (Kind.RUNNABLE, name))
-            yield from (each.reason for each in analysis.chains if (kind, each.name) == (Kind.CHAIN, name))
+            yield from (each.reason for each in analysis.processes if (kind, each.name) == (MeasuredKind.PROCESS, name))
+            yield from (each.reason for each in analysis.callbacks if (kind, each.name) == (MeasuredKind.RUNNABLE, name))
+            yield from (each.reason for each in analysis.chains if (kind, each.name) == (MeasuredKind.CHAIN, name))
         if self.runs:
-            yield from (each.reason for each in self.runs[0].simulation.chains if (kind, each.name) == (Kind.CHAIN, name))
+            yield from (
+                each.reason for each in self.runs[0].simulation.chains if (kind, each.name) == (MeasuredKind.CHAIN, name)
+            )
 
 
-def _of(analysis: Analysis, kind: Kind, name: str, quantity: str) -> dict[Statistic, Prediction]:
+def _of(analysis: Analysis, kind: MeasuredKind, name: str, quantity: str) -> dict[Statistic, Prediction]:
     """What an analysis has of a quantity."""
-    if kind is Kind.CHAIN:
+    if kind is MeasuredKind.CHAIN:
         chain = next((each for each in analysis.chains if each.name == name), None)
         return {} if chain is None else dict(_of_chain(chain, quantity))
     metric = _metric(analysis, kind, name, quantity)
@@ -162,8 +163,8 @@ def _extremes(found: Mapping[Statistic, Prediction]) -> Iterator[tuple[Statistic
     yield from ((statistic, each) for statistic, each in found.items() if statistic is not Statistic.MEAN)
 
 
-def _metric(analysis: Analysis, kind: Kind, name: str, quantity: str) -> Metric | None:
-    holders = analysis.processes if kind is Kind.PROCESS else analysis.callbacks
+def _metric(analysis: Analysis, kind: MeasuredKind, name: str, quantity: str) -> Metric | None:
+    holders = analysis.processes if kind is MeasuredKind.PROCESS else analysis.callbacks
     variants = [each.metrics for each in holders if each.name == name]
     found: Mapping[JobMetric, Metric] = merged(variants) if variants else {}
     return next((metric for each, metric in found.items() if each == quantity), None)
@@ -189,7 +190,7 @@ def _of_chain(chain: ChainResult, quantity: str) -> Iterator[tuple[Statistic, Pr
             yield statistic, Prediction(value=Fraction(value.value), claim=claim, method=value.method)
 
 
-def _values(run: Run, kind: Kind, name: str, quantity: str) -> dict[Statistic, Fraction]:
+def _values(run: Run, kind: MeasuredKind, name: str, quantity: str) -> dict[Statistic, Fraction]:
     """What a run has of a quantity: of all of it, and what only its trace shows."""
     statistics = _statistics(run, kind, name, quantity)
     values = {} if statistics is None else dict(measured_values(statistics))
@@ -200,13 +201,13 @@ def _values(run: Run, kind: Kind, name: str, quantity: str) -> dict[Statistic, F
     return values
 
 
-def _statistics(run: Run, kind: Kind, name: str, quantity: str) -> Statistics | None:
+def _statistics(run: Run, kind: MeasuredKind, name: str, quantity: str) -> TimeStatistics | None:
     """What was measured in the trace of a run."""
     series = (each for each in run.values.series if (each.kind, each.name, each.quantity) == (kind, name, quantity))
     return next((each.statistics for each in series), None)
 
 
-def _count(run: Run, kind: Kind, name: str, quantity: str) -> int | None:
+def _count(run: Run, kind: MeasuredKind, name: str, quantity: str) -> int | None:
     """How many values a run has of a quantity."""
     statistics = _statistics(run, kind, name, quantity)
     found = _observed(run.simulation, kind, name, quantity)
@@ -218,14 +219,14 @@ def overhead_of(name: str, quantity: str, overheads: Mapping[str, Time]) -> Time
     return overheads.get(name, overheads.get("", 0)) if quantity in _WITH_OVERHEAD else 0
 
 
-def _observed(simulation: Simulation, kind: Kind, name: str, quantity: str) -> MetricObservation | None:
+def _observed(simulation: Simulation, kind: MeasuredKind, name: str, quantity: str) -> MetricObservation | None:
     """What a simulation has of a quantity."""
     found: Iterator[Iterable[tuple[str, MetricObservation]]] = iter(())
     match kind:
-        case Kind.PROCESS:
+        case MeasuredKind.PROCESS:
             found = (each.metrics.items() for each in simulation.processes if each.name == name)
-        case Kind.RUNNABLE:
+        case MeasuredKind.RUNNABLE:
             found = (each.metrics.items() for each in simulation.runnables if each.name == name)
-        case Kind.CHAIN:
+        case MeasuredKind.CHAIN:
             found = (each.quantities.items() for each in simulation.chains if each.name == name)
     return next((observation for items in found for each, observation in items if each == quantity), None)

@@ -13,7 +13,7 @@ from amalthea_uros.judge.limits import SystemLimit
 from amalthea_uros.judge.margins import margin_of
 from amalthea_uros.judge.verdict import ObservedJudgement, ObservedVerdict
 from amalthea_uros.measure.distances import Distance
-from amalthea_uros.measure.series import Kind, Measurement, Series
+from amalthea_uros.measure.series import MeasuredKind, Measurement, Series
 from amalthea_uros.units import Time
 
 
@@ -79,7 +79,7 @@ class ComparisonRow(Shown):
     """
 
     object: str
-    kind: Kind | None
+    kind: MeasuredKind | None
     quantity: str
     statistic: Statistic | None
     verdict: Agreement
@@ -130,7 +130,7 @@ class DistributionRow(Shown):
     """
 
     object: str
-    kind: Kind
+    kind: MeasuredKind
     quantity: str
     distance: Distance
     is_hidden: bool

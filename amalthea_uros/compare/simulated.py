@@ -14,7 +14,7 @@ from typing import Self
 from amalthea_uros.compare.measured.events import chain_starts
 from amalthea_uros.compare.phases import MOST_PHASES, systems_in_phases
 from amalthea_uros.measure.event_chains import ChainSteps
-from amalthea_uros.measure.jobs import JobWalk
+from amalthea_uros.measure.jobs import JobFollower
 from amalthea_uros.measure.series import Measurement
 from amalthea_uros.perf.system import System
 from amalthea_uros.simulate.options import Options
@@ -44,7 +44,7 @@ class _Measuring:
 
     def __init__(self, system: System, most_events: int) -> None:
         self._most_events = most_events
-        self._jobs, self._chains = JobWalk(), ChainSteps(chain_starts(system))
+        self._jobs, self._chains = JobFollower(), ChainSteps(chain_starts(system))
         self._entities: Sequence[Entity] = ()
         self._end, self._events = 0, 0
 

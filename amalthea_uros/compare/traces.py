@@ -7,8 +7,7 @@ from dataclasses import fields, replace
 
 import numpy as np
 
-from amalthea_uros.measure.series import Counts, Kind, Measurement, Series
-from amalthea_uros.measure.statistics import merged, statistics_of
+from amalthea_uros.measure.series import Counts, MeasuredKind, Measurement, Series, merged, statistics_of
 
 
 def joined(parts: Sequence[Measurement]) -> Measurement:
@@ -20,7 +19,7 @@ def joined(parts: Sequence[Measurement]) -> Measurement:
     """
     if len(parts) == 1:
         return parts[0]
-    series: dict[tuple[Kind, str, str], list[Series]] = {}
+    series: dict[tuple[MeasuredKind, str, str], list[Series]] = {}
     for part in parts:
         for each in part.series:
             series.setdefault((each.kind, each.name, each.quantity), []).append(each)

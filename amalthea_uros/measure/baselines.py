@@ -10,8 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
-from amalthea_uros.measure.series import Series
-from amalthea_uros.measure.statistics import Statistics, shifted
+from amalthea_uros.measure.series import Series, TimeStatistics, shifted
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.units import Time
 
@@ -59,7 +58,7 @@ class Baselines:
         return None if own in self._names.values() else self._names.get("")
 
 
-def without(series: Series, baseline: Statistics) -> Series:
+def without(series: Series, baseline: TimeStatistics) -> Series:
     """A series without the mean of a baseline, rounded to a picosecond."""
     return _moved(series, -round(baseline.mean), baseline)
 
@@ -69,7 +68,7 @@ def with_baseline(series: Series) -> Series:
     return series if series.baseline is None else _moved(series, round(series.baseline.mean), None)
 
 
-def _moved(series: Series, time: Time, baseline: Statistics | None) -> Series:
+def _moved(series: Series, time: Time, baseline: TimeStatistics | None) -> Series:
     return replace(
         series,
         statistics=None if series.statistics is None else shifted(series.statistics, time),

@@ -10,20 +10,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from amalthea_uros.measure.markers import (
-    Counter,
     Decoder,
     Marker,
     MarkerChain,
+    MarkerCounter,
     MarkerPair,
     Measurable,
     ReportedStatistics,
     ReportedValue,
 )
-from amalthea_uros.measure.occurrences import Occurrences
+from amalthea_uros.measure.occurrences import MarkerOccurrences
 from amalthea_uros.measure.pairing import Pairs, paired_by_number, paired_in_order
 from amalthea_uros.measure.reactions import reactions
-from amalthea_uros.measure.series import Counts, Series
-from amalthea_uros.measure.statistics import Statistics, merged, statistics_or_none
+from amalthea_uros.measure.series import Counts, Series, TimeStatistics, merged, statistics_or_none
 from amalthea_uros.timing.basics.quantities import JobMetric
 
 if TYPE_CHECKING:
@@ -56,7 +55,7 @@ class MeasuredObject:
     undecoded: int = 0
 
 
-def measure_object(item: Measurable, found: Occurrences) -> MeasuredObject:
+def measure_object(item: Measurable, found: MarkerOccurrences) -> MeasuredObject:
     """The series of an object.
 
     Parameters
@@ -77,7 +76,7 @@ def measure_object(item: Measurable, found: Occurrences) -> MeasuredObject:
             return _reported_statistics(item, found, duplicated)
 
 
-def without_duplicates(found: Occurrences) -> tuple[Occurrences, int]:
+def without_duplicates(found: MarkerOccurrences) -> tuple[MarkerOccurrences, int]:
     """Each frame once, and the number of the others: they have the same stamp, marker and payload."""
     is_first = np.ones(len(found), bool)
     order = np.lexsort((found.marker, found.time))
@@ -91,7 +90,7 @@ def without_duplicates(found: Occurrences) -> tuple[Occurrences, int]:
     return found.where(is_first), int(np.count_nonzero(~is_first))
 
 
-def _numbered(found: Occurrences, counter: Counter | None) -> tuple[tuple[Occurrences, Numbers | None], int]:
+def _numbered(found: MarkerOccurrences, counter: MarkerCounter | None) -> tuple[tuple[MarkerOccurrences, Numbers | None], int]:
     """The occurrences with their numbers; those without one are left out, and counted."""
     if counter is None:
         return (found, None), 0
@@ -101,7 +100,7 @@ def _numbered(found: Occurrences, counter: Counter | None) -> tuple[tuple[Occurr
     return (found.where(is_known), known), int(np.count_nonzero(~is_known))
 
 
-def _interval_series(item: MarkerPair, found: Occurrences, numbers: Numbers | None, duplicated: int) -> Iterator[Series]:
+def _interval_series(item: MarkerPair, found: MarkerOccurrences, numbers: Numbers | None, duplicated: int) -> Iterator[Series]:
     is_end = found.marker == 1
     if numbers is None:
         pairs, how = paired_in_order(found.time, found.segment, is_end), "in their order"
@@ -138,14 +137,14 @@ def _series(
     )
 
 
-def _chain_series(item: MarkerChain, found: Occurrences, numbers: Numbers | None, duplicated: int) -> Iterator[Series]:
+def _chain_series(item: MarkerChain, found: MarkerOccurrences, numbers: Numbers | None, duplicated: int) -> Iterator[Series]:
     modulus = None if item.counter is None else item.counter.modulus
     for series in reactions(item.name, found.time, found.segment, found.marker == 1, numbers, modulus):
         counts = replace(series.counts, duplicated=series.counts.duplicated + duplicated)
         yield replace(series, counts=counts, method=f"from {item.stimulus} to {item.response}, {series.method}")
 
 
-def _reported_values(item: ReportedValue, found: Occurrences, duplicated: int) -> MeasuredObject:
+def _reported_values(item: ReportedValue, found: MarkerOccurrences, duplicated: int) -> MeasuredObject:
     values, is_known = _decoded(item.value, found)
     counts = Counts(duplicated=duplicated)
     method = f"values that {item.marker} reports"
@@ -153,13 +152,13 @@ def _reported_values(item: ReportedValue, found: Occurrences, duplicated: int) -
     return MeasuredObject((series,), int(np.count_nonzero(~is_known)))
 
 
-def _decoded(decode: Decoder, found: Occurrences) -> tuple[Numbers, NDArray[np.bool_]]:
+def _decoded(decode: Decoder, found: MarkerOccurrences) -> tuple[Numbers, NDArray[np.bool_]]:
     values = [decode(data) for data in found.data]
     is_known = np.array([value is not None for value in values], bool)
     return np.array([round(value) for value in values if value is not None], np.int64), is_known
 
 
-def _reported_statistics(item: ReportedStatistics, found: Occurrences, duplicated: int) -> MeasuredObject:
+def _reported_statistics(item: ReportedStatistics, found: MarkerOccurrences, duplicated: int) -> MeasuredObject:
     parts = [part for data in found.data if (part := _part(item, data)) is not None]
     method = f"{len(parts):,} statistics that {item.marker} reports"
     if item.count is None:
@@ -175,7 +174,7 @@ def _reported_statistics(item: ReportedStatistics, found: Occurrences, duplicate
     return MeasuredObject((series,), len(found) - len(parts))
 
 
-def _part(item: ReportedStatistics, data: bytes) -> Statistics | None:
+def _part(item: ReportedStatistics, data: bytes) -> TimeStatistics | None:
     """One report; None if it is incomplete, contradicts itself, or is of no values."""
     low, mean, high = item.min(data), item.mean(data), item.max(data)
     count = Fraction(1) if item.count is None else item.count(data)
@@ -183,4 +182,4 @@ def _part(item: ReportedStatistics, data: bytes) -> Statistics | None:
     if low is None or mean is None or high is None or not count or not low <= mean <= high:
         return None
     variance = None if deviation is None or item.count is None else deviation**2
-    return Statistics(count=int(count), min=round(low), mean=mean, max=round(high), variance=variance)
+    return TimeStatistics(count=int(count), min=round(low), mean=mean, max=round(high), variance=variance)

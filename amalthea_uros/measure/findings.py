@@ -8,8 +8,7 @@ from pathlib import Path
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.measure.baselines import WITH_COST
-from amalthea_uros.measure.series import Measurement, Series
-from amalthea_uros.measure.statistics import Statistics
+from amalthea_uros.measure.series import Measurement, Series, TimeStatistics
 from amalthea_uros.units import Time, time_text
 
 #: Shorter times are measured too coarsely, in steps of the clock.
@@ -54,7 +53,7 @@ def _coarse(measurement: Measurement, place: Location) -> Iterator[Finding]:
             yield _few_steps(series, found, resolution, place)
 
 
-def _few_steps(series: Series, found: Statistics, resolution: Time, place: Location) -> Finding:
+def _few_steps(series: Series, found: TimeStatistics, resolution: Time, place: Location) -> Finding:
     error = float(100 * resolution / found.mean)
     message = (
         f"the {series.quantity.replace('_', ' ')} of {series.name!r} is about {counted(round(found.mean / resolution), 'step')} of the "

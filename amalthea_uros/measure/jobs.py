@@ -12,11 +12,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from amalthea_uros.measure.series import Counts, Kind, Series
-from amalthea_uros.measure.statistics import statistics_of
+from amalthea_uros.measure.series import Counts, MeasuredKind, Series, statistics_of
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.timing.observed.job_times import BETWEEN, OWN, Job, own_times, times_between
-from amalthea_uros.trace.charts import PROCESS
+from amalthea_uros.trace.btf.vocabulary import PROCESS
 from amalthea_uros.trace.table import EventKind, EventTable
 
 if TYPE_CHECKING:
@@ -34,7 +33,7 @@ _FROM_ACTIVATION = {
 }
 
 
-class _Open:
+class _OpenJob:
     """A job that has not ended.
 
     Attributes
@@ -61,7 +60,7 @@ class _Open:
 
 
 @dataclass(slots=True)
-class _Ended:
+class _EndedJobs:
     """The jobs of a process, or the executions of a runnable, that are complete.
 
     Attributes
@@ -85,7 +84,7 @@ class _Ended:
 
 
 @dataclass(slots=True)
-class JobWalk:
+class JobFollower:
     """Follows the jobs of a trace, table by table.
 
     Attributes
@@ -96,9 +95,9 @@ class JobWalk:
 
     gaps: int = 0
     illegal: int = 0
-    _open: dict[tuple[int, int], _Open] = field(default_factory=dict)
-    _processes: dict[int, _Ended] = field(default_factory=dict)
-    _runnables: dict[tuple[int, int], _Ended] = field(default_factory=dict)
+    _open: dict[tuple[int, int], _OpenJob] = field(default_factory=dict)
+    _processes: dict[int, _EndedJobs] = field(default_factory=dict)
+    _runnables: dict[tuple[int, int], _EndedJobs] = field(default_factory=dict)
     #: The greatest number of a job of each process so far.
     _newest: dict[int, int] = field(default_factory=dict)
 
@@ -146,7 +145,7 @@ class JobWalk:
                 self._of(key[0]).incomplete += 1
             return False
         self._number(key)
-        job = self._open[key] = _Open(_STATES[kind][1], time)
+        job = self._open[key] = _OpenJob(_STATES[kind][1], time)
         if kind == EventKind.ACTIVATE:
             job.activation = time
         else:
@@ -168,7 +167,7 @@ class JobWalk:
             if of == process:
                 ended.segment = -1
 
-    def _end(self, time: int, key: tuple[int, int], job: _Open) -> None:
+    def _end(self, time: int, key: tuple[int, int], job: _OpenJob) -> None:
         del self._open[key]
         job.enter("terminated", time)
         for runnable, *_ in job.runnables:
@@ -200,7 +199,7 @@ class JobWalk:
                 return
             if process in self._newest:  # it has events of its own, and those of this job are missing
                 self._interrupt(process)
-            job = self._open[key] = _Open("running", time, is_process=False)
+            job = self._open[key] = _OpenJob("running", time, is_process=False)
         if kind == EventKind.RUNNABLE_START:
             job.enter(job.state, time)
             job.runnables.append((runnable, instance, time, dict(job.times)))
@@ -210,7 +209,7 @@ class JobWalk:
             # Nothing is known of the process, so that it pauses with its runnable.
             job.enter("ready" if kind == EventKind.RUNNABLE_SUSPEND else "running", time)
 
-    def _end_runnable(self, time: int, key: tuple[int, int], job: _Open, runnable: int, instance: int) -> None:
+    def _end_runnable(self, time: int, key: tuple[int, int], job: _OpenJob, runnable: int, instance: int) -> None:
         index = next((i for i, each in reversed(list(enumerate(job.runnables))) if each[:2] == (runnable, instance)), None)
         if index is None:
             self._of_runnable(key[0], runnable).incomplete += 1
@@ -227,26 +226,26 @@ class JobWalk:
         if not job.is_process and not job.runnables:
             del self._open[key]
 
-    def _of(self, process: int) -> _Ended:
-        return self._processes.setdefault(process, _Ended())
+    def _of(self, process: int) -> _EndedJobs:
+        return self._processes.setdefault(process, _EndedJobs())
 
-    def _of_runnable(self, process: int, runnable: int) -> _Ended:
-        return self._runnables.setdefault((process, runnable), _Ended())
+    def _of_runnable(self, process: int, runnable: int) -> _EndedJobs:
+        return self._runnables.setdefault((process, runnable), _EndedJobs())
 
     # Results.
 
     def series(self, names: list[str]) -> Iterator[Series]:
         """What was measured, by the names of the entities."""
         for process, ended in self._processes.items():
-            yield from _series(Kind.PROCESS, names[process], ended)
+            yield from _series(MeasuredKind.PROCESS, names[process], ended)
         for runnable, parts in self._by_runnable().items():
-            yield from _series(Kind.RUNNABLE, names[runnable], parts)
+            yield from _series(MeasuredKind.RUNNABLE, names[runnable], parts)
 
-    def _by_runnable(self) -> dict[int, _Ended]:
+    def _by_runnable(self) -> dict[int, _EndedJobs]:
         """The executions of each runnable in all processes, in the order of their ends."""
-        found: dict[int, _Ended] = {}
+        found: dict[int, _EndedJobs] = {}
         for (_, runnable), ended in self._runnables.items():
-            whole = found.setdefault(runnable, _Ended())
+            whole = found.setdefault(runnable, _EndedJobs())
             whole.rows += ended.rows
             whole.incomplete += ended.incomplete
         for whole in found.values():
@@ -254,7 +253,7 @@ class JobWalk:
         return found
 
 
-def _series(kind: Kind, name: str, ended: _Ended) -> Iterator[Series]:
+def _series(kind: MeasuredKind, name: str, ended: _EndedJobs) -> Iterator[Series]:
     counts = Counts(incomplete=ended.incomplete, lost=ended.lost)
     if not ended.rows:
         yield Series(kind=kind, name=name, quantity=JobMetric.RESPONSE_TIME, statistics=None, counts=counts)
@@ -270,7 +269,7 @@ def _series(kind: Kind, name: str, ended: _Ended) -> Iterator[Series]:
         yield from _of_metric(kind, name, metric, row[is_known], jobs[Job.END, 1:][is_known], both[is_known], counts)
 
 
-def _table(ended: _Ended) -> tuple[Numbers, NDArray[np.bool_]]:
+def _table(ended: _EndedJobs) -> tuple[Numbers, NDArray[np.bool_]]:
     """A column for each job, a row for each of `Job`; and whether each follows the one before."""
     rows = np.array(ended.rows, np.int64).T
     jobs = np.zeros((len(Job), rows.shape[1]), np.int64)
@@ -279,13 +278,19 @@ def _table(ended: _Ended) -> tuple[Numbers, NDArray[np.bool_]]:
 
 
 def _of_metric(
-    kind: Kind, name: str, metric: JobMetric, values: Numbers, ends: Numbers, is_activated: NDArray[np.bool_], counts: Counts
+    kind: MeasuredKind,
+    name: str,
+    metric: JobMetric,
+    values: Numbers,
+    ends: Numbers,
+    is_activated: NDArray[np.bool_],
+    counts: Counts,
 ) -> Iterator[Series]:
     if metric in _FROM_ACTIVATION:
         values, ends = values[is_activated], ends[is_activated]
     if len(values):
         statistics = statistics_of(values)
-        method = "from the events of jobs" if kind is Kind.PROCESS else "from the events of runnables and their jobs"
+        method = "from the events of jobs" if kind is MeasuredKind.PROCESS else "from the events of runnables and their jobs"
         yield Series(
             kind=kind,
             name=name,

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TypeAlias
 
-from amalthea_uros.measure.series import Kind
+from amalthea_uros.measure.series import MeasuredKind
 from amalthea_uros.trace.can.frames import EXTENDED
 from amalthea_uros.units import Time
 
@@ -79,7 +79,7 @@ def parse_marker(text: str) -> Marker:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Counter:
+class MarkerCounter:
     """The number of the job in a payload, which counts up.
 
     Attributes
@@ -105,9 +105,9 @@ class MarkerPair:
     name: str
     start: Marker
     end: Marker
-    kind: Kind = Kind.INTERVAL
+    kind: MeasuredKind = MeasuredKind.INTERVAL
     quantity: str = "duration"
-    counter: Counter | None = None
+    counter: MarkerCounter | None = None
     period: Time | None = None
     baseline: str | None = None
 
@@ -124,7 +124,7 @@ class MarkerChain:
     name: str
     stimulus: Marker
     response: Marker
-    counter: Counter | None = None
+    counter: MarkerCounter | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -139,7 +139,7 @@ class ReportedValue:
     name: str
     marker: Marker
     value: Decoder = field(compare=False)
-    kind: Kind = Kind.INTERVAL
+    kind: MeasuredKind = MeasuredKind.INTERVAL
     quantity: str = "duration"
     baseline: str | None = None
 
@@ -161,7 +161,7 @@ class ReportedStatistics:
     max: Decoder = field(compare=False)
     deviation: Decoder | None = field(default=None, compare=False)
     count: Decoder | None = field(default=None, compare=False)
-    kind: Kind = Kind.INTERVAL
+    kind: MeasuredKind = MeasuredKind.INTERVAL
     quantity: str = "duration"
     baseline: str | None = None
 

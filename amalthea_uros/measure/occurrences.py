@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from amalthea_uros.measure.markers import Marker
-from amalthea_uros.measure.window import Window
+from amalthea_uros.measure.window import MeasurementWindow
 from amalthea_uros.trace.can.frames import FrameKind, FrameTable
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class Occurrences:
+class MarkerOccurrences:
     """The frames of some markers, in the order of the log.
 
     Attributes
@@ -40,16 +40,16 @@ class Occurrences:
     def __len__(self) -> int:
         return len(self.time)
 
-    def where(self, is_kept: NDArray[np.bool_]) -> Occurrences:
+    def where(self, is_kept: NDArray[np.bool_]) -> MarkerOccurrences:
         """Those for which a value is true."""
         if is_kept.all():
             return self
         data = [self.data[number] for number in np.flatnonzero(is_kept).tolist()]
-        return Occurrences(self.time[is_kept], self.marker[is_kept], self.channel[is_kept], self.segment[is_kept], data)
+        return MarkerOccurrences(self.time[is_kept], self.marker[is_kept], self.channel[is_kept], self.segment[is_kept], data)
 
 
 @dataclass(slots=True)
-class Collector:
+class MarkerCollector:
     """Collects the occurrences of markers, and what a log is like.
 
     Attributes
@@ -64,7 +64,7 @@ class Collector:
     """
 
     markers: Sequence[Marker]
-    window: Window
+    window: MeasurementWindow
     frames: int = 0
     gaps: int = 0
     channels: Sequence[str] = ()
@@ -73,7 +73,7 @@ class Collector:
     last: int | None = None
     doubtful: dict[int, int] = field(default_factory=dict)
     seen: dict[tuple[int, int], int] = field(default_factory=dict)
-    _parts: list[Occurrences] = field(default_factory=list)
+    _parts: list[MarkerOccurrences] = field(default_factory=list)
 
     def add_all(self, tables: Iterable[FrameTable]) -> None:
         """Take the tables of a log in."""
@@ -114,7 +114,7 @@ class Collector:
         order = np.argsort(rows, kind="stable")
         rows, which = rows[order], which[order]
         data = [table.data[row] for row in rows.tolist()]
-        self._parts.append(Occurrences(time[rows], which, table.channel[rows].astype(np.int64), segment[rows], data))
+        self._parts.append(MarkerOccurrences(time[rows], which, table.channel[rows].astype(np.int64), segment[rows], data))
 
     def _count(self, table: FrameTable, is_frame: NDArray[np.bool_]) -> None:
         keys, numbers = np.unique(table.identifier[is_frame] << 16 | table.channel[is_frame], return_counts=True)
@@ -135,14 +135,14 @@ class Collector:
         return rows
 
     @property
-    def occurrences(self) -> Occurrences:
+    def occurrences(self) -> MarkerOccurrences:
         """All that were found so far."""
         empty = np.empty(0, np.int64)
-        parts = [Occurrences(empty, empty, empty, empty, []), *self._parts]
+        parts = [MarkerOccurrences(empty, empty, empty, empty, []), *self._parts]
         time, marker, channel, segment = (
             np.concatenate([getattr(part, name) for part in parts]) for name in ("time", "marker", "channel", "segment")
         )
-        return Occurrences(time, marker, channel, segment, [data for part in parts for data in part.data])
+        return MarkerOccurrences(time, marker, channel, segment, [data for part in parts for data in part.data])
 
 
 def _at_steps_back(table: FrameTable) -> NDArray[np.bool_]:

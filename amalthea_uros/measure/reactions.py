@@ -14,8 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from amalthea_uros.measure.pairing import counted_on, lost_numbers
-from amalthea_uros.measure.series import Counts, Kind, Series
-from amalthea_uros.measure.statistics import statistics_of
+from amalthea_uros.measure.series import Counts, MeasuredKind, Series, statistics_of
 from amalthea_uros.timing.basics.quantities import ChainQuantity
 from amalthea_uros.timing.observed.chain_latencies import SAME, RouteLatencies
 
@@ -48,13 +47,15 @@ class LatencyLists:
     def series(self, name: str, counts: Counts, method: str, quantities: tuple[ChainQuantity, ...]) -> Iterator[Series]:
         """Those of the quantities that have a value; if none has one, the first of them without."""
         if not any(len(part) for parts in self._values.values() for part in parts):
-            yield Series(kind=Kind.CHAIN, name=name, quantity=quantities[0], statistics=None, counts=counts, method=method)
+            yield Series(
+                kind=MeasuredKind.CHAIN, name=name, quantity=quantities[0], statistics=None, counts=counts, method=method
+            )
         for quantity in quantities:
             noted = SAME.get(quantity, quantity)
             values = np.concatenate([np.empty(0, np.int64), *self._values.get(noted, [])])
             if len(values):
                 yield Series(
-                    kind=Kind.CHAIN,
+                    kind=MeasuredKind.CHAIN,
                     name=name,
                     quantity=quantity,
                     statistics=statistics_of(values),

@@ -1,4 +1,4 @@
-"""The part of a trace that is measured."""
+"""The part of a trace that is measured, and the smallest step of its time stamps."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class Window:
+class MeasurementWindow:
     """From a time on and before another one, in picoseconds from the first event.
 
     Raises
@@ -43,3 +43,24 @@ class Window:
         if self.is_all:
             return np.ones(len(times), bool)
         return (times >= self.start) & (times < self.end if self.end is not None else True)
+
+
+# The smallest step of the time stamps of a trace.
+
+#: From fewer different distances, no step can be concluded.
+_ENOUGH = 20
+
+
+def resolution_of(times: NDArray[np.int64], stated: Time | None = None) -> Time | None:
+    """The step of which all times are multiples, at least the stated one; None if it is not known.
+
+    Parameters
+    ----------
+    stated : the step in which the format writes times; the clock may have a larger one
+    """
+    import numpy as np
+
+    steps = np.unique(np.abs(np.diff(times)))
+    if np.count_nonzero(steps) < _ENOUGH:
+        return stated
+    return max(int(np.gcd.reduce(steps)), stated or 0)

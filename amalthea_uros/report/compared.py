@@ -16,7 +16,7 @@ from amalthea_uros.compare.results import (
     Statistic,
     is_bound,
 )
-from amalthea_uros.measure.series import Kind, Measurement
+from amalthea_uros.measure.series import MeasuredKind, Measurement
 from amalthea_uros.report.simulated import duration_text
 from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
 from amalthea_uros.units import Rounding, rounded_time_text, time_text
@@ -122,11 +122,11 @@ _BADNESS = (Agreement.WITHIN, Agreement.DIFFERS, Agreement.OUTSIDE, Agreement.RE
 
 def prediction_groups(result: Comparison) -> list[PredictionGroup]:
     """The predictions with a tolerance that are shown."""
-    groups: dict[tuple[str, Kind | None, str], list[ComparisonRow]] = {}
+    groups: dict[tuple[str, MeasuredKind | None, str], list[ComparisonRow]] = {}
     for row in result.compared:
         if not is_bound(row.claim, row.statistic):
             groups.setdefault((row.object, row.kind, row.quantity), []).append(row)
-    distances: dict[tuple[str, Kind | None, str], DistributionRow]
+    distances: dict[tuple[str, MeasuredKind | None, str], DistributionRow]
     distances = {(row.object, row.kind, row.quantity): row for row in result.distributions}
     found = [PredictionGroup(tuple(rows), distances.get(key)) for key, rows in groups.items()]
     return [group for group in found if group.verdict is Agreement.OUTSIDE or _is_shown(result, group.rows[0])]
@@ -134,7 +134,7 @@ def prediction_groups(result: Comparison) -> list[PredictionGroup]:
 
 def bound_tests(result: Comparison) -> list[BoundTest]:
     """The bounds that are shown."""
-    tests: dict[tuple[str, Kind | None, str], dict[Statistic | None, ComparisonRow]] = {}
+    tests: dict[tuple[str, MeasuredKind | None, str], dict[Statistic | None, ComparisonRow]] = {}
     for row in result.compared:
         if is_bound(row.claim, row.statistic):
             tests.setdefault((row.object, row.kind, row.quantity), {})[row.statistic] = row
@@ -172,8 +172,8 @@ def _is_shown(result: Comparison, row: ComparisonRow) -> bool:
     """Whether a quantity is shown although it agrees: the most important ones of processes and chains, or of what else there is."""
     if result.with_all:
         return True
-    has_others = any(each.kind is not Kind.RUNNABLE for each in result.compared)
-    return row.quantity in _IMPORTANT and not (has_others and row.kind is Kind.RUNNABLE)
+    has_others = any(each.kind is not MeasuredKind.RUNNABLE for each in result.compared)
+    return row.quantity in _IMPORTANT and not (has_others and row.kind is MeasuredKind.RUNNABLE)
 
 
 def subject_line(result: Comparison) -> str:

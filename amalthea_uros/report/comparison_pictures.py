@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from amalthea_uros.compare.results import Agreement, Comparison, ComparisonRow, PredictionClaim, Statistic, is_bound
-from amalthea_uros.measure.series import Kind
+from amalthea_uros.measure.series import MeasuredKind
 from amalthea_uros.report.compared import bound_tests, closing_line, deviation_text, prediction_groups, quantity_text, worst_of
 from amalthea_uros.report.pictures.compared_times import ComparedQuantity, Interval, compared_times
 from amalthea_uros.units import Time, time_text
@@ -18,7 +18,7 @@ _MOST = 24
 
 def comparison_picture(result: Comparison) -> str:
     """Predicted intervals beside measured distributions, of the quantities that a text shows."""
-    groups: dict[tuple[str, Kind | None, str], None] = {}
+    groups: dict[tuple[str, MeasuredKind | None, str], None] = {}
     firsts = (*(each.rows[0] for each in prediction_groups(result)), *(each.rows[0] for each in bound_tests(result)))
     for first in firsts:
         groups.setdefault((first.object, first.kind, first.quantity))
@@ -27,7 +27,7 @@ def comparison_picture(result: Comparison) -> str:
     return compared_times(title, closing_line(result), drawn, len(groups) - len(drawn))
 
 
-def _key(row: ComparisonRow) -> tuple[str, Kind | None, str]:
+def _key(row: ComparisonRow) -> tuple[str, MeasuredKind | None, str]:
     return row.object, row.kind, row.quantity
 
 

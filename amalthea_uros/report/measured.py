@@ -9,7 +9,7 @@ from math import floor
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.measure.series import Counts, Measurement, Series
 from amalthea_uros.report.simulated import duration_text
-from amalthea_uros.simulate.results import Histogram
+from amalthea_uros.simulate.results import TimeHistogram
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.units import Rounding, Time, rounded_time_text, time_text
 
@@ -120,7 +120,7 @@ def exceedance(count: int) -> Fraction | None:
     return Fraction(_RULE_OF_THREE, count) if count > _RULE_OF_THREE else None
 
 
-def histogram_of(series: Series, resolution: Time | None) -> Histogram | None:
+def histogram_of(series: Series, resolution: Time | None) -> TimeHistogram | None:
     """The numbers of values in bins, as of simulations; None if the values are not known.
 
     Parameters
@@ -129,11 +129,11 @@ def histogram_of(series: Series, resolution: Time | None) -> Histogram | None:
     """
     if series.values is None or not len(series.values):
         return None
-    from amalthea_uros.simulate.metrics.histogram import BinCounts
+    from amalthea_uros.simulate.metrics.distributions import BinCounts
 
     counts = BinCounts(unit=resolution or 1)
     counts.add(series.values, int(series.values.min()), int(series.values.max()))
-    return Histogram(
+    return TimeHistogram(
         start=Fraction(counts.first * counts.width), width=Fraction(counts.width), counts=tuple(counts.counts.tolist())
     )
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.measure.series import Kind, Measurement, Series
+from amalthea_uros.measure.series import MeasuredKind, Measurement, Series
 from amalthea_uros.names import listed, require
 from amalthea_uros.report import measured
 from amalthea_uros.report.pictures.histogram import Histogram, histogram
@@ -34,7 +34,7 @@ def histogram_picture(measurement: Measurement, name: str) -> str:
     if series.period is not None:
         marks.append(Mark("period", series.period, MarkKind.LIMIT))
     edges = tuple(map(int, found.edges))
-    things = "jobs" if series.kind is Kind.PROCESS else "values"
+    things = "jobs" if series.kind is MeasuredKind.PROCESS else "values"
     title = f"{measurement.source}: {words} of {series.name}"
     return histogram(Histogram(title, edges, (Bars("measured", found.counts),), tuple(marks), words, things))
 

@@ -28,7 +28,7 @@ from amalthea_uros.simulate.results import (
     WITH_HISTOGRAM,
     ChainObservation,
     MetricObservation,
-    Occurrence,
+    ObservedOccurrence,
     ProcessObservation,
 )
 from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
@@ -54,7 +54,7 @@ class _View:
     title: str
     window: Window
     process: str = ""
-    way: tuple[str, Occurrence, Time, Time] | None = None
+    way: tuple[str, ObservedOccurrence, Time, Time] | None = None
 
 
 def gantt_picture(
@@ -147,7 +147,7 @@ def _whole(observed: MetricObservation) -> Window:
     return floor(observed.at_max.time), ceil(observed.at_max.time + observed.max)
 
 
-def _way(events: EventTable, chain: str, stimulus: Occurrence, start: Time, end: Time) -> ChainWay:
+def _way(events: EventTable, chain: str, stimulus: ObservedOccurrence, start: Time, end: Time) -> ChainWay:
     """The way of what is the response to a stimulus of a chain: of this stimulus, or of a newer one that overtakes it."""
     is_step = (events.kind == EventKind.CHAIN_STEP) & (events.target_instance >= stimulus.instance)
     is_step &= np.array([entity == Entity(EntityKind.CHAIN, chain) for entity in events.entities])[events.target]

@@ -33,7 +33,7 @@ from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.findings.suppression import unsuppressed
 from amalthea_uros.judge.verdict import ObservedVerdict
 from amalthea_uros.measure.event_chains import BEGINS
-from amalthea_uros.measure.series import Kind, Measurement
+from amalthea_uros.measure.series import MeasuredKind, Measurement
 from amalthea_uros.names import require
 from amalthea_uros.perf.system import System
 from amalthea_uros.services.inputs import as_paths
@@ -277,7 +277,7 @@ _WITHIN_A_JOB = "it begins or ends within a job, at an event that is not in trac
 
 def _refuse_twice(found: Iterable[Target]) -> None:
     """Refuse that two series are the same quantity: which of them is meant is not known."""
-    series: dict[tuple[Kind, str, str], list[str]] = {}
+    series: dict[tuple[MeasuredKind, str, str], list[str]] = {}
     for target in found:
         if not target.reason:
             series.setdefault((target.kind, target.name, target.quantity), []).append(target.series.name)
@@ -300,9 +300,9 @@ def _bases(system: System, settings: Settings) -> Callable[[Target], Basis]:
 
     def basis_of(target: Target) -> Basis:
         match target.kind:
-            case Kind.CHAIN:
+            case MeasuredKind.CHAIN:
                 return stated.of_chain(target.name)
-            case Kind.RUNNABLE:
+            case MeasuredKind.RUNNABLE:
                 return stated.of_runnable(target.name, target.quantity)
         return stated.of_process(target.name, target.quantity)
 
@@ -340,14 +340,17 @@ def _rows(target: Target, predictor: Predictor, rule: Rule, basis_of: Callable[[
 _UNLIKE = "no prediction has the definition of what was measured"
 
 
-_NOT_IN_TRACE = {Kind.PROCESS: "the trace has no process of this name", Kind.CHAIN: "the trace has no values of this chain"}
+_NOT_IN_TRACE = {
+    MeasuredKind.PROCESS: "the trace has no process of this name",
+    MeasuredKind.CHAIN: "the trace has no values of this chain",
+}
 
 
 def _not_measured(system: System, found: Sequence[Target]) -> Iterator[ComparisonRow]:
     """A row for each process and chain of which the trace has nothing, or nothing of the same definition."""
     starts = chain_starts(system)
     measured = {(target.kind, target.name) for target in found}
-    for kind, names in ((Kind.PROCESS, system.processes), (Kind.CHAIN, system.chains)):
+    for kind, names in ((MeasuredKind.PROCESS, system.processes), (MeasuredKind.CHAIN, system.chains)):
         for name in names:
             if (kind, name) not in measured:
                 yield ComparisonRow(

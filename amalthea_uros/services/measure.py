@@ -20,7 +20,7 @@ from amalthea_uros.measure.baselines import Baselines, names_of
 from amalthea_uros.measure.findings import judged
 from amalthea_uros.measure.markers import Marker, MarkerChain, MarkerPair, Measurable, parse_marker, refuse_overlap
 from amalthea_uros.measure.series import Measurement, Series
-from amalthea_uros.measure.window import Window
+from amalthea_uros.measure.window import MeasurementWindow
 from amalthea_uros.names import require
 from amalthea_uros.services.inputs import as_paths
 from amalthea_uros.services.simulate import time_of
@@ -62,7 +62,7 @@ class MeasureOptions:
     baselines: Mapping[str, str] = field(default_factory=dict)
     baseline_from: Path | None = None
     period: Time | None = None
-    window: Window = field(default_factory=Window)
+    window: MeasurementWindow = field(default_factory=MeasurementWindow)
     select: tuple[str, ...] = ()
     chain_starts: Mapping[str, EventKind | None] = field(default_factory=dict)
 
@@ -135,7 +135,7 @@ def measure(
         baselines={} if baseline is None else {"": baseline} if isinstance(baseline, str) else dict(baseline),
         baseline_from=None if baseline_from is None else Path(baseline_from),
         period=None if period is None else time_of(period),
-        window=Window(time_of(window[0]), None if window[1] is None else time_of(window[1])),
+        window=MeasurementWindow(time_of(window[0]), None if window[1] is None else time_of(window[1])),
         select=tuple(select),
         chain_starts={} if model is None else chain_starts(system_of(model)),
     )

@@ -30,8 +30,8 @@ def record_events(result: SimulationResult, start: Time, end: Time) -> EventTabl
 
 def _repeated(result: SimulationResult, start: Time, end: Time) -> EventTable:
     from amalthea_uros.simulate.system import simulate_system
-    from amalthea_uros.trace.recorder import Recorder
+    from amalthea_uros.trace.sinks import EventRecorder
 
-    recorder = Recorder()
+    recorder = EventRecorder()
     simulate_system(result.system, replace(result.options, duration=end, traced=(start, end)), [recorder])
     return recorder.table

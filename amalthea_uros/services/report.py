@@ -210,9 +210,9 @@ def _name(paths: Iterable[Path]) -> str:
 def _simulated(system: System, options: Options, *, is_kept: bool) -> SimulationResult:
     """A run; if the events are kept, which takes memory, pictures need not repeat it."""
     from amalthea_uros.simulate.system import simulate_system
-    from amalthea_uros.trace.recorder import Recorder
+    from amalthea_uros.trace.sinks import EventRecorder
 
-    recorder = Recorder()
+    recorder = EventRecorder()
     if is_kept:
         simulation = simulate_system(system, replace(options, traced=(0, options.duration)), [recorder])
         simulation = replace(simulation, trace=recorder.table)

@@ -27,7 +27,7 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.services.inputs import as_paths, open_system
 from amalthea_uros.services.names import require_labels, require_settings
 from amalthea_uros.services.subject import Subject, open_subject
-from amalthea_uros.simulate.options import Mode, Options
+from amalthea_uros.simulate.options import Options, SimulationMode
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import Time, parse_time
 
@@ -271,7 +271,7 @@ def simulate(
     duration: str | Time,
     *,
     seed: int = 1,
-    mode: Mode | str = Mode.SAMPLED,
+    mode: SimulationMode | str = SimulationMode.SAMPLED,
     settings: Settings | None = None,
     changes: Iterable[str | Change] = (),
     trace: bool = False,
@@ -301,11 +301,11 @@ def simulate(
     parsed = [change if isinstance(change, Change) else parse_change(change) for change in changes]
     system, settings = apply(opened.system, settings or Settings(), parsed)
     require_settings(settings, system)
-    from amalthea_uros.trace.recorder import Recorder
+    from amalthea_uros.trace.sinks import EventRecorder
 
     observed = tuple(labels)
     require_labels(observed, system)
-    time, recorder = time_of(duration), Recorder()
+    time, recorder = time_of(duration), EventRecorder()
     sinks: list[OpenSink] = [*map(_trace_opener, trace_paths), *([recorder] if trace else [])]
     traced = (0, time) if sinks else None
     options = Options(duration=time, seed=seed, mode=_mode(mode), settings=settings, traced=traced, labels=observed)
@@ -399,7 +399,7 @@ def time_of(duration: str | Time) -> Time:
         raise InvalidArgumentError(f"the duration {error}") from None
 
 
-def _mode(mode: Mode | str) -> Mode:
-    if mode not in tuple(Mode):
-        raise InvalidArgumentError(f"unknown mode {mode!r}; expected one of {', '.join(Mode)}")
-    return Mode(mode)
+def _mode(mode: SimulationMode | str) -> SimulationMode:
+    if mode not in tuple(SimulationMode):
+        raise InvalidArgumentError(f"unknown mode {mode!r}; expected one of {', '.join(SimulationMode)}")
+    return SimulationMode(mode)

@@ -14,7 +14,7 @@ from amalthea_uros.units import Time
 ALL_LABELS = "all"
 
 
-class Mode(StrEnum):
+class SimulationMode(StrEnum):
     """How values that vary are chosen.
 
     `SAMPLED` draws each from its distribution. The others always take the same one: `WORST` the longest demand and the shortest
@@ -25,6 +25,10 @@ class Mode(StrEnum):
     WORST = "worst"
     BEST = "best"
     AVERAGE = "average"
+
+
+#: The public name.
+Mode = SimulationMode
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -42,7 +46,7 @@ class Options:
 
     duration: Time
     seed: int = 1
-    mode: Mode = Mode.SAMPLED
+    mode: SimulationMode = SimulationMode.SAMPLED
     settings: Settings = field(default_factory=Settings)
     traced: tuple[Time, Time] | None = None
     labels: tuple[str, ...] = ()

@@ -17,7 +17,7 @@ from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.judge.limits import DEADLINE, PERIOD, SystemLimit
 from amalthea_uros.judge.margins import margin_of, tightest
 from amalthea_uros.judge.verdict import WORST_OBSERVED_FIRST, ObservedJudgement, ObservedVerdict
-from amalthea_uros.simulate.options import Mode
+from amalthea_uros.simulate.options import SimulationMode
 from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
 from amalthea_uros.units import Time, time_text
 
@@ -33,7 +33,7 @@ WITH_HISTOGRAM = (JobMetric.NET_EXECUTION_TIME, JobMetric.RESPONSE_TIME)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Occurrence:
+class ObservedOccurrence:
     """Where something was observed.
 
     Attributes
@@ -47,7 +47,7 @@ class Occurrence:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Histogram:
+class TimeHistogram:
     """Numbers of values in bins of equal width, in picoseconds; a value at an edge is in the bin that starts there."""
 
     start: Fraction
@@ -77,9 +77,9 @@ class MetricObservation:
     mean: Fraction
     max: Fraction
     std: float
-    at_min: Occurrence
-    at_max: Occurrence
-    histogram: Histogram | None = field(default=None, repr=False)
+    at_min: ObservedOccurrence
+    at_max: ObservedOccurrence
+    histogram: TimeHistogram | None = field(default=None, repr=False)
 
     @property
     def jitter(self) -> Fraction:
@@ -383,7 +383,7 @@ class Simulation(Shown):
 
     duration: Time
     seed: int
-    mode: Mode
+    mode: SimulationMode
     cores: Results[CoreObservation]
     processes: Results[ProcessObservation]
     left_out: Results[ProcessObservation] = field(default_factory=Results)

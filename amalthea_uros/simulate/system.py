@@ -15,31 +15,32 @@ from amalthea_uros._internal.plural import counted
 from amalthea_uros.judge.limits import Deadline, deadline_of
 from amalthea_uros.perf.software import Isr
 from amalthea_uros.perf.system import System
-from amalthea_uros.simulate.layout import (
+from amalthea_uros.simulate.driver import EndlessJobError, KernelDriver
+from amalthea_uros.simulate.kernel.layout import (
     ACTIVATION,
     BEGIN,
     BUSY,
     LOST,
     LOST_MESSAGES,
     NOW,
+    OCCURRENCE,
     OVERFLOWS,
     RUNS,
     SINCE,
     STATE,
     TIME_POLLING,
     TIME_RUNNING,
+    Observation,
 )
+from amalthea_uros.simulate.kernel.operations import POLLING, RUNNING
 from amalthea_uros.simulate.metrics import chains, jobs
 from amalthea_uros.simulate.metrics.chains import RouteMetrics, chain_observation
 from amalthea_uros.simulate.metrics.jobs import JobMetrics
+from amalthea_uros.simulate.metrics.observers import Observers
 from amalthea_uros.simulate.not_simulated import NotSimulated
 from amalthea_uros.simulate.observed_limits import LOOPING, judge_process, judge_requirements
-from amalthea_uros.simulate.observers import Observers
-from amalthea_uros.simulate.operations import POLLING, RUNNING
 from amalthea_uros.simulate.options import Options
-from amalthea_uros.simulate.player import EndlessJobError, Player
-from amalthea_uros.simulate.program.build import build_program
-from amalthea_uros.simulate.program.program import Program
+from amalthea_uros.simulate.program.build import KernelProgram, build_program
 from amalthea_uros.simulate.results import (
     ChainObservation,
     CoreObservation,
@@ -48,15 +49,13 @@ from amalthea_uros.simulate.results import (
     RunnableObservation,
     Simulation,
 )
-from amalthea_uros.simulate.rows import OCCURRENCE, Observation
 from amalthea_uros.timing.activation.phases import with_first_arrivals
 from amalthea_uros.timing.activation.releases import ASSUMPTION
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.timing.blocking.critical_sections import spinlocks_of
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.trace.semaphore_states import SemaphoreStates
+from amalthea_uros.trace.derived_events import RunnableSuspensions, SemaphoreStates
 from amalthea_uros.trace.sinks import TraceSink
-from amalthea_uros.trace.suspensions import RunnableSuspensions
 from amalthea_uros.trace.table import Entity, EntityKind, EventTable
 from amalthea_uros.units import time_text
 
@@ -78,14 +77,14 @@ def simulate_system(system: System, options: Options, sinks: Sequence[OpenSink] 
     """
     context = TimingContext.of_scheduling(with_first_arrivals(system, options.settings.phases), options.settings)
     program = build_program(context, options)
-    run = _Run(context, options, program)
+    run = _SimulationRun(context, options, program)
     with ExitStack() as stack:
         run.play([stack.enter_context(open_sink(program.entities)) for open_sink in sinks])
     return run.result()
 
 
 @dataclass(slots=True)
-class _Run:
+class _SimulationRun:
     """A run, and what is observed in it.
 
     Attributes
@@ -95,9 +94,9 @@ class _Run:
 
     context: TimingContext
     options: Options
-    program: Program
+    program: KernelProgram
     end: int = field(init=False)
-    player: Player = field(init=False)
+    player: KernelDriver = field(init=False)
     jobs: list[JobMetrics] = field(init=False)
     routes: list[RouteMetrics] = field(init=False)
     observers: Observers = field(init=False)
@@ -115,7 +114,7 @@ class _Run:
         self.routes = [RouteMetrics(program.units) for _ in program.routes]
         self.semaphores = _semaphore_states(self.context.system, program)
         traced = self.options.traced or (0, 0)
-        self.player = Player(
+        self.player = KernelDriver(
             program,
             until=self.end,
             jobs=lambda rows: jobs.add_rows(rows, [*self.jobs, *self.runnables]),
@@ -295,14 +294,14 @@ class _Run:
 _OF_ANALYSES = ("ANA002", "ANA003", "ANA004", "ANA005", "ANA007")
 
 
-def _semaphore_states(system: System, program: Program) -> SemaphoreStates:
+def _semaphore_states(system: System, program: KernelProgram) -> SemaphoreStates:
     """What makes the state chart of BTF of the events of semaphores."""
     numbers = {entity.name: number for number, entity in enumerate(program.entities) if entity.kind is EntityKind.SEMAPHORE}
     users = {numbers[semaphore.name]: semaphore.users for semaphore in system.os.semaphores}
     return SemaphoreStates(users, spinlocks=[numbers[name] for name in spinlocks_of(system)])
 
 
-def _event_table(rows: NDArray[np.int64], program: Program) -> EventTable:
+def _event_table(rows: NDArray[np.int64], program: KernelProgram) -> EventTable:
     """Events in picoseconds, as the table of a trace."""
     time, kind, source, source_instance, target, target_instance, note = rows.T
     return EventTable(

@@ -9,7 +9,7 @@ from amalthea_uros.diagnostics import Finding, Location, Severity
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class TracePlace:
     """Where in a trace a problem is.
 
     Attributes
@@ -23,14 +23,14 @@ class Place:
     text: str | None = None
 
 
-class Problems:
+class TraceProblems:
     """The problems of one trace, in the order in which they occur first."""
 
     def __init__(self, path: Path | None) -> None:
         self._path = path
         self._found: dict[tuple[str, str], tuple[Finding, int]] = {}
 
-    def add(self, rule: str, severity: Severity, message: str, place: Place = Place(), advice: str = "") -> None:
+    def add(self, rule: str, severity: Severity, message: str, place: TracePlace = TracePlace(), advice: str = "") -> None:
         """Add a problem, or an occurrence of one; the message says nothing that differs between occurrences."""
         finding, count = self._found.get((rule, message), (None, 0))
         if finding is None:

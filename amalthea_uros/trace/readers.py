@@ -2,79 +2,74 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable
+from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol, cast
+from typing import TYPE_CHECKING, Any
 
 from amalthea_uros._internal.files import is_directory
-from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.trace.ctf.folders import has_metadata
-from amalthea_uros.trace.file_heads import first_characters
-from amalthea_uros.trace.table import Entity, EventTable
+from amalthea_uros.trace.files import first_characters
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
+    from amalthea_uros.trace.reading import TraceReader
 
-#: The modules that read a format, by the ends of file names. `.gz` may follow each of them.
-READERS = {".btf": "btf_reader", ".csv": "csv_reader"}
-#: The modules of text formats that are recognised by the first lines, whatever the file is called, and what they are called.
-RECOGNISED = {
-    "task_events": "TRACE32 task events",
-    "ftrace_text": "ftrace text (NuttX)",
-    "systemview_csv": "SystemView CSV",
-    "tracealyzer_csv": "Tracealyzer CSV",
-}
-#: The names of formats by the modules that read them.
-FORMATS = {"btf_reader": "BTF", "csv_reader": "CSV", **RECOGNISED, "ctf.reader": "CTF"}
 #: The ends of names of files whose contents are looked at, and so many characters of them.
 _AMBIGUOUS = (".csv", ".txt", ".log", ".trace", ".ftrace")
 _HEAD = 1 << 16
 
 
-class TraceReader(Protocol):
-    """Gives the events of a trace; it can be used once.
+@dataclass(frozen=True, slots=True)
+class TraceFormat:
+    """A format of traces.
 
     Attributes
     ----------
-    entities : complete when all events have been read
-    findings : the problems met so far; everything else has been read
+    name : for messages
+    module, reader : the module in this room that reads it, and the class in it
+    suffix : the end of the names of files, which `.gz` may follow; "" for text that is recognised by its first lines
+    recogniser : the function of the module that recognises the first characters of a text
     """
 
-    @property
-    def entities(self) -> Sequence[Entity]:
-        """The entities so far."""
+    name: str
+    module: str
+    reader: str
+    suffix: str = ""
+    recogniser: str = ""
 
-    @property
-    def findings(self) -> tuple[Finding, ...]:
-        """The problems so far."""
-
-    def __iter__(self) -> Iterator[EventTable]:
-        """The events, in consecutive tables."""
-
-    def numbered(self) -> Iterator[tuple[EventTable, NDArray[np.int64]]]:
-        """The same, with the number of the line of each event."""
+    def attribute(self, name: str) -> Any:
+        """A class or function of the module, which is imported only now."""
+        return getattr(import_module(f"amalthea_uros.trace.{self.module}"), name)
 
 
-def format_of(path: Path) -> str | None:
-    """The module that reads a trace, a key of `FORMATS`, by the name and the first lines of the file; None if no one does."""
+CTF = TraceFormat("CTF", "ctf.reader", "CtfReader")
+#: Recognised by the ends of file names.
+BY_NAME = (
+    TraceFormat("BTF", "btf.reader", "BtfReader", suffix=".btf"),
+    TraceFormat("CSV", "csv_format", "CsvReader", suffix=".csv"),
+)
+#: Recognised by the first lines, whatever the file is called.
+BY_CONTENT = (
+    TraceFormat("TRACE32 task events", "schedulers.task_events", "TaskEventReader", recogniser="is_task_events"),
+    TraceFormat("ftrace text (NuttX)", "schedulers.ftrace_text", "FtraceReader", recogniser="is_ftrace"),
+    TraceFormat("SystemView CSV", "schedulers.viewer_tables", "SystemviewReader", recogniser="is_systemview"),
+    TraceFormat("Tracealyzer CSV", "schedulers.viewer_tables", "TracealyzerReader", recogniser="is_tracealyzer"),
+)
+
+
+def format_of(path: Path) -> TraceFormat | None:
+    """The format of a trace, by the name and the first lines of the file; None if it is not known."""
     if is_directory(path) and has_metadata(path):
-        return "ctf.reader"
+        return CTF
     name = path.name.lower().removesuffix(".gz")
     if name.endswith(_AMBIGUOUS):
         head = first_characters(path, _HEAD)
-        for module in RECOGNISED:
-            if import_module(f"amalthea_uros.trace.{module}").matches(head):
-                return module
-    return next((module for suffix, module in READERS.items() if name.endswith(suffix)), None)
-
-
-def format_name(path: Path) -> str:
-    """What the format of a trace is called; "" if no reader is known for it."""
-    module = format_of(path)
-    return "" if module is None else FORMATS[module]
+        for known in BY_CONTENT:
+            if known.attribute(known.recogniser)(head):
+                return known
+    return next((known for known in BY_NAME if name.endswith(known.suffix)), None)
 
 
 def open_trace(path: Path) -> TraceReader:
@@ -85,11 +80,13 @@ def open_trace(path: Path) -> TraceReader:
     InvalidArgumentError : no reader is known for it.
     ReadError : when events are read, if the file cannot be.
     """
-    module = format_of(path)
-    if module is None:
+    found = format_of(path)
+    if found is None:
+        suffixes, names = (", ".join(names) for names in ([f.suffix for f in BY_NAME], [f.name for f in BY_CONTENT]))
         raise InvalidArgumentError(
-            f"the format of the trace {path.name!r} is not known; the name of the file must end in one of {', '.join(READERS)}, "
+            f"the format of the trace {path.name!r} is not known; the name of the file must end in one of {suffixes}, "
             "and may be followed by .gz, e.g. run.btf.gz; or it is a folder with a CTF trace, or a text file of one of: "
-            f"{', '.join(RECOGNISED.values())}"
+            f"{names}"
         )
-    return cast("Callable[[Path], TraceReader]", import_module(f"amalthea_uros.trace.{module}").Reader)(path)
+    reader: Callable[[Path], TraceReader] = found.attribute(found.reader)
+    return reader(path)

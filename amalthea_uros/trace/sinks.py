@@ -1,4 +1,4 @@
-"""Where traces are written to: table by table, into a file that appears only when it is complete."""
+"""Where traces are written to: table by table, into a file that appears only when it is complete, or into memory."""
 
 from __future__ import annotations
 
@@ -15,22 +15,22 @@ from typing import BinaryIO, Protocol, Self, cast, runtime_checkable
 from amalthea_uros._internal.files import STANDARD_OUTPUT, FileError, is_stream, not_writable, replacing, write_bytes
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import InvalidArgumentError, WriteError
-from amalthea_uros.trace.table import Entity, EventTable
+from amalthea_uros.trace.table import Entity, EventTable, concatenate
 
 #: Only that many rows are formatted at a time, which bounds the memory.
 _ROWS = 1 << 13
 #: Much faster than the default, and traces are compressed to a few percent anyway.
 _COMPRESSION = 4
 
-#: The modules that write a format, by the ends of file names. `.gz` may follow each of them.
+#: The modules and classes that write a format, by the ends of file names. `.gz` may follow each of them.
 WRITERS = {
-    ".btf": "btf_writer",
-    ".perfetto-trace": "perfetto",
-    ".pftrace": "perfetto",
-    ".perfetto.json": "chrome_json",
-    ".json": "chrome_json",
-    ".csv": "csv_writer",
-    ".log": "candump_writer",
+    ".btf": ("btf.writer", "BtfEncoder"),
+    ".perfetto-trace": ("viewers.perfetto", "PerfettoEncoder"),
+    ".pftrace": ("viewers.perfetto", "PerfettoEncoder"),
+    ".perfetto.json": ("viewers.chrome_json", "ChromeEncoder"),
+    ".json": ("viewers.chrome_json", "ChromeEncoder"),
+    ".csv": ("csv_format", "CsvEncoder"),
+    ".log": ("can.candump_writer", "CandumpEncoder"),
 }
 
 
@@ -114,15 +114,16 @@ def open_sink(
 
 
 def _encoder(name: str, given: str) -> Callable[[Sequence[Entity], WriteOptions], Encoder]:
-    module = next((module for suffix, module in WRITERS.items() if name.endswith(suffix)), None)
-    if module is None:
+    found = next((writer for suffix, writer in WRITERS.items() if name.endswith(suffix)), None)
+    if found is None:
         known = ", ".join(WRITERS)
         raise InvalidArgumentError(
             f"no trace format is known for {given!r}; the name of the file must end in one of {known}, and may be followed by .gz, "
             "e.g. run.btf.gz"
         )
+    module, encoder = found
     return cast(
-        "Callable[[Sequence[Entity], WriteOptions], Encoder]", import_module(f"amalthea_uros.trace.{module}").TraceEncoder
+        "Callable[[Sequence[Entity], WriteOptions], Encoder]", getattr(import_module(f"amalthea_uros.trace.{module}"), encoder)
     )
 
 
@@ -197,3 +198,36 @@ def _reporting(target: Path | BinaryIO) -> Iterator[None]:
 
 def _not_writable(error: FileError) -> Finding:
     return Finding("TRC101", Severity.ERROR, error.reason, Location(error.path), error.advice)
+
+
+# Events that are kept in memory.
+
+
+class EventRecorder:
+    """A sink that keeps all events; it is its own opener."""
+
+    def __init__(self) -> None:
+        self._tables: list[EventTable] = []
+
+    def __call__(self, entities: Sequence[Entity]) -> Self:
+        """Open it."""
+        self._tables = [EventTable.empty(entities)]
+        return self
+
+    @property
+    def table(self) -> EventTable:
+        """The events so far."""
+        return concatenate(self._tables)
+
+    def write(self, table: EventTable) -> None:
+        """Keep some events."""
+        self._tables.append(table)
+
+    def close(self) -> None:
+        """Nothing is left to do."""
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None) -> None:
+        """Keep the events for the caller."""

@@ -12,11 +12,21 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from amalthea_uros.diagnostics import Finding, Severity
-from amalthea_uros.trace.charts import ACCESS, ON_CORE, PROCESS, RUNNABLE, SEMAPHORE
-from amalthea_uros.trace.problems import Place, Problems
+from amalthea_uros.trace.btf.vocabulary import (
+    ACCESS,
+    ENTERING,
+    LEAVING,
+    ON_CORE,
+    PROCESS,
+    PROCESSES,
+    RUNNABLE,
+    SEMAPHORE,
+    SOURCES,
+    WORDS,
+)
+from amalthea_uros.trace.problems import TracePlace, TraceProblems
 from amalthea_uros.trace.readers import open_trace
 from amalthea_uros.trace.table import Entity, EntityKind, EventKind, EventTable
-from amalthea_uros.trace.vocabulary import ENTERING, LEAVING, PROCESSES, SOURCES, WORDS
 
 if TYPE_CHECKING:
     import numpy as np
@@ -53,7 +63,7 @@ def check_trace(path: Path) -> tuple[Finding, ...]:
 
 
 @dataclass(slots=True)
-class _Job:
+class _ChartedJob:
     """A job of a task or ISR.
 
     Attributes
@@ -76,7 +86,7 @@ class _Event(NamedTuple):
     source_instance: int
     target: int
     target_instance: int
-    place: Place
+    place: TracePlace
 
 
 class StateCharts:
@@ -88,12 +98,12 @@ class StateCharts:
     """
 
     def __init__(self, path: Path | None = None) -> None:
-        self._problems = Problems(path)
+        self._problems = TraceProblems(path)
         self._entities: Sequence[Entity] = ()
         self._last_time = 0
         self._last_instances: dict[int, int] = {}
         self._triggers: dict[int, int] = {}
-        self._jobs: dict[tuple[int, int], _Job] = {}
+        self._jobs: dict[tuple[int, int], _ChartedJob] = {}
         #: Of each process: from which job on activations are in the trace, and the job that has ended last.
         self._first_jobs: dict[int, int] = {}
         self._last_ended: dict[int, int] = {}
@@ -109,7 +119,7 @@ class StateCharts:
     def check(self, table: EventTable, lines: NDArray[np.int64] | None = None) -> None:
         """Check some events, of which the lines in the file may be known."""
         self._entities = table.entities
-        places = [Place()] * len(table) if lines is None else list(map(Place, lines.tolist()))
+        places = [TracePlace()] * len(table) if lines is None else list(map(TracePlace, lines.tolist()))
         columns = [column.tolist() for name, column in table.to_dict().items() if name != "note"]
         for time, kind, source, source_instance, target, target_instance, place in zip(*columns, places, strict=True):
             self._check(_Event(time, EventKind(kind), source, source_instance, target, target_instance, place))
@@ -170,13 +180,13 @@ class StateCharts:
                 message = f"{WORDS[event.kind]} by {self._name(event.source)} in state {state}, but only a running process acts"
                 self._problems.add("TRC015", Severity.ERROR, message, event.place)
 
-    def _job(self, process: int, instance: int) -> _Job:
+    def _job(self, process: int, instance: int) -> _ChartedJob:
         """The record of a job; one of which nothing has been seen yet may be older than the trace."""
         job = self._jobs.get((process, instance))
         if job is None:
             first = self._first_jobs.get(process)
             is_complete = (first is not None and instance >= first) or self._last_ended.get(process) == instance
-            job = self._jobs[process, instance] = _Job(is_complete, "terminated" if is_complete else None)
+            job = self._jobs[process, instance] = _ChartedJob(is_complete, "terminated" if is_complete else None)
         return job
 
     def _check_process(self, event: _Event) -> None:
@@ -198,7 +208,7 @@ class StateCharts:
             else:
                 self._first_jobs.setdefault(event.target, event.target_instance)
 
-    def _check_left(self, event: _Event, job: _Job) -> None:
+    def _check_left(self, event: _Event, job: _ChartedJob) -> None:
         executing = [
             runnable for runnable, state in job.runnables.items() if state == "running" or event.kind is EventKind.TERMINATE
         ]
@@ -211,7 +221,7 @@ class StateCharts:
         self._cores.pop(event.source, None)
         job.core = None
 
-    def _check_core(self, event: _Event, job: _Job) -> None:
+    def _check_core(self, event: _Event, job: _ChartedJob) -> None:
         other = self._cores.get(event.source)
         if other is not None:
             message = f"{self._name(event.source)} executes {self._name(event.target)} and {self._name(other)} at the same time"

@@ -22,12 +22,12 @@ from amalthea_uros.services.simulate import simulate
 from amalthea_uros.simulate.results import (
     CoreObservation,
     CountObservation,
-    Histogram,
     MetricObservation,
+    ObservedOccurrence,
     ObservedVerdict,
-    Occurrence,
     ProcessObservation,
     Simulation,
+    TimeHistogram,
 )
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.trace.table import NO_NOTE, Entity, EntityKind, EventKind, EventTable
@@ -55,9 +55,9 @@ def simulate_system(system, options, sinks=()):
         mean=Fraction(response),
         max=Fraction(response),
         std=0.0,
-        at_min=Occurrence(instance=0, time=Fraction(0)),
-        at_max=Occurrence(instance=0, time=Fraction(0)),
-        histogram=Histogram(start=Fraction(response), width=Fraction(1), counts=(options.duration // period,)),
+        at_min=ObservedOccurrence(instance=0, time=Fraction(0)),
+        at_max=ObservedOccurrence(instance=0, time=Fraction(0)),
+        histogram=TimeHistogram(start=Fraction(response), width=Fraction(1), counts=(options.duration // period,)),
     )
     process = ProcessObservation(
         name="Control_Function",

@@ -9,8 +9,7 @@ from support import ROOT
 
 from amalthea_uros import InvalidArgumentError, Options, WriteError, analyze, calibrate, simulate, simulate_files
 from amalthea_uros.compare.calibration.values import Outcome
-from amalthea_uros.measure.series import Kind, Measurement, Series
-from amalthea_uros.measure.statistics import statistics_of
+from amalthea_uros.measure.series import MeasuredKind, Measurement, Series, statistics_of
 from amalthea_uros.services.build import describe_text
 from amalthea_uros.services.measure import measure
 from amalthea_uros.timing.basics.quantities import JobMetric
@@ -30,7 +29,7 @@ def us(*times):
     return np.array([round(time * MICROSECOND) for time in times])
 
 
-def series(name, quantity, values, kind=Kind.PROCESS, baseline=None):
+def series(name, quantity, values, kind=MeasuredKind.PROCESS, baseline=None):
     return Series(
         kind=kind, name=name, quantity=quantity, statistics=statistics_of(values), values=values, times=None, baseline=baseline
     )
@@ -175,7 +174,7 @@ def test_an_overhead_that_the_description_states_is_part_of_measured_jobs():
 
 
 def test_gross_times_are_used_with_a_warning():
-    result = calibrate(ADVANCED, control(5, quantity="duration", kind=Kind.INTERVAL))
+    result = calibrate(ADVANCED, control(5, quantity="duration", kind=MeasuredKind.INTERVAL))
     assert [each.rule for each in result.findings if each.rule == "CAL005"]
     assert result.written
 

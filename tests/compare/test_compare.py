@@ -10,8 +10,7 @@ from support import ROOT
 import amalthea_uros as amuros
 from amalthea_uros import InvalidArgumentError, Meaning, Names, compare, perf, simulate
 from amalthea_uros.compare.naming import parse_meaning
-from amalthea_uros.measure.series import Kind, Series
-from amalthea_uros.measure.statistics import Statistics, statistics_of
+from amalthea_uros.measure.series import MeasuredKind, Series, TimeStatistics, statistics_of
 from amalthea_uros.services.compare import parse_tolerance
 from amalthea_uros.services.subject import system_of
 from amalthea_uros.units import MICROSECOND, MILLISECOND
@@ -164,11 +163,11 @@ def test_the_same_mean_with_another_distribution_is_told():
 
 def test_a_latency_without_the_number_of_its_stimulus_proves_no_limit_as_kept():
     # The real latencies are at least these: the limit of 25 ms may be missed.
-    quick = series("factor-to-output", "reduced_reaction_time", [900] * 10, Kind.CHAIN, is_least=True)
+    quick = series("factor-to-output", "reduced_reaction_time", [900] * 10, MeasuredKind.CHAIN, is_least=True)
     found = compare(ADVANCED, measurement(quick), by=["analysis"])
     assert [(row.statistic, row.verdict) for row in found.find(quick.name, quick.quantity)] == [("max", "within")]
     assert [limit.verdict for limit in found.limits if limit.object == quick.name] == ["not_observed"]
-    slow = series("factor-to-output", "reduced_reaction_time", [30_000] * 10, Kind.CHAIN, is_least=True)
+    slow = series("factor-to-output", "reduced_reaction_time", [30_000] * 10, MeasuredKind.CHAIN, is_least=True)
     found = compare(ADVANCED, measurement(slow), by=["analysis"])
     assert found.find(slow.name, slow.quantity)[0].verdict == "refuted"
     assert [limit.verdict for limit in found.limits if limit.object == slow.name] == ["observed_missed"]
@@ -176,7 +175,9 @@ def test_a_latency_without_the_number_of_its_stimulus_proves_no_limit_as_kept():
 
 def test_the_mean_reaction_time_of_an_analysis_is_not_the_measured_one():
     # That of the analysis is of events at any time, the measured one of those that come just too late.
-    found = compare(ADVANCED, measurement(series("factor-to-output", "reaction_time", [40_000], Kind.CHAIN)), by=["analysis"])
+    found = compare(
+        ADVANCED, measurement(series("factor-to-output", "reaction_time", [40_000], MeasuredKind.CHAIN)), by=["analysis"]
+    )
     assert [row.statistic for row in found.compared] == ["max"]
 
 
@@ -206,7 +207,7 @@ def test_what_was_not_measured_is_told():
 
 def test_an_interval_between_markers_is_not_taken_for_a_quantity_without_being_told():
     # Whether it is a response time or an execution time depends on where the markers are.
-    both = measurement(series("Control_Function", "duration", [68.83], Kind.INTERVAL))
+    both = measurement(series("Control_Function", "duration", [68.83], MeasuredKind.INTERVAL))
     assert compare(APP, both).rows[0].verdict == "not predicted"
     meant = compare(APP, both, names=Names(meanings=(Meaning("Control_Function", "Control_Function", "response_time"),)))
     assert only(meant, "mean").predicted == 57 * MICROSECOND
@@ -214,10 +215,10 @@ def test_an_interval_between_markers_is_not_taken_for_a_quantity_without_being_t
 
 def test_executor_plus_control_function_is_the_response_time_of_the_control_function():
     meaning = parse_meaning("executor + control=Control_Function.response_time")
-    whole = measurement(series("executor + control", "duration", [60, 77.66], Kind.INTERVAL))
+    whole = measurement(series("executor + control", "duration", [60, 77.66], MeasuredKind.INTERVAL))
     assert only(compare(APP, whole, names=Names(meanings=(meaning,))), "mean").measured == 68_830_000
     # Of two measured parts, only the sum of their means is known: their maxima need not occur together.
-    parts = measurement(*(series(name, "duration", [10, 20], Kind.INTERVAL) for name in ("executor", "control")))
+    parts = measurement(*(series(name, "duration", [10, 20], MeasuredKind.INTERVAL) for name in ("executor", "control")))
     found = compare(APP, parts, names=Names(meanings=(meaning,)))
     assert [(row.statistic, row.measured) for row in found.compared] == [("mean", 30 * MICROSECOND)]
 
@@ -257,7 +258,7 @@ def test_other_tolerances_are_refused(text):
 
 def test_other_quantities_of_what_is_named_need_no_name():
     measured = measurement(
-        series("both", "duration", [57], Kind.INTERVAL), series("both", "start_to_start", [1000], Kind.INTERVAL)
+        series("both", "duration", [57], MeasuredKind.INTERVAL), series("both", "start_to_start", [1000], MeasuredKind.INTERVAL)
     )
     found = compare(APP, measured, names=Names(meanings=(Meaning("both", "Control_Function", "response_time"),)))
     assert [finding.rule for finding in found.findings] == []
@@ -289,7 +290,7 @@ def test_a_distance_of_starts_has_no_overhead():
 
 def test_a_subtracted_baseline_is_told_and_makes_single_values_uncertain():
     # 98 to 100 us with an empty task of 40 to 42 us: at most 60 us net, and the longest is 58 us at least.
-    empty = Statistics(count=10, min=40 * MICROSECOND, mean=Fraction(41 * MICROSECOND), max=42 * MICROSECOND, variance=None)
+    empty = TimeStatistics(count=10, min=40 * MICROSECOND, mean=Fraction(41 * MICROSECOND), max=42 * MICROSECOND, variance=None)
     net = series("Control_Function", "response_time", [57, 57.9], baseline=empty)
     found = compare(APP, measurement(net, resolution=None))
     assert only(found, "max", "exact").verdict == "within"
@@ -314,7 +315,7 @@ def test_a_baseline_is_added_again_where_the_model_has_the_overhead_itself():
 def test_overhead_that_the_model_has_is_not_subtracted_from_what_was_measured():
     # 53 us of which 41 us are overhead: the model has both, so that the 12 us without it are not what it predicts.
     app = APP.replace("{base: 53 us}", "{base: 12 us}, overhead: 41 us")
-    empty = Statistics(count=10, min=40 * MICROSECOND, mean=Fraction(41 * MICROSECOND), max=42 * MICROSECOND, variance=None)
+    empty = TimeStatistics(count=10, min=40 * MICROSECOND, mean=Fraction(41 * MICROSECOND), max=42 * MICROSECOND, variance=None)
     found = compare(app, measurement(series("Executor_Task", "net_execution_time", [12], baseline=empty)))
     row = only(found, "max", "exact")
     assert (row.measured, row.predicted, row.verdict) == (53 * MICROSECOND, 53 * MICROSECOND, "within")
@@ -392,9 +393,11 @@ def test_limits_of_numbers_are_not_judged_by_times():
 
 def test_statistics_alone_are_enough():
     # A controller that sends minimum, mean and maximum once per second.
-    known = Statistics(count=300, min=57 * MICROSECOND, mean=Fraction(57 * MICROSECOND), max=57 * MICROSECOND, variance=None)
+    known = TimeStatistics(
+        count=300, min=57 * MICROSECOND, mean=Fraction(57 * MICROSECOND), max=57 * MICROSECOND, variance=None
+    )
     found = compare(
-        APP, measurement(Series(kind=Kind.PROCESS, name="Control_Function", quantity="response_time", statistics=known))
+        APP, measurement(Series(kind=MeasuredKind.PROCESS, name="Control_Function", quantity="response_time", statistics=known))
     )
     assert found.holds
     assert not found.distributions

@@ -14,7 +14,7 @@ from support import ROOT
 import amalthea_uros as amuros
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.errors import ReadError
-from amalthea_uros.measure.series import Kind
+from amalthea_uros.measure.series import MeasuredKind
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
 
@@ -230,7 +230,7 @@ def test_reported_statistics_merge_exactly(tmp_path):
     assert found.variance is None
     assert found.percentiles == {}
     assert series.values is None
-    assert series.kind is Kind.PROCESS
+    assert series.kind is MeasuredKind.PROCESS
 
 
 def test_reported_values_have_the_scale_of_their_unit(tmp_path):
@@ -335,7 +335,7 @@ def test_hostile_logs_are_measured_or_refused_in_words(tmp_path):
         found = amuros.measure(path, markers=MARKERS)
         assert found.findings
         for series in found.series:
-            assert series.statistics is None or series.kind is not Kind.INTERVAL or series.statistics.min >= 0
+            assert series.statistics is None or series.kind is not MeasuredKind.INTERVAL or series.statistics.min >= 0
 
 
 @pytest.mark.parametrize(

@@ -7,11 +7,11 @@ from traces import table
 from amalthea_uros import Options, task, taskset
 from amalthea_uros.compare.measured.events import chain_starts
 from amalthea_uros.measure.event_chains import ChainSteps
-from amalthea_uros.measure.jobs import JobWalk
+from amalthea_uros.measure.jobs import JobFollower
 from amalthea_uros.measure.series import Counts
 from amalthea_uros.simulate.system import simulate_system
 from amalthea_uros.timing.basics.quantities import JobMetric
-from amalthea_uros.trace.recorder import Recorder
+from amalthea_uros.trace.sinks import EventRecorder
 from amalthea_uros.trace.table import Entity, EntityKind, EventKind
 from amalthea_uros.units import MICROSECOND
 
@@ -21,7 +21,7 @@ CORE, TASK, RUNNABLE = range(3)
 
 
 def measured(*tables):
-    walk = JobWalk()
+    walk = JobFollower()
     for part in tables:
         walk.add(part)
     walk.finish()
@@ -123,10 +123,10 @@ def test_the_trace_of_a_simulation_has_what_it_observed(parameters, with_chain):
     chains = {"chain": [each.name for each in made]} if with_chain else None
     system = taskset(made, priorities="rate monotonic", chains=chains)
     duration = 10_000 * MICROSECOND
-    recorder = Recorder()
+    recorder = EventRecorder()
     found = simulate_system(system, Options(duration=duration, traced=(0, duration)), [recorder])
     events = recorder.table
-    walk, steps = JobWalk(), ChainSteps(chain_starts(system))
+    walk, steps = JobFollower(), ChainSteps(chain_starts(system))
     for part in (events.rows(0, 50), events.rows(50, len(events))):
         walk.add(part)
         steps.add(part)

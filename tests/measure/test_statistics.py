@@ -9,8 +9,7 @@ from hypothesis import strategies as st
 
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.measure.baselines import without
-from amalthea_uros.measure.series import Kind, Series
-from amalthea_uros.measure.statistics import merged, shifted, statistics_of
+from amalthea_uros.measure.series import MeasuredKind, Series, merged, shifted, statistics_of
 
 times = st.integers(-(2**61), 2**61)
 lists = st.lists(times, min_size=1, max_size=50)
@@ -57,7 +56,7 @@ def test_every_net_time_is_in_the_interval(net, costs, data):
     """Whichever cost each value has, the true net times are within the interval."""
     paid = [data.draw(st.sampled_from(costs)) for _ in net]
     values = np.array([time + cost for time, cost in zip(net, paid, strict=True)])
-    series = Series(kind=Kind.PROCESS, name="T", quantity="duration", statistics=statistics_of(values), values=values)
+    series = Series(kind=MeasuredKind.PROCESS, name="T", quantity="duration", statistics=statistics_of(values), values=values)
     low, high = without(series, statistics_of(np.array(costs))).net_range
     assert low <= min(net)
     assert max(net) <= high
@@ -65,7 +64,7 @@ def test_every_net_time_is_in_the_interval(net, costs, data):
 
 def test_the_deviation_from_the_period_is_the_larger_one():
     series = Series(
-        kind=Kind.PROCESS,
+        kind=MeasuredKind.PROCESS,
         name="T",
         quantity="start_to_start",
         statistics=statistics_of(np.array([987, 1013, 1020])),

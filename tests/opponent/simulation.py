@@ -15,14 +15,13 @@ from opponent.to_perf import MICROSECOND, to_perf
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.system import System
-from amalthea_uros.simulate import machine_code
+from amalthea_uros.simulate.driver import KernelDriver
+from amalthea_uros.simulate.kernel import machine_code
+from amalthea_uros.simulate.kernel.layout import STIMULUS, Observation
 from amalthea_uros.simulate.metrics.chains import RouteMetrics, chain_observation
 from amalthea_uros.simulate.options import Mode, Options
-from amalthea_uros.simulate.player import Player
-from amalthea_uros.simulate.program.build import build_program
-from amalthea_uros.simulate.program.program import Program
+from amalthea_uros.simulate.program.build import KernelProgram, build_program
 from amalthea_uros.simulate.results import MetricObservation
-from amalthea_uros.simulate.rows import STIMULUS, Observation
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.observed.job_times import Job as Column
 
@@ -44,7 +43,7 @@ class Recording:
     jobs, observations, events : as the kernel reports them, in time units
     """
 
-    program: Program
+    program: KernelProgram
     jobs: list[list[int]] = field(default_factory=list)
     observations: list[list[int]] = field(default_factory=list)
     events: list[list[int]] = field(default_factory=list)
@@ -62,7 +61,7 @@ def record(system: System, options: Options, *, is_compiled: bool = False) -> Re
     program = build_program(TimingContext.of_scheduling(system, options.settings), options)
     found = Recording(program)
     traced = options.traced or (0, 0)
-    player = Player(
+    player = KernelDriver(
         program,
         until=options.duration * program.units,
         jobs=lambda rows: found.jobs.extend(rows.tolist()),

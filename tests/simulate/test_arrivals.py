@@ -8,6 +8,7 @@ from effort import examples
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.distributions import Boundaries, Bucket, Constant, Gauss, Histogram, Sampling, Statistics, Uniform
 from amalthea_uros.perf.stimuli import (
     ArrivalCurve,
@@ -29,9 +30,9 @@ from amalthea_uros.perf.stimuli import (
     VariableRate,
 )
 from amalthea_uros.perf.system import System
-from amalthea_uros.simulate.arrivals import UnknownArrivalError, occurrences
+from amalthea_uros.simulate.arrivals import occurrences
 from amalthea_uros.simulate.options import Mode
-from amalthea_uros.simulate.sampling.random_source import RandomSource
+from amalthea_uros.simulate.sampling.words import RandomSource
 from amalthea_uros.timing.event_models.stimuli import event_model_of
 from amalthea_uros.units import SECOND
 
@@ -251,7 +252,7 @@ def started(stimulus, mode, seed=1, time_base=1):
     """The occurrences; stimuli that cannot be simulated are not wanted."""
     try:
         return start(stimulus, mode, seed, time_base)
-    except UnknownArrivalError:
+    except UnknownError:
         assume(False)
 
 
@@ -305,10 +306,10 @@ def earliest_by_relaxation(stimulus, count):
 def test_the_worst_case_of_an_arrival_curve_is_as_early_as_its_borders_allow(stimulus):
     expected = earliest_by_relaxation(stimulus, 40)
     if expected is None:
-        with pytest.raises(UnknownArrivalError, match=r"contradict|no borders"):
+        with pytest.raises(UnknownError, match=r"contradict|no borders"):
             start(stimulus, Mode.WORST)
     elif expected[-1] == 0:
-        with pytest.raises(UnknownArrivalError, match=r"unlimited number|no borders"):
+        with pytest.raises(UnknownError, match=r"unlimited number|no borders"):
             start(stimulus, Mode.WORST)
     else:
         # The last ones of the trial have no followers that they must not be too far from.
@@ -369,5 +370,5 @@ def test_stimuli_that_are_triggered_have_no_occurrences_of_their_own():
 )
 @pytest.mark.parametrize("mode", [Mode.SAMPLED, Mode.WORST])
 def test_what_cannot_be_simulated_is_refused_with_a_reason(stimulus, text, mode):
-    with pytest.raises(UnknownArrivalError, match=text):
+    with pytest.raises(UnknownError, match=text):
         start(stimulus, mode)

@@ -15,8 +15,8 @@ from support import SHARED
 
 from amalthea_uros.analyze.chains.job_chains import build_job_chains
 from amalthea_uros.analyze.chains.read_write_times import ReadWriteTimes
+from amalthea_uros.simulate.kernel.layout import RESPONSE, STIMULUS
 from amalthea_uros.simulate.metrics.chains import RouteMetrics, add_rows, chain_observation
-from amalthea_uros.simulate.rows import RESPONSE, STIMULUS
 from amalthea_uros.timing.basics.quantities import ChainQuantity as Q
 from amalthea_uros.timing.observed import chain_latencies
 

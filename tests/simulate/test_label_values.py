@@ -7,14 +7,14 @@ from hypothesis import strategies as st
 from amalthea_uros.perf.activities import Communication
 from amalthea_uros.perf.events import LabelChange, LabelEvent, ProcessChange, ProcessEvent
 from amalthea_uros.simulate.metrics.label_values import LabelValues
-from amalthea_uros.simulate.program.watches import Source
+from amalthea_uros.simulate.program.watches import EventSource
 
 PROCESSES = ("A", "B", "C")
 PHASES = (ProcessChange.ACTIVATE, ProcessChange.START, ProcessChange.TERMINATE)
 SOURCES = [
-    *(Source(ProcessEvent, name, change, None, name) for name in PROCESSES for change in PHASES),
+    *(EventSource(ProcessEvent, name, change, None, name) for name in PROCESSES for change in PHASES),
     *(
-        Source(LabelEvent, "x", change, None, name, communication)
+        EventSource(LabelEvent, "x", change, None, name, communication)
         for name in PROCESSES
         for change in LabelChange
         for communication in Communication
@@ -35,10 +35,10 @@ def histories(draw):
         }[states[name]]
         if states[name] is ProcessChange.START and draw(st.integers(0, 3)):
             change, communication = draw(st.sampled_from(LabelChange)), draw(st.sampled_from(Communication))
-            history.append((time, Source(LabelEvent, "x", change, None, name, communication)))
+            history.append((time, EventSource(LabelEvent, "x", change, None, name, communication)))
         else:
             states[name] = following
-            history.append((time, Source(ProcessEvent, name, following, None, name)))
+            history.append((time, EventSource(ProcessEvent, name, following, None, name)))
     return history
 
 

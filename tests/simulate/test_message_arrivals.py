@@ -16,7 +16,7 @@ from amalthea_uros.design.changes.apply import apply
 from amalthea_uros.design.changes.apply import describe as describe_changes
 from amalthea_uros.design.changes.change import parse_change
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.simulate import machine_code
+from amalthea_uros.simulate.kernel import machine_code
 from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.simulate.program.messages import QUEUE_LENGTH
 from amalthea_uros.simulate.system import simulate_system

@@ -10,8 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from amalthea_uros.simulate.metrics.distributions import Distributions
-from amalthea_uros.simulate.metrics.histogram import MAX_BINS, BinCounts
+from amalthea_uros.simulate.metrics.distributions import MAX_BINS, BinCounts, Distributions
 from amalthea_uros.simulate.metrics.jobs import JobMetrics, add_rows
 from amalthea_uros.simulate.results import CountObservation
 from amalthea_uros.timing.basics.quantities import JobMetric

@@ -55,7 +55,7 @@ from amalthea_uros.perf.os import OperatingSystem, Os, Scheduler, Semaphore
 from amalthea_uros.perf.software import Label, Runnable, Software, Task
 from amalthea_uros.perf.stimuli import Counter, InterProcess, Periodic, Stimuli
 from amalthea_uros.perf.system import System
-from amalthea_uros.simulate import machine_code
+from amalthea_uros.simulate.kernel import machine_code
 from amalthea_uros.simulate.options import ALL_LABELS, Options
 from amalthea_uros.simulate.system import simulate_system
 from amalthea_uros.timing.basics.quantities import JobMetric

@@ -7,9 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from amalthea_uros.simulate.sampling.fixed_point import scaled
 from amalthea_uros.simulate.sampling.quantile_table import tabulated
-from amalthea_uros.simulate.sampling.random_source import RandomSource
+from amalthea_uros.simulate.sampling.words import RandomSource, scaled
 
 MASK = 2**64 - 1
 WORDS = st.integers(0, MASK)

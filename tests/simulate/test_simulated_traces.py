@@ -17,8 +17,7 @@ from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.system import simulate_system
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.trace.readers import open_trace
-from amalthea_uros.trace.recorder import Recorder
-from amalthea_uros.trace.sinks import open_sink
+from amalthea_uros.trace.sinks import EventRecorder, open_sink
 from amalthea_uros.trace.state_charts import StateCharts, check_trace
 from amalthea_uros.trace.table import Entity, EntityKind, EventKind
 from amalthea_uros.units import MICROSECOND as US
@@ -30,7 +29,7 @@ WINDOWS = [(0, DURATION), *((start * US, 400 * US) for start in (1, 27, 33, 48, 
 
 
 def play(system, duration=DURATION, traced=None, sinks=()):
-    recorder = Recorder()
+    recorder = EventRecorder()
     simulation = simulate_system(system, Options(duration=duration, traced=traced or (0, duration)), [recorder, *sinks])
     return simulation, [recorder.table]
 

@@ -14,7 +14,7 @@ from support import ROOT
 from amalthea_uros import describe
 from amalthea_uros.design.changes.sweep import parse_sweep
 from amalthea_uros.services.simulate import simulate, simulate_campaign
-from amalthea_uros.simulate import machine_code
+from amalthea_uros.simulate.kernel import machine_code
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
 from amalthea_uros.units import MICROSECOND as US

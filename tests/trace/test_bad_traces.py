@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from traces import random_trace
 
-from amalthea_uros.trace.readers import READERS, open_trace
+from amalthea_uros.trace.readers import BY_NAME, open_trace
 from amalthea_uros.trace.sinks import WRITERS, WriteOptions, open_sink
 from amalthea_uros.trace.state_charts import check_trace
 
@@ -37,7 +37,7 @@ def read(path: Path):
     return np.concatenate(times) if times else np.array([])
 
 
-@pytest.mark.parametrize("suffix", READERS)
+@pytest.mark.parametrize("suffix", [known.suffix for known in BY_NAME])
 @given(content=st.binary(max_size=300), packed=st.booleans())
 def test_any_bytes(tmp_path_factory, suffix, content, packed):
     path = tmp_path_factory.mktemp("traces") / (f"run{suffix}.gz" if packed else f"run{suffix}")
@@ -46,7 +46,7 @@ def test_any_bytes(tmp_path_factory, suffix, content, packed):
     check_trace(path)
 
 
-@pytest.mark.parametrize("suffix", READERS)
+@pytest.mark.parametrize("suffix", [known.suffix for known in BY_NAME])
 @given(
     seed=st.integers(0, 5),
     places=st.lists(st.tuples(st.floats(0, 1), st.sampled_from(BREAKERS), st.integers(0, 40)), max_size=6),

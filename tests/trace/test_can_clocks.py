@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.trace.can.clocks import unwrap
+from amalthea_uros.trace.can.plausibility import unwrap
 
 
 def line(time: int, channel: str = "can0", frame: str = "123#11") -> str:

@@ -11,7 +11,7 @@ from traces import chunks, random_trace, table
 
 from amalthea_uros.trace.sinks import open_sink
 from amalthea_uros.trace.table import Entity, EntityKind, EventKind
-from amalthea_uros.trace.timeline import Change, Timeline
+from amalthea_uros.trace.viewers.timeline import Timeline, TrackChange
 
 
 def events(entities, *tables):
@@ -73,7 +73,7 @@ def test_a_slice_comes_after_those_around_it(random, size):
     shown = slices(events(trace.entities, *chunks(trace, size)))
     timeline = Timeline()
     marks = [*timeline.marks(trace), *timeline.finish()]
-    assert len(shown) == sum(mark.change is Change.BEGIN for mark in marks)
+    assert len(shown) == sum(mark.change is TrackChange.BEGIN for mark in marks)
     open_slices = {}
     for track, begin, end, _ in shown:
         stack = open_slices.setdefault(track, [])

@@ -16,10 +16,10 @@ from traces import told
 
 from amalthea_uros.errors import InvalidArgumentError, ReadError
 from amalthea_uros.trace.ctf.metadata import described, read_metadata
-from amalthea_uros.trace.ctf.streams import Stream
-from amalthea_uros.trace.ctf.tokens import MetadataError
-from amalthea_uros.trace.ctf.types import Array, Integer, String
-from amalthea_uros.trace.problems import Problems
+from amalthea_uros.trace.ctf.streams import PacketStream
+from amalthea_uros.trace.ctf.tsdl import MetadataError
+from amalthea_uros.trace.ctf.types import ArrayType, IntegerType, StringType
+from amalthea_uros.trace.problems import TraceProblems
 from amalthea_uros.trace.readers import format_of, open_trace
 from amalthea_uros.trace.state_charts import check_trace
 
@@ -65,7 +65,7 @@ def test_zephyr(tmp_path):
         e(9000, "thread_ready", A),
     ]
     path = write_zephyr(tmp_path / "trace", events)
-    assert format_of(path) == "ctf.reader"
+    assert format_of(path).name == "CTF"
     assert told(open_trace(path)) == [
         "100 resume A#0",
         "1000 preempt A#0",
@@ -237,7 +237,7 @@ def test_ros2_callbacks_and_messages(tmp_path, order):
     assert lines == ROS2_EVENTS
     # The end of the second execution has no begin.
     assert rules(reader) == ["TRC021"]
-    assert format_of(path) == "ctf.reader"
+    assert format_of(path).name == "CTF"
 
 
 def test_ros2_with_the_scheduler_of_linux(tmp_path):
@@ -328,10 +328,10 @@ def test_types_of_metadata():
         """.replace("1 + 0", "0x1")
     )
     fields = dict(metadata.streams[0].events[1].fields.fields)
-    assert fields["s"] == String()
-    assert fields["list"] == Array(Array(Integer(16, 16, True), "x"), 2)
+    assert fields["s"] == StringType()
+    assert fields["list"] == ArrayType(ArrayType(IntegerType(16, 16, True), "x"), 2)
     assert [name for name, _ in fields["p"].fields] == ["x", "y"]
-    assert fields["p"].fields[0][1] == Integer(32, 8, False, is_big_endian=True)
+    assert fields["p"].fields[0][1] == IntegerType(32, 8, False, is_big_endian=True)
 
 
 @pytest.mark.parametrize(
@@ -436,7 +436,7 @@ def test_the_reference_implementation_reads_the_same(tmp_path, order):
             )
         packets.append(w.packet(begin, events, sequence, length=time - begin, spare=random.randrange(9)))
     folder = w.write(tmp_path / "trace", packets)
-    own = list(Stream(folder / "channel0_0", read_metadata(folder / "metadata"), Problems(None)))
+    own = list(PacketStream(folder / "channel0_0", read_metadata(folder / "metadata"), TraceProblems(None)))
     theirs = babeltrace(folder)
     assert len(own) == len(theirs) == 250
     for event, line in zip(own, theirs, strict=True):

@@ -10,10 +10,10 @@ from test_btf_writer import ENTITIES, PREEMPTION, TASK_A, TASK_B, in_nanoseconds
 from traces import chunks, random_trace, table
 
 from amalthea_uros.services.simulate import simulate
-from amalthea_uros.trace.protobuf import varint
 from amalthea_uros.trace.sinks import open_sink
 from amalthea_uros.trace.table import Entity, EntityKind, EventKind
-from amalthea_uros.trace.timeline import Change, Timeline
+from amalthea_uros.trace.viewers.perfetto import varint
+from amalthea_uros.trace.viewers.timeline import Timeline, TrackChange
 
 messages = pytest.importorskip("perfetto.protos.perfetto.trace.perfetto_trace_pb2", reason="perfetto is not installed")
 BEGIN, END, INSTANT = 1, 2, 3
@@ -109,7 +109,7 @@ def test_picoseconds_are_rounded_down_and_stay_in_order():
 def test_random_traces_are_shown_without_errors(random, size):
     trace = random_trace(random, steps=150)
     shown = picture(trace, *chunks(trace.rows(0, 0), size)) if not len(trace) else picture(*chunks(trace, size))
-    begins = sum(mark.change is Change.BEGIN for mark in complete(trace))
+    begins = sum(mark.change is TrackChange.BEGIN for mark in complete(trace))
     assert len(shown.slices) == begins
 
 
@@ -129,7 +129,7 @@ def test_numbers_are_encoded_as_perfetto_decodes_them(number):
 def test_simulated_systems_are_shown_without_errors(name):
     trace = simulate(SYSTEMS[name], "600 us", trace=True).trace
     shown = picture(*chunks(trace, 500))
-    assert len(shown.slices) == sum(mark.change is Change.BEGIN for mark in complete(trace))
+    assert len(shown.slices) == sum(mark.change is TrackChange.BEGIN for mark in complete(trace))
 
 
 def test_arrows_of_a_simulation_lead_from_job_to_job_of_the_chain():

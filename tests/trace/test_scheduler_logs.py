@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from traces import told
 
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.trace.readers import RECOGNISED, format_of, open_trace
+from amalthea_uros.trace.readers import BY_CONTENT, format_of, open_trace
 from amalthea_uros.trace.state_charts import check_trace
 
 # From the sample of the guide of NuttX, with nanoseconds and other names; a thread with a blank and one without a name.
@@ -137,12 +137,17 @@ TRACEALYZER_EVENTS = """\
 9000 activate Control#1
 """
 
-LOGS = {"ftrace_text": NUTTX, "task_events": TRACE32, "systemview_csv": SYSTEMVIEW, "tracealyzer_csv": TRACEALYZER}
+LOGS = {
+    "ftrace text (NuttX)": NUTTX,
+    "TRACE32 task events": TRACE32,
+    "SystemView CSV": SYSTEMVIEW,
+    "Tracealyzer CSV": TRACEALYZER,
+}
 EVENTS = {
-    "ftrace_text": NUTTX_EVENTS,
-    "task_events": TRACE32_EVENTS,
-    "systemview_csv": SYSTEMVIEW_EVENTS,
-    "tracealyzer_csv": TRACEALYZER_EVENTS,
+    "ftrace text (NuttX)": NUTTX_EVENTS,
+    "TRACE32 task events": TRACE32_EVENTS,
+    "SystemView CSV": SYSTEMVIEW_EVENTS,
+    "Tracealyzer CSV": TRACEALYZER_EVENTS,
 }
 
 
@@ -156,16 +161,16 @@ def write(tmp_path):
     return write
 
 
-@pytest.mark.parametrize("module", LOGS)
+@pytest.mark.parametrize("name", LOGS)
 @pytest.mark.parametrize("suffix", ["txt", "csv", "txt.gz"])
-def test_what_becomes_of_the_events(tmp_path, module, suffix):
+def test_what_becomes_of_the_events(tmp_path, name, suffix):
     path = tmp_path / f"run.{suffix}"
-    path.write_bytes(gzip.compress(LOGS[module].encode()) if suffix.endswith("gz") else LOGS[module].encode())
-    assert format_of(path) == module
+    path.write_bytes(gzip.compress(LOGS[name].encode()) if suffix.endswith("gz") else LOGS[name].encode())
+    assert format_of(path).name == name
     reader = open_trace(path)
-    assert told(reader) == EVENTS[module].splitlines()
+    assert told(reader) == EVENTS[name].splitlines()
     # Nothing is wrong but the loss that a recorder states, and the states follow each other as BTF wants it.
-    assert [finding.rule for finding in check_trace(path)] == (["TRC022"] if "OVERFLOW" in LOGS[module] else [])
+    assert [finding.rule for finding in check_trace(path)] == (["TRC022"] if "OVERFLOW" in LOGS[name] else [])
 
 
 def test_threads_of_the_same_name_are_kept_apart(write):
@@ -213,29 +218,29 @@ def test_a_thread_that_blocks_in_a_runnable_waits(write):
 
 
 @pytest.mark.parametrize(
-    ("module", "line", "rule"),
+    ("name", "line", "rule"),
     [
-        ("ftrace_text", "what is this", "TRC002"),
-        ("ftrace_text", "a-1 [0] 1.0: mystery: x=1", "TRC003"),
-        ("ftrace_text", "a-1 [0] 0.0: sched_waking: comm=a pid=1", "TRC004"),
-        ("ftrace_text", "a-1 [0] 1.0: irq_handler_exit: irq=3 ret=handled", "TRC021"),
-        ("task_events", "+99999; A", "TRC002"),
-        ("task_events", "+99999; A; dance;", "TRC003"),
-        ("task_events", "-5000; A; activate;", "TRC004"),
-        ("systemview_csv", '"11","soon","Sensor","Task Run",""', "TRC002"),
-        ("systemview_csv", '"11","0.001","Sensor"', "TRC002"),
-        ("systemview_csv", '"11","0.001","Sensor","Task Ready",""', "TRC002"),
-        ("systemview_csv", '"11","0.001","Sensor","Dance",""', "TRC003"),
-        ("tracealyzer_csv", "99;A;something else", "TRC003"),
+        ("ftrace text (NuttX)", "what is this", "TRC002"),
+        ("ftrace text (NuttX)", "a-1 [0] 1.0: mystery: x=1", "TRC003"),
+        ("ftrace text (NuttX)", "a-1 [0] 0.0: sched_waking: comm=a pid=1", "TRC004"),
+        ("ftrace text (NuttX)", "a-1 [0] 1.0: irq_handler_exit: irq=3 ret=handled", "TRC021"),
+        ("TRACE32 task events", "+99999; A", "TRC002"),
+        ("TRACE32 task events", "+99999; A; dance;", "TRC003"),
+        ("TRACE32 task events", "-5000; A; activate;", "TRC004"),
+        ("SystemView CSV", '"11","soon","Sensor","Task Run",""', "TRC002"),
+        ("SystemView CSV", '"11","0.001","Sensor"', "TRC002"),
+        ("SystemView CSV", '"11","0.001","Sensor","Task Ready",""', "TRC002"),
+        ("SystemView CSV", '"11","0.001","Sensor","Dance",""', "TRC003"),
+        ("Tracealyzer CSV", "99;A;something else", "TRC003"),
     ],
 )
-def test_a_line_that_cannot_be_used_is_reported_and_the_others_are_read(write, module, line, rule):
-    path = write(LOGS[module] + line + "\n")
+def test_a_line_that_cannot_be_used_is_reported_and_the_others_are_read(write, name, line, rule):
+    path = write(LOGS[name] + line + "\n")
     reader = open_trace(path)
     lines = told(reader)
-    assert lines[: len(EVENTS[module].splitlines())] == EVENTS[module].splitlines()
+    assert lines[: len(EVENTS[name].splitlines())] == EVENTS[name].splitlines()
     # A line that may have been an event is a loss, over which nothing goes on.
-    assert [line.split()[1] for line in lines[len(EVENTS[module].splitlines()) :]] == (
+    assert [line.split()[1] for line in lines[len(EVENTS[name].splitlines()) :]] == (
         ["gap"] if rule in ("TRC002", "TRC004") else []
     )
     assert rule in [finding.rule for finding in reader.findings]
@@ -247,14 +252,14 @@ def test_a_text_that_is_none_of_these(write):
         open_trace(write("hello\n"))
 
 
-@pytest.mark.parametrize("module", RECOGNISED)
+@pytest.mark.parametrize("name", [known.name for known in BY_CONTENT])
 @given(
     lines=st.lists(st.integers(0, 12)),
     places=st.lists(st.tuples(st.floats(0, 1), st.binary(max_size=30), st.integers(0, 40)), max_size=4),
 )
-def test_a_damaged_log(tmp_path_factory, module, lines, places):
+def test_a_damaged_log(tmp_path_factory, name, lines, places):
     path = tmp_path_factory.mktemp("logs") / "run.csv"
-    known = LOGS[module].encode().splitlines(keepends=True)
+    known = LOGS[name].encode().splitlines(keepends=True)
     content = b"".join(known + [known[number % len(known)] for number in lines])
     for place, breaker, length in places:
         at = int(place * len(content))

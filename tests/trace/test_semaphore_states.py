@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from traces import chunks, said, table
 
-from amalthea_uros.trace.semaphore_states import CHANGE, SemaphoreStates
+from amalthea_uros.trace.derived_events import CHANGE, SemaphoreStates
 from amalthea_uros.trace.state_charts import StateCharts
 from amalthea_uros.trace.table import Entity, EntityKind, EventKind
 

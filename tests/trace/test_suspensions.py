@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from traces import chunks, random_trace, said, table
 
-from amalthea_uros.trace.suspensions import RunnableSuspensions
+from amalthea_uros.trace.derived_events import RunnableSuspensions
 from amalthea_uros.trace.table import Entity, EntityKind, EventKind
 
 K = EventKind

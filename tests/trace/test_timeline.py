@@ -8,7 +8,7 @@ from test_btf_writer import CORE, ENTITIES, PREEMPTION, RUN, STI_A, TASK_A, TASK
 from traces import chunks, random_trace, table
 
 from amalthea_uros.trace.table import Entity, EntityKind, EventKind
-from amalthea_uros.trace.timeline import Change, Timeline
+from amalthea_uros.trace.viewers.timeline import Timeline, TrackChange
 
 K = EventKind
 
@@ -22,9 +22,9 @@ def slices(marks, track):
     """The slices of a track: begin, end, depth, what it shows."""
     found, open_slices = [], []
     for mark in marks:
-        if mark.track == track and mark.change is Change.BEGIN:
+        if mark.track == track and mark.change is TrackChange.BEGIN:
             open_slices.append((mark.time, mark.state or mark.entity))
-        elif mark.track == track and mark.change is Change.END:
+        elif mark.track == track and mark.change is TrackChange.END:
             begin, what = open_slices.pop()
             found.append((begin, mark.time, len(open_slices), what))
     assert open_slices == []

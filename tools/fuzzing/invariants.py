@@ -27,7 +27,7 @@ from amalthea_uros.services.fix import fix_files
 from amalthea_uros.services.format import format_files
 from amalthea_uros.services.inputs import open_system
 from amalthea_uros.services.simulate import simulate_files
-from amalthea_uros.simulate.options import Mode, Options
+from amalthea_uros.simulate.options import Options, SimulationMode
 from amalthea_uros.trace.state_charts import check_trace
 from amalthea_uros.xmi.load import load
 from amalthea_uros.xmi.save import save
@@ -139,7 +139,7 @@ def agreement(path: Path, _folder: Path) -> None:
         analysis = analyze_files(path).analysis
         _require_known(analysis)
         require_broken(path, analysis)
-        for mode in (Mode.SAMPLED, Mode.WORST):
+        for mode in (SimulationMode.SAMPLED, SimulationMode.WORST):
             simulation = simulate_files(path, Options(duration=_SHORT, mode=mode)).simulation
             found = list(contradictions(analysis, simulation))
             require(not found, f"{mode}: {found[:1]}")

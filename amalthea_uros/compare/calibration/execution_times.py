@@ -18,7 +18,7 @@ from amalthea_uros.design.description.stated_times import StatedTime
 from amalthea_uros.design.description.text_edits import Path
 from amalthea_uros.design.description.yaml_values import Value
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.measure.series import Kind
+from amalthea_uros.measure.series import MeasuredKind
 from amalthea_uros.perf.distributions import highest, lowest
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.units import NANOSECOND, Time, time_text
@@ -63,14 +63,14 @@ def calibrated_execution_times(
 ) -> Iterator[CalibratedValue]:
     """The measured execution times, by their places in the description."""
     groups: dict[Path, tuple[StatedTime, list[Measured]]] = {}
-    with_runnables = {id(each.source) for each in measured if each.series.kind is Kind.RUNNABLE}
+    with_runnables = {id(each.source) for each in measured if each.series.kind is MeasuredKind.RUNNABLE}
     for each in _one_per_object(measured):
         if not places.knows(each.series.name):
             continue
         try:
             stated = places.execution_time(each.series.name)
         except InvalidArgumentError as error:
-            if each.series.kind is not Kind.PROCESS or id(each.source) not in with_runnables:
+            if each.series.kind is not MeasuredKind.PROCESS or id(each.source) not in with_runnables:
                 target = f"{each.series.name}.execution_time"
                 yield calibrated(target, samples_of([each], options.judge_on), Outcome.NOT_WRITTEN, str(error))
             continue
@@ -90,7 +90,7 @@ def calibrated_execution_times(
 def _overhead(measured: Measured, places: Places) -> Time | None:
     """The stated overhead that is part of measured times: of jobs as a whole, without a baseline; None if it varies."""
     series, executor = measured.series, stated_executors(places.description.middleware)[0].name
-    if series.kind is Kind.RUNNABLE or series.baseline is not None:
+    if series.kind is MeasuredKind.RUNNABLE or series.baseline is not None:
         return 0
     process = executor if series.name == f"{executor}_Spin" else series.name
     lower, upper = stated_overhead(process, places.description) or (0, 0)
@@ -111,7 +111,7 @@ def _one_per_object(measured: Sequence[Measured]) -> Iterator[Measured]:
 
 def _purest(group: list[Measured]) -> list[Measured]:
     """Those of runnables if there are any: the times of processes include what the system does for them."""
-    return [each for each in group if each.series.kind is Kind.RUNNABLE] or group
+    return [each for each in group if each.series.kind is MeasuredKind.RUNNABLE] or group
 
 
 def _calibrated(stated: StatedTime, group: Sequence[Measured], options: CalibrationOptions) -> CalibratedValue:

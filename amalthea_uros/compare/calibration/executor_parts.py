@@ -13,8 +13,7 @@ from fractions import Fraction
 
 from amalthea_uros.compare.calibration.samples import Measured
 from amalthea_uros.design.description.places import Places
-from amalthea_uros.measure.series import Kind
-from amalthea_uros.measure.statistics import statistics_of
+from amalthea_uros.measure.series import MeasuredKind, statistics_of
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.units import Time
 from amalthea_uros.uros.executors.serving import stated_executors
@@ -39,7 +38,7 @@ def with_executor_parts(measured: Sequence[Measured], places: Places, period: Ti
     for each in measured:
         series = each.series
         is_executor = (series.name, series.quantity) == (executor.name, JobMetric.NET_EXECUTION_TIME)
-        if is_executor and series.kind is Kind.PROCESS and has_two_parts and is_alone and period is not None:
+        if is_executor and series.kind is MeasuredKind.PROCESS and has_two_parts and is_alone and period is not None:
             separated = _separated(each, Fraction(period, incoming[0].interval), executor.name, incoming[0].name)
             yield from separated or (each,)
         else:

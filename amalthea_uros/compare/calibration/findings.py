@@ -14,7 +14,7 @@ from amalthea_uros.compare.calibration.wording import statistics_text
 from amalthea_uros.design.description.described import Described
 from amalthea_uros.design.description.places import Places
 from amalthea_uros.diagnostics import Finding, Location, Severity
-from amalthea_uros.measure.series import Kind
+from amalthea_uros.measure.series import MeasuredKind
 from amalthea_uros.names import listed
 from amalthea_uros.timing.basics.quantities import JobMetric
 
@@ -57,7 +57,7 @@ def _unknown(path: Path, measured: Sequence[Measured], description: Described, p
     """The objects of the trace that have no place in the description, with what they may be."""
     known = description.assembly.system.processes
     topics = {message.topic for callback in places.callbacks for message in (callback.incoming, *callback.outgoing) if message}
-    names = dict.fromkeys(each.series.name for each in measured if each.series.kind is not Kind.CHAIN)
+    names = dict.fromkeys(each.series.name for each in measured if each.series.kind is not MeasuredKind.CHAIN)
     for name in names:
         if not places.knows(name) and name not in known and name not in topics:
             advice = did_you_mean(name, known)

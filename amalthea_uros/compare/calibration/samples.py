@@ -8,8 +8,7 @@ from fractions import Fraction
 from math import ceil, floor
 from typing import TYPE_CHECKING
 
-from amalthea_uros.measure.series import Measurement, Series
-from amalthea_uros.measure.statistics import Statistics, shifted, statistics_of
+from amalthea_uros.measure.series import Measurement, Series, TimeStatistics, shifted, statistics_of
 from amalthea_uros.units import NANOSECOND, Time
 
 if TYPE_CHECKING:
@@ -47,7 +46,7 @@ class Samples:
     """
 
     measured: tuple[Measured, ...]
-    statistics: Statistics
+    statistics: TimeStatistics
     values: NDArray[np.int64] | None
     held_out: NDArray[np.int64] | None
     lower: Time
@@ -96,10 +95,10 @@ def samples_of(measured: Sequence[Measured], judge_on: Fraction) -> Samples:
     )
 
 
-def _merged(parts: Iterable[Statistics | None]) -> Statistics:
+def _merged(parts: Iterable[TimeStatistics | None]) -> TimeStatistics:
     known = [part for part in parts if part is not None]
     count = sum(part.count for part in known)
-    return Statistics(
+    return TimeStatistics(
         count=count,
         min=min(part.min for part in known),
         mean=sum((part.mean * part.count for part in known), Fraction(0)) / count,

@@ -9,7 +9,7 @@ from amalthea_uros.compare.calibration.samples import Samples
 from amalthea_uros.compare.calibration.wording import provenance, sources
 from amalthea_uros.design.description.places import Assignment
 from amalthea_uros.design.description.text_edits import Path
-from amalthea_uros.measure.statistics import Statistics
+from amalthea_uros.measure.series import TimeStatistics
 
 
 class Outcome(StrEnum):
@@ -46,7 +46,7 @@ class CalibratedValue:
     measured: tuple[str, ...]
     quantity: str
     sources: tuple[str, ...]
-    statistics: Statistics
+    statistics: TimeStatistics
     outcome: Outcome
     path: Path | None = None
     line: int | None = None

@@ -7,7 +7,7 @@ from fractions import Fraction
 from pathlib import Path
 
 from amalthea_uros.compare.calibration.samples import Measured, Samples
-from amalthea_uros.measure.statistics import Statistics
+from amalthea_uros.measure.series import TimeStatistics
 from amalthea_uros.units import Rounding, rounded_time_text, time_text
 
 #: Of the digest of a file; enough to recognise it.
@@ -22,7 +22,7 @@ def provenance(samples: Samples, remark: str) -> str:
     return f"measured in {', '.join(dict.fromkeys(map(_source, samples.measured)))}: {'; '.join(filter(None, parts))}"
 
 
-def statistics_text(statistics: Statistics) -> str:
+def statistics_text(statistics: TimeStatistics) -> str:
     """The number, the extremes and the mean of values."""
     mean = rounded_time_text(statistics.mean, Rounding.NEAREST)
     return f"n {statistics.count}, min {time_text(statistics.min)}, mean {mean}, max {time_text(statistics.max)}"

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.measure.series import Measurement
-from amalthea_uros.measure.window import Window
+from amalthea_uros.measure.window import MeasurementWindow
 from amalthea_uros.perf.events import Event, ProcessChange, ProcessEvent, RunnableChange, RunnableEvent
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.dataflow.chains import UnfoldError, sequences, unfold
-from amalthea_uros.trace.readers import format_name, open_trace
+from amalthea_uros.trace.readers import format_of, open_trace
 from amalthea_uros.trace.table import EventKind
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ def _ends_with_its_step(event: Event) -> bool:
     return True
 
 
-def measured_events(path: Path, window: Window, starts: Mapping[str, EventKind | None]) -> Measurement:
+def measured_events(path: Path, window: MeasurementWindow, starts: Mapping[str, EventKind | None]) -> Measurement:
     """Measure a trace of events.
 
     Parameters
@@ -65,11 +65,11 @@ def measured_events(path: Path, window: Window, starts: Mapping[str, EventKind |
     import numpy as np
 
     from amalthea_uros.measure.event_chains import ChainSteps
-    from amalthea_uros.measure.jobs import JobWalk
-    from amalthea_uros.measure.resolution import resolution_of
+    from amalthea_uros.measure.jobs import JobFollower
+    from amalthea_uros.measure.window import resolution_of
 
     reader = open_trace(path)
-    jobs, chains = JobWalk(), ChainSteps(starts)
+    jobs, chains = JobFollower(), ChainSteps(starts)
     origin: int | None = None
     times = []
     for table in reader:
@@ -96,7 +96,7 @@ def measured_events(path: Path, window: Window, starts: Mapping[str, EventKind |
         findings.append(Finding("MEA011", Severity.WARNING, message, Location(path), "Measure it between markers.", name))
     return Measurement(
         source=str(path),
-        format=format_name(path),
+        format=known.name if (known := format_of(path)) is not None else "",
         digest="",
         duration=int(np.ptp(stamps)) if len(stamps) else 0,
         resolution=resolution_of(stamps),

@@ -12,11 +12,11 @@ from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.measure.markers import Marker, Measurable
 from amalthea_uros.measure.series import Measurement, Series
-from amalthea_uros.measure.window import Window
+from amalthea_uros.measure.window import MeasurementWindow
 from amalthea_uros.names import listed
 
 if TYPE_CHECKING:
-    from amalthea_uros.measure.occurrences import Collector, Occurrences
+    from amalthea_uros.measure.occurrences import MarkerCollector, MarkerOccurrences
 
 #: With fewer than 1 in so many of the frames of the busiest bus, frames are strays of a damaged log.
 _STRAY = 100
@@ -28,7 +28,7 @@ _ADVICE = (
 )
 
 
-def measured_frames(path: Path, objects: Sequence[Measurable], window: Window, channel: str | None) -> Measurement:
+def measured_frames(path: Path, objects: Sequence[Measurable], window: MeasurementWindow, channel: str | None) -> Measurement:
     """Measure the objects in a log.
 
     Raises
@@ -42,12 +42,12 @@ def measured_frames(path: Path, objects: Sequence[Measurable], window: Window, c
         next(iter(open_can_log(path)), None)  # that a file cannot be read is said first
         raise InvalidArgumentError(_ADVICE)
     from amalthea_uros.measure.can_series import markers_of
-    from amalthea_uros.measure.occurrences import Collector
-    from amalthea_uros.measure.resolution import resolution_of
+    from amalthea_uros.measure.occurrences import MarkerCollector
+    from amalthea_uros.measure.window import resolution_of
 
     log = open_can_log(path, channel=channel)
     markers = list(dict.fromkeys(marker for item in objects for marker in markers_of(item)))
-    found = Collector(markers, window)
+    found = MarkerCollector(markers, window)
     found.add_all(log)
     occurrences = found.occurrences
     series: list[Series] = []
@@ -70,7 +70,7 @@ def measured_frames(path: Path, objects: Sequence[Measurable], window: Window, c
 
 
 def _measured_object(
-    item: Measurable, markers: Sequence[Marker], log: Collector, found: Occurrences, place: Location
+    item: Measurable, markers: Sequence[Marker], log: MarkerCollector, found: MarkerOccurrences, place: Location
 ) -> tuple[list[Series], list[Finding]]:
     """The series of an object, on each bus where it occurs, and what to tell of it."""
     import numpy as np
@@ -107,7 +107,7 @@ def _with_doubtful(series: Series, number: int) -> Series:
     return replace(series, counts=replace(series.counts, reordered=series.counts.reordered + number))
 
 
-def _missing(item: Measurable, marker: Marker, log: Collector, place: Location) -> Finding:
+def _missing(item: Measurable, marker: Marker, log: MarkerCollector, place: Location) -> Finding:
     other = Marker(marker.identifier ^ (1 << 31), marker.data, marker.channel)
     frequent = sorted(log.seen, key=lambda key: -log.seen[key])
     known = listed([str(Marker(identifier)) for _, identifier in dict.fromkeys(frequent)])
@@ -121,7 +121,7 @@ def _missing(item: Measurable, marker: Marker, log: Collector, place: Location) 
     return Finding("MEA001", Severity.ERROR, f"no frame {marker} of {item.name!r} in the log", place, help_, item.name)
 
 
-def _damaged(log: Collector, place: Location) -> Finding:
+def _damaged(log: MarkerCollector, place: Location) -> Finding:
     gaps, frames = counted(log.gaps, "damaged or missing part"), counted(log.frames, "frame")
     message = f"{gaps} in {frames}: a wrong digit in a time cannot be recognised, so a minimum or maximum may be wrong"
     advice = "Copy or record the log again; else rely on means and percentiles only."

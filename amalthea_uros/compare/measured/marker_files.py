@@ -18,10 +18,10 @@ from amalthea_uros.compare.measured.signals import Signals, Value
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.measure.markers import (
-    Counter,
     Decoder,
     Marker,
     MarkerChain,
+    MarkerCounter,
     MarkerPair,
     Measurable,
     ReportedStatistics,
@@ -29,7 +29,7 @@ from amalthea_uros.measure.markers import (
     parse_marker,
     refuse_overlap,
 )
-from amalthea_uros.measure.series import Kind
+from amalthea_uros.measure.series import MeasuredKind
 from amalthea_uros.spec.nodes import Mapping, Node, Place, Scalar, Source, read_nodes
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.units import Time, parse_duration, parse_time
@@ -71,7 +71,7 @@ def read_markers(path: Path, signals: Signals) -> tuple[Measurable, ...]:
     return objects
 
 
-def counter_of(text: str, signals: Signals) -> Counter:
+def counter_of(text: str, signals: Signals) -> MarkerCounter:
     """A counter in a payload.
 
     Raises
@@ -79,7 +79,7 @@ def counter_of(text: str, signals: Signals) -> Counter:
     ValueError : the text names no place in a payload.
     """
     value = signals.value(text)
-    return Counter(decode=value.decode, modulus=1 << min(value.bits, 32))
+    return MarkerCounter(decode=value.decode, modulus=1 << min(value.bits, 32))
 
 
 @dataclass(slots=True)
@@ -201,14 +201,16 @@ class _Reader:
     # Keys.
 
     def _common(self, name: str, node: Mapping) -> dict[str, Any]:
-        kind = self._choice(name, node, "kind", [each for each in Kind if each is not Kind.CHAIN], Kind.INTERVAL)
+        kind = self._choice(
+            name, node, "kind", [each for each in MeasuredKind if each is not MeasuredKind.CHAIN], MeasuredKind.INTERVAL
+        )
         quantity = self._choice(name, node, "quantity", _QUANTITIES, "duration")
         baseline = self._text(name, node, "baseline") if "baseline" in node.items else None
         if baseline is not None and baseline not in self._nodes:
             advice = did_you_mean(baseline, self._nodes) or f"known: {', '.join(self._nodes)}"
             message = f"the baseline {baseline!r} of {name!r} is not an object of this file"
             raise _WrongError(node.items["baseline"].place, message, advice)
-        return {"kind": Kind(kind), "quantity": quantity, "baseline": baseline}
+        return {"kind": MeasuredKind(kind), "quantity": quantity, "baseline": baseline}
 
     def _choice(self, name: str, node: Mapping, key: str, choices: Iterable[str], default: str) -> str:
         if key not in node.items:
@@ -235,10 +237,10 @@ class _Reader:
         found: Value = self._parsed(name, node, key, self.signals.value)
         return found
 
-    def _counter(self, name: str, node: Mapping) -> Counter | None:
+    def _counter(self, name: str, node: Mapping) -> MarkerCounter | None:
         if "counter" not in node.items:
             return None
-        found: Counter = self._parsed(name, node, "counter", lambda text: counter_of(text, self.signals))
+        found: MarkerCounter = self._parsed(name, node, "counter", lambda text: counter_of(text, self.signals))
         return found
 
     def _period(self, name: str, node: Mapping) -> Time | None:

@@ -15,10 +15,10 @@ from fractions import Fraction
 from pathlib import Path
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.measure.series import Counts, Kind, Measurement, Series
-from amalthea_uros.measure.window import Window
-from amalthea_uros.trace.problems import Place, Problems
-from amalthea_uros.trace.text_lines import opened_text
+from amalthea_uros.measure.series import Counts, MeasuredKind, Measurement, Series
+from amalthea_uros.measure.window import MeasurementWindow
+from amalthea_uros.trace.files import opened_text
+from amalthea_uros.trace.problems import TracePlace, TraceProblems
 from amalthea_uros.units import MICROSECOND, MILLISECOND, NANOSECOND, SECOND
 
 _UNITS = {"ps": 1, "ns": NANOSECOND, "us": MICROSECOND, "ms": MILLISECOND, "s": SECOND}
@@ -45,18 +45,18 @@ def is_value_table(path: Path) -> bool:
     """Whether a file has measured values, by its name and its header."""
     if not path.name.lower().removesuffix(".gz").endswith(".csv"):
         return False
-    with opened_text(path, Problems(path)) as lines:
+    with opened_text(path, TraceProblems(path)) as lines:
         return columns_of(next(csv.reader([next(lines, "")]), [])) is not None
 
 
-def measured_values(path: Path, window: Window) -> Measurement:
+def measured_values(path: Path, window: MeasurementWindow) -> Measurement:
     """Read measured values; lines that are none are counted in a finding.
 
     Raises
     ------
     ReadError : the file cannot be read.
     """
-    problems = Problems(path)
+    problems = TraceProblems(path)
     with opened_text(path, problems) as lines:
         table = _Table(problems, window)
         table.read(csv.reader(lines))
@@ -73,8 +73,8 @@ def measured_values(path: Path, window: Window) -> Measurement:
 
 @dataclass(slots=True)
 class _Table:
-    problems: Problems
-    window: Window
+    problems: TraceProblems
+    window: MeasurementWindow
     _rows: dict[tuple[str, str, str], list[tuple[int, int | None]]] = field(default_factory=dict)
     _columns: dict[str, tuple[int, int]] = field(default_factory=dict)
     _first: int | None = None
@@ -101,7 +101,7 @@ class _Table:
         try:
             name, quantity, kind = (self._text(fields, column, default) for column, default in _DEFAULTS.items())
             time, value = self._times(fields)
-            Kind(kind)
+            MeasuredKind(kind)
         except (ValueError, IndexError, InvalidOperation):
             self._wrong(line, "a line has a time or a kind that is wrong, or too few fields; it is ignored", ",".join(fields))
             return
@@ -141,19 +141,19 @@ class _Table:
         return time
 
     def _wrong(self, line: int, message: str, text: str) -> None:
-        self.problems.add("MEA009", Severity.ERROR, message, Place(line, 1, text))
+        self.problems.add("MEA009", Severity.ERROR, message, TracePlace(line, 1, text))
 
     def series(self) -> Iterator[Series]:
         """The values of each object and quantity."""
         import numpy as np
 
-        from amalthea_uros.measure.statistics import statistics_of
+        from amalthea_uros.measure.series import statistics_of
 
         for (name, quantity, kind), rows in self._rows.items():
             values = np.array([value for value, _ in rows], np.int64)
             times = [time for _, time in rows if time is not None]
             yield Series(
-                kind=Kind(kind),
+                kind=MeasuredKind(kind),
                 name=name,
                 quantity=quantity,
                 statistics=statistics_of(values),
@@ -164,4 +164,4 @@ class _Table:
             )
 
 
-_DEFAULTS: dict[str, str | None] = {"object": None, "quantity": "duration", "kind": Kind.INTERVAL}
+_DEFAULTS: dict[str, str | None] = {"object": None, "quantity": "duration", "kind": MeasuredKind.INTERVAL}

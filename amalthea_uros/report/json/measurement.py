@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from amalthea_uros.measure.series import Counts, Measurement, Series
-from amalthea_uros.measure.statistics import Statistics
+from amalthea_uros.measure.series import Counts, Measurement, Series, TimeStatistics
 from amalthea_uros.report.findings import finding_json
 from amalthea_uros.report.json.simulation_result import histogram_json
 from amalthea_uros.report.measured import closing_line, exceedance, histogram_of
@@ -50,7 +49,7 @@ def series_json(series: Series, resolution: Time | None = None) -> dict[str, Any
     }
 
 
-def _jitter(series: Series, found: Statistics) -> dict[str, Any]:
+def _jitter(series: Series, found: TimeStatistics) -> dict[str, Any]:
     return {
         "peak_to_peak_ps": found.peak_to_peak,
         "std_ps": None if found.std is None else round(found.std),
@@ -60,7 +59,7 @@ def _jitter(series: Series, found: Statistics) -> dict[str, Any]:
     }
 
 
-def statistics_json(found: Statistics) -> dict[str, Any]:
+def statistics_json(found: TimeStatistics) -> dict[str, Any]:
     """Statistics; percentiles of too few values are null."""
     percentiles = dict.fromkeys(("p50", "p90", "p95", "p99", "p99_9"))
     percentiles |= {f"p{float(100 * share):g}".replace(".", "_"): value for share, value in found.percentiles.items()}

@@ -13,15 +13,15 @@ from amalthea_uros.report.simulated import SimulationShown, closing_line
 from amalthea_uros.simulate.results import (
     ChainObservation,
     CoreObservation,
-    Histogram,
     LabelObservation,
     MetricObservation,
-    Occurrence,
+    ObservedOccurrence,
     ProcessObservation,
     RequirementObservation,
     RouteObservation,
     RunnableObservation,
     Simulation,
+    TimeHistogram,
 )
 
 
@@ -150,11 +150,11 @@ def _observation(found: MetricObservation) -> dict[str, Any]:
     }
 
 
-def _occurrence(found: Occurrence) -> dict[str, int]:
+def _occurrence(found: ObservedOccurrence) -> dict[str, int]:
     return {"instance": found.instance, "time_ps": round(found.time)}
 
 
-def histogram_json(found: Histogram) -> dict[str, list[int]]:
+def histogram_json(found: TimeHistogram) -> dict[str, list[int]]:
     """The edges of the bins, and the values in each."""
     return {"edges_ps": [round(edge) for edge in found.edges], "counts": list(found.counts)}
 

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.stimuli import ArrivalCurve
-from amalthea_uros.simulate.arrivals.occurrences import LONGEST, Block, Blocks, UnknownArrivalError, block_size
-from amalthea_uros.simulate.options import Mode
-from amalthea_uros.simulate.sampling.random_source import RandomSource
+from amalthea_uros.simulate.arrivals.occurrences import LONGEST, OccurrenceBlock, OccurrenceBlocks, block_size
+from amalthea_uros.simulate.options import SimulationMode
+from amalthea_uros.simulate.sampling.words import RandomSource
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
     Times = NDArray[np.int64]
 
-#: Limits of more occurrences are not simulated.
+#: CurveLimits of more occurrences are not simulated.
 _MOST = 1000
 _BLOCK = 256
 #: More than any sum of limits.
@@ -32,7 +33,7 @@ FOLLOWS = "without an upper limit, an occurrence follows the earliest possible t
 
 
 @dataclass(frozen=True, slots=True)
-class Limits:
+class CurveLimits:
     """All limits that follow from those of an arrival curve.
 
     They are the longest and shortest paths in the graph of the limits, a simple temporal network (R. Dechter, I. Meiri, J. Pearl,
@@ -55,24 +56,22 @@ class Limits:
         return max(distances for distances, _ in (*self.lower, *self.upper))
 
 
-def limits_of(stimulus: ArrivalCurve) -> Limits:
+def limits_of(stimulus: ArrivalCurve) -> CurveLimits:
     """The limits of an arrival curve.
 
     Raises
     ------
-    UnknownArrivalError : the limits contradict each other, or there are none.
+    UnknownError : the limits contradict each other, or there are none.
     """
     points = [point for point in stimulus.points if point.occurrences > 1]
     if any((point.lower or 0) < 0 or (point.upper or 0) < 0 for point in points):
-        raise UnknownArrivalError("a border of its arrival curve is negative")
+        raise UnknownError("a border of its arrival curve is negative")
     if not any(point.lower or point.upper for point in points):
-        raise UnknownArrivalError("its arrival curve has no borders")
+        raise UnknownError("its arrival curve has no borders")
     most = max(point.occurrences for point in points) - 1
     longest = LONGEST // max(most, 2 * len(points))
     if most >= _MOST or any(max(point.lower or 0, point.upper or 0) > longest for point in points):
-        raise UnknownArrivalError(
-            "a border of its arrival curve, or the number of its occurrences, exceeds the supported range"
-        )
+        raise UnknownError("a border of its arrival curve, or the number of its occurrences, exceeds the supported range")
     edges = [(point.occurrences - 1, point.upper) for point in points if point.upper is not None]
     edges += [(1 - point.occurrences, -point.lower) for point in points if point.lower is not None]
     paths = _shortest_paths([*edges, (-1, 0)], 2 * most)
@@ -82,31 +81,31 @@ def limits_of(stimulus: ArrivalCurve) -> Limits:
     upper = {distance: time for distance, time in upper.items() if time < _UNLIMITED // 2}
     spacing = -(-lower[most] // most)
     if not spacing and not any(upper.values()):
-        raise UnknownArrivalError("the borders of its arrival curve allow an unlimited number of occurrences at the same time")
-    return Limits(_not_implied(lower, max), _not_implied(upper, min), spacing)
+        raise UnknownError("the borders of its arrival curve allow an unlimited number of occurrences at the same time")
+    return CurveLimits(_not_implied(lower, max), _not_implied(upper, min), spacing)
 
 
-def arrival_curve(limits: Limits, mode: Mode, source: RandomSource, time_base: int) -> Blocks:
+def arrival_curve(limits: CurveLimits, mode: SimulationMode, source: RandomSource, time_base: int) -> OccurrenceBlocks:
     """Occurrences within the limits: as early as possible in the worst case, as late as possible in the best.
 
     Raises
     ------
-    UnknownArrivalError : as early as possible would be an unlimited number at the same time.
+    UnknownError : as early as possible would be an unlimited number at the same time.
     """
-    if mode is Mode.WORST and not limits.spacing:
-        raise UnknownArrivalError("the borders of its arrival curve allow an unlimited number of occurrences at the same time")
+    if mode is SimulationMode.WORST and not limits.spacing:
+        raise UnknownError("the borders of its arrival curve allow an unlimited number of occurrences at the same time")
     longest = max(limits.spacing, *(time for _, time in (*limits.lower, *limits.upper)))
     return _chosen(limits, mode, source, time_base, min(_BLOCK, block_size(longest * time_base)))
 
 
-def _chosen(limits: Limits, mode: Mode, source: RandomSource, time_base: int, size: int) -> Blocks:
+def _chosen(limits: CurveLimits, mode: SimulationMode, source: RandomSource, time_base: int, size: int) -> OccurrenceBlocks:
     past: deque[int] = deque([0], maxlen=limits.longest)
-    yield Block(0, np.array([0], np.int64))
+    yield OccurrenceBlock(0, np.array([0], np.int64))
     lower = [(-distances, time * time_base) for distances, time in limits.lower]
     upper = [(-distances, time * time_base) for distances, time in limits.upper]
     slack = max(1, limits.spacing) * time_base
     while True:
-        words = source.words(size).tolist() if mode is Mode.SAMPLED else [_SHARES[mode]] * size
+        words = source.words(size).tolist() if mode is SimulationMode.SAMPLED else [_SHARES[mode]] * size
         times = []
         for word in words:
             known = len(past)
@@ -114,11 +113,11 @@ def _chosen(limits: Limits, mode: Mode, source: RandomSource, time_base: int, si
             latest = min([past[index] + time for index, time in upper if -index <= known], default=earliest + slack)
             past.append(earliest + ((latest - earliest + 1) * word >> 64))
             times.append(past[-1])
-        yield Block(times[-1], np.array(times, np.int64))
+        yield OccurrenceBlock(times[-1], np.array(times, np.int64))
 
 
 #: What the modes take instead of a random word: the earliest, the middle, the latest time.
-_SHARES = {Mode.WORST: 0, Mode.AVERAGE: 2**63, Mode.BEST: 2**64 - 1}
+_SHARES = {SimulationMode.WORST: 0, SimulationMode.AVERAGE: 2**63, SimulationMode.BEST: 2**64 - 1}
 
 
 def _shortest_paths(edges: Sequence[tuple[int, Time]], reach: int) -> Times:
@@ -138,7 +137,7 @@ def _shortest_paths(edges: Sequence[tuple[int, Time]], reach: int) -> Times:
             paths[targets] = np.minimum(paths[targets], reached)
         if (paths == before).all():
             return paths
-    raise UnknownArrivalError("the borders of its arrival curve contradict each other")
+    raise UnknownError("the borders of its arrival curve contradict each other")
 
 
 def _not_implied(limits: dict[int, Time], tighter: Callable[[int, int], int]) -> tuple[tuple[int, Time], ...]:

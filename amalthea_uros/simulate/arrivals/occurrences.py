@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 
+from amalthea_uros.errors import UnknownError
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -17,15 +19,11 @@ if TYPE_CHECKING:
 
 #: Times up to this, and sums of two of them, fit into 64 bits.
 LONGEST = 2**61
-#: Occurrences in a block, at most.
+#: StimulusOccurrences in a block, at most.
 _BLOCK = 4096
 
 
-class UnknownArrivalError(Exception):
-    """When a stimulus occurs is unknown, or cannot be simulated; the text says why."""
-
-
-class Block(NamedTuple):
+class OccurrenceBlock(NamedTuple):
     """Some occurrences in ascending order.
 
     Attributes
@@ -37,10 +35,10 @@ class Block(NamedTuple):
     times: Times
 
 
-Blocks: TypeAlias = Iterator[Block]
+OccurrenceBlocks: TypeAlias = Iterator[OccurrenceBlock]
 
 
-class Occurrences:
+class StimulusOccurrences:
     """The occurrences of a stimulus, in time units; those before 0 are left out.
 
     Attributes
@@ -48,7 +46,7 @@ class Occurrences:
     assumptions : on which they are based, in sentences
     """
 
-    def __init__(self, blocks: Blocks, assumptions: tuple[str, ...] = ()) -> None:
+    def __init__(self, blocks: OccurrenceBlocks, assumptions: tuple[str, ...] = ()) -> None:
         self.assumptions = assumptions
         self._blocks = blocks
         self._end = 0
@@ -75,8 +73,8 @@ def block_size(longest: int) -> int:
 
     Raises
     ------
-    UnknownArrivalError : not even one.
+    UnknownError : not even one.
     """
     if longest > LONGEST:
-        raise UnknownArrivalError("a time of the stimulus exceeds the supported range")
+        raise UnknownError("a time of the stimulus exceeds the supported range")
     return max(1, min(_BLOCK, LONGEST // max(1, longest)))

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.distributions import Distribution
 from amalthea_uros.perf.stimuli import (
     ArrivalCurve,
@@ -23,19 +24,17 @@ from amalthea_uros.perf.stimuli import (
 )
 from amalthea_uros.perf.system import System
 from amalthea_uros.simulate.arrivals.arrival_curve import FOLLOWS, STARTS_AT_0, arrival_curve, limits_of
-from amalthea_uros.simulate.arrivals.occurrences import Block, Blocks, Occurrences, UnknownArrivalError, block_size
-from amalthea_uros.simulate.arrivals.periodic import AT_0, before_0, periodic
-from amalthea_uros.simulate.arrivals.relative import NO_LONGER, relative
-from amalthea_uros.simulate.arrivals.repeated import burst, synthetic
-from amalthea_uros.simulate.arrivals.scenario import scenario
-from amalthea_uros.simulate.arrivals.variable_rate import variable_rate
-from amalthea_uros.simulate.options import Mode
-from amalthea_uros.simulate.sampling.quantiles import sampling_assumption
-from amalthea_uros.simulate.sampling.random_source import RandomSource
-from amalthea_uros.simulate.sampling.variate import UnknownValueError
+from amalthea_uros.simulate.arrivals.occurrences import OccurrenceBlock, OccurrenceBlocks, StimulusOccurrences, block_size
+from amalthea_uros.simulate.arrivals.periodic import AT_0, NO_LONGER, before_0, burst, periodic, relative, synthetic
+from amalthea_uros.simulate.arrivals.rates import scenario, variable_rate
+from amalthea_uros.simulate.options import SimulationMode
+from amalthea_uros.simulate.sampling.variates import sampling_assumption
+from amalthea_uros.simulate.sampling.words import RandomSource
 
 
-def occurrences(stimulus: Stimulus, system: System, mode: Mode, source: RandomSource, time_base: int) -> Occurrences:
+def occurrences(
+    stimulus: Stimulus, system: System, mode: SimulationMode, source: RandomSource, time_base: int
+) -> StimulusOccurrences:
     """The occurrences of a stimulus; those that processes or events trigger have none of their own.
 
     Parameters
@@ -44,15 +43,12 @@ def occurrences(stimulus: Stimulus, system: System, mode: Mode, source: RandomSo
 
     Raises
     ------
-    UnknownArrivalError : its attributes are invalid or contradict each other, or it has no meaning.
+    UnknownError : its attributes are invalid or contradict each other, or it has no meaning.
     """
-    try:
-        return Occurrences(_blocks(stimulus, system, mode, source, time_base), tuple(_assumptions(stimulus, mode)))
-    except UnknownValueError as error:
-        raise UnknownArrivalError(str(error)) from None
+    return StimulusOccurrences(_blocks(stimulus, system, mode, source, time_base), tuple(_assumptions(stimulus, mode)))
 
 
-def _blocks(stimulus: Stimulus, system: System, mode: Mode, source: RandomSource, time_base: int) -> Blocks:
+def _blocks(stimulus: Stimulus, system: System, mode: SimulationMode, source: RandomSource, time_base: int) -> OccurrenceBlocks:
     match stimulus:
         case Periodic():
             return periodic(stimulus, mode, source, time_base)
@@ -64,7 +60,7 @@ def _blocks(stimulus: Stimulus, system: System, mode: Mode, source: RandomSource
             return burst(stimulus, time_base)
         case Single(time=time):
             block_size(abs(time) * time_base)
-            return iter([Block(time * time_base, np.array([time * time_base], np.int64))])
+            return iter([OccurrenceBlock(time * time_base, np.array([time * time_base], np.int64))])
         case VariableRate(scenario=Scenario() as driven):
             return scenario(driven, system, time_base)
         case VariableRate():
@@ -72,12 +68,12 @@ def _blocks(stimulus: Stimulus, system: System, mode: Mode, source: RandomSource
         case ArrivalCurve():
             return arrival_curve(limits_of(stimulus), mode, source, time_base)
         case Custom():
-            raise UnknownArrivalError("it does not say when it occurs")
+            raise UnknownError("it does not say when it occurs")
         case InterProcess() | EventTriggered():
             return iter(())
 
 
-def _assumptions(stimulus: Stimulus, mode: Mode) -> Iterator[str]:
+def _assumptions(stimulus: Stimulus, mode: SimulationMode) -> Iterator[str]:
     """What is assumed beyond what a stimulus says."""
     distribution: Distribution[int] | Distribution[float] | None = None
     match stimulus:
@@ -85,13 +81,13 @@ def _assumptions(stimulus: Stimulus, mode: Mode) -> Iterator[str]:
             if before_0(stimulus, mode):
                 yield AT_0
         case RelativePeriodic(distance=distribution, has_maximum=has_maximum):
-            if not has_maximum and mode is not Mode.WORST:
+            if not has_maximum and mode is not SimulationMode.WORST:
                 yield NO_LONGER
         case VariableRate(rate=distribution, scenario=None):
             pass
         case ArrivalCurve():
             yield STARTS_AT_0
-            if mode is not Mode.WORST and not limits_of(stimulus).upper:
+            if mode is not SimulationMode.WORST and not limits_of(stimulus).upper:
                 yield FOLLOWS
-    if distribution is not None and mode is Mode.SAMPLED and (sentence := sampling_assumption(distribution)):
+    if distribution is not None and mode is SimulationMode.SAMPLED and (sentence := sampling_assumption(distribution)):
         yield sentence

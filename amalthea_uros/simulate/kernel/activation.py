@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from amalthea_uros.simulate.kernel.accounts import NO_NOTE, emit, enter_state, tell
 from amalthea_uros.simulate.kernel.budgets import rest, wake
 from amalthea_uros.simulate.kernel.conditions import counts, holds, set_mode
 from amalthea_uros.simulate.kernel.cores import leave_core, restore_level
-from amalthea_uros.simulate.kernel.following import publish
-from amalthea_uros.simulate.kernel.watching import observe, watch
-from amalthea_uros.simulate.layout import (
+from amalthea_uros.simulate.kernel.layout import (
     ACTIVATION,
     ACTIVATIONS,
     ARRIVED,
@@ -75,9 +72,11 @@ from amalthea_uros.simulate.layout import (
     TIME_RUNNING,
     TIME_WAITING,
     WATCHED,
+    Memory,
 )
-from amalthea_uros.simulate.memory import Memory
-from amalthea_uros.simulate.operations import ACTIVATED, GO_ON, QUEUE_FULL, TERMINATED
+from amalthea_uros.simulate.kernel.operations import ACTIVATED, GO_ON, QUEUE_FULL, TERMINATED
+from amalthea_uros.simulate.kernel.reports import NO_NOTE, emit, enter_state, observe, tell, watch
+from amalthea_uros.simulate.kernel.stages import publish
 
 #: The kinds of events, as in `trace.table.EventKind`.
 _ACTIVATE, _TERMINATE, _LOST, _TRIGGER = 0, 4, 12, 30

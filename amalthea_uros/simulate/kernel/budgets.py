@@ -10,7 +10,7 @@
 
 from __future__ import annotations
 
-from amalthea_uros.simulate.layout import (
+from amalthea_uros.simulate.kernel.layout import (
     ACTIVE_SINCE,
     BUDGET,
     BUDGET_BEFORE,
@@ -43,9 +43,9 @@ from amalthea_uros.simulate.layout import (
     SERVER_PERIOD,
     SPORADIC,
     STATE,
+    Memory,
 )
-from amalthea_uros.simulate.memory import Memory
-from amalthea_uros.simulate.operations import TERMINATED, WAITING
+from amalthea_uros.simulate.kernel.operations import TERMINATED, WAITING
 
 
 def has_budget(m: Memory, process: int) -> bool:

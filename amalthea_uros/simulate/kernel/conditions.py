@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from amalthea_uros.simulate.layout import (
+from amalthea_uros.simulate.kernel.layout import (
     ALTERNATIVE_SIZE,
     ALTERNATIVES,
     ALTERNATIVES_END,
@@ -19,8 +19,8 @@ from amalthea_uros.simulate.layout import (
     RELATION,
     RIGHT_CONSTANT,
     RIGHT_VALUE,
+    Memory,
 )
-from amalthea_uros.simulate.memory import Memory
 
 #: Relations between two values.
 EQUAL, NOT_EQUAL, LESS, LESS_OR_EQUAL, GREATER, GREATER_OR_EQUAL = range(6)

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from amalthea_uros.simulate.kernel.accounts import enter_state, tell
 from amalthea_uros.simulate.kernel.budgets import exhaust, has_budget
-from amalthea_uros.simulate.layout import (
+from amalthea_uros.simulate.kernel.layout import (
     ALLOWED,
     BEGIN,
     BUDGET,
@@ -59,9 +58,10 @@ from amalthea_uros.simulate.layout import (
     STATE,
     STOP,
     YIELDS,
+    Memory,
 )
-from amalthea_uros.simulate.memory import Memory
-from amalthea_uros.simulate.operations import ACTIVATED, PARKING, POLLING, READY, RUNNING, TERMINATED, WAITING
+from amalthea_uros.simulate.kernel.operations import ACTIVATED, PARKING, POLLING, READY, RUNNING, TERMINATED, WAITING
+from amalthea_uros.simulate.kernel.reports import enter_state, tell
 
 #: The kinds of events, as in `trace.table.EventKind`.
 _START, _PREEMPT, _RESUME, _PARK, _POLL_PARKING = 1, 2, 3, 7, 8

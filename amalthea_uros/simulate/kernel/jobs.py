@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-from amalthea_uros.simulate.kernel.accounts import tell_execution, tell_of
 from amalthea_uros.simulate.kernel.activation import end_job, fire
 from amalthea_uros.simulate.kernel.conditions import counts, holds, set_mode, step_mode
 from amalthea_uros.simulate.kernel.cores import change_level, queue_again, run, stays
-from amalthea_uros.simulate.kernel.following import follow
-from amalthea_uros.simulate.kernel.waiting import await_events, change_events, request, serve, unlock
-from amalthea_uros.simulate.kernel.watching import begin_execution, end_execution, observe
-from amalthea_uros.simulate.layout import (
+from amalthea_uros.simulate.kernel.layout import (
     ARRIVAL,
     ARRIVALS_END,
     AT,
@@ -46,9 +42,9 @@ from amalthea_uros.simulate.layout import (
     TAKEN_MESSAGES,
     WORD,
     YIELDS,
+    Memory,
 )
-from amalthea_uros.simulate.memory import Memory
-from amalthea_uros.simulate.operations import (
+from amalthea_uros.simulate.kernel.operations import (
     AGAIN,
     BEGIN_EXECUTION,
     BEGIN_RUNNABLE,
@@ -90,6 +86,9 @@ from amalthea_uros.simulate.operations import (
     UNMASK,
     WAIT_EVENT,
 )
+from amalthea_uros.simulate.kernel.reports import begin_execution, end_execution, observe, tell_execution, tell_of
+from amalthea_uros.simulate.kernel.stages import follow
+from amalthea_uros.simulate.kernel.waiting import await_events, change_events, request, serve, unlock
 
 #: Who does more at one instant does not end.
 MOST_STEPS = 10_000_000

@@ -6,7 +6,7 @@ from amalthea_uros.simulate.kernel.activation import fire, publish_all
 from amalthea_uros.simulate.kernel.budgets import replenish
 from amalthea_uros.simulate.kernel.cores import dispatch, dispatch_all, pause, stop
 from amalthea_uros.simulate.kernel.jobs import go_on, write_first
-from amalthea_uros.simulate.layout import (
+from amalthea_uros.simulate.kernel.layout import (
     ARRIVAL,
     ARRIVAL_SIZE,
     ARRIVALS_END,
@@ -31,9 +31,9 @@ from amalthea_uros.simulate.layout import (
     STEPS,
     STOP,
     UNTIL,
+    Memory,
 )
-from amalthea_uros.simulate.memory import Memory
-from amalthea_uros.simulate.operations import ROWS_FULL, WINDOW
+from amalthea_uros.simulate.kernel.operations import ROWS_FULL, WINDOW
 
 
 def play(m: Memory) -> int:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from amalthea_uros.simulate.kernel.accounts import NO_NOTE, emit, enter_state, tell, tell_of
 from amalthea_uros.simulate.kernel.budgets import rest, wake
 from amalthea_uros.simulate.kernel.cores import change_level, is_before, leave_core, pause, queue_again, run
-from amalthea_uros.simulate.layout import (
+from amalthea_uros.simulate.kernel.layout import (
     ANSWERED,
     ASKED,
     BEGUN,
@@ -48,9 +47,9 @@ from amalthea_uros.simulate.layout import (
     WAITS_FOR,
     WANTED,
     YIELDS,
+    Memory,
 )
-from amalthea_uros.simulate.memory import Memory
-from amalthea_uros.simulate.operations import (
+from amalthea_uros.simulate.kernel.operations import (
     ACTIVE,
     ASK,
     EXCLUSIVE,
@@ -62,12 +61,13 @@ from amalthea_uros.simulate.operations import (
     SERVED,
     WAITING,
 )
+from amalthea_uros.simulate.kernel.reports import NO_NOTE, emit, enter_state, tell, tell_of
 
 #: The kinds of events, as in `trace.table.EventKind`.
 _POLL, _RUN, _RELEASE_PARKING, _WAIT, _RELEASE = 5, 6, 9, 10, 11
 _REQUEST, _ASSIGNED, _WAITING, _RELEASED = 40, 43, 44, 45
 _SET, _CLEAR, _WAIT_EVENT = 50, 51, 52
-#: A semaphore changes, as in `trace.semaphore_states`.
+#: A semaphore changes, as in `trace.derived_events`.
 _CHANGE = -1
 
 

@@ -19,8 +19,8 @@ import numpy as np
 from amalthea_uros.judge.evidence import ObservedValues
 from amalthea_uros.judge.limits import limits_of
 from amalthea_uros.perf.constraints import DelayConstraint, Matching
-from amalthea_uros.simulate.limited_values import LimitedQuantity
 from amalthea_uros.simulate.metrics.extremes import WINDOW, Extremes
+from amalthea_uros.simulate.observed_limits import LimitedQuantity
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

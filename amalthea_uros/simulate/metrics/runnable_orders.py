@@ -15,8 +15,8 @@ from amalthea_uros.judge.evidence import ObservedValues
 from amalthea_uros.judge.limits import without_number
 from amalthea_uros.perf.constraints import OrderConstraint, Ordering
 from amalthea_uros.perf.events import ProcessChange, ProcessEvent, RunnableChange
-from amalthea_uros.simulate.limited_values import LimitedQuantity
-from amalthea_uros.simulate.program.watches import Source
+from amalthea_uros.simulate.observed_limits import LimitedQuantity
+from amalthea_uros.simulate.program.watches import EventSource
 from amalthea_uros.timing.dataflow.runnable_order import satisfies_order
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ class RunnableOrder:
 
     constraint: OrderConstraint
     process: str
-    sources: Sequence[Source]
+    sources: Sequence[EventSource]
     base: int
     jobs: int = 0
     wrong: int = 0
@@ -92,7 +92,7 @@ class ExecutionOrder:
 
     constraint: OrderConstraint
     processes: Sequence[str]
-    sources: Sequence[Source]
+    sources: Sequence[EventSource]
     base: int
     _started: Counter[str] = field(default_factory=Counter)
     _ended: Counter[str] = field(default_factory=Counter)

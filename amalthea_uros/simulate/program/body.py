@@ -1,4 +1,4 @@
-"""The program of one process or decision while it is made, activity by activity."""
+"""The programs of processes and of decisions of schedulers, activity by activity."""
 
 from __future__ import annotations
 
@@ -8,24 +8,25 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from fractions import Fraction
 
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import AccessKind, Activity, Call, Communication, Count, Demand, Trigger
 from amalthea_uros.perf.conditions import Condition
 from amalthea_uros.perf.events import Event
-from amalthea_uros.perf.software import Preemption, Process
+from amalthea_uros.perf.os import Scheduler
+from amalthea_uros.perf.software import Isr, Preemption, Process
 from amalthea_uros.perf.stimuli import Counter
-from amalthea_uros.simulate.operations import COUNT, DRAW, EXECUTE, OBSERVE, POINT, TEST, TEST_MESSAGE
+from amalthea_uros.simulate.kernel.operations import COUNT, DRAW, END, EXECUTE, NOTE, OBSERVE, POINT, TEST, TEST_MESSAGE
 from amalthea_uros.simulate.program.activities import compile_activity
-from amalthea_uros.simulate.program.code import Code, Label
-from amalthea_uros.simulate.program.hooks import Hooks, Operation
-from amalthea_uros.simulate.program.obstacles import NotSimulatedError
-from amalthea_uros.simulate.program.parts import Parts
-from amalthea_uros.simulate.program.resources import Resources, constant
-from amalthea_uros.simulate.program.watches import Source
-from amalthea_uros.simulate.sampling.streams import Stream
+from amalthea_uros.simulate.program.image import Code, JumpLabel, Operation, ProgramHooks
+from amalthea_uros.simulate.program.resources import Parts, Resources, constant
+from amalthea_uros.simulate.program.watches import EventSource
+from amalthea_uros.simulate.sampling.streams import ValueStream
+from amalthea_uros.timing.basics.notes import UnknownDemandError
 from amalthea_uros.timing.basics.settings import Memory
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.demand.multiframe import Frame
 from amalthea_uros.timing.jobs.counters import flaw_of_activity, reached
+from amalthea_uros.trace.table import EntityKind, EventKind
 
 #: A program with more operations is not built.
 MAX_OPERATIONS = 1_000_000
@@ -50,10 +51,10 @@ class Body:
     parts: Parts
     process: Process | None
     core: str
-    hooks: Hooks
+    hooks: ProgramHooks
     in_group: bool
     code: Code = field(default_factory=Code)
-    end: Label = field(default_factory=Label)
+    end: JumpLabel = field(default_factory=JumpLabel)
     number: int = 0
     above: tuple[str, ...] = ()
     masks: int = 0
@@ -123,7 +124,7 @@ class Body:
         if getattr(self.process, "preemption", None) is Preemption.COOPERATIVE and not self.in_group:
             self.code.add(POINT)
 
-    def _skips(self, activity: Activity) -> list[Label | None]:
+    def _skips(self, activity: Activity) -> list[JumpLabel | None]:
         """Labels to which a job goes if an activity does not take effect: then it is no event of a chain, either."""
         labels = [self._counted(activity, getattr(activity, "counter", None))]
         if isinstance(activity, Call) and activity.times is None:
@@ -131,22 +132,22 @@ class Body:
             labels.append(None if runnable is None else self.tested(runnable.condition))
         return labels
 
-    def _counted(self, owner: Activity, counter: Counter | None) -> Label | None:
+    def _counted(self, owner: Activity, counter: Counter | None) -> JumpLabel | None:
         """A label to which a job goes if a counter does not let this time take effect."""
         name = self.process.name if self.process is not None else ""
         queue = self.parts.queues.get((name, counter.source)) if counter is not None and counter.arrivals is not None else None
         if flaw := flaw_of_activity(owner):
-            raise NotSimulatedError(flaw)
+            raise UnknownError(flaw)
         place = queue or self.resources.counter(owner, counter)
         if not place:
             return None
-        label = Label()
+        label = JumpLabel()
         self.code.add(TEST_MESSAGE if queue else COUNT, place, label)
         return label
 
     # Time.
 
-    def execute(self, stream: Stream) -> None:
+    def execute(self, stream: ValueStream) -> None:
         """Hold the core for times of a stream."""
         only = constant(stream)
         if only is None:
@@ -177,16 +178,16 @@ class Body:
         for operation in operations:
             self.code.add(*operation)
 
-    def mark(self, label: Label | None) -> None:
+    def mark(self, label: JumpLabel | None) -> None:
         """Have a label, if there is one, mean the next operation."""
         if label is not None:
             self.code.mark(label)
 
-    def tested(self, condition: Condition | None) -> Label | None:
+    def tested(self, condition: Condition | None) -> JumpLabel | None:
         """A label to which a job goes if a condition is false."""
         if condition is None:
             return None
-        label = Label()
+        label = JumpLabel()
         self.code.add(TEST, self.parts.modes.condition(condition), label)
         return label
 
@@ -195,11 +196,72 @@ class Body:
     ) -> None:
         """Report that an event has occurred here, if it is watched."""
         if self.process is not None:
-            source = Source(kind, name, change, self.above[-1] if self.above else None, self.process.name, communication)
+            source = EventSource(kind, name, change, self.above[-1] if self.above else None, self.process.name, communication)
             number = self.parts.watches.number(source)
             if number is not None:
                 self.code.add(OBSERVE, number)
 
 
-def _too_many_activities() -> NotSimulatedError:
-    return NotSimulatedError(f"it executes more than {MAX_OPERATIONS:,} activities")
+def _too_many_activities() -> UnknownError:
+    return UnknownError(f"it executes more than {MAX_OPERATIONS:,} activities")
+
+
+# Programs of processes and of decisions of schedulers.
+
+
+def process_code(
+    parts: Parts, process: Process, core: str, hooks: ProgramHooks, scheduler: Scheduler | None, in_group: bool
+) -> Code:
+    """The program of a process.
+
+    Parameters
+    ----------
+    scheduler : whose decision at the end of jobs takes time
+    in_group : whether it belongs to a group of tasks, which are preempted at schedule points only
+
+    Raises
+    ------
+    UnknownError : something in it cannot be simulated.
+    """
+    try:
+        return _process_code(Body(parts, process, core, hooks, in_group), process, scheduler)
+    except UnknownDemandError as error:
+        raise UnknownError(str(error)) from None
+
+
+def _process_code(body: Body, process: Process, scheduler: Scheduler | None) -> Code:
+    model = body.context.demand_model
+    body.require_limited(process.activities)
+    entry, exit_ = model.overheads.of_isr(process, body.core) if isinstance(process, Isr) else (None, None)
+    copies = model.copies(process, body.core) if model.settings.memory is Memory.IMPLICIT else []
+    body.add_all(body.hooks.start)
+    body.demand(entry)
+    for kind, frame in copies:
+        if kind is AccessKind.READ:
+            body.frame(frame)
+    body.activities(process.activities)
+    body.code.mark(body.end)
+    for kind, frame in copies:
+        if kind is AccessKind.WRITE:
+            body.frame(frame)
+    body.demand(exit_)
+    if scheduler is not None:
+        body.number = 0
+        for activity in scheduler.overhead:
+            compile_activity(body, activity)
+    body.add_all(body.hooks.end)
+    body.code.add(END)
+    return body.code
+
+
+def decision_code(parts: Parts, scheduler: Scheduler, core: str) -> Code:
+    """The program of a decision of a scheduler; raises as `process_code`."""
+    body = Body(parts, None, core, ProgramHooks(), in_group=False)
+    try:
+        body.activities(scheduler.overhead)
+    except UnknownDemandError as error:
+        raise UnknownError(str(error)) from None
+    if parts.is_noted:
+        body.code.add(NOTE, int(EventKind.SCHEDULE), parts.resources.entities.number(EntityKind.SCHEDULER, scheduler.name))
+    body.code.add(END)
+    return body.code

@@ -1,11 +1,14 @@
-"""Everything together: a system as the memory of the kernel, its streams, and the stimuli that come from outside."""
+"""From a system to the memory of the kernel, its streams, and the stimuli that come from outside."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from math import lcm
 
-from amalthea_uros.simulate.layout import (
+from amalthea_uros.errors import UnknownError
+from amalthea_uros.simulate.arrivals import StimulusOccurrences
+from amalthea_uros.simulate.kernel.layout import (
     CORES,
     CORES_END,
     DOMAINS,
@@ -21,39 +24,38 @@ from amalthea_uros.simulate.layout import (
     SERVERS_END,
     STIMULUS_SIZE,
 )
-from amalthea_uros.simulate.operations import PUT
+from amalthea_uros.simulate.kernel.operations import PUT
 from amalthea_uros.simulate.options import Options
-from amalthea_uros.simulate.program.chains import ChainCompiler
-from amalthea_uros.simulate.program.entities import Entities
-from amalthea_uros.simulate.program.hardware import Hardware
+from amalthea_uros.simulate.program.chains import ChainCompiler, FollowedRoute
+from amalthea_uros.simulate.program.entities import EntityNumbers
+from amalthea_uros.simulate.program.hardware import HardwareRecords
 from amalthea_uros.simulate.program.image import Image
 from amalthea_uros.simulate.program.messages import Messages
-from amalthea_uros.simulate.program.modes import Modes
-from amalthea_uros.simulate.program.obstacles import NotSimulatedError
-from amalthea_uros.simulate.program.parts import Parts
+from amalthea_uros.simulate.program.modes import ModeRecords
 from amalthea_uros.simulate.program.process_records import PLACES_AT_FIRST, ProcessRecords
-from amalthea_uros.simulate.program.program import Program
-from amalthea_uros.simulate.program.resources import Resources
+from amalthea_uros.simulate.program.resources import Parts, Resources
 from amalthea_uros.simulate.program.scheduling import Dispatching
 from amalthea_uros.simulate.program.stimulus_records import StimulusRecords, hook_firings
-from amalthea_uros.simulate.program.watches import Watches, watched
+from amalthea_uros.simulate.program.watches import EventSource, Watches, watched
+from amalthea_uros.simulate.sampling.streams import ValueStream
 from amalthea_uros.timing.context import TimingContext
+from amalthea_uros.trace.table import Entity
 
 #: Sums of times must fit into 63 bits: the longest time of a run, in time units.
 _LONGEST = 2**60
 
 
-def build_program(context: TimingContext, options: Options) -> Program:
+def build_program(context: TimingContext, options: Options) -> KernelProgram:
     """The program of a system; what cannot be simulated is left out of it, and said so there."""
-    builder = _Builder(context, options)
+    builder = _ProgramBuilder(context, options)
     # A process that cannot be simulated changes what others, its chains and triggers do: begin again without it.
     while (found := builder.build()) is None:
-        builder = _Builder(context, options, builder.left_out)
+        builder = _ProgramBuilder(context, options, builder.left_out)
     return found
 
 
 @dataclass(slots=True)
-class _Builder:
+class _ProgramBuilder:
     context: TimingContext
     options: Options
     left_out: dict[str, str] = field(default_factory=dict)
@@ -67,7 +69,7 @@ class _Builder:
         self.left_out = self.dispatching.left_out | self.left_out
         processes = self.dispatching.processes
         self.dispatching.processes = {name: item for name, item in processes.items() if name not in self.left_out}
-        self.resources = Resources(self.context, self.options, self.image, Entities(self.context.system), self._units())
+        self.resources = Resources(self.context, self.options, self.image, EntityNumbers(self.context.system), self._units())
         self.watches = Watches(watched(self.context.system, self.options.watched_labels(self.context.system)))
 
     def _units(self) -> int:
@@ -79,10 +81,10 @@ class _Builder:
         self.context.notes.assume("execution times are rounded to picoseconds")
         return 1
 
-    def build(self) -> Program | None:
+    def build(self) -> KernelProgram | None:
         """The program; None if one more process has turned out to be impossible."""
         system, before = self.context.system, len(self.left_out)
-        modes = Modes(system, self.image, self.context.settings.modes)
+        modes = ModeRecords(system, self.image, self.context.settings.modes)
         processes = {name: self.image.record(PROCESS_SIZE) for name in self.dispatching.processes}
         stimuli = {name: self.image.record(STIMULUS_SIZE) for name in system.stimuli_by_name}
         runnables = self.watches.watched.runnables
@@ -94,7 +96,7 @@ class _Builder:
         is_noted = self.options.traced is not None
         parts = Parts(self.resources, modes, processes, stimuli, messages.queues, is_noted, self.watches)
         hook_firings(parts, chains)
-        hardware = Hardware(self.resources, self.dispatching)
+        hardware = HardwareRecords(self.resources, self.dispatching)
         hardware.place_cores()
         hardware.place_servers(processes)
         records = ProcessRecords(parts, hardware, chains)
@@ -102,7 +104,7 @@ class _Builder:
             try:
                 messages.add(item.scheduled.process)
                 records.add(item, number)
-            except NotSimulatedError as error:
+            except UnknownError as error:
                 self.left_out[item.name] = str(error)
         arrivals = StimulusRecords(parts, self.left_out).place()
         if len(self.left_out) > before:
@@ -110,7 +112,7 @@ class _Builder:
         records.place_members()
         records.place_ceilings()
         self._head(hardware, processes, chains)
-        return Program(
+        return KernelProgram(
             memory=self.image.words,
             units=self.resources.units,
             streams=self.resources.streams,
@@ -131,7 +133,7 @@ class _Builder:
             chains_left_out=chains.left_out,
         )
 
-    def _head(self, hardware: Hardware, processes: dict[str, int], chains: ChainCompiler) -> None:
+    def _head(self, hardware: HardwareRecords, processes: dict[str, int], chains: ChainCompiler) -> None:
         lists = {
             (CORES, CORES_END): hardware.cores.values(),
             (DOMAINS, DOMAINS_END): dict.fromkeys(hardware.domains.values()),
@@ -146,3 +148,45 @@ class _Builder:
             operation == PUT for hooks in chains.hooks.values() for operation, *_ in hooks.all()
         )
         self.image.put(0, {PLACES: PLACES_AT_FIRST, HAS_WRITES: int(has_writes)})
+
+
+# A system as the kernel plays it.
+
+
+@dataclass(frozen=True, slots=True)
+class KernelProgram:
+    """A system as the kernel plays it.
+
+    Attributes
+    ----------
+    memory : of the kernel, at time 0
+    units : time units per picosecond
+    streams, stream_records : what is drawn from, and the records by which programs know it
+    arrivals : of each stimulus that comes from outside: its record, and when it occurs
+    processes : the names of the processes in the order of their numbers in rows
+    records, cores, channels : the records of processes, cores and channels, by name
+    messages : the queues of messages with arrivals of their own, by process and source
+    queues : the records of everything that is activated
+    sources : of events that are watched, in the order of their numbers in rows
+    runnables : that are measured, in the order of their numbers in rows, which follow those of the processes
+    left_out : why a process is not simulated
+    chains_left_out : why a chain is not followed
+    """
+
+    memory: list[int]
+    units: int
+    streams: Sequence[ValueStream]
+    stream_records: Sequence[int]
+    arrivals: Sequence[tuple[int, StimulusOccurrences]]
+    processes: tuple[str, ...]
+    records: dict[str, int]
+    cores: dict[str, int]
+    channels: dict[str, int]
+    messages: dict[tuple[str, str], int]
+    queues: tuple[int, ...]
+    entities: tuple[Entity, ...]
+    routes: tuple[FollowedRoute, ...]
+    sources: tuple[EventSource, ...]
+    runnables: tuple[str, ...]
+    left_out: dict[str, str]
+    chains_left_out: dict[str, str]

@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from itertools import pairwise
 
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import Communication, Trigger
 from amalthea_uros.perf.events import EventChain
 from amalthea_uros.perf.software import Process
-from amalthea_uros.simulate.layout import (
+from amalthea_uros.simulate.kernel.layout import (
     ACTIVATION,
     BEFORE_STAGE,
     CAPTURE,
@@ -26,9 +27,8 @@ from amalthea_uros.simulate.layout import (
     TAKEN,
     VALUE,
 )
-from amalthea_uros.simulate.operations import ENTER, LEAVE, MARK, PUBLISH, PUT, REACH, RESPOND, TAKE
-from amalthea_uros.simulate.program.hooks import Hooks, Operation
-from amalthea_uros.simulate.program.obstacles import NotSimulatedError
+from amalthea_uros.simulate.kernel.operations import ENTER, LEAVE, MARK, PUBLISH, PUT, REACH, RESPOND, TAKE
+from amalthea_uros.simulate.program.image import Operation, ProgramHooks
 from amalthea_uros.simulate.program.resources import Resources
 from amalthea_uros.timing.dataflow.chains import UnfoldError, unfold
 from amalthea_uros.timing.dataflow.events import JobPhase, UnresolvedError
@@ -72,7 +72,7 @@ class ChainCompiler:
 
     resources: Resources
     processes: dict[str, int]
-    hooks: dict[str, Hooks] = field(default_factory=dict)
+    hooks: dict[str, ProgramHooks] = field(default_factory=dict)
     captures: dict[str, list[int]] = field(default_factory=dict)
     let_stages: dict[str, list[int]] = field(default_factory=dict)
     routes: list[FollowedRoute] = field(default_factory=list)
@@ -93,20 +93,20 @@ class ChainCompiler:
             for events, found in ways.items():
                 for route in found:
                     self._route(chain, " -> ".join(events) if len(found) == 1 else route_text(route), route)
-        except (UnfoldError, UnresolvedError, NotSimulatedError) as error:
+        except (UnfoldError, UnresolvedError, UnknownError) as error:
             self.left_out[chain.name] = str(error)
 
     def _check(self, route: Route) -> None:
         for link, (first, then) in zip(route.links, pairwise(route.events), strict=True):
             if link.kind in _NOT_FOLLOWED:
-                raise NotSimulatedError(f"from {first!r} to {then!r} it follows {link.kind}, which is not followed")
+                raise UnknownError(f"from {first!r} to {then!r} it follows {link.kind}, which is not followed")
             for label in link.names if link.kind is LinkKind.DATA else ():
                 for name in self.resources.context.touching.writers(label):
                     if name not in self.processes:
-                        raise NotSimulatedError(f"{name!r}, which is not simulated, writes {label!r}")
+                        raise UnknownError(f"{name!r}, which is not simulated, writes {label!r}")
         for occurrence in route.occurrences:
             if occurrence.process.name not in self.processes:
-                raise NotSimulatedError(f"it passes {occurrence.process.name!r}, which is not simulated")
+                raise UnknownError(f"it passes {occurrence.process.name!r}, which is not simulated")
 
     def _route(self, chain: EventChain, text: str, found: Route) -> None:
         image = self.resources.image
@@ -133,7 +133,7 @@ class ChainCompiler:
         return [found[number] for number in sorted(found)][:60]
 
     def _stage(self, stage: Stage, record: int) -> None:
-        hooks = self.hooks.setdefault(stage.process.name, Hooks())
+        hooks = self.hooks.setdefault(stage.process.name, ProgramHooks())
         self._enter(stage, record, hooks)
         for index, position in enumerate(self._positions(stage)):
             hooks.before.setdefault(position.number, []).append((REACH, record, 1 << index))
@@ -141,7 +141,7 @@ class ChainCompiler:
             self._begin(stage.enter, record, hooks)
         self._leave(stage, record, hooks)
 
-    def _enter(self, stage: Stage, record: int, hooks: Hooks) -> None:
+    def _enter(self, stage: Stage, record: int, hooks: ProgramHooks) -> None:
         """Where a stage takes what it passes on."""
         is_captured, position, has_snapshot = stage.is_triggered, None, False
         match stage.enter:
@@ -161,7 +161,7 @@ class ChainCompiler:
         if position is not None:
             hooks.before.setdefault(position.number, []).append((TAKE, record, int(has_snapshot)))
 
-    def _begin(self, at: At, record: int, hooks: Hooks) -> None:
+    def _begin(self, at: At, record: int, hooks: ProgramHooks) -> None:
         """Where the stimulus of the chain occurs."""
         when, position = at.occurrence.when, at.occurrence.position
         if at.communication is Communication.LET or when is JobPhase.ACTIVATION:
@@ -173,7 +173,7 @@ class ChainCompiler:
         else:
             self._at(when, position, hooks).append((MARK, record, 0))
 
-    def _leave(self, stage: Stage, record: int, hooks: Hooks) -> None:
+    def _leave(self, stage: Stage, record: int, hooks: ProgramHooks) -> None:
         """Where a stage passes on what it has, or responds."""
         match stage.leave:
             case Write(communication=Communication.LET):
@@ -197,13 +197,13 @@ class ChainCompiler:
                     # Only at its end is it known which job has taken part.
                     hooks.end.append((RESPOND, record, _RESPONSE_TIMES[occurrence.when]))
             case boundary:
-                raise NotSimulatedError(f"it leaves a process in a way that is not followed: {type(boundary).__name__}")
+                raise UnknownError(f"it leaves a process in a way that is not followed: {type(boundary).__name__}")
 
-    def _publish(self, process: Process, record: int, hooks: Hooks) -> None:
+    def _publish(self, process: Process, record: int, hooks: ProgramHooks) -> None:
         hooks.end.append((PUBLISH, record, 0))
         self.let_stages.setdefault(process.name, []).append(record)
 
-    def _at(self, when: JobPhase, position: ActivityPosition, hooks: Hooks) -> list[Operation]:
+    def _at(self, when: JobPhase, position: ActivityPosition, hooks: ProgramHooks) -> list[Operation]:
         side = hooks.before if when is JobPhase.BEFORE else hooks.after
         return side.setdefault(position.number, [])
 

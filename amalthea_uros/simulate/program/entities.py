@@ -12,7 +12,7 @@ from amalthea_uros.trace.table import Entity, EntityKind
 
 
 @dataclass(slots=True)
-class Entities:
+class EntityNumbers:
     """The entities of a system, in a fixed order."""
 
     system: System

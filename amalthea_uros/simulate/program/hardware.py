@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from math import gcd
 
 from amalthea_uros.perf.os import Policy
-from amalthea_uros.simulate.layout import (
+from amalthea_uros.simulate.kernel.layout import (
     BUDGET,
     BUDGET_RATIO,
     CONSTANT_BANDWIDTH,
@@ -54,7 +54,7 @@ _KINDS = {
 
 
 @dataclass(slots=True)
-class Hardware:
+class HardwareRecords:
     """The records of cores, domains and servers.
 
     Attributes

@@ -1,11 +1,12 @@
-"""The memory of the kernel while it is built."""
+"""The memory of the kernel while it is built, and the programs in it."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from typing import TypeAlias
 
-from amalthea_uros.simulate.layout import HEAD
+from amalthea_uros.simulate.kernel.layout import HEAD, OPERATION_SIZE
 
 
 @dataclass(slots=True)
@@ -31,3 +32,80 @@ class Image:
         place = len(self.words)
         self.words += values
         return place, len(self.words)
+
+
+# Programs: operations whose arguments can be places of other operations that are not known yet.
+
+
+@dataclass(slots=True, eq=False)
+class JumpLabel:
+    """A place in a program."""
+
+    number: int = -1
+
+
+Argument: TypeAlias = int | JumpLabel
+
+
+@dataclass(slots=True, eq=False)
+class JumpTable:
+    """Places in a program, as a list in memory."""
+
+    labels: list[JumpLabel]
+    place: int
+
+
+@dataclass(slots=True)
+class Code:
+    """The program of a process."""
+
+    operations: list[tuple[int, Argument, Argument]] = field(default_factory=list)
+    tables: list[JumpTable] = field(default_factory=list)
+
+    def add(self, operation: int, first: Argument = 0, second: Argument = 0) -> None:
+        """Append an operation."""
+        self.operations.append((operation, first, second))
+
+    def mark(self, label: JumpLabel) -> None:
+        """Have a label mean the next operation."""
+        label.number = len(self.operations)
+
+    def here(self) -> JumpLabel:
+        """A label of the next operation."""
+        return JumpLabel(len(self.operations))
+
+    def write(self, image: Image) -> int:
+        """Put the program into memory; the place of its first operation."""
+        entry = len(image.words)
+        places = [entry + number * OPERATION_SIZE for number in range(len(self.operations) + 1)]
+
+        def resolved(argument: Argument) -> int:
+            return places[argument.number] if isinstance(argument, JumpLabel) else argument
+
+        for operation, first, second in self.operations:
+            image.words += (operation, resolved(first), resolved(second))
+        for table in self.tables:
+            for index, label in enumerate(table.labels):
+                image.words[table.place + index] = places[label.number]
+        return entry
+
+
+# What chains and event stimuli add to the programs of processes.
+
+#: An operation that is added to a program, with its arguments.
+Operation: TypeAlias = tuple[int, Argument, Argument]
+
+
+@dataclass(slots=True)
+class ProgramHooks:
+    """What is added to the program of a process: at its start and end, and before and after its activities, by their numbers."""
+
+    start: list[Operation] = field(default_factory=list)
+    end: list[Operation] = field(default_factory=list)
+    before: dict[int, list[Operation]] = field(default_factory=dict)
+    after: dict[int, list[Operation]] = field(default_factory=dict)
+
+    def all(self) -> Iterator[Operation]:
+        """All of them."""
+        for operations in (self.start, *self.before.values(), *self.after.values(), self.end):
+            yield from operations

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.distributions import Uniform
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Arrivals, Counter, Periodic
-from amalthea_uros.simulate.arrivals import Occurrences, UnknownArrivalError, occurrences
-from amalthea_uros.simulate.layout import (
+from amalthea_uros.simulate.arrivals import StimulusOccurrences, occurrences
+from amalthea_uros.simulate.kernel.layout import (
     ARRIVED,
     MESSAGE_CAPTURE,
     MESSAGE_LIMIT,
@@ -17,13 +18,12 @@ from amalthea_uros.simulate.layout import (
     STIMULUS_ENTITY,
     STIMULUS_SIZE,
 )
-from amalthea_uros.simulate.operations import TAKE_MESSAGE
-from amalthea_uros.simulate.options import Mode
+from amalthea_uros.simulate.kernel.operations import TAKE_MESSAGE
+from amalthea_uros.simulate.options import SimulationMode
 from amalthea_uros.simulate.program.chains import ChainCompiler
-from amalthea_uros.simulate.program.hooks import Hooks
-from amalthea_uros.simulate.program.obstacles import NotSimulatedError
+from amalthea_uros.simulate.program.image import ProgramHooks
 from amalthea_uros.simulate.program.resources import Resources
-from amalthea_uros.simulate.sampling.random_source import RandomSource
+from amalthea_uros.simulate.sampling.words import RandomSource
 from amalthea_uros.timing.activation.phases import nominal_period, own_counters
 from amalthea_uros.timing.activation.releases import known_releases
 from amalthea_uros.timing.jobs.counters import first_effect
@@ -47,14 +47,14 @@ class Messages:
     resources: Resources
     chains: ChainCompiler
     queues: dict[tuple[str, str], int] = field(default_factory=dict)
-    arrivals: list[tuple[int, Occurrences]] = field(default_factory=list)
+    arrivals: list[tuple[int, StimulusOccurrences]] = field(default_factory=list)
 
     def add(self, process: Process) -> None:
         """Place the queues of a process, and have its jobs take messages at their start.
 
         Raises
         ------
-        NotSimulatedError : it is unknown when the messages arrive.
+        UnknownError : it is unknown when the messages arrive.
         """
         found = {counter.source: counter for counter in own_counters(process) if counter.arrivals is not None}
         for source, counter in found.items():
@@ -70,14 +70,14 @@ class Messages:
         captures = self.chains.captures.setdefault(process.name, [])
         queue = self.resources.image.record(MESSAGE_SIZE, {MESSAGE_LIMIT: QUEUE_LENGTH, MESSAGE_CAPTURE: len(captures)})
         captures.append(queue + ARRIVED)
-        self.chains.hooks.setdefault(process.name, Hooks()).start.append((TAKE_MESSAGE, queue, 0))
+        self.chains.hooks.setdefault(process.name, ProgramHooks()).start.append((TAKE_MESSAGE, queue, 0))
         return queue
 
-    def _occurrences(self, process: Process, counter: Counter) -> Occurrences:
+    def _occurrences(self, process: Process, counter: Counter) -> StimulusOccurrences:
         system, options, arrivals = self.resources.context.system, self.resources.options, counter.arrivals or Arrivals()
         period = nominal_period(process, counter, system)
         if period is None:
-            raise NotSimulatedError(f"it takes {counter.source!r}, of which the period is unknown")
+            raise UnknownError(f"it takes {counter.source!r}, of which the period is unknown")
         stimulus = Periodic(
             name=counter.source,
             period=period,
@@ -87,8 +87,8 @@ class Messages:
         source = RandomSource(options.seed, f"arrivals of {counter.source}")
         try:
             return occurrences(stimulus, system, options.mode, source, self.resources.units)
-        except UnknownArrivalError as error:
-            raise NotSimulatedError(f"it takes {counter.source!r}: {error}") from None
+        except UnknownError as error:
+            raise UnknownError(f"it takes {counter.source!r}: {error}") from None
 
     def _phase(self, process: Process, counter: Counter, period: Time) -> Time:
         """The nominal time of the first arrival: as stated, or any time at random."""
@@ -100,4 +100,8 @@ class Messages:
         if counter.is_phase_known and releases is not None:
             return first + (first_effect(counter) - 1) * releases.period
         resources.assume_phase()
-        return first if resources.options.mode is not Mode.SAMPLED else resources.random_phase(counter.source) * period >> 64
+        return (
+            first
+            if resources.options.mode is not SimulationMode.SAMPLED
+            else resources.random_phase(counter.source) * period >> 64
+        )

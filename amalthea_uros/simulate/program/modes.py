@@ -6,11 +6,12 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.conditions import ChannelFillIs, Comparison, Condition, ModeLabelsAre, ModeValueIs, Relation, Undecided
 from amalthea_uros.perf.software import ModeLabel
 from amalthea_uros.perf.system import System
 from amalthea_uros.simulate.kernel import conditions
-from amalthea_uros.simulate.layout import (
+from amalthea_uros.simulate.kernel.layout import (
     ALTERNATIVE_SIZE,
     ALTERNATIVES,
     ALTERNATIVES_END,
@@ -32,7 +33,6 @@ from amalthea_uros.simulate.layout import (
     RIGHT_VALUE,
 )
 from amalthea_uros.simulate.program.image import Image
-from amalthea_uros.simulate.program.obstacles import NotSimulatedError
 
 _RELATIONS = {
     Relation.EQUAL: conditions.EQUAL,
@@ -48,7 +48,7 @@ _NO_LITERAL = -1
 
 
 @dataclass(slots=True)
-class Modes:
+class ModeRecords:
     """The mode labels and channels in memory, and the conditions on them.
 
     Attributes
@@ -83,20 +83,20 @@ class Modes:
         else:
             try:
                 fields[MODE_VALUE] = self.value(label.name, value)
-            except NotSimulatedError:
+            except UnknownError:
                 self._unset[label.name] = f"the initial value {value!r}, which is no whole number, or too large"
         return self.image.record(MODE_SIZE, fields)
 
     def label(self, name: str) -> int:
         """The place of a mode label."""
         if name not in self.labels:
-            raise NotSimulatedError(f"the mode label {name!r} is not defined in the model")
+            raise UnknownError(f"the mode label {name!r} is not defined in the model")
         return self.labels[name]
 
     def channel(self, name: str) -> int:
         """The place of a channel."""
         if name not in self.channels:
-            raise NotSimulatedError(f"the channel {name!r} is not defined in the model")
+            raise UnknownError(f"the channel {name!r} is not defined in the model")
         return self.channels[name]
 
     def value(self, label: str, text: str) -> int:
@@ -105,14 +105,14 @@ class Modes:
         if literals:
             return literals.index(text) if text in literals else _NO_LITERAL
         if _WHOLE_NUMBER.fullmatch(text) is None or abs(int(text)) >= NEVER:
-            raise NotSimulatedError(f"the value {text!r} of the mode label {label!r} is no whole number, or too large")
+            raise UnknownError(f"the value {text!r} of the mode label {label!r} is no whole number, or too large")
         return int(text)
 
     def condition(self, condition: Condition) -> int:
         """The place of a condition."""
         if condition not in self._conditions:
             if not all(condition.alternatives):
-                raise NotSimulatedError("a condition compares nothing")
+                raise UnknownError("a condition compares nothing")
             compared = [[self._comparison(each) for each in every] for every in condition.alternatives]
             alternatives = []
             for comparisons in compared:
@@ -134,18 +134,18 @@ class Modes:
                 return {LEFT_VALUE: left, RIGHT_CONSTANT: self.value(label, value), RELATION: _RELATIONS[relation]}
             case ModeLabelsAre(first=first, relation=relation, second=second):
                 if self._literals.get(first) != self._literals.get(second):
-                    raise NotSimulatedError(f"the mode labels {first!r} and {second!r} are compared, but have different modes")
+                    raise UnknownError(f"the mode labels {first!r} and {second!r} are compared, but have different modes")
                 left, right = self._compared(first, relation), self._compared(second, relation)
                 return {LEFT_VALUE: left, RIGHT_VALUE: right, RELATION: _RELATIONS[relation]}
             case ChannelFillIs(channel=channel, relation=relation, level=level):
                 return {LEFT_VALUE: self.channel(channel) + FILL, RIGHT_CONSTANT: level, RELATION: _RELATIONS[relation]}
             case Undecided(reason=reason):
-                raise NotSimulatedError(f"a condition cannot be decided: {reason}")
+                raise UnknownError(f"a condition cannot be decided: {reason}")
 
     def _compared(self, label: str, relation: Relation) -> int:
         place = self.label(label)
         if label in self._unset:
-            raise NotSimulatedError(f"the mode label {label!r}, on which a condition depends, has {self._unset[label]}")
+            raise UnknownError(f"the mode label {label!r}, on which a condition depends, has {self._unset[label]}")
         if self._literals[label] and relation not in (Relation.EQUAL, Relation.NOT_EQUAL):
-            raise NotSimulatedError(f"the literals of the mode label {label!r} have no order, but are compared by {relation}")
+            raise UnknownError(f"the literals of the mode label {label!r} have no order, but are compared by {relation}")
         return place + MODE_VALUE

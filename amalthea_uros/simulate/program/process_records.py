@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.os import Scheduler
 from amalthea_uros.perf.software import Preemption, Task
-from amalthea_uros.simulate.layout import (
+from amalthea_uros.simulate.kernel.layout import (
     ALLOWED,
     CAPTURES,
     CAPTURES_END,
@@ -45,14 +46,11 @@ from amalthea_uros.simulate.layout import (
     TICKETS,
     WATCHED,
 )
-from amalthea_uros.simulate.program.bodies import decision_code, process_code
+from amalthea_uros.simulate.program.body import decision_code, process_code
 from amalthea_uros.simulate.program.chains import ChainCompiler
-from amalthea_uros.simulate.program.hardware import Hardware
-from amalthea_uros.simulate.program.hooks import Hooks
-from amalthea_uros.simulate.program.image import Image
-from amalthea_uros.simulate.program.obstacles import NotSimulatedError
-from amalthea_uros.simulate.program.parts import Parts
-from amalthea_uros.simulate.program.resources import Resources
+from amalthea_uros.simulate.program.hardware import HardwareRecords
+from amalthea_uros.simulate.program.image import Image, ProgramHooks
+from amalthea_uros.simulate.program.resources import Parts, Resources
 from amalthea_uros.simulate.program.scheduling import Dispatched
 from amalthea_uros.timing.basics.notes import UnknownDemandError
 from amalthea_uros.timing.blocking.critical_sections import protection_of
@@ -74,7 +72,7 @@ class ProcessRecords:
     """
 
     parts: Parts
-    hardware: Hardware
+    hardware: HardwareRecords
     chains: ChainCompiler
     decisions: dict[tuple[str, str], int] = field(default_factory=dict)
 
@@ -93,18 +91,18 @@ class ProcessRecords:
 
         Raises
         ------
-        NotSimulatedError : something in it cannot be simulated.
+        UnknownError : something in it cannot be simulated.
         """
         scheduled, context, chains = item.scheduled, self.resources.context, self.chains
         process = scheduled.process
         if not states_execution_time(process, context.system):
-            raise NotSimulatedError("it has no execution time, and neither have the runnables that it calls")
+            raise UnknownError("it has no execution time, and neither have the runnables that it calls")
         core = item.cores[0]
         try:
             scheduler = context.deciding(item.name, core)
         except UnknownDemandError as error:
-            raise NotSimulatedError(str(error)) from None
-        hooks = chains.hooks.get(item.name, Hooks())
+            raise UnknownError(str(error)) from None
+        hooks = chains.hooks.get(item.name, ProgramHooks())
         code = process_code(self.parts, process, core, hooks, scheduler, in_group=scheduled.group is not None)
         captures, captures_end = self.image.items(chains.captures.get(item.name, ()))
         lets, lets_end = self.image.items(chains.let_stages.get(item.name, ()))

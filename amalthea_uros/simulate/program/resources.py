@@ -6,10 +6,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import ClearEvent, ServerCall, SetEvent, WaitEvent, Waiting, walk
 from amalthea_uros.perf.distributions import Distribution, Statistics
 from amalthea_uros.perf.stimuli import Counter
-from amalthea_uros.simulate.layout import (
+from amalthea_uros.simulate.kernel.layout import (
     CEILING,
     COUNTER_SIZE,
     DEADLINE_CEILING,
@@ -37,14 +38,14 @@ from amalthea_uros.simulate.layout import (
     USED,
     USERS,
 )
-from amalthea_uros.simulate.options import Mode, Options
-from amalthea_uros.simulate.program.entities import Entities
+from amalthea_uros.simulate.options import Options, SimulationMode
+from amalthea_uros.simulate.program.entities import EntityNumbers
 from amalthea_uros.simulate.program.image import Image
-from amalthea_uros.simulate.program.obstacles import NotSimulatedError
-from amalthea_uros.simulate.sampling.quantiles import sampling_assumption
-from amalthea_uros.simulate.sampling.random_source import RandomSource
-from amalthea_uros.simulate.sampling.streams import Same, Stream, choices, durations, permutations, values
-from amalthea_uros.simulate.sampling.variate import UnknownValueError
+from amalthea_uros.simulate.program.modes import ModeRecords
+from amalthea_uros.simulate.program.watches import Watches
+from amalthea_uros.simulate.sampling.streams import Same, ValueStream, choices, durations, permutations, values
+from amalthea_uros.simulate.sampling.variates import sampling_assumption
+from amalthea_uros.simulate.sampling.words import RandomSource
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.demand.multiframe import Frame
 from amalthea_uros.timing.jobs.counters import first_effect
@@ -67,9 +68,9 @@ class Resources:
     context: TimingContext
     options: Options
     image: Image
-    entities: Entities
+    entities: EntityNumbers
     units: int
-    streams: list[Stream] = field(default_factory=list)
+    streams: list[ValueStream] = field(default_factory=list)
     stream_records: list[int] = field(default_factory=list)
     semaphores: dict[str, int] = field(default_factory=dict)
     os_events: dict[str, int] = field(default_factory=dict)
@@ -105,48 +106,39 @@ class Resources:
         """A time in time units; one that is too long never comes."""
         return min(time * self.units, NEVER)
 
-    def ticks(self, ticks: Distribution[int], core: str, factor: Fraction, place: str) -> Stream:
+    def ticks(self, ticks: Distribution[int], core: str, factor: Fraction, place: str) -> ValueStream:
         """The times that ticks, or units that take `factor` ticks each, take on a core."""
         settings, model = self.context.settings, self.context.demand_model
         tick = model.time_of_tick(settings.scale * settings.growth * factor, core) * Fraction(self.units, model.time_base(core))
         return self._durations(ticks, tick, place)
 
-    def frame(self, frame: Frame, core: str, place: str) -> Stream:
+    def frame(self, frame: Frame, core: str, place: str) -> ValueStream:
         """The times of something of which minimum, mean and maximum are known, in the time base of a core."""
         unit = Fraction(self.units, self.context.demand_model.time_base(core))
         average = min(max(float(frame.average), frame.best), frame.worst)
         return self._durations(Statistics(lower=frame.best, average=average, upper=frame.worst), unit, place)
 
-    def _durations(self, ticks: Distribution[int], unit: Fraction, place: str) -> Stream:
-        if self.options.mode is Mode.SAMPLED and (sentence := sampling_assumption(ticks)):
+    def _durations(self, ticks: Distribution[int], unit: Fraction, place: str) -> ValueStream:
+        if self.options.mode is SimulationMode.SAMPLED and (sentence := sampling_assumption(ticks)):
             self.context.notes.assume(sentence)
-        try:
-            return durations(ticks, unit, self.options.mode, self._source(place))
-        except UnknownValueError as error:
-            raise NotSimulatedError(str(error)) from None
+        return durations(ticks, unit, self.options.mode, self._source(place))
 
     # Choices.
 
     def count(self, distribution: Distribution[int], place: str) -> int:
         """The record of a stream of numbers of passes."""
-        try:
-            return self.stream(values(distribution, self.options.mode, self._source(place)))
-        except UnknownValueError as error:
-            raise NotSimulatedError(str(error)) from None
+        return self.stream(values(distribution, self.options.mode, self._source(place)))
 
     def choice(self, weights: Sequence[float], place: str) -> int:
         """The record of a stream of branches."""
         equal = weights if any(weights) else [1.0] * len(weights)
-        try:
-            return self.stream(choices(equal, Mode.SAMPLED, self._source(place)))
-        except UnknownValueError as error:
-            raise NotSimulatedError(str(error)) from None
+        return self.stream(choices(equal, SimulationMode.SAMPLED, self._source(place)))
 
     def order(self, place: str) -> int:
         """The record of a stream of orders."""
         return self.stream(permutations(self._source(place)))
 
-    def stream(self, stream: Stream) -> int:
+    def stream(self, stream: ValueStream) -> int:
         """The record of a stream."""
         self.stream_records.append(self.image.record(STREAM_SIZE, {STREAM_NUMBER: len(self.streams)}))
         self.streams.append(stream)
@@ -177,13 +169,15 @@ class Resources:
     def _phase(self, counter: Counter) -> int:
         """The occurrence that takes effect first, where nobody has stated it: any, drawn at random; not sampled, the first one."""
         self.assume_phase()
-        return 1 if self.options.mode is not Mode.SAMPLED else self.random_phase(counter.source) % counter.prescaler + 1
+        return (
+            1 if self.options.mode is not SimulationMode.SAMPLED else self.random_phase(counter.source) % counter.prescaler + 1
+        )
 
     def assume_phase(self) -> None:
         """Note what is assumed about the phase of what comes from outside."""
         how = (
             "has one at random, which the seed decides"
-            if self.options.mode is Mode.SAMPLED
+            if self.options.mode is SimulationMode.SAMPLED
             else "comes at its first possibility"
         )
         self.context.notes.assume(f"what comes from outside with an unknown phase {how}")
@@ -202,20 +196,44 @@ class Resources:
         pairs: list[int] = []
         for name in activity.events:
             if name not in self.os_events:
-                raise NotSimulatedError(f"the OS event {name!r} is not defined in the model")
+                raise UnknownError(f"the OS event {name!r} is not defined in the model")
             pairs += (self.os_events[name], self.entities.number(EntityKind.OS_EVENT, name))
         first, end = self.image.items(pairs)
         fields = {EVENT_LIST: first, EVENT_LIST_END: end}
         match activity:
             case SetEvent(process=process) if process is not None:
                 if process not in processes:
-                    raise NotSimulatedError(f"it sets events of {process!r}, which is not simulated")
+                    raise UnknownError(f"it sets events of {process!r}, which is not simulated")
                 fields[OF_PROCESS] = processes[process]
             case WaitEvent(all_of_them=all_of_them, waiting=waiting):
                 fields |= {NEEDS_ALL: int(all_of_them), IS_ACTIVE_WAIT: int(waiting is Waiting.ACTIVE)}
         return self.image.record(EVENT_ROW_SIZE, fields)
 
 
-def constant(stream: Stream) -> int | None:
+def constant(stream: ValueStream) -> int | None:
     """The only value of a stream; None if it has several."""
     return stream.value if isinstance(stream, Same) else None
+
+
+# What the programs of all processes share.
+
+
+@dataclass(slots=True)
+class Parts:
+    """What the programs of all processes share.
+
+    Attributes
+    ----------
+    processes, stimuli : their records
+    queues : of messages with arrivals of their own, by process and source
+    is_noted : whether events of runnables and labels are recorded
+    watches : what is observed apart from jobs and chains
+    """
+
+    resources: Resources
+    modes: ModeRecords
+    processes: dict[str, int]
+    stimuli: dict[str, int]
+    queues: dict[tuple[str, str], int]
+    is_noted: bool
+    watches: Watches

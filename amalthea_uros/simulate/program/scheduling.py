@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass, field
 
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.mapping import TaskAllocation
 from amalthea_uros.perf.os import SERVERS, Policy
 from amalthea_uros.perf.software import Preemption
-from amalthea_uros.simulate.program.obstacles import NotSimulatedError
 from amalthea_uros.timing.activation.releases import response_time_limits
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.scheduling.allocation import allocated_cores
@@ -62,9 +62,9 @@ class Dispatching:
         for name in system.processes:
             try:
                 if counts[name] > 1:
-                    raise NotSimulatedError("it is allocated more than once")
+                    raise UnknownError("it is allocated more than once")
                 self.processes[name] = self._dispatched(name, allocations.get(name))
-            except (NotSimulatedError, NotSchedulableError) as error:
+            except (UnknownError, NotSchedulableError) as error:
                 self.left_out[name] = str(error)
         paths = sorted({self.path(item.scheduled) for item in self.processes.values()})
         # Between two levels there is one for those that keep off everybody of the lower one.
@@ -75,11 +75,11 @@ class Dispatching:
         if scheduled is not None:
             found = Dispatched(scheduled, (scheduled.core,))
         elif allocation is None:
-            raise NotSimulatedError(self.context.reasons.get(name, "it is not allocated to a scheduler"))
+            raise UnknownError(self.context.reasons.get(name, "it is not allocated to a scheduler"))
         else:
             found = self._on_several_cores(allocation)
         if found.scheduled.equal_priority is EqualPriority.UNKNOWN:
-            raise NotSimulatedError(
+            raise UnknownError(
                 "it has no priority" if found.scheduled.priority is None else "a task of its scheduler has no priority"
             )
         server = self.servers.get(found.scheduled.server or "")
@@ -96,12 +96,12 @@ class Dispatching:
         allowed = allocated_cores(system).get(allocation.task, frozenset())
         cores = tuple(name for name in system.cores if name in allowed)
         if len(cores) < 2:
-            raise NotSimulatedError(self.context.reasons[allocation.task])
+            raise UnknownError(self.context.reasons[allocation.task])
         if scheduled.server is not None:
-            raise NotSimulatedError("its server is responsible for several cores")
+            raise UnknownError("its server is responsible for several cores")
         ticks = {self.context.demand_model.frequency(core) for core in cores}
         if len(ticks) > 1:
-            raise NotSimulatedError(f"the cores that can execute it have different clocks: {', '.join(cores)}")
+            raise UnknownError(f"the cores that can execute it have different clocks: {', '.join(cores)}")
         return Dispatched(scheduled, cores)
 
     def path(self, item: ScheduledProcess) -> Rank:
@@ -160,6 +160,6 @@ def _check_server(server: Server) -> None:
     is_edf = server.equal_priority is EqualPriority.EDF
     assert policy in SERVERS
     if is_edf and policy not in (Policy.CONSTANT_BANDWIDTH_SERVER, Policy.CONSTANT_BANDWIDTH_SERVER_WITH_CASH):
-        raise NotSimulatedError(f"its server {server.name!r} has a budget of the policy {policy} under earliest deadline first")
+        raise UnknownError(f"its server {server.name!r} has a budget of the policy {policy} under earliest deadline first")
     if is_edf and server.server is not None:
-        raise NotSimulatedError(f"its server {server.name!r} has deadlines within another server")
+        raise UnknownError(f"its server {server.name!r} has deadlines within another server")

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import Trigger
 from amalthea_uros.perf.events import StimulusEvent
 from amalthea_uros.perf.stimuli import EventTriggered, InterProcess, Stimulus
-from amalthea_uros.simulate.arrivals import Occurrences, UnknownArrivalError, occurrences
-from amalthea_uros.simulate.layout import (
+from amalthea_uros.simulate.arrivals import StimulusOccurrences, occurrences
+from amalthea_uros.simulate.kernel.layout import (
     ASSIGNMENTS,
     ASSIGNMENTS_END,
     CONDITION,
@@ -19,14 +20,12 @@ from amalthea_uros.simulate.layout import (
     TARGETS,
     TARGETS_END,
 )
-from amalthea_uros.simulate.operations import FIRE
+from amalthea_uros.simulate.kernel.operations import FIRE
 from amalthea_uros.simulate.program.chains import ChainCompiler
-from amalthea_uros.simulate.program.hooks import Hooks
-from amalthea_uros.simulate.program.obstacles import NotSimulatedError
-from amalthea_uros.simulate.program.parts import Parts
-from amalthea_uros.simulate.program.resources import Resources
-from amalthea_uros.simulate.program.watches import Source
-from amalthea_uros.simulate.sampling.random_source import RandomSource
+from amalthea_uros.simulate.program.image import ProgramHooks
+from amalthea_uros.simulate.program.resources import Parts, Resources
+from amalthea_uros.simulate.program.watches import EventSource
+from amalthea_uros.simulate.sampling.words import RandomSource
 from amalthea_uros.timing.activation.activations import UnknownActivationError
 from amalthea_uros.trace.table import EntityKind
 
@@ -48,7 +47,7 @@ class StimulusRecords:
         """What programs refer to."""
         return self.parts.resources
 
-    def place(self) -> list[tuple[int, Occurrences]]:
+    def place(self) -> list[tuple[int, StimulusOccurrences]]:
         """Fill the records; those of stimuli that come from outside, and when they occur."""
         system = self.resources.context.system
         activated: dict[str, list[str]] = {}
@@ -56,30 +55,30 @@ class StimulusRecords:
             for stimulus_name in system.processes[name].stimuli:
                 activated.setdefault(stimulus_name, []).append(name)
         order = {name: number for number, name in enumerate(self.parts.processes)}
-        external: list[tuple[int, int, Occurrences]] = []
+        external: list[tuple[int, int, StimulusOccurrences]] = []
         for name, record in self.parts.stimuli.items():
             stimulus, targets = system.stimuli_by_name[name], activated.get(name, [])
             try:
                 if flaw := self.resources.context.activations.flaws.of_stimulus(name):
                     number = self.resources.entities.number(EntityKind.STIMULUS, name)
                     self.resources.image.put(record, {STIMULUS_ENTITY: number})
-                    raise NotSimulatedError(flaw)
+                    raise UnknownError(flaw)
                 self._stimulus(stimulus, record, targets)
                 if isinstance(stimulus, EventTriggered) and not self.resources.context.activations.causes(stimulus):
-                    raise NotSimulatedError(f"no activity in the model raises an event of the stimulus {name!r}")
+                    raise UnknownError(f"no activity in the model raises an event of the stimulus {name!r}")
                 is_internal = isinstance(stimulus, InterProcess | EventTriggered)
                 is_watched = self.resources.image.words[record + STIMULUS_SOURCE] > 0
                 if not is_internal and (targets or stimulus.assignments or is_watched):
                     first = min((order[target] for target in targets), default=len(order))
                     external.append((first, record, self._occurrences(stimulus)))
-            except (NotSimulatedError, UnknownArrivalError, UnknownActivationError) as error:
+            except (UnknownError, UnknownActivationError) as error:
                 for target in targets:
                     self.left_out[target] = str(error)
         # Of simultaneous activations, that of the process comes first that is the first one of the model.
         external.sort(key=lambda entry: entry[0])
         return [(record, found) for _, record, found in external]
 
-    def _occurrences(self, stimulus: Stimulus) -> Occurrences:
+    def _occurrences(self, stimulus: Stimulus) -> StimulusOccurrences:
         options, context = self.resources.options, self.resources.context
         source = RandomSource(options.seed, f"stimulus {stimulus.name}")
         found = occurrences(stimulus, context.system, options.mode, source, self.resources.units)
@@ -94,7 +93,7 @@ class StimulusRecords:
             pairs += (self.parts.modes.label(assignment.label), self.parts.modes.value(assignment.label, assignment.value))
         assignments, assignments_end = self.resources.image.items(pairs)
         counter = stimulus.counter if isinstance(stimulus, InterProcess | EventTriggered) else None
-        source = self.parts.watches.number(Source(StimulusEvent, stimulus.name))
+        source = self.parts.watches.number(EventSource(StimulusEvent, stimulus.name))
         fields = {
             TARGETS: first,
             TARGETS_END: end,
@@ -114,7 +113,7 @@ def hook_firings(parts: Parts, chains: ChainCompiler) -> None:
     if not any(isinstance(stimulus, EventTriggered) for stimulus in context.system.stimuli.stimuli):
         return
     for name in parts.processes:
-        hooks = chains.hooks.setdefault(name, Hooks())
+        hooks = chains.hooks.setdefault(name, ProgramHooks())
         for firing in context.dataflow.firings(name):
             if not isinstance(firing.position.activity, Trigger):
                 side = hooks.before if firing.is_before else hooks.after

@@ -52,7 +52,7 @@ _KINDS = {
 
 
 @dataclass(frozen=True, slots=True)
-class Source:
+class EventSource:
     """Where events occur that the simulation does not tell apart.
 
     Attributes
@@ -72,7 +72,7 @@ class Source:
     communication: Communication | None = None
 
 
-def is_source(source: Source, event: Event) -> bool:
+def is_source(source: EventSource, event: Event) -> bool:
     """Whether an event occurs at a source, apart from its core; unset features of the event match everything."""
     name: str | None = None
     runnable = getattr(event, "runnable", None)
@@ -105,7 +105,7 @@ class Watched:
     labels: frozenset[str] = frozenset()
     runnables: tuple[str, ...] = ()
 
-    def __contains__(self, source: Source) -> bool:
+    def __contains__(self, source: EventSource) -> bool:
         """Whether occurrences at a source are observed."""
         return (
             any(is_source(source, event) for event in self.events)
@@ -114,14 +114,14 @@ class Watched:
         )
 
 
-def is_of_order(source: Source) -> bool:
+def is_of_order(source: EventSource) -> bool:
     """Whether a source says in which order a process calls runnables."""
     if source.kind is RunnableEvent:
         return source.change is RunnableChange.START and source.runnable is None
     return source.kind is ProcessEvent and source.change in (ProcessChange.START, ProcessChange.TERMINATE)
 
 
-def is_of_label(source: Source, labels: Collection[str]) -> bool:
+def is_of_label(source: EventSource, labels: Collection[str]) -> bool:
     """Whether a source says which value is read and written: an access, or the beginning or end of what keeps values."""
     if source.kind is LabelEvent:
         return source.name in labels
@@ -191,10 +191,10 @@ class Watches:
 
     watched: Watched
     measured: dict[str, int] = field(default_factory=dict)
-    sources: dict[Source, int] = field(default_factory=dict)
-    _unwatched: set[Source] = field(default_factory=set)
+    sources: dict[EventSource, int] = field(default_factory=dict)
+    _unwatched: set[EventSource] = field(default_factory=set)
 
-    def number(self, source: Source) -> int | None:
+    def number(self, source: EventSource) -> int | None:
         """The number of a source; None if it is not watched."""
         if source not in self.sources and source not in self._unwatched:
             if source in self.watched:
@@ -207,6 +207,6 @@ class Watches:
         """For each kind of transition of a process the number of its source plus 1, or 0; empty if none is watched."""
         found = [0] * (max(_KINDS.values()) + 1)
         for change, kind in _KINDS.items():
-            number = self.number(Source(ProcessEvent, process, change, None, process))
+            number = self.number(EventSource(ProcessEvent, process, change, None, process))
             found[kind] = 0 if number is None else number + 1
         return found if any(found) else []

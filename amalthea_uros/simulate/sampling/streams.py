@@ -13,12 +13,11 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.distributions import Bounds, Distribution, Gauss, highest, lowest
-from amalthea_uros.simulate.options import Mode
-from amalthea_uros.simulate.sampling.fixed_point import scaled
-from amalthea_uros.simulate.sampling.quantiles import GREATEST, NO_PARAMETERS, check, variate
-from amalthea_uros.simulate.sampling.random_source import RandomSource
-from amalthea_uros.simulate.sampling.variate import UnknownValueError, Variate
+from amalthea_uros.simulate.options import SimulationMode
+from amalthea_uros.simulate.sampling.variates import GREATEST, NO_PARAMETERS, Variate, check, variate
+from amalthea_uros.simulate.sampling.words import RandomSource, scaled
 from amalthea_uros.timing.demand.means import mean
 
 if TYPE_CHECKING:
@@ -28,7 +27,7 @@ if TYPE_CHECKING:
     Integers = NDArray[np.int64]
 
 
-class Stream(Protocol):
+class ValueStream(Protocol):
     """Whole numbers one after another."""
 
     @property
@@ -51,16 +50,16 @@ class Same:
 
     @property
     def lowest(self) -> int:
-        """See `Stream`."""
+        """See `ValueStream`."""
         return self.value
 
     @property
     def highest(self) -> int:
-        """See `Stream`."""
+        """See `ValueStream`."""
         return self.value
 
     def take(self, count: int) -> Integers:
-        """See `Stream`."""
+        """See `ValueStream`."""
         return np.full(count, self.value, np.int64)
 
 
@@ -73,16 +72,16 @@ class Sampled:
 
     @property
     def lowest(self) -> int:
-        """See `Stream`."""
+        """See `ValueStream`."""
         return self.variate.lowest
 
     @property
     def highest(self) -> int:
-        """See `Stream`."""
+        """See `ValueStream`."""
         return self.variate.highest
 
     def take(self, count: int) -> Integers:
-        """See `Stream`."""
+        """See `ValueStream`."""
         return self.variate.of(self.source.words(count))
 
 
@@ -90,21 +89,21 @@ class Sampled:
 class Converted:
     """Values of another stream that are not negative, multiplied by a factor and rounded to the nearest whole number."""
 
-    stream: Stream
+    stream: ValueStream
     factor: Fraction
 
     @property
     def lowest(self) -> int:
-        """See `Stream`."""
+        """See `ValueStream`."""
         return floor(self.stream.lowest * self.factor)
 
     @property
     def highest(self) -> int:
-        """See `Stream`."""
+        """See `ValueStream`."""
         return ceil(self.stream.highest * self.factor)
 
     def take(self, count: int) -> Integers:
-        """See `Stream`."""
+        """See `ValueStream`."""
         values = self.stream.take(count)
         whole, rest = divmod(self.factor, 1)
         found = values * np.int64(whole)
@@ -129,16 +128,16 @@ class Chosen:
 
     @property
     def lowest(self) -> int:
-        """See `Stream`."""
+        """See `ValueStream`."""
         return 0
 
     @property
     def highest(self) -> int:
-        """See `Stream`."""
+        """See `ValueStream`."""
         return len(self.ends)
 
     def take(self, count: int) -> Integers:
-        """See `Stream`."""
+        """See `ValueStream`."""
         return np.searchsorted(self.ends, self.source.words(count), side="right").astype(np.int64)
 
 
@@ -150,34 +149,34 @@ class RandomNumbers:
 
     @property
     def lowest(self) -> int:
-        """See `Stream`."""
+        """See `ValueStream`."""
         return 0
 
     @property
     def highest(self) -> int:
-        """See `Stream`."""
+        """See `ValueStream`."""
         return 2**63 - 1
 
     def take(self, count: int) -> Integers:
-        """See `Stream`."""
+        """See `ValueStream`."""
         return (self.source.words(count) >> np.uint64(1)).view(np.int64)
 
 
-def values(distribution: Distribution[int], mode: Mode, source: RandomSource) -> Stream:
+def values(distribution: Distribution[int], mode: SimulationMode, source: RandomSource) -> ValueStream:
     """Values of a distribution; in the other modes the greatest (worst), the least (best) or the mean, rounded.
 
     Raises
     ------
-    UnknownValueError : the parameters of the distribution contradict each other, or it does not have the value of the mode.
+    UnknownError : the parameters of the distribution contradict each other, or it does not have the value of the mode.
     """
-    if mode is not Mode.SAMPLED:
+    if mode is not SimulationMode.SAMPLED:
         check(distribution)
         return Same(round(_value(distribution, mode)))
     sampled = variate(distribution)
     return Same(sampled.lowest) if sampled.lowest == sampled.highest else Sampled(sampled, source)
 
 
-def durations(distribution: Distribution[int], per_unit: Fraction, mode: Mode, source: RandomSource) -> Stream:
+def durations(distribution: Distribution[int], per_unit: Fraction, mode: SimulationMode, source: RandomSource) -> ValueStream:
     """Execution times: ticks, converted to time units.
 
     They are rounded to the nearest time unit; up in the worst case, and down in the best. A normal distribution without a minimum
@@ -189,54 +188,54 @@ def durations(distribution: Distribution[int], per_unit: Fraction, mode: Mode, s
 
     Raises
     ------
-    UnknownValueError : as for `values`; a number of ticks is negative, or the time exceeds the supported range.
+    UnknownError : as for `values`; a number of ticks is negative, or the time exceeds the supported range.
     """
     ticks = _truncated_at_0(distribution)
     stream = values(ticks, mode, source)
     if stream.lowest < 0:
-        raise UnknownValueError("a number of ticks is negative")
+        raise UnknownError("a number of ticks is negative")
     if stream.highest * per_unit > GREATEST:
-        raise UnknownValueError("an execution time exceeds the supported range")
+        raise UnknownError("an execution time exceeds the supported range")
     if isinstance(stream, Same):
-        exact = (stream.value if mode is Mode.SAMPLED else _value(ticks, mode)) * per_unit
-        return Same({Mode.WORST: ceil, Mode.BEST: floor}.get(mode, round)(exact))
+        exact = (stream.value if mode is SimulationMode.SAMPLED else _value(ticks, mode)) * per_unit
+        return Same({SimulationMode.WORST: ceil, SimulationMode.BEST: floor}.get(mode, round)(exact))
     return stream if per_unit == 1 else Converted(stream, per_unit)
 
 
-def choices(weights: Sequence[float | Fraction], mode: Mode, source: RandomSource) -> Stream:
+def choices(weights: Sequence[float | Fraction], mode: SimulationMode, source: RandomSource) -> ValueStream:
     """Indices with a probability in proportion to the weights; if not sampled, the first of the most probable ones.
 
     Raises
     ------
-    UnknownValueError : a weight is negative or not finite, or all are 0.
+    UnknownError : a weight is negative or not finite, or all are 0.
     """
     if not all(isfinite(weight) and weight >= 0 for weight in weights):
-        raise UnknownValueError("the probability of a branch is negative or not finite")
+        raise UnknownError("the probability of a branch is negative or not finite")
     exact = [Fraction(weight) for weight in weights]
     total = sum(exact)
     if not total:
-        raise UnknownValueError("all branches have the probability 0")
+        raise UnknownError("all branches have the probability 0")
     possible = [index for index, weight in enumerate(exact) if weight]
-    if mode is not Mode.SAMPLED or len(possible) == 1:
+    if mode is not SimulationMode.SAMPLED or len(possible) == 1:
         return Same(exact.index(max(exact)))
     ends = [sum(exact[: index + 1], Fraction(0)) / total for index in range(possible[-1])]
     return Chosen(np.array([floor(end * 2**64) for end in ends], np.uint64), source)
 
 
-def permutations(source: RandomSource) -> Stream:
+def permutations(source: RandomSource) -> ValueStream:
     """Random numbers that decide an order, in all modes."""
     return RandomNumbers(source)
 
 
-def _value(distribution: Distribution[int], mode: Mode) -> int | Fraction:
+def _value(distribution: Distribution[int], mode: SimulationMode) -> int | Fraction:
     """The value that a mode always takes."""
-    if mode is Mode.AVERAGE:
+    if mode is SimulationMode.AVERAGE:
         if isinstance(distribution, Bounds):
-            raise UnknownValueError(NO_PARAMETERS)
+            raise UnknownError(NO_PARAMETERS)
         return mean(distribution)
-    found = highest(distribution) if mode is Mode.WORST else lowest(distribution)
+    found = highest(distribution) if mode is SimulationMode.WORST else lowest(distribution)
     if found is None:
-        raise UnknownValueError(f"a distribution has no {'maximum' if mode is Mode.WORST else 'minimum'}")
+        raise UnknownError(f"a distribution has no {'maximum' if mode is SimulationMode.WORST else 'minimum'}")
     return found
 
 

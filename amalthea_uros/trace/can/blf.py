@@ -2,17 +2,84 @@
 
 from __future__ import annotations
 
+import struct
+import zlib
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from typing import IO, TYPE_CHECKING
 
+from amalthea_uros._internal.files import read_up_to
+from amalthea_uros._internal.limits import ADVICE, MODEL_SIZE
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.trace.can.blf_containers import TooLargeError, damages
 from amalthea_uros.trace.can.python_can import PythonCanLog, Row, python_can
-from amalthea_uros.trace.problems import Place
-from amalthea_uros.trace.text_lines import opened_bytes
+from amalthea_uros.trace.files import opened_bytes
+from amalthea_uros.trace.problems import TracePlace
 
 if TYPE_CHECKING:
     from can import BLFReader
+
+#: Signature and size of the header of the file.
+_FILE = struct.Struct("<4sL")
+#: Signature, size and version of the header, size and type of the object.
+_OBJECT = struct.Struct("<4sHHLL")
+#: Method of compression, size of the content.
+_CONTAINER = struct.Struct("<H6xL4x")
+_CONTAINER_TYPE = 10
+_PLAIN, _DEFLATED = 0, 2
+
+
+class TooLargeError(Exception):
+    """A container is larger than any that a recorder writes; the text says what to do."""
+
+
+def damages(stream: IO[bytes]) -> Iterator[str]:
+    """What is wrong with the containers of a file, from its beginning.
+
+    Raises
+    ------
+    TooLargeError : a container must not be unpacked.
+    """
+    header = stream.read(_FILE.size)
+    if len(header) < _FILE.size:
+        return
+    read_up_to(stream, max(_FILE.unpack(header)[1] - _FILE.size, 0))
+    while base := stream.read(_OBJECT.size):
+        if len(base) < _OBJECT.size:
+            yield "the file ends in a header"
+            return
+        signature, _, _, size, kind = _OBJECT.unpack(base)
+        if signature != b"LOBJ" or size < _OBJECT.size:
+            yield "a container does not begin with LOBJ; it and the rest are not used"
+            return
+        if size > MODEL_SIZE:
+            raise TooLargeError(ADVICE)
+        content = read_up_to(stream, size - _OBJECT.size)
+        if len(content) < size - _OBJECT.size:
+            yield "the file ends in a container"
+        elif kind != _CONTAINER_TYPE:
+            yield "a record is not a container; it is ignored"
+        elif not _is_sound(content):
+            yield "a container is damaged; its frames are missing"
+        stream.read(size % 4)
+
+
+def _is_sound(content: bytes) -> bool:
+    if len(content) < _CONTAINER.size:
+        return False
+    method, size = _CONTAINER.unpack_from(content)
+    packed = content[_CONTAINER.size :]
+    if method != _DEFLATED:
+        return bool(method == _PLAIN)
+    unpacking = zlib.decompressobj()
+    try:
+        unpacked = len(unpacking.decompress(packed, min(size, MODEL_SIZE) + 1))
+    except zlib.error:
+        return False
+    if unpacked > MODEL_SIZE or unpacking.unconsumed_tail:
+        raise TooLargeError(ADVICE)
+    return unpacking.eof and unpacked == size
+
+
+# Logs of CANalyzer and CANoe in the binary format of Vector (.blf), by python-can.
 
 _NANOSECOND = 1000
 
@@ -35,13 +102,13 @@ class BlfLog(PythonCanLog):
                     time = round(message.timestamp * 10**9) * _NANOSECOND
                     # python-can subtracts 1 from the number in the file.
                     channel = str(message.channel + 1) if isinstance(message.channel, int) else ""
-                    row = self._row(message, time, channel, Place(number))
+                    row = self._row(message, time, channel, TracePlace(number))
                     if row is not None:
                         yield row
             except OSError:
                 raise
             except Exception as error:  # of many kinds, which python-can does not document
-                self._report_end(error, Place(number))
+                self._report_end(error, TracePlace(number))
                 return
         self._check_size(reader)
 
@@ -50,7 +117,7 @@ class BlfLog(PythonCanLog):
         with opened_bytes(self._path, self._problems) as stream:
             try:
                 for damage in damages(stream):
-                    self._report_damage(damage, Place())
+                    self._report_damage(damage, TracePlace())
             except TooLargeError as error:
                 message = "a container of the file is too large to be unpacked; nothing is read"
                 self._problems.add("CAN008", Severity.ERROR, message, advice=str(error))

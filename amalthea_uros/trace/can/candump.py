@@ -13,13 +13,12 @@ import numpy as np
 
 from amalthea_uros._internal.limits import TRACE_LINE
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.trace.can.candump_blocks import Lines, read_lines
-from amalthea_uros.trace.can.candump_lines import Line, NotAFrameError, parse
-from amalthea_uros.trace.can.error_frames import is_receive_overflow, report_error, report_lost
-from amalthea_uros.trace.can.frames import UNKNOWN, FrameKind, FrameTable
+from amalthea_uros.trace.can.candump_blocks import CandumpLines, read_lines
+from amalthea_uros.trace.can.candump_lines import CandumpLine, NotAFrameError, parse
+from amalthea_uros.trace.can.frames import UNKNOWN, FrameKind, FrameTable, is_receive_overflow, report_error, report_lost
 from amalthea_uros.trace.can.log_reader import LogReader
-from amalthea_uros.trace.problems import Place
-from amalthea_uros.trace.text_lines import LineTooLongError, opened_bytes
+from amalthea_uros.trace.files import LineTooLongError, opened_bytes
+from amalthea_uros.trace.problems import TracePlace
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -100,7 +99,7 @@ class CandumpLog(LogReader):
         table = table if is_row.all() else table.take(np.flatnonzero(is_row))
         return replace(table, time=self._completed(table.time, table.kind))
 
-    def _is_usual(self, block: bytes, lines: Lines) -> NDArray[np.bool_]:
+    def _is_usual(self, block: bytes, lines: CandumpLines) -> NDArray[np.bool_]:
         """Whether the times of plain lines are like those of the other lines; others are reported."""
         is_near: NDArray[np.bool_] = abs(lines.seconds - self.origin // _SECOND) < _RANGE // _SECOND
         has_digits: NDArray[np.bool_] = np.where(lines.has_nanoseconds, _NANOSECOND, _MICROSECOND) == self._resolution
@@ -109,7 +108,7 @@ class CandumpLog(LogReader):
             self._report_time(_DIGITS if is_near[number] else _FAR, place)
         return is_near & has_digits
 
-    def _channel_of(self, line: Line, place: Place) -> int:
+    def _channel_of(self, line: CandumpLine, place: TracePlace) -> int:
         """The channel of a line that is not plain, `UNKNOWN` if it cannot be used; that is reported."""
         if line.kind is FrameKind.GAP:
             return self._channel(line.channel)
@@ -131,7 +130,7 @@ class CandumpLog(LogReader):
         last = np.maximum.accumulate(np.where(is_gap, -1, np.arange(len(time))))
         return np.where(last < 0, self._last, time[last])
 
-    def _other_lines(self, block: bytes, lines: Lines) -> dict[int, Line]:
+    def _other_lines(self, block: bytes, lines: CandumpLines) -> dict[int, CandumpLine]:
         """The lines that are not plain, by their numbers in the block; those that are no frames are reported."""
         found = {}
         for number in np.flatnonzero(~lines.is_plain & (lines.end > lines.start)).tolist():
@@ -151,7 +150,7 @@ class CandumpLog(LogReader):
             found[number] = line
         return found
 
-    def _begin(self, lines: Lines, others: Mapping[int, Line]) -> None:
+    def _begin(self, lines: CandumpLines, others: Mapping[int, CandumpLine]) -> None:
         """Find the origin of the times, their digits, and whether they are differences, from the first lines."""
         stamps = {number: line.stamp for number, line in others.items() if line.stamp is not None}
         times = {number: stamp.time for number, stamp in stamps.items()}
@@ -173,12 +172,12 @@ class CandumpLog(LogReader):
             message = "the times are dates in a local time zone, which may change between summer and winter"
             self._problems.add("CAN005", Severity.WARNING, message, advice="Record with candump -ta, or better with -l.")
 
-    def _place(self, text: bytes, number: int) -> Place:
-        return Place(self._line + number, 1, text[:_SHOWN].decode(errors="replace"))
+    def _place(self, text: bytes, number: int) -> TracePlace:
+        return TracePlace(self._line + number, 1, text[:_SHOWN].decode(errors="replace"))
 
-    def _report_time(self, message: str, place: Place) -> None:
+    def _report_time(self, message: str, place: TracePlace) -> None:
         self._problems.add("CAN001", Severity.ERROR, message, place, _ADVICE)
 
 
-def _line(block: bytes, lines: Lines, number: int) -> bytes:
+def _line(block: bytes, lines: CandumpLines, number: int) -> bytes:
     return block[lines.start[number] : lines.end[number]]

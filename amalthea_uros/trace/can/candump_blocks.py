@@ -1,6 +1,6 @@
 """Many lines of candump at a time: the usual form `(1436509052.249713) can0 123#11223344`, by columns of characters.
 
-Lines of any other form are left to `candump_lines`; what both accept, they read alike.
+CandumpLines of any other form are left to `candump_lines`; what both accept, they read alike.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _MAX_STANDARD, _MAX_EXTENDED = 0x7FF, 0x1FFF_FFFF
 
 
 @dataclass(frozen=True, slots=True)
-class Lines:
+class CandumpLines:
     """The lines of a block, an element each; apart from the first three, those of lines that are not plain mean nothing.
 
     Attributes
@@ -67,7 +67,7 @@ class Lines:
         return [flat[start : start + length] for start, length in zip(starts, self.length.tolist(), strict=True)]
 
 
-def read_lines(block: bytes, channel_index: Callable[[str], int]) -> Lines:
+def read_lines(block: bytes, channel_index: Callable[[str], int]) -> CandumpLines:
     """The lines of a block, of which each ends with a line end."""
     text = np.frombuffer(block, np.uint8)
     end = np.flatnonzero(text == ord("\n"))
@@ -92,7 +92,7 @@ def read_lines(block: bytes, channel_index: Callable[[str], int]) -> Lines:
     is_plain &= is_time & is_identifier & is_data
     channel, is_known = _channels(text, block, (name_start, identifier_start - 1), is_plain, channel_index)
     length = np.where(is_plain & is_known, length, 0)
-    return Lines(start, end, is_plain & is_known, seconds, fraction, has_nanoseconds, channel, identifier, length, data)
+    return CandumpLines(start, end, is_plain & is_known, seconds, fraction, has_nanoseconds, channel, identifier, length, data)
 
 
 def _at(values: NDArray[Number], places: Ints) -> NDArray[Number]:

@@ -60,7 +60,7 @@ class Stamp:
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class CandumpLine:
     """What a line says.
 
     Attributes
@@ -81,7 +81,7 @@ class NotAFrameError(ValueError):
     """A line is no frame, or one that cannot be used; the text says why."""
 
 
-def parse(text: str) -> Line:
+def parse(text: str) -> CandumpLine:
     """What a line without its end says.
 
     Raises
@@ -90,14 +90,14 @@ def parse(text: str) -> Line:
     """
     text = _COLOUR.sub("", text).strip(" ")
     if match := _LOG.fullmatch(text):
-        return Line(stamp_of(match[1]), match[2], *_frame(match[3]))
+        return CandumpLine(stamp_of(match[1]), match[2], *_frame(match[3]))
     if match := _CONSOLE.fullmatch(text):
         if match[1] is None:
             raise NotAFrameError(_NO_STAMP)
         length = _CLASSIC if match[4] is None else int(match[4][:5])
-        return Line(stamp_of(match[1]), match[2], *_console_frame(match[3], length, match[5]))
+        return CandumpLine(stamp_of(match[1]), match[2], *_console_frame(match[3], length, match[5]))
     if match := _DROPPED.fullmatch(text):
-        return Line(None, match[2], 0, FrameKind.GAP, lost=int(match[1][:18]))
+        return CandumpLine(None, match[2], 0, FrameKind.GAP, lost=int(match[1][:18]))
     raise NotAFrameError(_NOT_A_FRAME)
 
 

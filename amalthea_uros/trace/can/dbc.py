@@ -28,7 +28,7 @@ _NOBODY = "Vector__XXX"
 
 
 @dataclass(frozen=True, slots=True)
-class Signal:
+class BusSignal:
     """A value in the payload of a message: `raw * scale + offset`.
 
     Attributes
@@ -56,7 +56,7 @@ class Signal:
 
 
 @dataclass(frozen=True, slots=True)
-class Message:
+class BusMessage:
     """A message.
 
     Attributes
@@ -73,18 +73,18 @@ class Message:
     senders: tuple[str, ...]
     receivers: tuple[str, ...]
     cycle_time: Time | None
-    signals: Mapping[str, Signal]
+    signals: Mapping[str, BusSignal]
 
 
 @dataclass(frozen=True, slots=True)
-class Database:
+class BusDatabase:
     """The messages of a bus, by their names."""
 
     path: Path
-    messages: Mapping[str, Message]
+    messages: Mapping[str, BusMessage]
 
-    def find(self, text: str) -> tuple[Message, Signal]:
-        """The signal that is written as `Message.Signal`.
+    def find(self, text: str) -> tuple[BusMessage, BusSignal]:
+        """The signal that is written as `BusMessage.Signal`.
 
         Raises
         ------
@@ -101,7 +101,7 @@ class Database:
         return message, signal
 
 
-def read_dbc(path: Path) -> Database:
+def read_dbc(path: Path) -> BusDatabase:
     """Read a DBC file.
 
     Raises
@@ -120,14 +120,14 @@ def read_dbc(path: Path) -> Database:
     database = CantoolsDatabase()
     try:
         database.add_dbc_string(text)
-        return Database(path, {message.name: _message(message) for message in database.messages})
+        return BusDatabase(path, {message.name: _message(message) for message in database.messages})
     except Exception as error:  # of many kinds: of the parser, of cantools, and of what it uses
         raise ReadError([_not_dbc(path, error)]) from None
 
 
-def _message(message: CantoolsMessage) -> Message:
+def _message(message: CantoolsMessage) -> BusMessage:
     decode = _decoder(message)
-    return Message(
+    return BusMessage(
         name=message.name,
         identifier=message.frame_id | (EXTENDED if message.is_extended_frame else 0),
         length=message.length,
@@ -138,8 +138,8 @@ def _message(message: CantoolsMessage) -> Message:
     )
 
 
-def _signal(signal: CantoolsSignal, decode: Callable[[bytes], Mapping[str, Any]]) -> Signal:
-    return Signal(signal.name, signal.length, _exact(signal.scale), _exact(signal.offset), signal.unit or "", decode)
+def _signal(signal: CantoolsSignal, decode: Callable[[bytes], Mapping[str, Any]]) -> BusSignal:
+    return BusSignal(signal.name, signal.length, _exact(signal.scale), _exact(signal.offset), signal.unit or "", decode)
 
 
 def _decoder(message: CantoolsMessage) -> Callable[[bytes], Mapping[str, Any]]:

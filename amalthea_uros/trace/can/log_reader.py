@@ -10,10 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from amalthea_uros.diagnostics import Finding, Severity
-from amalthea_uros.trace.can.buses import BusWatch
-from amalthea_uros.trace.can.clocks import ClockWatch
 from amalthea_uros.trace.can.frames import UNKNOWN, FrameTable
-from amalthea_uros.trace.problems import Place, Problems
+from amalthea_uros.trace.can.plausibility import BusWatch, ClockWatch
+from amalthea_uros.trace.problems import TracePlace, TraceProblems
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -33,7 +32,7 @@ class LogReader(ABC):
 
     def __init__(self, path: Path, channel: str | None) -> None:
         self._path, self._wanted = path, channel
-        self._problems = Problems(path)
+        self._problems = TraceProblems(path)
         self._channels: list[str] = []
         self._indices: dict[str, int] = {}
         self._resolution: int | None = None
@@ -79,7 +78,7 @@ class LogReader(ABC):
             self._channels.append(name)
         return index
 
-    def _report_channel(self, place: Place) -> None:
+    def _report_channel(self, place: TracePlace) -> None:
         message = f"the log has more than {_MOST_CHANNELS} channels; a frame of another one is ignored"
         self._problems.add("CAN001", Severity.ERROR, message, place, "Check that the log is not damaged.")
 
@@ -93,4 +92,4 @@ class LogReader(ABC):
     def _report_missing_channel(self, channel: str) -> None:
         known = ", ".join(self._channels[:_SHOWN]) or "none"
         message = f"the log has no channel {channel!r}; the channels of the log: {known}"
-        self._problems.add("CAN007", Severity.ERROR, message, Place(), "Name one of these channels.")
+        self._problems.add("CAN007", Severity.ERROR, message, TracePlace(), "Name one of these channels.")

@@ -11,15 +11,15 @@ from amalthea_uros._internal.files import STANDARD_INPUT, is_fifo
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.trace.can.candump_lines import is_frame
 from amalthea_uros.trace.can.frames import CanLog
-from amalthea_uros.trace.file_heads import first_bytes
+from amalthea_uros.trace.files import first_bytes
 from amalthea_uros.trace.readers import format_of
 
 #: The modules that read a format, and their classes, by the ends of the names of files.
 _READERS = {
     ".log": ("candump", "CandumpLog"),
-    ".asc": ("asc", "AscLog"),
+    ".asc": ("text_logs", "AscLog"),
     ".blf": ("blf", "BlfLog"),
-    ".trc": ("trc", "TrcLog"),
+    ".trc": ("text_logs", "TrcLog"),
     ".mf4": ("mf4", "Mf4Log"),
 }
 #: The ends of the names of files. `.gz` may follow them, apart from .mf4.

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.trace.can.python_can import PythonCanLog, Row, python_can
-from amalthea_uros.trace.problems import Place
-from amalthea_uros.trace.text_lines import opened_bytes
+from amalthea_uros.trace.files import opened_bytes
+from amalthea_uros.trace.problems import TracePlace
 
 if TYPE_CHECKING:
     from can import MF4Reader
@@ -44,11 +44,11 @@ class Mf4Log(PythonCanLog):
                         self._origin = micros * _MICROSECOND // _SECOND * _SECOND
                         self._resolution = _MICROSECOND
                     channel = "" if message.channel is None else str(message.channel)
-                    row = self._row(message, micros * _MICROSECOND - self._origin, channel, Place(number))
+                    row = self._row(message, micros * _MICROSECOND - self._origin, channel, TracePlace(number))
                     if row is not None:
                         yield row
         except Exception as error:  # of many kinds, which asammdf does not document
-            self._report_end(error, Place(number))
+            self._report_end(error, TracePlace(number))
 
     def _reader(self) -> MF4Reader | None:
         """The reader of python-can; None, and a finding, if the file is none of the format."""
@@ -56,7 +56,7 @@ class Mf4Log(PythonCanLog):
             try:
                 return python_can().MF4Reader(self._path)  # type: ignore[no-any-return]
             except Exception as error:  # of many kinds, which asammdf does not document
-                self._report_end(error, Place())
+                self._report_end(error, TracePlace())
             gc.collect()  # the object is in a circle of references
         return None
 

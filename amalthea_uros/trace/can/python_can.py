@@ -17,10 +17,9 @@ import numpy as np
 
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.trace.can.error_frames import report_error
-from amalthea_uros.trace.can.frames import EXTENDED, UNKNOWN, FrameKind, FrameTable
+from amalthea_uros.trace.can.frames import EXTENDED, UNKNOWN, FrameKind, FrameTable, report_error
 from amalthea_uros.trace.can.log_reader import LogReader
-from amalthea_uros.trace.problems import Place
+from amalthea_uros.trace.problems import TracePlace
 
 if TYPE_CHECKING:
     from can import Message
@@ -70,7 +69,7 @@ class PythonCanLog(LogReader):
     def _rows(self) -> Iterator[Row]:
         """The frames of the file."""
 
-    def _row(self, message: Message, time: int, channel: str, place: Place) -> Row | None:
+    def _row(self, message: Message, time: int, channel: str, place: TracePlace) -> Row | None:
         """The row of a message; None, and a finding, if python-can took something for a frame that is none."""
         largest = _MAX_EXTENDED if message.is_extended_id else _MAX_STANDARD
         data = bytes(message.data or b"")
@@ -99,10 +98,10 @@ class PythonCanLog(LogReader):
             data,
         )
 
-    def _report_damage(self, message: str, place: Place) -> None:
+    def _report_damage(self, message: str, place: TracePlace) -> None:
         self._problems.add("CAN001", Severity.ERROR, message, place, "Check that the log is complete.")
 
-    def _report_end(self, error: Exception, place: Place) -> None:
+    def _report_end(self, error: Exception, place: TracePlace) -> None:
         """Report that the rest of the file cannot be read."""
         message = f"the file is damaged ({type(error).__name__}: {error}); only the frames before that are used"
         self._problems.add("CAN008", Severity.ERROR, message, place, "Check that it was written and copied completely.")

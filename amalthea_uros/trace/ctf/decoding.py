@@ -6,7 +6,16 @@ import struct
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
-from amalthea_uros.trace.ctf.types import Array, Enumeration, Float, Integer, String, Struct, Type, Variant
+from amalthea_uros.trace.ctf.types import (
+    ArrayType,
+    EnumerationType,
+    FieldType,
+    FloatType,
+    IntegerType,
+    StringType,
+    StructType,
+    VariantType,
+)
 
 if TYPE_CHECKING:
     from mmap import mmap
@@ -40,7 +49,7 @@ class _Plan(NamedTuple):
     layout: struct.Struct
     names: tuple[str, ...]
     texts: tuple[int, ...]
-    stamps: tuple[tuple[int, Integer], ...]
+    stamps: tuple[tuple[int, IntegerType], ...]
 
 
 class Decoder:
@@ -55,7 +64,7 @@ class Decoder:
 
     def __init__(self, data: mmap | bytes) -> None:
         self.position = self.end = 0
-        self.stamps: list[tuple[int, Integer]] = []
+        self.stamps: list[tuple[int, IntegerType]] = []
         self.data = data
         self._start = 0
         self._scopes: list[Fields] = []
@@ -75,7 +84,7 @@ class Decoder:
         self._scopes.clear()
         self._steps, self._begin = 0, self.position
 
-    def structure(self, kind: Struct | None) -> Fields:
+    def structure(self, kind: StructType | None) -> Fields:
         """The next structure, of which later ones can name fields; nothing if there is none.
 
         Raises
@@ -110,27 +119,27 @@ class Decoder:
     def _align(self, alignment: int) -> None:
         self.position += (self._start - self.position) % alignment
 
-    def _value(self, kind: Type, depth: int) -> Value:
+    def _value(self, kind: FieldType, depth: int) -> Value:
         self._steps += 1
         if depth > _DEPTH or self._steps > _FREE_STEPS + self.position - self._begin:
             raise DecodingError("an event has too many fields in each other")
         match kind:
-            case Integer():
+            case IntegerType():
                 return self._integer(kind)
-            case Enumeration():
+            case EnumerationType():
                 return self._integer(kind.container)
-            case Float():
+            case FloatType():
                 return self._float(kind)
-            case String():
+            case StringType():
                 return self._string()
-            case Array():
+            case ArrayType():
                 return self._array(kind, depth)
-            case Struct():
+            case StructType():
                 return self._struct(kind, depth)
-            case Variant():
+            case VariantType():
                 return self._value(self._option(kind), depth + 1)
 
-    def _integer(self, kind: Integer) -> int:
+    def _integer(self, kind: IntegerType) -> int:
         self._align(kind.align)
         first, size = self.position, kind.size
         last = first + size
@@ -156,7 +165,7 @@ class Decoder:
         self.position += number * 8
         return bytes(self.data[first : first + number])
 
-    def _float(self, kind: Float) -> float:
+    def _float(self, kind: FloatType) -> float:
         self._align(kind.align)
         value: float = struct.unpack(
             (">" if kind.is_big_endian else "<") + ("f" if kind.size == 32 else "d"), self._octets(kind.size // 8)
@@ -172,12 +181,12 @@ class Decoder:
         text = self._octets(last + 1 - first)
         return _text(text)
 
-    def _array(self, kind: Array, depth: int) -> Value:
+    def _array(self, kind: ArrayType, depth: int) -> Value:
         length = kind.length if isinstance(kind.length, int) else self._named(kind.length)
         if not isinstance(length, int) or length < 0:
             raise DecodingError("the length of a sequence is not a number")
         element = kind.element
-        if isinstance(element, Integer) and element.is_text:
+        if isinstance(element, IntegerType) and element.is_text:
             self._align(element.align)
             return _text(self._octets(length))
         self._align(element.align)
@@ -186,20 +195,20 @@ class Decoder:
             values.append(self._value(element, depth + 1))
         return values
 
-    def _struct(self, kind: Struct, depth: int) -> Fields:
+    def _struct(self, kind: StructType, depth: int) -> Fields:
         self._align(kind.align)
         fields: Fields = {}
         self._scopes.append(fields)
         for name, each in kind.fields:
             fields[name] = self._value(each, depth + 1)
-            if isinstance(each, Enumeration):
+            if isinstance(each, EnumerationType):
                 fields[f"{name}\0"] = each
         self._scopes.pop()
         return fields
 
-    def _option(self, kind: Variant) -> Type:
+    def _option(self, kind: VariantType) -> FieldType:
         value, enumeration = self._named(kind.tag), self._named(kind.tag, "\0")
-        if isinstance(enumeration, Enumeration) and isinstance(value, int):
+        if isinstance(enumeration, EnumerationType) and isinstance(value, int):
             key = id(enumeration), value
             if key not in self._labels and len(self._labels) < 1 << 16:
                 self._labels[key] = enumeration.label(value)
@@ -222,18 +231,23 @@ def _text(octets: bytes) -> str:
     return octets.partition(b"\0")[0].decode("utf-8", "replace")
 
 
-def _plan(kind: Struct, phase: int) -> _Plan | None:
+def _plan(kind: StructType, phase: int) -> _Plan | None:
     """How to take a structure at a place relative to its alignment at once, None if its fields have no fixed places in whole bytes."""
     position, codes, orders = phase, "", set()
     names: list[str] = []
     texts: list[int] = []
-    stamps: list[tuple[int, Integer]] = []
+    stamps: list[tuple[int, IntegerType]] = []
     for name, each in kind.fields:
-        number = each.container if isinstance(each, Enumeration) else each.element if isinstance(each, Array) else each
-        if not isinstance(number, Integer) or number.size not in _CODES or number.align % 8 or isinstance(each, Enumeration):
+        number = each.container if isinstance(each, EnumerationType) else each.element if isinstance(each, ArrayType) else each
+        if (
+            not isinstance(number, IntegerType)
+            or number.size not in _CODES
+            or number.align % 8
+            or isinstance(each, EnumerationType)
+        ):
             return None
         padding = -position % number.align
-        if isinstance(each, Array):
+        if isinstance(each, ArrayType):
             if not number.is_text or not isinstance(each.length, int) or each.length > 1 << 16:
                 return None
             texts.append(len(names))

@@ -8,9 +8,8 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from pathlib import Path
 
-from amalthea_uros.trace.ctf.tokens import MetadataError
-from amalthea_uros.trace.ctf.tsdl import Block, parse
-from amalthea_uros.trace.ctf.types import Integer, Struct, Type, Variant
+from amalthea_uros.trace.ctf.tsdl import MetadataBlock, MetadataError, parse
+from amalthea_uros.trace.ctf.types import FieldType, IntegerType, StructType, VariantType
 
 #: Of packets of metadata: the magic number, and the header after it (section 7.1): uuid, checksum, content and packet size in bits,
 #: compression, encryption, checksum scheme, version.
@@ -24,7 +23,7 @@ _STAMPS = ("timestamp", "timestamp_begin", "timestamp_end")
 
 
 @dataclass(frozen=True, slots=True)
-class Clock:
+class TraceClock:
     """A clock.
 
     Attributes
@@ -51,8 +50,8 @@ class EventType:
     """A kind of event; None where there are no fields."""
 
     name: str
-    context: Struct | None
-    fields: Struct | None
+    context: StructType | None
+    fields: StructType | None
 
 
 @dataclass(slots=True)
@@ -64,9 +63,9 @@ class StreamType:
     events : by their ids
     """
 
-    packet_context: Struct | None = None
-    event_header: Struct | None = None
-    event_context: Struct | None = None
+    packet_context: StructType | None = None
+    event_header: StructType | None = None
+    event_context: StructType | None = None
     events: dict[int, EventType] = field(default_factory=dict)
 
 
@@ -74,9 +73,9 @@ class StreamType:
 class Metadata:
     """The metadata of a trace."""
 
-    packet_header: Struct | None
+    packet_header: StructType | None
     streams: Mapping[int, StreamType]
-    clocks: Mapping[str, Clock]
+    clocks: Mapping[str, TraceClock]
     environment: Mapping[str, int | str]
 
 
@@ -103,8 +102,8 @@ def described(source: str) -> Metadata:
     MetadataError : they cannot be understood.
     """
     blocks = parse(source)
-    trace = next((block for block in blocks if block.kind == "trace"), Block("trace"))
-    environment = next((block for block in blocks if block.kind == "env"), Block("env"))
+    trace = next((block for block in blocks if block.kind == "trace"), MetadataBlock("trace"))
+    environment = next((block for block in blocks if block.kind == "env"), MetadataBlock("env"))
     streams: dict[int, StreamType] = {}
     for block in blocks:
         if block.kind == "stream":
@@ -119,15 +118,15 @@ def described(source: str) -> Metadata:
     return Metadata(trace.struct("packet.header"), streams, _clocks(blocks), values)
 
 
-def _clocks(blocks: list[Block]) -> dict[str, Clock]:
-    found = {NO_CLOCK: Clock()}
+def _clocks(blocks: list[MetadataBlock]) -> dict[str, TraceClock]:
+    found = {NO_CLOCK: TraceClock()}
     for block in blocks:
         if block.kind == "clock":
             frequency = block.number("freq", 10**9)
             if frequency <= 0:
                 raise MetadataError("the frequency of a clock is not positive", 1)
             offset = block.number("offset_s", 0) * _SECOND + block.number("offset", 0) * _SECOND // frequency
-            found[block.text("name")] = Clock(frequency, offset)
+            found[block.text("name")] = TraceClock(frequency, offset)
     return found
 
 
@@ -152,18 +151,18 @@ def _unpacked(data: bytes, order: str) -> bytes:
     return b"".join(parts)
 
 
-def _stamped(kind: Struct | None) -> Struct | None:
+def _stamped(kind: StructType | None) -> StructType | None:
     """A header in which stamps that name no clock have the one of nanoseconds."""
     return None if kind is None else _with_clock(kind, "", 0)  # type: ignore[return-value]
 
 
-def _with_clock(kind: Type, name: str, depth: int) -> Type:
+def _with_clock(kind: FieldType, name: str, depth: int) -> FieldType:
     if depth > 4:
         return kind
-    if isinstance(kind, Integer) and name in _STAMPS and not kind.clock:
+    if isinstance(kind, IntegerType) and name in _STAMPS and not kind.clock:
         return replace(kind, clock=NO_CLOCK)
-    if isinstance(kind, Struct):
+    if isinstance(kind, StructType):
         return replace(kind, fields=tuple((each, _with_clock(inner, each, depth + 1)) for each, inner in kind.fields))
-    if isinstance(kind, Variant):
+    if isinstance(kind, VariantType):
         return replace(kind, options={each: _with_clock(inner, each, depth + 1) for each, inner in kind.options.items()})
     return kind

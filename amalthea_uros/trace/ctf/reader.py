@@ -9,45 +9,31 @@ from pathlib import Path
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.trace.ctf.folders import METADATA, stream_files, trace_folders
-from amalthea_uros.trace.ctf.interpreter import Interpreter
-from amalthea_uros.trace.ctf.linux import LinuxScheduler
+from amalthea_uros.trace.ctf.interpreters import Interpreter, LinuxScheduler, Zephyr
 from amalthea_uros.trace.ctf.metadata import Metadata, read_metadata
 from amalthea_uros.trace.ctf.ros2 import Ros2
-from amalthea_uros.trace.ctf.streams import CtfEvent, Stream
-from amalthea_uros.trace.ctf.tokens import MetadataError
-from amalthea_uros.trace.ctf.zephyr import Zephyr
-from amalthea_uros.trace.entity_index import EntityIndex
-from amalthea_uros.trace.event_rows import EventRows
-from amalthea_uros.trace.problems import Place, Problems
-from amalthea_uros.trace.row_tables import BLOCK, NumberedTable
-from amalthea_uros.trace.table import NO_NOTE, Entity, EventTable
-from amalthea_uros.trace.thread_states import ThreadStates
-from amalthea_uros.trace.unique_names import UniqueNames
+from amalthea_uros.trace.ctf.streams import CtfEvent, PacketStream
+from amalthea_uros.trace.ctf.tsdl import MetadataError
+from amalthea_uros.trace.problems import TracePlace, TraceProblems
+from amalthea_uros.trace.reading import BLOCK, EventRows, NumberedTable, TraceReader
+from amalthea_uros.trace.schedulers.thread_log import UniqueNames
+from amalthea_uros.trace.schedulers.thread_states import ThreadStates
+from amalthea_uros.trace.table import NO_NOTE
 
 
-class Reader:
-    """Gives the events of the traces in a folder; `amalthea_uros.trace.readers.TraceReader` tells how it is used."""
+class CtfReader(TraceReader):
+    """Gives the events of the traces in a folder."""
 
     def __init__(self, path: Path) -> None:
-        self._path = path
-        self._problems = Problems(path)
-        self._of_files: list[Problems] = []
-        self._index = EntityIndex()
+        super().__init__(path)
+        self._of_files: list[TraceProblems] = []
         self._rows = EventRows(self._index, self._problems)
         self._states = ThreadStates(self._rows, self._problems)
-
-    @property
-    def entities(self) -> Sequence[Entity]:
-        """The entities so far."""
-        return self._index.entities
 
     @property
     def findings(self) -> tuple[Finding, ...]:
         """The problems so far."""
         return tuple(finding for problems in (*self._of_files, self._problems) for finding in problems.findings)
-
-    def __iter__(self) -> Iterator[EventTable]:
-        return (table for table, _ in self.numbered())
 
     def numbered(self) -> Iterator[NumberedTable]:
         """The events, with the number of each in the order of the trace in the place of the line.
@@ -61,7 +47,9 @@ class Reader:
             raise ReadError(self.findings)
         interpreters = _interpreters(self._rows, self._states, self._problems, [metadata for _, metadata in traces])
         streams = [
-            Stream(path, metadata, self._problems_of(path)) for folder, metadata in traces for path in stream_files(folder)
+            PacketStream(path, metadata, self._problems_of(path))
+            for folder, metadata in traces
+            for path in stream_files(folder)
         ]
         for number, event in enumerate(merge(*streams, key=lambda each: each.time), 1):
             self._add(event, number, interpreters)
@@ -74,13 +62,13 @@ class Reader:
 
     def _add(self, event: CtfEvent, number: int, interpreters: dict[str, Interpreter]) -> None:
         if not event.name:
-            if self._rows.move_to(event.time, number, Place()):
+            if self._rows.move_to(event.time, number, TracePlace()):
                 self._states.lose(lost=NO_NOTE if event.lost is None else event.lost)
             return
         interpreter = interpreters.get(event.name)
         if interpreter is None:
             return
-        if self._rows.move_to(event.time, number, Place()):
+        if self._rows.move_to(event.time, number, TracePlace()):
             interpreter.add(event)
         else:
             self._states.lose()
@@ -93,18 +81,18 @@ class Reader:
             except MetadataError as error:
                 advice = "Use the metadata of the very build that was recorded."
                 self._problems_of(path).add(
-                    "TRC024", Severity.ERROR, f"the metadata are wrong: {error}", Place(error.line), advice
+                    "TRC024", Severity.ERROR, f"the metadata are wrong: {error}", TracePlace(error.line), advice
                 )
             except OSError as error:
                 self._problems_of(path).add("TRC001", Severity.ERROR, f"the file cannot be read: {error.strerror or error}")
 
-    def _problems_of(self, path: Path) -> Problems:
-        self._of_files.append(Problems(path))
+    def _problems_of(self, path: Path) -> TraceProblems:
+        self._of_files.append(TraceProblems(path))
         return self._of_files[-1]
 
 
 def _interpreters(
-    rows: EventRows, states: ThreadStates, problems: Problems, traces: Sequence[Metadata]
+    rows: EventRows, states: ThreadStates, problems: TraceProblems, traces: Sequence[Metadata]
 ) -> dict[str, Interpreter]:
     """What understands the events of some traces, by the names of the events."""
     names = {event.name for metadata in traces for stream in metadata.streams.values() for event in stream.events.values()}

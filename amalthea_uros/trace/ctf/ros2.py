@@ -10,13 +10,13 @@ from dataclasses import dataclass, field
 from typing import ClassVar, TypeAlias
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.trace.ctf.interpreter import Handler, Interpreter
+from amalthea_uros.trace.ctf.interpreters import Handler, Interpreter
 from amalthea_uros.trace.ctf.streams import CtfEvent
-from amalthea_uros.trace.event_rows import EventRows
-from amalthea_uros.trace.problems import Place, Problems
+from amalthea_uros.trace.problems import TracePlace, TraceProblems
+from amalthea_uros.trace.reading import EventRows
+from amalthea_uros.trace.schedulers.thread_log import UniqueNames
+from amalthea_uros.trace.schedulers.thread_states import ThreadStates
 from amalthea_uros.trace.table import EntityKind, EventKind
-from amalthea_uros.trace.thread_states import ThreadStates
-from amalthea_uros.trace.unique_names import UniqueNames
 
 #: So many publications of a topic wait for their callbacks at most.
 _MOST_PENDING = 1 << 16
@@ -46,7 +46,7 @@ class _Subscription:
 class Ros2(Interpreter):
     """Takes the events of ROS 2; what was created before the recording has no name but its address."""
 
-    def __init__(self, rows: EventRows, states: ThreadStates, problems: Problems, names: UniqueNames) -> None:
+    def __init__(self, rows: EventRows, states: ThreadStates, problems: TraceProblems, names: UniqueNames) -> None:
         super().__init__(rows, states, problems, names)
         self._nodes: dict[_Address, str] = {}
         self._topics: dict[_Address, str] = {}
@@ -175,7 +175,7 @@ class Ros2(Interpreter):
             self._inform("messages of publishers outside the trace are taken; their latencies are not known")
 
     def _inform(self, message: str) -> None:
-        self._problems.add("TRC025", Severity.INFO, message, Place())
+        self._problems.add("TRC025", Severity.INFO, message, TracePlace())
 
     def _node(self, event: CtfEvent) -> str:
         return self._nodes.get(_address(event, "node_handle"), "")

@@ -9,9 +9,9 @@ from typing import NamedTuple
 
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.trace.ctf.decoding import Decoder, DecodingError, Fields, PacketEndError
-from amalthea_uros.trace.ctf.metadata import Clock, EventType, Metadata, StreamType
-from amalthea_uros.trace.ctf.types import Integer, Struct
-from amalthea_uros.trace.problems import Problems
+from amalthea_uros.trace.ctf.metadata import EventType, Metadata, StreamType, TraceClock
+from amalthea_uros.trace.ctf.types import IntegerType, StructType
+from amalthea_uros.trace.problems import TraceProblems
 
 _MAGIC = 0xC1FC1FC1
 #: A pause of a short clock at its overflow is doubtful if it is so many times the longest one before, and long at all.
@@ -48,14 +48,14 @@ class _Packet(NamedTuple):
     is_whole: bool
 
 
-class Stream:
+class PacketStream:
     """Gives the events of a file; what is wrong with it becomes known to `problems`."""
 
-    def __init__(self, path: Path, metadata: Metadata, problems: Problems) -> None:
+    def __init__(self, path: Path, metadata: Metadata, problems: TraceProblems) -> None:
         self._path, self._metadata, self._problems = path, metadata, problems
         self._stamp = 0
         self._time = 0
-        self._clock = Clock()
+        self._clock = TraceClock()
         self._longest = 0
         self._has_times_in_packets = False
         self._latest: int | None = None
@@ -127,7 +127,7 @@ class Stream:
         self._latest = end if isinstance(begin, int) and isinstance(end, int) and end >= begin else None
         if decoder.stamps:
             stamp, kind = decoder.stamps[0]
-            self._clock = self._metadata.clocks.get(kind.clock, Clock())
+            self._clock = self._metadata.clocks.get(kind.clock, TraceClock())
             self._set(self._whole(stamp, kind))
         core = context.get("cpu_id", self._core)
         if self._core not in (None, core):
@@ -182,7 +182,7 @@ class Stream:
                 yield from self._loss(None)
             yield CtfEvent(self._time, event.name or f"event {number}", self._core, fields, context)
 
-    def _event_type(self, decoder: Decoder, kind: StreamType, header_type: Struct | None) -> tuple[EventType, int]:
+    def _event_type(self, decoder: Decoder, kind: StreamType, header_type: StructType | None) -> tuple[EventType, int]:
         decoder.stamps.clear()
         header = decoder.structure(header_type)
         extended = header.get("v")
@@ -194,7 +194,7 @@ class Stream:
             raise DecodingError("an event has an id that the metadata do not know, so its length is not known")
         return event, number
 
-    def _advance(self, stamps: list[tuple[int, Integer]]) -> bool:
+    def _advance(self, stamps: list[tuple[int, IntegerType]]) -> bool:
         """Take the time of an event over; whether it is doubtful that nothing is missing before it."""
         if not stamps:
             raise DecodingError("events have no times")
@@ -206,7 +206,7 @@ class Stream:
         self._set(whole)
         return not self._has_times_in_packets and kind.size < _WORD and self._is_doubtful(before, whole, kind)
 
-    def _whole(self, stamp: int, kind: Integer) -> int:
+    def _whole(self, stamp: int, kind: IntegerType) -> int:
         """A stamp with the bits that a short clock does not show: it has overflown once at most since the last one."""
         if kind.size == _WORD:
             return stamp
@@ -218,7 +218,7 @@ class Stream:
         self._stamp = stamp
         self._time = self._clock.time(stamp)
 
-    def _is_doubtful(self, before: int, after: int, kind: Integer) -> bool:
+    def _is_doubtful(self, before: int, after: int, kind: IntegerType) -> bool:
         """Whether a clock has overflown and the pause is much longer than all before."""
         pause = self._clock.time(after) - self._clock.time(before)
         if before >> kind.size != after >> kind.size and pause > max(_DOUBTFUL * self._longest, _SHORT_PAUSE):
@@ -238,7 +238,7 @@ class Stream:
         """Where the next magic number is, or the end of the file."""
         header = self._metadata.packet_header
         magic = dict(header.fields).get("magic") if header is not None else None
-        if not isinstance(magic, Integer):
+        if not isinstance(magic, IntegerType):
             return len(data) * 8
         octets = _MAGIC.to_bytes(4, "big" if magic.is_big_endian else "little")
         found = data.find(octets, place // 8 + 1)

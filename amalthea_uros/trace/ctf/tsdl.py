@@ -2,12 +2,76 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
-from amalthea_uros.trace.ctf.tokens import MetadataError, Token, tokens
-from amalthea_uros.trace.ctf.types import Array, Enumeration, Float, Integer, String, Struct, Type, Variant
+from amalthea_uros.trace.ctf.types import (
+    ArrayType,
+    EnumerationType,
+    FieldType,
+    FloatType,
+    IntegerType,
+    StringType,
+    StructType,
+    VariantType,
+)
+
+_TOKEN = re.compile(
+    r"""(?P<skip>\s+|//[^\n]*|/\*.*?\*/)
+    |(?P<text>"(?:[^"\\\n]|\\.)*")
+    |(?P<char>'(?:[^'\\\n]|\\.)')
+    |(?P<number>(?:0[xX][0-9a-fA-F]+|[0-9]+)[uUlL]*)
+    |(?P<word>[A-Za-z_][A-Za-z0-9_]*)
+    |(?P<sign>:=|\.\.\.|->|[{}\[\]()<>;:,.=*+-])""",
+    re.VERBOSE | re.DOTALL,
+)
+
+
+class MetadataError(Exception):
+    """The metadata cannot be understood.
+
+    Attributes
+    ----------
+    line : counted from 1
+    """
+
+    def __init__(self, message: str, line: int) -> None:
+        super().__init__(message)
+        self.line = line
+
+
+class Token(NamedTuple):
+    """A word, number, text or sign; `kind` is the name of a group above, or "end"."""
+
+    kind: str
+    text: str
+    line: int
+
+
+def tokens(source: str, most: int) -> list[Token]:
+    """The tokens of a text, with one for the end.
+
+    Raises
+    ------
+    MetadataError : there is something that is none, or there are too many.
+    """
+    found: list[Token] = []
+    place, line = 0, 1
+    while place < len(source):
+        match = _TOKEN.match(source, place)
+        if match is None or len(found) >= most:
+            raise MetadataError("a character that TSDL does not know" if match is None else f"more than {most:,} words", line)
+        kind = match.lastgroup or "skip"
+        if kind != "skip":
+            found.append(Token(kind, match[0], line))
+        line += match[0].count("\n")
+        place = match.end()
+    return [*found, Token("end", "", line)]
+
+
+# Parses metadata in TSDL (CTF 1.8, section 7 and appendix C): types and the blocks trace, env, clock, stream, event.
 
 #: The depth of types and blocks in each other.
 _DEPTH = 32
@@ -18,12 +82,12 @@ _TEXT = ("UTF8", "ASCII", "utf8", "ascii", "UTF_8", "utf_8")
 _BLOCKS = ("trace", "env", "clock", "stream", "event", "callsite")
 _C_WORDS = ("const", "signed", "unsigned", "char", "short", "int", "long", "float", "double", "void", "_Bool", "_Complex")
 
-Value: TypeAlias = int | str | Type
-_Scope: TypeAlias = dict[str, Type]
+Value: TypeAlias = int | str | FieldType
+_Scope: TypeAlias = dict[str, FieldType]
 
 
 @dataclass(slots=True)
-class Block:
+class MetadataBlock:
     """A block such as `event {...}`: numbers, texts and names by dotted keys, and types."""
 
     kind: str
@@ -39,23 +103,23 @@ class Block:
         value = self.values.get(key, default)
         return value if isinstance(value, str) else default
 
-    def struct(self, key: str) -> Struct | None:
+    def struct(self, key: str) -> StructType | None:
         """A type, None if there is none."""
         value = self.values.get(key)
-        return value if isinstance(value, Struct) else None
+        return value if isinstance(value, StructType) else None
 
 
-def parse(source: str) -> list[Block]:
+def parse(source: str) -> list[MetadataBlock]:
     """The blocks of metadata, in their order.
 
     Raises
     ------
     MetadataError : they cannot be understood.
     """
-    return _Parser(tokens(source, _MOST_TOKENS)).blocks()
+    return _TsdlParser(tokens(source, _MOST_TOKENS)).blocks()
 
 
-class _Parser:
+class _TsdlParser:
     def __init__(self, found: list[Token]) -> None:
         self._tokens = found
         self._place = 0
@@ -63,7 +127,7 @@ class _Parser:
         self._scopes: list[_Scope] = [{}]
         self._is_big_endian = _native_order(found)
 
-    def blocks(self) -> list[Block]:
+    def blocks(self) -> list[MetadataBlock]:
         """All blocks."""
         found = []
         while self._next.kind != "end":
@@ -108,8 +172,8 @@ class _Parser:
         if self._depth > _DEPTH:
             raise self._error(f"types are nested more than {_DEPTH} deep")
 
-    def _block(self) -> Block:
-        block = Block(self._word())
+    def _block(self) -> MetadataBlock:
+        block = MetadataBlock(self._word())
         self._take("{")
         self._scopes.append({})
         while not self._skip("}"):
@@ -198,7 +262,7 @@ class _Parser:
             words.append(self._take().text)
         return " ".join(words)
 
-    def _type(self) -> Type:
+    def _type(self) -> FieldType:
         self._enter()
         word = self._next.text
         try:
@@ -210,14 +274,14 @@ class _Parser:
                 self._take()
                 if self._next.text == "{":
                     self._properties()
-                return String()
+                return StringType()
             if word in ("struct", "variant", "enum"):
                 return self._named(word)
             return self._alias()
         finally:
             self._depth -= 1
 
-    def _alias(self) -> Type:
+    def _alias(self) -> FieldType:
         """A type by its name: words of C belong together, other names are one word."""
         words = [self._word()]
         if words[0] in _C_WORDS:
@@ -227,7 +291,7 @@ class _Parser:
             words.append(self._take().text)
         return self._found(" ".join(words))
 
-    def _found(self, name: str) -> Type:
+    def _found(self, name: str) -> FieldType:
         for scope in reversed(self._scopes):
             if name in scope:
                 return scope[name]
@@ -243,14 +307,14 @@ class _Parser:
             self._take(";")
         return found
 
-    def _integer(self) -> Integer:
+    def _integer(self) -> IntegerType:
         self._take("integer")
         given = self._properties()
         size = given.get("size", 0)
         if not isinstance(size, int) or size not in _SIZES:
             raise self._error("an integer has 1 to 64 bits")
         clock = str(given.get("map", ""))
-        return Integer(
+        return IntegerType(
             size,
             self._alignment(given.get("align", 8 if size % 8 == 0 else 1)),
             str(given.get("signed", "false")) in ("true", "TRUE", "1"),
@@ -259,13 +323,13 @@ class _Parser:
             clock.removeprefix("clock.").removesuffix(".value") if clock else "",
         )
 
-    def _float(self) -> Float:
+    def _float(self) -> FloatType:
         self._take("floating_point")
         given = self._properties()
         size = {(8, 24): 32, (11, 53): 64}.get((given.get("exp_dig"), given.get("mant_dig")))  # type: ignore[arg-type]
         if size is None:
             raise self._error("numbers with a fraction have 32 or 64 bits")
-        return Float(size, self._alignment(given.get("align", 8)), self._order(given))
+        return FloatType(size, self._alignment(given.get("align", 8)), self._order(given))
 
     def _order(self, given: Mapping[str, int | str]) -> bool:
         order = given.get("byte_order", "native")
@@ -276,7 +340,7 @@ class _Parser:
             raise self._error("an alignment is a power of two")
         return value
 
-    def _named(self, word: str) -> Type:
+    def _named(self, word: str) -> FieldType:
         """A struct, variant or enumeration, with or without a name."""
         self._take(word)
         name = self._word() if self._next.kind == "word" and self._next.text != "align" else ""
@@ -284,24 +348,24 @@ class _Parser:
         if word == "variant":
             return self._variant(name)
         if word == "enum":
-            kind: Type = self._enumeration() if self._next.text in (":", "{") else self._found(key)
+            kind: FieldType = self._enumeration() if self._next.text in (":", "{") else self._found(key)
         else:
             kind = self._struct() if self._next.text == "{" else self._found(key)
         if name:
             self._scopes[-1][key] = kind
         return kind
 
-    def _struct(self) -> Struct:
+    def _struct(self) -> StructType:
         fields = self._fields()
         align = 1
         if self._skip("align"):
             self._take("(")
             align = self._alignment(self._number())
             self._take(")")
-        return Struct(fields, max([align, *(kind.align for _, kind in fields)]))
+        return StructType(fields, max([align, *(kind.align for _, kind in fields)]))
 
-    def _fields(self) -> tuple[tuple[str, Type], ...]:
-        fields: list[tuple[str, Type]] = []
+    def _fields(self) -> tuple[tuple[str, FieldType], ...]:
+        fields: list[tuple[str, FieldType]] = []
         self._take("{")
         self._scopes.append({})
         while not self._skip("}"):
@@ -318,12 +382,12 @@ class _Parser:
         self._scopes.pop()
         return tuple(fields)
 
-    def _field(self, kind: Type) -> tuple[str, Type]:
+    def _field(self, kind: FieldType) -> tuple[str, FieldType]:
         """A field; writers put an underscore before names, so that none is a keyword."""
         name, kind = self._declarator(kind)
         return name.removeprefix("_"), kind
 
-    def _declarator(self, kind: Type) -> tuple[str, Type]:
+    def _declarator(self, kind: FieldType) -> tuple[str, FieldType]:
         name = self._word()
         lengths: list[int | str] = []
         while self._skip("["):
@@ -332,37 +396,37 @@ class _Parser:
             if len(lengths) > _DEPTH:
                 raise self._error("an array has too many dimensions")
         for length in reversed(lengths):
-            kind = Array(kind, length)
+            kind = ArrayType(kind, length)
         return name, kind
 
-    def _variant(self, name: str) -> Variant:
+    def _variant(self, name: str) -> VariantType:
         """A variant; its tag may come where it is used."""
         tag = ""
         if self._skip("<"):
             tag = self._key()
             self._take(">")
         if self._next.text == "{":
-            kind = Variant(tag, dict(self._fields()))
+            kind = VariantType(tag, dict(self._fields()))
             if name:
                 self._scopes[-1][f"variant {name}"] = kind
             return kind
         known = self._found(f"variant {name}")
-        if not isinstance(known, Variant):
+        if not isinstance(known, VariantType):
             raise self._error(f"{name!r} is not a variant")
-        return Variant(tag or known.tag, known.options)
+        return VariantType(tag or known.tag, known.options)
 
-    def _enumeration(self) -> Enumeration:
-        container: Type = Integer(32, 8, True, self._is_big_endian)
+    def _enumeration(self) -> EnumerationType:
+        container: FieldType = IntegerType(32, 8, True, self._is_big_endian)
         if self._skip(":"):
             container = self._type()
         elif "int" in self._scopes[0]:
             container = self._scopes[0]["int"]
-        if not isinstance(container, Integer):
+        if not isinstance(container, IntegerType):
             raise self._error("the type of an enumeration is not an integer")
         self._take("{")
         ranges = tuple(self._ranges())
         self._take("}")
-        return Enumeration(container, ranges)
+        return EnumerationType(container, ranges)
 
     def _ranges(self) -> Iterator[tuple[int, int, str]]:
         following = 0

@@ -8,7 +8,7 @@ from typing import TypeAlias
 
 
 @dataclass(frozen=True, slots=True)
-class Integer:
+class IntegerType:
     """A whole number.
 
     Attributes
@@ -27,7 +27,7 @@ class Integer:
 
 
 @dataclass(frozen=True, slots=True)
-class Float:
+class FloatType:
     """A number of 32 or 64 bits (IEEE 754)."""
 
     size: int
@@ -36,10 +36,10 @@ class Float:
 
 
 @dataclass(frozen=True, slots=True)
-class Enumeration:
+class EnumerationType:
     """A number with names for ranges of values: (first, last, name)."""
 
-    container: Integer
+    container: IntegerType
     ranges: tuple[tuple[int, int, str], ...]
 
     @property
@@ -53,17 +53,17 @@ class Enumeration:
 
 
 @dataclass(frozen=True, slots=True)
-class String:
+class StringType:
     """Text up to a zero byte."""
 
     align: int = 8
 
 
 @dataclass(frozen=True, slots=True)
-class Array:
+class ArrayType:
     """Several values; the length is a number or the name of the field that has it."""
 
-    element: Type
+    element: FieldType
     length: int | str
 
     @property
@@ -73,20 +73,20 @@ class Array:
 
 
 @dataclass(frozen=True, slots=True)
-class Struct:
+class StructType:
     """Named fields, one after the other."""
 
-    fields: tuple[tuple[str, Type], ...]
+    fields: tuple[tuple[str, FieldType], ...]
     align: int = 1
 
 
 @dataclass(frozen=True, slots=True)
-class Variant:
+class VariantType:
     """One of several types, which the label of a field that is an enumeration selects."""
 
     tag: str
-    options: Mapping[str, Type]
+    options: Mapping[str, FieldType]
     align: int = 1
 
 
-Type: TypeAlias = Integer | Float | Enumeration | String | Array | Struct | Variant
+FieldType: TypeAlias = IntegerType | FloatType | EnumerationType | StringType | ArrayType | StructType | VariantType

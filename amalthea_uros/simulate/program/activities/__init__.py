@@ -6,32 +6,32 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf import activities as perf
 from amalthea_uros.simulate.program.activities.calls import call, server_call
 from amalthea_uros.simulate.program.activities.control_flow import choose, group, loop, switch, terminate
-from amalthea_uros.simulate.program.activities.data import (
+from amalthea_uros.simulate.program.activities.effects import (
+    execute,
+    execution_need,
+    incomplete,
     label_access,
     mode_access,
-    receive,
-    send,
-    sender_receiver_access,
-)
-from amalthea_uros.simulate.program.activities.demands import execute, execution_need, incomplete
-from amalthea_uros.simulate.program.activities.synchronisation import (
     os_events,
     raise_event,
+    receive,
     schedule_point,
     semaphore,
+    send,
+    sender_receiver_access,
     trigger,
 )
-from amalthea_uros.simulate.program.obstacles import NotSimulatedError
 
 if TYPE_CHECKING:
     from amalthea_uros.simulate.program.body import Body
 
 
 def _migrate(body: Body, activity: perf.Migrate) -> None:
-    raise NotSimulatedError("it migrates to another scheduler, which is not simulated")
+    raise UnknownError("it migrates to another scheduler, which is not simulated")
 
 
 _COMPILERS: Mapping[type[perf.Activity], Callable[[Body, Any], None]] = MappingProxyType(
@@ -68,7 +68,7 @@ def compile_activity(body: Body, activity: perf.Activity) -> None:
 
     Raises
     ------
-    NotSimulatedError : it cannot be simulated.
+    UnknownError : it cannot be simulated.
     UnknownDemandError : a demand in it is not known.
     """
     _COMPILERS[type(activity)](body, activity)

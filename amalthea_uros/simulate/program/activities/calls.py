@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from amalthea_uros.perf.activities import Call, ServerCall, ServerCallKind, Waiting
+from amalthea_uros.errors import UnknownError
+from amalthea_uros.perf.activities import Call, SenderReceiverAccess, ServerCall, ServerCallKind, Waiting
 from amalthea_uros.perf.distributions import Statistics
 from amalthea_uros.perf.events import RunnableChange, RunnableEvent
 from amalthea_uros.perf.software import Runnable
-from amalthea_uros.simulate.layout import EXECUTION_NUMBER, EXECUTION_SIZE, LOOP_SIZE
-from amalthea_uros.simulate.operations import (
+from amalthea_uros.simulate.kernel.layout import EXECUTION_NUMBER, EXECUTION_SIZE, LOOP_SIZE
+from amalthea_uros.simulate.kernel.operations import (
     ACTIVE,
     AGAIN,
     ASK,
@@ -23,11 +24,10 @@ from amalthea_uros.simulate.operations import (
     SERVE,
     SERVED,
 )
-from amalthea_uros.simulate.program.activities.obstacles import check_executing
-from amalthea_uros.simulate.program.code import Label
-from amalthea_uros.simulate.program.obstacles import NotSimulatedError
+from amalthea_uros.simulate.program.image import JumpLabel
 from amalthea_uros.timing.jobs.counts import count_of
 from amalthea_uros.timing.jobs.executed import MAX_CALL_DEPTH
+from amalthea_uros.timing.jobs.server_calls import obstacle
 
 if TYPE_CHECKING:
     from amalthea_uros.simulate.program.body import Body
@@ -51,20 +51,20 @@ def call(body: Body, activity: Call) -> None:
 def _callable(body: Body, activity: Call) -> Runnable:
     runnable = body.context.system.runnables.get(activity.runnable)
     if runnable is None:
-        raise NotSimulatedError(f"the runnable {activity.runnable!r} is not defined in the model")
+        raise UnknownError(f"the runnable {activity.runnable!r} is not defined in the model")
     if runnable.name in body.above:
-        raise NotSimulatedError(f"the runnable {runnable.name!r} calls itself")
+        raise UnknownError(f"the runnable {runnable.name!r} calls itself")
     if len(body.above) > MAX_CALL_DEPTH:
-        raise NotSimulatedError(f"calls are nested deeper than {MAX_CALL_DEPTH} levels")
+        raise UnknownError(f"calls are nested deeper than {MAX_CALL_DEPTH} levels")
     return runnable
 
 
-def _repeated(body: Body, activity: Call) -> tuple[Label | None, Label | None]:
+def _repeated(body: Body, activity: Call) -> tuple[JumpLabel | None, JumpLabel | None]:
     """The begin and the end of a loop around what a call stands for, if it stands for several."""
     if activity.times is None:
         return None, None
     least, mean, most = count_of(activity.times)
-    record, done = body.resources.image.record(LOOP_SIZE), Label()
+    record, done = body.resources.image.record(LOOP_SIZE), JumpLabel()
     passes = Statistics(lower=least, average=float(mean), upper=most)
     body.code.add(REPEAT, record, body.resources.count(passes, f"{body.place()} passes"))
     again = body.code.here()
@@ -112,7 +112,7 @@ def server_call(body: Body, activity: ServerCall) -> None:
     if not waits:
         check_executing(body, activity)
     elif activity.runnable not in body.resources.executing:
-        raise NotSimulatedError(f"it waits for the server runnable {activity.runnable!r}, which no process executes")
+        raise UnknownError(f"it waits for the server runnable {activity.runnable!r}, which no process executes")
     # Where a model does not state it, a client waits actively, as for INCHRON's importer.
     flags = 0 if activity.waiting is Waiting.PASSIVE else ACTIVE
     service = body.resources.services.get(activity.runnable, 0)
@@ -120,3 +120,18 @@ def server_call(body: Body, activity: ServerCall) -> None:
         body.code.add(ASK, service)
     if waits:
         body.code.add(AWAIT, service, flags)
+
+
+# What is refused.
+
+
+def check_executing(body: Body, activity: ServerCall | SenderReceiverAccess) -> None:
+    """Refuse runnables that are to be executed, but that no process executes.
+
+    Raises
+    ------
+    UnknownError : there is one.
+    """
+    reason = obstacle(activity, body.resources.executing)
+    if reason:
+        raise UnknownError(reason)

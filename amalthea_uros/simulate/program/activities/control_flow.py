@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import Activity, Group, Loop, ProbabilitySwitch, Switch, Terminate
-from amalthea_uros.simulate.layout import GROUP_SIZE, ORDERED_PARTS, PARTS, PARTS_TOTAL
-from amalthea_uros.simulate.operations import CHOOSE, JUMP, MASK, NEXT, SHUFFLE, UNMASK
-from amalthea_uros.simulate.options import Mode
-from amalthea_uros.simulate.program.code import Label, Table
-from amalthea_uros.simulate.program.obstacles import NotSimulatedError
+from amalthea_uros.simulate.kernel.layout import GROUP_SIZE, ORDERED_PARTS, PARTS, PARTS_TOTAL
+from amalthea_uros.simulate.kernel.operations import CHOOSE, JUMP, MASK, NEXT, SHUFFLE, UNMASK
+from amalthea_uros.simulate.options import SimulationMode
+from amalthea_uros.simulate.program.image import JumpLabel, JumpTable
 
 if TYPE_CHECKING:
     from amalthea_uros.simulate.program.body import Body
@@ -21,7 +21,7 @@ def group(body: Body, activity: Group) -> None:
     if not activity.interruptible:
         body.code.add(MASK)
         body.masks += 1
-    if activity.ordered or len(activity.activities) < 2 or body.resources.options.mode is not Mode.SAMPLED:
+    if activity.ordered or len(activity.activities) < 2 or body.resources.options.mode is not SimulationMode.SAMPLED:
         body.activities(activity.activities)
     else:
         _in_any_order(body, activity.activities)
@@ -31,7 +31,7 @@ def group(body: Body, activity: Group) -> None:
 
 
 def _in_any_order(body: Body, activities: Sequence[Activity]) -> None:
-    image, total, done = body.resources.image, len(activities), Label()
+    image, total, done = body.resources.image, len(activities), JumpLabel()
     ordered, _ = image.items([0] * total)
     parts, _ = image.items([0] * total)
     record = image.record(GROUP_SIZE, {ORDERED_PARTS: ordered, PARTS: parts, PARTS_TOTAL: total})
@@ -43,7 +43,7 @@ def _in_any_order(body: Body, activities: Sequence[Activity]) -> None:
         labels.append(body.code.here())
         body.activities([activity])
         body.code.add(JUMP, following)
-    body.code.tables.append(Table(labels, ordered))
+    body.code.tables.append(JumpTable(labels, ordered))
     body.code.mark(done)
 
 
@@ -52,7 +52,7 @@ def choose(body: Body, activity: ProbabilitySwitch) -> None:
     if not activity.branches:
         return
     table, _ = body.resources.image.items([0] * len(activity.branches))
-    labels, done, jump = [], Label(), Label()
+    labels, done, jump = [], JumpLabel(), JumpLabel()
     only = _extreme_branch(body, activity)
     if only is not None:
         body.code.add(JUMP, jump)
@@ -65,30 +65,30 @@ def choose(body: Body, activity: ProbabilitySwitch) -> None:
             body.code.mark(jump)
         body.activities(branch.activities)
         body.code.add(JUMP, done)
-    body.code.tables.append(Table(labels, table))
+    body.code.tables.append(JumpTable(labels, table))
     body.code.mark(done)
 
 
 def _extreme_branch(body: Body, switch: ProbabilitySwitch) -> int | None:
     """The branch with the longest demand in the worst case, or with the shortest one in the best; else None."""
     mode, process = body.resources.options.mode, body.process
-    if mode not in (Mode.WORST, Mode.BEST) or process is None:
+    if mode not in (SimulationMode.WORST, SimulationMode.BEST) or process is None:
         return None
     weights = [branch.weight for branch in switch.branches]
     possible = [index for index, weight in enumerate(weights) if weight or not any(weights)]
     model = body.context.demand_model
     demands = {index: model.of_activities(process, switch.branches[index].activities, body.core) for index in possible}
-    if mode is Mode.WORST:
+    if mode is SimulationMode.WORST:
         return max(possible, key=lambda index: demands[index].worst)
     return min(possible, key=lambda index: demands[index].best)
 
 
 def switch(body: Body, activity: Switch) -> None:
     """The first case whose condition is true, or the default."""
-    done = Label()
+    done = JumpLabel()
     for case in activity.cases:
         if case.condition is None:
-            raise NotSimulatedError("a branch of a switch has no condition")
+            raise UnknownError("a branch of a switch has no condition")
         following = body.tested(case.condition)
         body.activities(case.activities)
         body.code.add(JUMP, done)
@@ -100,7 +100,7 @@ def switch(body: Body, activity: Switch) -> None:
 def loop(body: Body, activity: Loop) -> None:
     """Activities as long as a condition is true."""
     if activity.condition is None:
-        raise NotSimulatedError("a loop has no condition")
+        raise UnknownError("a loop has no condition")
     start = body.code.here()
     done = body.tested(activity.condition)
     body.activities(activity.activities)

@@ -1,0 +1,269 @@
+"""Drives the kernel: gives it occurrences and random values, and takes rows and events away."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass, field
+from time import perf_counter
+from typing import TYPE_CHECKING, TypeAlias, cast
+
+import numpy as np
+
+from amalthea_uros.simulate.kernel import machine_code
+from amalthea_uros.simulate.kernel.layout import (
+    ARRIVAL,
+    ARRIVAL_SIZE,
+    ARRIVALS_END,
+    CAPTURES,
+    CAPTURES_END,
+    CAUSE,
+    EVENT_SIZE,
+    EVENTS,
+    EVENTS_END,
+    FIRST_PLACE,
+    IS_TRACED,
+    JOB_SIZE,
+    JOBS,
+    JOBS_END,
+    OBSERVATION_SIZE,
+    OBSERVATIONS,
+    OBSERVATIONS_END,
+    PENDING,
+    PLACES,
+    QUEUE,
+    QUEUE_CAPTURES,
+    STREAM_AT,
+    STREAM_END,
+    STREAM_NUMBER,
+    UNTIL,
+    Memory,
+)
+from amalthea_uros.simulate.kernel.loop import play
+from amalthea_uros.simulate.kernel.operations import ENDLESS, QUEUE_FULL, ROWS_FULL, STREAM_EMPTY, WINDOW
+from amalthea_uros.simulate.program.build import KernelProgram
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Numbers = NDArray[np.int64]
+
+#: Takes rows.
+RowConsumer: TypeAlias = "Callable[[Numbers], None]"
+
+#: Rows that are kept before they are taken away; machine code makes many of them in the time in which they are taken away.
+_ROWS, _ROWS_OF_MACHINE_CODE = 4096, 65_536
+#: An operation can record some events at once, an END several observations: so much place is left.
+_MARGIN = 4096
+#: Values of all streams together, and of one stream.
+_VALUES, _LEAST_VALUES, _MOST_VALUES = 2**20, 32, 4096
+#: Occurrences that are prepared at a time, about.
+_OCCURRENCES = 8192
+
+
+class EndlessJobError(Exception):
+    """A job does not end, and takes no time; the argument is the record of its process."""
+
+
+@dataclass(slots=True)
+class KernelDriver:
+    """Plays a program.
+
+    Attributes
+    ----------
+    until : end of the run, in time units
+    traced : the part of the run of which events are recorded
+    is_compiled : whether the kernel is machine code by now
+    """
+
+    program: KernelProgram
+    until: int
+    jobs: RowConsumer
+    observations: RowConsumer
+    events: RowConsumer
+    traced: tuple[int, int] = (0, 0)
+    memory: Memory = field(init=False)
+    is_compiled: bool = field(init=False, default=False)
+    _thread: ThreadPoolExecutor | None = None
+    _handed: deque[Future[None]] = field(default_factory=deque)
+    _regions: dict[int, int] = field(default_factory=dict)
+    _values: int = 0
+    _pools: dict[int, int] = field(default_factory=dict)
+    _arrivals: int = 0
+    _places_for_arrivals: int = 2 * _OCCURRENCES
+
+    def __post_init__(self) -> None:
+        self.memory = words = list(self.program.memory)
+        self._place_rows(_ROWS)
+        streams = len(self.program.streams)
+        self._values = min(max(_VALUES // max(1, streams), _LEAST_VALUES), _MOST_VALUES)
+        for record in self.program.stream_records:
+            self._pools[record] = words[record + STREAM_AT] = words[record + STREAM_END] = len(words)
+            words += [0] * self._values
+        self._arrivals = len(words)
+        words += [0] * (self._places_for_arrivals * ARRIVAL_SIZE)
+
+    def _place_rows(self, count: int) -> None:
+        """Have places for a number of rows of each kind."""
+        for first, end, size in _ROW_KINDS:
+            # Without a trace there are no events; one place, so that the kernel does not find that there is none left.
+            places = size * count if first != EVENTS or self.traced[1] > 0 else 1
+            self._regions[first] = self._append(places + size * _MARGIN)
+            self.memory[first] = self._regions[first]
+            self.memory[end] = self._regions[first] + places
+
+    def run(self) -> None:
+        """Play to the end.
+
+        Raises
+        ------
+        EndlessJobError : a job goes on forever without taking time.
+        """
+        began = perf_counter()
+        try:
+            self._play_to_the_end(began)
+        finally:
+            self._await_taker()
+            if not self.is_compiled:
+                effort = machine_code.effort()
+                effort.spent += perf_counter() - began
+                effort.report(is_used=False)
+
+    def _play_to_the_end(self, began: float) -> None:
+        time, window = 0, max(1, self.until // 1024)
+        self._consider_machine_code(0, 0)
+        edges = sorted({edge for edge in (*self.traced, self.until) if 0 < edge <= self.until})
+        for edge in edges:
+            while time < edge:
+                self.memory[IS_TRACED] = int(self.traced[0] <= time < self.traced[1])
+                time = min(edge, time + window)
+                count = self._prepare(time)
+                self._play_window(time)
+                if not self.is_compiled:
+                    self._consider_machine_code(perf_counter() - began, (self.until - time) / time)
+                if 2 * count < _OCCURRENCES:
+                    window *= 2
+                elif count > 2 * _OCCURRENCES:
+                    window = max(1, window // 2)
+        self._take_rows()
+
+    def _play_window(self, until: int) -> None:
+        kernel = machine_code.compiled() if self.is_compiled else play
+        self.memory[UNTIL] = until
+        while (code := kernel(self.memory)) != WINDOW:
+            if code == STREAM_EMPTY:
+                self._refill(int(self.memory[CAUSE]))
+            elif code == ROWS_FULL:
+                self._take_rows()
+            elif code == QUEUE_FULL:
+                self._grow_queues()
+            elif code == ENDLESS:
+                # What was observed up to here counts.
+                self._take_rows()
+                raise EndlessJobError(int(self.memory[CAUSE]))
+
+    def _consider_machine_code(self, seconds: float, times_left: float) -> None:
+        """Go on with machine code, which gives the same results, if what is left takes long enough.
+
+        Parameters
+        ----------
+        seconds, times_left : what the run has taken so far, and how many times as much is left
+        """
+        if machine_code.is_worth_it(seconds, seconds * times_left):
+            machine_code.effort().report(is_used=True, left=seconds * times_left)
+            self._take_rows()
+            self.memory = cast(Memory, np.array(self.memory, np.int64))
+            self.is_compiled = True
+            self._place_rows(_ROWS_OF_MACHINE_CODE)
+            self._thread = ThreadPoolExecutor(max_workers=1)
+
+    # What the kernel gets.
+
+    def _prepare(self, until: int) -> int:
+        """Put the occurrences up to a time into memory, in order; the result is their number."""
+        found = [(record, occurrences.until(until)) for record, occurrences in self.program.arrivals]
+        times = np.concatenate([np.empty(0, np.int64), *(times for _, times in found)])
+        stimuli = np.repeat([record for record, _ in found] or [0], [len(times) for _, times in found] or [0])
+        order = np.argsort(times, kind="stable")
+        if len(times) > self._places_for_arrivals:
+            self._places_for_arrivals = 2 * len(times)
+            self._arrivals = self._append(self._places_for_arrivals * ARRIVAL_SIZE)
+        rows = np.column_stack((times[order], stimuli[order])).ravel()
+        self._write(self._arrivals, rows)
+        self.memory[ARRIVAL] = self._arrivals
+        self.memory[ARRIVALS_END] = self._arrivals + len(rows)
+        return len(times)
+
+    def _refill(self, stream: int) -> None:
+        """Put new values into a stream that has none left."""
+        values = self.program.streams[self.memory[stream + STREAM_NUMBER]].take(self._values)
+        self._write(self._pools[stream], values)
+        self.memory[stream + STREAM_AT] = self._pools[stream]
+        self.memory[stream + STREAM_END] = self._pools[stream] + len(values)
+
+    def _write(self, place: int, values: Numbers) -> None:
+        if self.is_compiled:
+            self.memory[place : place + len(values)] = values
+        else:
+            self.memory[place : place + len(values)] = values.tolist()
+
+    def _append(self, size: int) -> int:
+        """More memory at the end; where it begins."""
+        place = len(self.memory)
+        if self.is_compiled:
+            self.memory = cast(Memory, np.concatenate((self.memory, np.zeros(size, np.int64))))
+        else:
+            self.memory += [0] * size
+        return place
+
+    def _grow_queues(self) -> None:
+        """Give all processes twice as many places for activations."""
+        places = int(self.memory[PLACES])
+        for record in self.program.queues:
+            memory = self.memory
+            size = QUEUE_CAPTURES + int(memory[record + CAPTURES_END] - memory[record + CAPTURES])
+            first, queue = int(memory[record + FIRST_PLACE]), int(memory[record + QUEUE])
+            end = queue + places * size
+            # The first pending activation comes first in the new queue.
+            rows = np.array([*memory[first:end], *memory[queue:first]], np.int64)
+            place = self._append(2 * places * size)
+            self._write(place, rows)
+            self.memory[record + QUEUE] = self.memory[record + FIRST_PLACE] = place
+        self.memory[PLACES] = 2 * places
+
+    # What the kernel gives.
+
+    def _take_rows(self) -> None:
+        for (first, _, size), take in zip(_ROW_KINDS, (self.jobs, self.observations, self.events), strict=True):
+            begin, end = self._regions[first], int(self.memory[first])
+            if end > begin:
+                self._hand_over(take, np.array(self.memory[begin:end], np.int64).reshape(-1, size))
+                self.memory[first] = begin
+
+    def _hand_over(self, take: RowConsumer, rows: Numbers) -> None:
+        """Have rows taken: at once, or by a thread while machine code goes on; only two chunks wait for it at a time."""
+        if self._thread is None:
+            take(rows)
+            return
+        self._handed.append(self._thread.submit(take, rows))
+        while len(self._handed) > 2:
+            self._handed.popleft().result()
+
+    def _await_taker(self) -> None:
+        """Everything is taken when this returns."""
+        while self._handed:
+            self._handed.popleft().result()
+        if self._thread is not None:
+            self._thread.shutdown()
+
+    def pending(self, process: str) -> int:
+        """The number of activations of a process whose jobs have not ended."""
+        return int(self.memory[self.program.records[process] + PENDING])
+
+
+_ROW_KINDS = (
+    (JOBS, JOBS_END, JOB_SIZE),
+    (OBSERVATIONS, OBSERVATIONS_END, OBSERVATION_SIZE),
+    (EVENTS, EVENTS_END, EVENT_SIZE),
+)

@@ -1,0 +1,99 @@
+"""The kernel as machine code, where numba is installed (`pip install amuros[fast]`)."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from functools import cache
+from hashlib import blake2b
+from inspect import getsource
+from pathlib import Path
+from types import FunctionType, ModuleType
+from typing import Any, TypeAlias
+
+from amalthea_uros._internal.machine_code import LOADING, Effort
+from amalthea_uros.simulate.kernel import (
+    activation,
+    budgets,
+    conditions,
+    cores,
+    jobs,
+    layout,
+    loop,
+    operations,
+    reports,
+    stages,
+    waiting,
+)
+from amalthea_uros.simulate.kernel.layout import Memory
+
+#: Plays until something needs the driver, as `kernel.loop.play` does.
+Play: TypeAlias = Callable[[Memory], int]
+
+_MODULES = (activation, budgets, conditions, cores, jobs, loop, reports, stages, waiting)
+
+
+#: Seconds after which the speed of a run is known, and about how long numba takes to compile the kernel.
+_KNOWN, _COMPILING = 0.2, 25.0
+
+#: With what the name of the compiled function begins.
+_PREFIX = "play_"
+
+
+@cache
+def effort() -> Effort:
+    """What the kernel has taken as Python in this process: the runs of a campaign count together."""
+    sources = [Path(str(module.__file__)) for module in (loop, *_MODULES, layout, operations, sys.modules[__name__])]
+    return Effort("the simulation", sources, f"{_PREFIX}*", _COMPILING)
+
+
+def is_worth_it(seconds: float, seconds_left: float) -> bool:
+    """Whether to go on with machine code, after some seconds of a run as Python and with an estimated rest."""
+    if compiled.cache_info().currsize:
+        return True
+    return seconds >= _KNOWN and seconds_left > LOADING and effort().pays_compiling(seconds_left)
+
+
+@cache
+def compiled() -> Play:
+    """The kernel as machine code, which numba keeps for the next time; its memory must be an array of int64."""
+    from numba import njit
+
+    namespaces = {module: dict(vars(module)) for module in _MODULES}
+    machine = {
+        function: njit(FunctionType(function.__code__, namespaces[module], function.__name__))
+        for module in _MODULES
+        for function in _functions(module)
+        if function is not loop.play
+    }
+    for namespace in namespaces.values():
+        namespace.update({name: machine[value] for name, value in namespace.items() if _is_in(value, machine)})
+    play = FunctionType(loop.play.__code__, namespaces[loop], "play")
+    # numba looks at the file of this function only, to see whether its machine code is out of date.
+    play.__qualname__ = _name()
+    signature = "int64(int64[::1])"
+    try:
+        return _as_play(njit(signature, cache=True, nogil=True)(play))
+    except RuntimeError:  # there is no folder in which numba could keep the machine code
+        return _as_play(njit(signature, nogil=True)(play))
+
+
+def _functions(module: ModuleType) -> list[FunctionType]:
+    """The functions that a module defines."""
+    values = vars(module).values()
+    return [value for value in values if isinstance(value, FunctionType) and value.__module__ == module.__name__]
+
+
+def _is_in(value: object, machine: dict[FunctionType, Any]) -> bool:
+    return isinstance(value, FunctionType) and value in machine
+
+
+@cache
+def _name() -> str:
+    """A name that changes with every change of the kernel."""
+    sources = "".join(getsource(module) for module in (*_MODULES, layout, operations, sys.modules[__name__]))
+    return f"{_PREFIX}{blake2b(sources.encode(), digest_size=8).hexdigest()}"
+
+
+def _as_play(function: Play) -> Play:
+    return function

@@ -1,0 +1,124 @@
+"""The bytes and the lines of trace files, plain or packed with gzip."""
+
+from __future__ import annotations
+
+import gzip
+import zlib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import partial
+from io import TextIOWrapper
+from pathlib import Path
+from typing import IO, TextIO, cast
+
+from amalthea_uros._internal.files import is_file
+from amalthea_uros._internal.limits import TRACE_LINE
+from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros.errors import ReadError
+from amalthea_uros.trace.problems import TracePlace, TraceProblems
+
+#: What a packed file that is damaged raises while it is read.
+DAMAGED = (EOFError, gzip.BadGzipFile, zlib.error)
+_MAGIC = b"\x1f\x8b"
+
+
+@contextmanager
+def opened(path: Path) -> Iterator[IO[bytes]]:
+    """The unpacked bytes of a file.
+
+    Raises
+    ------
+    OSError : it cannot be opened.
+    """
+    with path.open("rb") as stream:
+        if path.name.lower().endswith(".gz") or stream.peek(len(_MAGIC)).startswith(_MAGIC):
+            with gzip.open(stream) as unpacked:
+                yield cast("IO[bytes]", unpacked)
+        else:
+            yield stream
+
+
+# The begin of files, by which their format is recognised.
+
+
+def first_bytes(path: Path, number: int) -> bytes:
+    """The unpacked begin of a file, nothing of one that cannot be read; pipes are left alone, since they can be read only once."""
+    if not is_file(path):
+        return b""
+    try:
+        with opened(path) as stream:
+            return stream.read(number)
+    except (OSError, *DAMAGED):
+        return b""
+
+
+def first_characters(path: Path, number: int) -> str:
+    """The begin of a text file, as `first_bytes` gives it."""
+    return first_bytes(path, number).decode("utf-8-sig", errors="replace")
+
+
+# The bytes and the lines of trace files, plain or packed with gzip.
+
+
+@contextmanager
+def opened_bytes(path: Path, problems: TraceProblems) -> Iterator[IO[bytes]]:
+    """The unpacked bytes of a file; that the rest of it is damaged is a problem, and what comes before it has been read.
+
+    Raises
+    ------
+    ReadError : there is no such file, or it may not be read.
+    """
+    try:
+        with opened(path) as stream:
+            yield stream
+    except DAMAGED as error:
+        message = f"the compressed file is damaged: {error}; only the events before that are used"
+        problems.add("TRC006", Severity.ERROR, message, advice="Check that it was written completely.")
+    except LineTooLongError as error:
+        message = f"a line is longer than {TRACE_LINE:,} characters; only the events before that are used"
+        problems.add("TRC002", Severity.ERROR, message, TracePlace(error.line, 1), "Check that this is a trace.")
+    except FileNotFoundError:
+        raise _not_readable(path, "file not found", "Check the path.") from None
+    except OSError as error:
+        raise _not_readable(path, f"the file cannot be read: {error.strerror or error}") from None
+
+
+@contextmanager
+def opened_text(path: Path, problems: TraceProblems) -> Iterator[Iterator[str]]:
+    """The lines of a file, as `opened_bytes` gives its bytes.
+
+    Raises
+    ------
+    ReadError : there is no such file, or it may not be read.
+    """
+    # Bytes that are not UTF-8 come from names of old files; a wrong character there does no harm to the times.
+    with (
+        opened_bytes(path, problems) as stream,
+        TextIOWrapper(stream, encoding="utf-8-sig", errors="replace", newline="\n") as text,
+    ):
+        yield _lines(text)
+
+
+class LineTooLongError(Exception):
+    """A line has more than `TRACE_LINE` characters: the file is no text.
+
+    Attributes
+    ----------
+    line : its number
+    """
+
+    def __init__(self, line: int) -> None:
+        super().__init__(line)
+        self.line = line
+
+
+def _lines(stream: TextIO) -> Iterator[str]:
+    """The lines of a stream; a file without line ends, such as a device, would else become one in memory."""
+    for number, line in enumerate(iter(partial(stream.readline, TRACE_LINE), ""), 1):
+        if len(line) == TRACE_LINE:
+            raise LineTooLongError(number)
+        yield line
+
+
+def _not_readable(path: Path, reason: str, advice: str = "") -> ReadError:
+    return ReadError([Finding("TRC001", Severity.ERROR, reason, Location(path), advice)])

@@ -1,0 +1,1 @@
+"""Logs of schedulers of operating systems: from what they record of threads and interrupts to the events of jobs."""
