@@ -20,9 +20,9 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.services.inputs import SystemInput, described_input
 from amalthea_uros.services.subject import Subject, paths_of
 from amalthea_uros.spec.executors import Executor
-from amalthea_uros.uros.callbacks import Callback, callbacks_of, registration_order
-from amalthea_uros.uros.executors.serving import stated_executors
-from amalthea_uros.uros.notes import Notes
+from amalthea_uros.uros.application.callbacks import Callback, callbacks_of, registration_order
+from amalthea_uros.uros.application.notes import Notes
+from amalthea_uros.uros.application.serving import stated_executors
 
 #: Each structure is built before the search begins.
 MOST_STRUCTURES = 500

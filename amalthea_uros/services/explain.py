@@ -8,7 +8,7 @@ from amalthea_uros.analyze.results.chains import Quantity
 from amalthea_uros.names import require
 from amalthea_uros.services.analyze import Analyzed, Explanation, analysis_result
 from amalthea_uros.services.improvements import check_explained, improvements_of
-from amalthea_uros.uros.application import body_name
+from amalthea_uros.uros.application.callbacks import body_name
 
 
 def explain(analyzed: Analyzed, name: str, quantity: Quantity = Quantity.MAX_REDUCED_REACTION_TIME) -> Explanation:

@@ -21,13 +21,13 @@ from amalthea_uros.services.waiting_messages import waiting_messages, with_analy
 from amalthea_uros.spec.application import Application, Node
 from amalthea_uros.spec.platforms import complete
 from amalthea_uros.spec.read import read_description
+from amalthea_uros.uros.application.entities import LIFECYCLE_SERVICES, PARAMETER_SERVICES, executors_of
 from amalthea_uros.uros.assemble import Assembly, assemble
 from amalthea_uros.uros.colcon_meta import parse_meta
 from amalthea_uros.uros.generated_options import check_meta, values_of, with_generated_options
-from amalthea_uros.uros.memory.entities import LIFECYCLE_SERVICES, PARAMETER_SERVICES, executors_of
 from amalthea_uros.uros.memory.ram import Memory
-from amalthea_uros.uros.middleware.load import profile_of
 from amalthea_uros.uros.middleware.options import Option, OptionRole
+from amalthea_uros.uros.profiles import profile_of
 
 META, HEADER, CMAKE = "colcon.meta", "amuros_limits.h", "zenoh_options.cmake"
 #: In each file, by which it can be told from those that people wrote.

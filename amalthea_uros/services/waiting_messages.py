@@ -9,9 +9,9 @@ from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.executors.results import ExecutorResult
 from amalthea_uros.executors.semantics.readiness import messages
 from amalthea_uros.perf.executors import Executor
+from amalthea_uros.uros.application.entities import executors_of
 from amalthea_uros.uros.assemble import Assembly
 from amalthea_uros.uros.generated_options import WaitingMessages, with_waiting_messages
-from amalthea_uros.uros.memory.entities import executors_of
 from amalthea_uros.uros.middleware.histories import kept_messages
 from amalthea_uros.uros.middleware.options import OptionRole
 

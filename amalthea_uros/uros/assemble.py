@@ -19,40 +19,40 @@ from amalthea_uros.spec.hardware import Hardware
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.units import Time
-from amalthea_uros.uros.application import add_callbacks, add_interrupt
+from amalthea_uros.uros.application.callbacks import Callback, callbacks_of, internal_channels
+from amalthea_uros.uros.application.notes import Notes
+from amalthea_uros.uros.application.serving import placement
+from amalthea_uros.uros.assembly.context import AssemblyContext
+from amalthea_uros.uros.assembly.hardware import controller_of
+from amalthea_uros.uros.assembly.rtos import PriorityScale, check_sleeps
+from amalthea_uros.uros.assembly.tasks import PlannedIsr, PlannedTask
 from amalthea_uros.uros.background_tasks import add_background_tasks
-from amalthea_uros.uros.bus_messages import BusMessage, bus_messages, bus_of, check_bus_load, check_identifiers
-from amalthea_uros.uros.bus_traffic import with_traffic
-from amalthea_uros.uros.callbacks import Callback, callbacks_of, internal_channels
-from amalthea_uros.uros.can import CanBus
+from amalthea_uros.uros.callback_tasks import add_callbacks, add_interrupt
 from amalthea_uros.uros.chain_elements import chain_elements
 from amalthea_uros.uros.chain_topics import Topics
 from amalthea_uros.uros.chains import Chains
-from amalthea_uros.uros.context import AssemblyContext
 from amalthea_uros.uros.executors.activation import is_triggered, round_trigger_name, triggered_rounds
 from amalthea_uros.uros.executors.handles import deadlines
-from amalthea_uros.uros.executors.serving import placement
-from amalthea_uros.uros.hardware import controller_of
 from amalthea_uros.uros.initialisation import Initialisation, initialisation
 from amalthea_uros.uros.labels import check_misspelled_labels, labels_of, placements
 from amalthea_uros.uros.memory.ram import Memory, check_memory, memory_of
 from amalthea_uros.uros.middleware.check import check_middleware
-from amalthea_uros.uros.middleware.load import profile_of
 from amalthea_uros.uros.middleware.options import Option
 from amalthea_uros.uros.middleware.profile import Profile
 from amalthea_uros.uros.names import check_unique_data, check_unique_names
-from amalthea_uros.uros.notes import Notes
+from amalthea_uros.uros.network.bus_traffic import with_traffic
+from amalthea_uros.uros.network.network import PlannedNetwork, planned_network, with_network
 from amalthea_uros.uros.os import isr_allocations, os_of, task_allocations
 from amalthea_uros.uros.overheads import add_overheads
 from amalthea_uros.uros.periods import PeriodChoice
 from amalthea_uros.uros.pools import check_options, pools_of
 from amalthea_uros.uros.priorities import check_shared_priorities
+from amalthea_uros.uros.profiles import profile_of
 from amalthea_uros.uros.requirements import requirements
-from amalthea_uros.uros.rtos import PriorityScale, check_sleeps
-from amalthea_uros.uros.tasks import PlannedIsr, PlannedTask
+from amalthea_uros.uros.transports.bus_messages import BusMessage, bus_messages, bus_of, check_bus_load, check_identifiers
+from amalthea_uros.uros.transports.can import CanBus
 from amalthea_uros.uros.transports.foreign import ForeignFrame
-from amalthea_uros.uros.transports.network import PlannedNetwork, planned_network, with_network
-from amalthea_uros.uros.waits import waits_outside
+from amalthea_uros.uros.transports.publications import waits_outside
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -7,12 +7,11 @@ from dataclasses import dataclass, replace
 
 from amalthea_uros.perf.activities import AccessKind, Call, LabelAccess, walk
 from amalthea_uros.perf.software import Runnable
-from amalthea_uros.uros.application import body_name
-from amalthea_uros.uros.callbacks import Callback
-from amalthea_uros.uros.context import AssemblyContext
-from amalthea_uros.uros.executor import notification_name
-from amalthea_uros.uros.executors.serving import stated_executors
-from amalthea_uros.uros.tasks import PlannedIsr, PlannedTask
+from amalthea_uros.uros.application.callbacks import Callback, body_name
+from amalthea_uros.uros.application.serving import stated_executors
+from amalthea_uros.uros.assembly.context import AssemblyContext
+from amalthea_uros.uros.assembly.executor_runnables import notification_name
+from amalthea_uros.uros.assembly.tasks import PlannedIsr, PlannedTask
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from amalthea_uros.perf.events import CustomEvent, Event, ProcessChange, ProcessEvent
 from amalthea_uros.perf.network import Direction, Network, Purpose
-from amalthea_uros.uros.callbacks import Callback
+from amalthea_uros.uros.application.callbacks import Callback
 
 
 class TopicError(Exception):

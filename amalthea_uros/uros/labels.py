@@ -11,9 +11,9 @@ from amalthea_uros.perf.mapping import Placement
 from amalthea_uros.perf.software import Label, Runnable
 from amalthea_uros.spec.description import Description
 from amalthea_uros.units import DataSize
-from amalthea_uros.uros.callbacks import Callback
-from amalthea_uros.uros.hardware import Controller
-from amalthea_uros.uros.notes import Notes
+from amalthea_uros.uros.application.callbacks import Callback
+from amalthea_uros.uros.application.notes import Notes
+from amalthea_uros.uros.assembly.hardware import Controller
 
 #: Size of a label that is only accessed: a 32-bit word.
 DEFAULT_SIZE: DataSize = 32

@@ -7,9 +7,9 @@ from collections.abc import Iterable
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.perf.software import Channel, Label
 from amalthea_uros.spec.description import Description
-from amalthea_uros.uros.callbacks import sections_of
-from amalthea_uros.uros.executors.serving import stated_executors
-from amalthea_uros.uros.notes import Notes
+from amalthea_uros.uros.application.callbacks import sections_of
+from amalthea_uros.uros.application.notes import Notes
+from amalthea_uros.uros.application.serving import stated_executors
 from amalthea_uros.uros.transports.line import receive_interrupt
 
 

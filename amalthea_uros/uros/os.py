@@ -17,10 +17,10 @@ from amalthea_uros.perf.os import (
     Semaphore,
     SemaphoreKind,
 )
-from amalthea_uros.uros.context import AssemblyContext
+from amalthea_uros.uros.assembly.context import AssemblyContext
+from amalthea_uros.uros.assembly.rtos import check_priority
+from amalthea_uros.uros.assembly.tasks import PlannedIsr, PlannedTask
 from amalthea_uros.uros.priorities import priorities
-from amalthea_uros.uros.rtos import check_priority
-from amalthea_uros.uros.tasks import PlannedIsr, PlannedTask
 
 
 def os_of(context: AssemblyContext) -> Os:

@@ -12,8 +12,8 @@ from amalthea_uros.diagnostics import Location
 from amalthea_uros.perf.activities import Activity, Call
 from amalthea_uros.perf.software import IsrCategory, Runnable
 from amalthea_uros.spec.os import Overhead, OverheadTime
-from amalthea_uros.uros.context import AssemblyContext
-from amalthea_uros.uros.tasks import PlannedIsr, PlannedTask
+from amalthea_uros.uros.assembly.context import AssemblyContext
+from amalthea_uros.uros.assembly.tasks import PlannedIsr, PlannedTask
 
 
 @dataclass(frozen=True, slots=True)

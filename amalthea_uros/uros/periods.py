@@ -14,9 +14,9 @@ from dataclasses import dataclass
 from amalthea_uros.spec.executors import Executor
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.units import Time, time_text
-from amalthea_uros.uros.callbacks import Callback, CallbackKind
-from amalthea_uros.uros.demand import DemandConverter
-from amalthea_uros.uros.notes import Notes
+from amalthea_uros.uros.application.callbacks import Callback, CallbackKind
+from amalthea_uros.uros.application.notes import Notes
+from amalthea_uros.uros.assembly.demand import DemandConverter
 
 _SET_BY_USER = "set in app.yaml"
 

@@ -6,8 +6,8 @@ from collections.abc import Iterable
 
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.spec.middleware import Middleware
+from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.middleware.options import Option, OptionRole
-from amalthea_uros.uros.notes import Notes
 
 
 def pools_of(options: Iterable[Option]) -> tuple[Option, ...]:

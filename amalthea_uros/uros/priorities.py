@@ -16,9 +16,9 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.timing.scheduling.allocation import allocated_cores
 from amalthea_uros.timing.scheduling.shared_priorities import sharing_a_priority
 from amalthea_uros.units import time_text
-from amalthea_uros.uros.notes import Notes
-from amalthea_uros.uros.rtos import HIGHER_IS_MORE_URGENT, PriorityScale
-from amalthea_uros.uros.tasks import PlannedTask
+from amalthea_uros.uros.application.notes import Notes
+from amalthea_uros.uros.assembly.rtos import HIGHER_IS_MORE_URGENT, PriorityScale
+from amalthea_uros.uros.assembly.tasks import PlannedTask
 
 
 def priorities(tasks: Sequence[PlannedTask], notes: Notes, scale: PriorityScale = HIGHER_IS_MORE_URGENT) -> Mapping[str, int]:

@@ -7,8 +7,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.perf.constraints import Bound, JitterLimit, Limit, Requirement, Severity, TimeLimit, TimeMetric
 from amalthea_uros.spec import requirements as spec
+from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.chain_elements import ChainElement
-from amalthea_uros.uros.notes import Notes
 
 _METRICS = {
     "response_time": TimeMetric.RESPONSE_TIME,

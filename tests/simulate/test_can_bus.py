@@ -15,8 +15,8 @@ from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
 from amalthea_uros.units import NANOSECOND as NS
 from amalthea_uros.units import SECOND
-from amalthea_uros.uros.bus_system import Transmission, with_bus
-from amalthea_uros.uros.can import CanBus
+from amalthea_uros.uros.network.bus_system import Transmission, with_bus
+from amalthea_uros.uros.transports.can import CanBus
 
 
 def message(name, identifier, frames, offset=0, period=SECOND, jitter=0):

@@ -10,7 +10,7 @@ from amalthea_uros.source.messages import MessageType, length_of
 from amalthea_uros.source.scope import literal
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.spec.read import read_description
-from amalthea_uros.uros.middleware.load import profile_of
+from amalthea_uros.uros.profiles import profile_of
 
 SAMPLES = ROOT / "samples" / "sources"
 SOURCES = sorted(path for path in SAMPLES.iterdir() if path.suffix != ".yaml")

@@ -20,8 +20,8 @@ from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.simulate.system import simulate_system
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import SECOND
-from amalthea_uros.uros.bus_system import Transmission, with_bus
-from amalthea_uros.uros.can import CanBus, block_bytes, frames
+from amalthea_uros.uros.network.bus_system import Transmission, with_bus
+from amalthea_uros.uros.transports.can import CanBus, block_bytes, frames
 
 SAMPLES = ROOT / "samples"
 

@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from amalthea_uros.units import MICROSECOND
-from amalthea_uros.uros.can import CanBus, Identifier, frames, transmission_time
+from amalthea_uros.uros.transports.can import CanBus, Identifier, frames, transmission_time
 
 
 @pytest.mark.parametrize("data_bytes", range(9))

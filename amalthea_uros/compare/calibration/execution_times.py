@@ -22,8 +22,8 @@ from amalthea_uros.measure.series import MeasuredKind
 from amalthea_uros.perf.distributions import highest, lowest
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.units import NANOSECOND, Time, time_text
-from amalthea_uros.uros.demand import times_of
-from amalthea_uros.uros.executors.serving import stated_executors
+from amalthea_uros.uros.application.serving import stated_executors
+from amalthea_uros.uros.assembly.demand import times_of
 
 if TYPE_CHECKING:
     import numpy as np

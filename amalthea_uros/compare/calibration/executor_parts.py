@@ -16,7 +16,7 @@ from amalthea_uros.design.description.places import Places
 from amalthea_uros.measure.series import MeasuredKind, statistics_of
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.units import Time
-from amalthea_uros.uros.executors.serving import stated_executors
+from amalthea_uros.uros.application.serving import stated_executors
 
 #: By how much the number of long jobs may differ from the number of messages: the first and the last one, and clocks.
 _MOST_OTHERS = 2

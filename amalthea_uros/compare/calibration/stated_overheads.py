@@ -8,7 +8,7 @@ from amalthea_uros.design.description.owners import Owner, OwnerKind, owners
 from amalthea_uros.perf.distributions import highest, lowest
 from amalthea_uros.spec.description import Description
 from amalthea_uros.units import Time
-from amalthea_uros.uros.demand import times_of
+from amalthea_uros.uros.assembly.demand import times_of
 
 _KINDS = (
     OwnerKind.EXECUTOR,

@@ -11,8 +11,8 @@ from amalthea_uros.spec.application import Callback, MessageCallback, Timer
 from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.executors import Executor
 from amalthea_uros.spec.section import Section
-from amalthea_uros.uros.application import body_name
-from amalthea_uros.uros.executor import spin_name
+from amalthea_uros.uros.application.callbacks import body_name
+from amalthea_uros.uros.assembly.executor_runnables import spin_name
 
 _CALLBACKS = ("subscriptions", "timers", "services", "clients", "guard_conditions", "action_servers", "action_clients")
 

@@ -20,11 +20,11 @@ from amalthea_uros.spec.executors import Executor
 from amalthea_uros.spec.processes import Process
 from amalthea_uros.spec.transports import Interrupt
 from amalthea_uros.units import SECOND, Time, data_size_text, parse_time, time_text
-from amalthea_uros.uros import callbacks as uros
-from amalthea_uros.uros.executor import message_cost, timer_count
-from amalthea_uros.uros.executors.handles import handle_count
-from amalthea_uros.uros.notes import Notes
-from amalthea_uros.uros.rtos import PriorityScale
+from amalthea_uros.uros.application import callbacks as uros
+from amalthea_uros.uros.application.callbacks import handle_count
+from amalthea_uros.uros.application.notes import Notes
+from amalthea_uros.uros.assembly.executor_runnables import message_cost, timer_count
+from amalthea_uros.uros.assembly.rtos import PriorityScale
 
 _TICKS = re.compile(r"\d+\s*ticks?", re.ASCII)
 #: Sections under other names than their own.

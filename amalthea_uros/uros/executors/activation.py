@@ -24,8 +24,8 @@ from amalthea_uros.perf.stimuli import (
 )
 from amalthea_uros.perf.system import System
 from amalthea_uros.units import Time
-from amalthea_uros.uros.activities import trigger_name
-from amalthea_uros.uros.callbacks import Callback, CallbackKind
+from amalthea_uros.uros.application.callbacks import Callback, CallbackKind
+from amalthea_uros.uros.assembly.activities import trigger_name
 
 #: Rounds whose distances are stated; of more, the distances follow from these, a little too short.
 _PACED_ROUNDS = 20

@@ -11,16 +11,16 @@ from amalthea_uros.perf.software import Runnable
 from amalthea_uros.spec import executors as spec
 from amalthea_uros.spec.os import Os
 from amalthea_uros.units import SECOND, Time, down, ticks_of_time, up
-from amalthea_uros.uros.callbacks import Callback
-from amalthea_uros.uros.context import AssemblyContext
-from amalthea_uros.uros.executor import ExecutorRunnables, spin_name
+from amalthea_uros.uros.application.callbacks import Callback
+from amalthea_uros.uros.assembly.context import AssemblyContext
+from amalthea_uros.uros.assembly.executor_runnables import ExecutorRunnables, spin_name
+from amalthea_uros.uros.assembly.rtos import slept
+from amalthea_uros.uros.assembly.tasks import PlannedTask
 from amalthea_uros.uros.executors.activation import activation
 from amalthea_uros.uros.executors.checks import check_executor
 from amalthea_uros.uros.executors.handles import handle_names, handles_of
 from amalthea_uros.uros.executors.rounds import has_one_message_per_round, polls_before_timers, round_activities
 from amalthea_uros.uros.executors.triggers import trigger_of
-from amalthea_uros.uros.rtos import slept
-from amalthea_uros.uros.tasks import PlannedTask
 
 #: Rounds are executed one after the other, however many are due.
 _UNLIMITED = 1_000_000

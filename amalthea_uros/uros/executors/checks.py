@@ -15,8 +15,8 @@ from amalthea_uros.perf.executors import Executor, Handle, HandleKind, LoopKind,
 from amalthea_uros.spec import executors as spec
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.units import time_text
-from amalthea_uros.uros.callbacks import Callback
-from amalthea_uros.uros.notes import Notes
+from amalthea_uros.uros.application.callbacks import Callback
+from amalthea_uros.uros.application.notes import Notes
 
 _ACTIONS = (HandleKind.ACTION_SERVER, HandleKind.ACTION_CLIENT)
 

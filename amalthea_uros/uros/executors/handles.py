@@ -14,11 +14,11 @@ from amalthea_uros.perf.constraints import Requirement, TimeLimit, TimeMetric
 from amalthea_uros.perf.executors import Executor, Handle, HandleKind
 from amalthea_uros.perf.software import Runnable
 from amalthea_uros.spec.application import MessageCallback, Subscription
-from amalthea_uros.uros.callbacks import Callback, CallbackKind, transmission_name_of
+from amalthea_uros.uros.application.callbacks import Callback, CallbackKind, handle_count, transmission_name_of
 from amalthea_uros.uros.middleware.histories import depth_of
 from amalthea_uros.uros.middleware.profile import Profile
-from amalthea_uros.uros.publications import publications
 from amalthea_uros.uros.transports.line import describes_wire
+from amalthea_uros.uros.transports.publications import publications
 
 _KINDS = {
     CallbackKind.SUBSCRIPTION: HandleKind.SUBSCRIPTION,
@@ -31,17 +31,7 @@ _KINDS = {
     CallbackKind.PARAMETERS: HandleKind.PARAMETER_SERVICE,
     CallbackKind.LIFECYCLE: HandleKind.LIFECYCLE_SERVICE,
 }
-_PARAMETER_SERVICES = 6
 _SOURCES = {CallbackKind.ACTION_SERVER: 4, CallbackKind.ACTION_CLIENT: 5}
-
-
-def handle_count(callback: Callback) -> int:
-    """The number of handles that a callback has in its executor."""
-    if callback.kind is CallbackKind.PARAMETERS:
-        return _PARAMETER_SERVICES
-    if callback.kind is CallbackKind.LIFECYCLE:
-        return 0 if callback.node.lifecycle is None else callback.node.lifecycle.services
-    return 1
 
 
 def handle_names(callback: Callback) -> tuple[str, ...]:

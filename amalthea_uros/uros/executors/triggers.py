@@ -10,7 +10,7 @@ from itertools import chain
 
 from amalthea_uros.perf.executors import TriggerCondition, TriggerKind
 from amalthea_uros.spec.executors import Executor
-from amalthea_uros.uros.notes import Notes
+from amalthea_uros.uros.application.notes import Notes
 
 
 def trigger_of(executor: Executor, handles: Mapping[str, Sequence[str]], notes: Notes) -> TriggerCondition:

@@ -12,10 +12,10 @@ from amalthea_uros.spec.application import Application
 from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.hardware import Hardware
 from amalthea_uros.spec.middleware import Middleware
-from amalthea_uros.uros.memory.entities import executors_of
+from amalthea_uros.uros.application.entities import executors_of
+from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.memory.stack import StackUse, StackUser, separate_stacks, shared_stacks
 from amalthea_uros.uros.middleware.profile import MemoryUse, MiddlewareThread, Profile
-from amalthea_uros.uros.notes import Notes
 
 #: Bytes of a handle, from ros2/rclc rclc/include/rclc/executor_handle.h on a 32-bit target; allocated when the executor is initialised.
 _HANDLE = 64

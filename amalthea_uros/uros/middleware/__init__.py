@@ -1,1 +1,1 @@
-"""The middlewares: what is known of each one lies in its profile."""
+"""The middlewares: what the model, the checks and the pools ask of one is in its profile."""

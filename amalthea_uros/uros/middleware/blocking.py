@@ -6,10 +6,10 @@ from collections.abc import Iterable, Sequence
 
 from amalthea_uros.spec.executors import Executor
 from amalthea_uros.units import Time, time_text
-from amalthea_uros.uros.callbacks import Callback
-from amalthea_uros.uros.executors.serving import stated_executors
+from amalthea_uros.uros.application.callbacks import Callback
+from amalthea_uros.uros.application.notes import Notes
+from amalthea_uros.uros.application.serving import stated_executors
 from amalthea_uros.uros.middleware.profile import Profile
-from amalthea_uros.uros.notes import Notes
 
 
 def check_blocking(callbacks: Sequence[Callback], profile: Profile, notes: Notes) -> None:

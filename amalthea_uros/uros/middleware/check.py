@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from amalthea_uros.uros.callbacks import Callback, Message
+from amalthea_uros.uros.application.callbacks import Callback, Message
+from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.middleware.blocking import check_blocking
 from amalthea_uros.uros.middleware.histories import check_histories
 from amalthea_uros.uros.middleware.kinds import LONGEST, message_kind, stated_bytes
 from amalthea_uros.uros.middleware.profile import Profile
 from amalthea_uros.uros.middleware.streams import check_streams
-from amalthea_uros.uros.notes import Notes
 
 
 def check_middleware(callbacks: Sequence[Callback], profile: Profile, notes: Notes) -> None:

@@ -6,11 +6,11 @@ from collections.abc import Iterator, Sequence
 
 from amalthea_uros.spec.application import Application, MessageCallback, Node, Subscription
 from amalthea_uros.spec.application import Callback as Section
-from amalthea_uros.uros.callbacks import Callback
-from amalthea_uros.uros.executors.serving import stated_executors
-from amalthea_uros.uros.memory.entities import ACTION_SERVICES, ACTION_TOPICS, LIFECYCLE_SERVICES, PARAMETER_SERVICES
+from amalthea_uros.uros.application.callbacks import Callback
+from amalthea_uros.uros.application.entities import ACTION_SERVICES, ACTION_TOPICS, LIFECYCLE_SERVICES, PARAMETER_SERVICES
+from amalthea_uros.uros.application.notes import Notes
+from amalthea_uros.uros.application.serving import stated_executors
 from amalthea_uros.uros.middleware.profile import Profile
-from amalthea_uros.uros.notes import Notes
 
 #: Depths of the profiles `rmw_qos_profile_default` and `rmw_qos_profile_sensor_data` in ros2/rmw rmw/include/rmw/qos_profiles.h.
 _RELIABLE, _BEST_EFFORT = 10, 5

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from amalthea_uros.uros.callbacks import Message
+from amalthea_uros.uros.application.callbacks import Message
 from amalthea_uros.uros.middleware.profile import MessageKind
 
 #: Bytes of a message, above which it is refused whatever the middleware: its parts and frames could take all memory.

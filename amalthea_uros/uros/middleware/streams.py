@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from amalthea_uros.units import Time, time_text
-from amalthea_uros.uros.callbacks import Callback, Message
+from amalthea_uros.uros.application.callbacks import Callback, Message
+from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.middleware.kinds import content_bytes, message_kind
 from amalthea_uros.uros.middleware.profile import Profile
-from amalthea_uros.uros.notes import Notes
 
 
 def check_streams(callbacks: Sequence[Callback], profile: Profile, notes: Notes) -> None:

@@ -18,7 +18,7 @@ from math import lcm
 
 from amalthea_uros.perf.network import Direction, Span, WireKind
 from amalthea_uros.spec.transports import CanFd
-from amalthea_uros.uros.can import CanBus, Identifier
+from amalthea_uros.uros.transports.can import CanBus, Identifier
 from amalthea_uros.uros.transports.line import Frame
 
 #: Numbers of data bytes that a frame can have.

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from amalthea_uros.perf.network import Direction, Span, WireKind
 from amalthea_uros.spec.transports import Can
-from amalthea_uros.uros.bus_messages import bus_of
-from amalthea_uros.uros.can import block_bytes
+from amalthea_uros.uros.transports.bus_messages import bus_of
+from amalthea_uros.uros.transports.can import block_bytes
 from amalthea_uros.uros.transports.line import Frame
 
 

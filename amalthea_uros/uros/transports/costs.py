@@ -9,7 +9,7 @@ from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.execution_time import ExecutionTime
 from amalthea_uros.spec.transports import CustomTransport, Driver, Serial, UsbCdc
 from amalthea_uros.units import Time
-from amalthea_uros.uros.callbacks import Callback
+from amalthea_uros.uros.application.callbacks import Callback
 from amalthea_uros.uros.middleware.profile import Profile
 from amalthea_uros.uros.transports.choice import driver_of, line_of
 from amalthea_uros.uros.transports.framing import least_frame, longest_frame, reads

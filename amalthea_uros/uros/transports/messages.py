@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from amalthea_uros.perf.network import Direction
 from amalthea_uros.units import Time
-from amalthea_uros.uros.callbacks import Callback, Message, transmission_name_of
+from amalthea_uros.uros.application.callbacks import Callback, Message, transmission_name_of
 from amalthea_uros.uros.middleware.kinds import content_bytes, message_kind
 from amalthea_uros.uros.middleware.profile import Part, Profile
 

@@ -4,8 +4,8 @@ import pytest
 
 from amalthea_uros.spec.application import Application
 from amalthea_uros.spec.middleware import Middleware
-from amalthea_uros.uros.middleware.load import known_data
 from amalthea_uros.uros.middleware.xrce_dds.profile import XrceDds
+from amalthea_uros.uros.profiles import known_data
 
 DATA = known_data("xrce-dds")
 TIMER = {"name": "T", "period": "10 ms", "execution_time": "1 us"}

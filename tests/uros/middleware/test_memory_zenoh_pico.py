@@ -4,7 +4,7 @@ import pytest
 
 from amalthea_uros.spec.application import Application
 from amalthea_uros.spec.middleware import Middleware
-from amalthea_uros.uros.middleware.load import profile_of
+from amalthea_uros.uros.profiles import profile_of
 
 APPLICATION = Application.model_validate({"nodes": [{"name": "node"}]})
 

@@ -4,8 +4,8 @@ import pytest
 
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.units import SECOND
-from amalthea_uros.uros.middleware.load import profile_of
 from amalthea_uros.uros.middleware.profile import MessageKind
+from amalthea_uros.uros.profiles import profile_of
 
 MIDDLEWARE = Middleware(profile="zenoh-pico")
 PROFILE = profile_of(MIDDLEWARE)

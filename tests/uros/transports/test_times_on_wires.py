@@ -12,8 +12,8 @@ from amalthea_uros.perf.network import Direction, Span
 from amalthea_uros.spec.transports import CanFd, CustomTransport, Network, Serial, UsbCdc
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
-from amalthea_uros.uros.can import CanBus
 from amalthea_uros.uros.transports import framing
+from amalthea_uros.uros.transports.can import CanBus
 from amalthea_uros.uros.transports.can_fd import CanFdLine, bits, data_bytes
 from amalthea_uros.uros.transports.custom import CustomLine
 from amalthea_uros.uros.transports.driver import bytes_between_reads, steady_time

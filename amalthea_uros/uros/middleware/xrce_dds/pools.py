@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from amalthea_uros.spec.application import Application, Node
 from amalthea_uros.spec.middleware import Middleware
-from amalthea_uros.uros.memory.entities import Entities, entities_of, executors_of
+from amalthea_uros.uros.application.entities import Entities, entities_of, executors_of
 from amalthea_uros.uros.middleware.options import Option
 from amalthea_uros.uros.middleware.xrce_dds.build import rows
 from amalthea_uros.uros.middleware.xrce_dds.messages import MessageLayout, contents_of

@@ -25,8 +25,8 @@ from amalthea_uros.perf.distributions import (
 )
 from amalthea_uros.spec.execution_time import ExecutionTime
 from amalthea_uros.units import Frequency, Time, down, ticks_of_time, time_text, up
-from amalthea_uros.uros.hardware import Controller
-from amalthea_uros.uros.notes import Notes
+from amalthea_uros.uros.application.notes import Notes
+from amalthea_uros.uros.assembly.hardware import Controller
 
 
 def times_of(execution_time: ExecutionTime) -> Distribution[int]:

@@ -21,11 +21,10 @@ from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.spec.execution_time import ExecutionTime
 from amalthea_uros.spec.executors import Executor, MessageCost
 from amalthea_uros.units import DataSize, Time
-from amalthea_uros.uros.activities import trigger_name
-from amalthea_uros.uros.callbacks import Callback, CallbackKind
-from amalthea_uros.uros.context import AssemblyContext
-from amalthea_uros.uros.executors.handles import handle_count
-from amalthea_uros.uros.phases import ExecutorPhases
+from amalthea_uros.uros.application.callbacks import Callback, CallbackKind, handle_count
+from amalthea_uros.uros.application.phases import ExecutorPhases
+from amalthea_uros.uros.assembly.activities import trigger_name
+from amalthea_uros.uros.assembly.context import AssemblyContext
 from amalthea_uros.uros.transports.costs import driver_costs
 
 _BITS_PER_BYTE = 8

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from amalthea_uros.perf.executors import Publication
-from amalthea_uros.uros.callbacks import Callback, CallbackKind, Message, transmission_name_of
+from amalthea_uros.perf.network import Wait
+from amalthea_uros.perf.system import System
+from amalthea_uros.uros.application.callbacks import Callback, CallbackKind, Message, body_name, transmission_name_of
 from amalthea_uros.uros.middleware.kinds import content_bytes, message_kind
 from amalthea_uros.uros.middleware.profile import MessageKind, Profile
 from amalthea_uros.uros.transports.line import describes_wire
@@ -44,3 +46,22 @@ def _of_middleware(callback: Callback, profile: Profile) -> Iterator[Publication
         topics.append("parameter_events")
     for topic in topics:
         yield Publication(topic=topic, reliable=True, waits=timeout is not None, timeout=timeout)
+
+
+def waits_outside(callbacks: Iterable[Callback], system: System, profile: Profile) -> Iterator[Wait]:
+    """The waits of callbacks that no executor in a loop runs, for acknowledgements of messages that no wire of the system has.
+
+    In executors that spin in loops, publications say so themselves; messages on wires of the system, too.
+
+    Parameters
+    ----------
+    system : with its executors and its wires
+    """
+    loops = {executor.name for executor in system.executors}
+    wired = {transmission.name for transmission in system.network.transmissions if transmission.waits}
+    for callback in callbacks:
+        if callback.in_executor and callback.executor in loops:
+            continue
+        for each in publications(callback, profile):
+            if each.waits and each.transmission not in wired:
+                yield Wait(runnable=body_name(callback.name), topic=each.topic, timeout=each.timeout)

@@ -29,8 +29,9 @@ from amalthea_uros.spec.application import Callback as Section
 from amalthea_uros.spec.executors import Executor
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.units import SECOND, DataSize, Frequency, Time
-from amalthea_uros.uros.executors.serving import Serving
-from amalthea_uros.uros.notes import Notes
+from amalthea_uros.uros.application.entities import PARAMETER_SERVICES
+from amalthea_uros.uros.application.notes import Notes
+from amalthea_uros.uros.application.serving import Serving
 
 
 class CallbackKind(StrEnum):
@@ -336,3 +337,17 @@ def registration_order(callbacks: Iterable[Callback], executor: Executor, notes:
 def transmission_name_of(message: Message, *, incoming: bool) -> str:
     """The name of the task that stands for a message on the wire, such as `factor_topic_to_Message_Factor`."""
     return f"{message.channel}_{'to' if incoming else 'from'}_{message.callback}"
+
+
+def body_name(callback: str) -> str:
+    """The name of the runnable of a callback."""
+    return f"{callback}_Callback"
+
+
+def handle_count(callback: Callback) -> int:
+    """The number of handles that a callback has in its executor."""
+    if callback.kind is CallbackKind.PARAMETERS:
+        return PARAMETER_SERVICES
+    if callback.kind is CallbackKind.LIFECYCLE:
+        return 0 if callback.node.lifecycle is None else callback.node.lifecycle.services
+    return 1

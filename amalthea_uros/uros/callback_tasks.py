@@ -10,21 +10,22 @@ from amalthea_uros.perf.software import Runnable
 from amalthea_uros.perf.stimuli import InterProcess
 from amalthea_uros.spec.executors import Executor
 from amalthea_uros.units import Time
-from amalthea_uros.uros.activities import activity_sequence, trigger_name
-from amalthea_uros.uros.bus_messages import BusMessage, bus_of, receive_stimulus
-from amalthea_uros.uros.callbacks import Callback, registration_order
-from amalthea_uros.uros.context import AssemblyContext
-from amalthea_uros.uros.executor import (
+from amalthea_uros.uros.application.callbacks import Callback, body_name, registration_order
+from amalthea_uros.uros.application.phases import ExecutorPhases, own_task_counter
+from amalthea_uros.uros.application.serving import stated_executors
+from amalthea_uros.uros.assembly.activities import activity_sequence, trigger_name
+from amalthea_uros.uros.assembly.context import AssemblyContext
+from amalthea_uros.uros.assembly.executor_runnables import (
     ExecutorRunnables,
     PlannedCall,
     in_executor_calls,
     message_cost,
     own_task_calls,
 )
+from amalthea_uros.uros.assembly.interrupts import add_isr
+from amalthea_uros.uros.assembly.tasks import PlannedTask
 from amalthea_uros.uros.executors.add import add_looping_executor
 from amalthea_uros.uros.executors.checks import check_order, check_threads
-from amalthea_uros.uros.executors.serving import stated_executors
-from amalthea_uros.uros.interrupts import add_isr
 from amalthea_uros.uros.periods import (
     PeriodChoice,
     check_callbacks_in_executor,
@@ -32,8 +33,7 @@ from amalthea_uros.uros.periods import (
     choose_task_period,
     period_candidates,
 )
-from amalthea_uros.uros.phases import ExecutorPhases, own_task_counter
-from amalthea_uros.uros.tasks import PlannedTask
+from amalthea_uros.uros.transports.bus_messages import BusMessage, bus_of, receive_stimulus
 from amalthea_uros.uros.transports.costs import driver_costs
 
 
@@ -187,11 +187,6 @@ def _body(context: AssemblyContext, callback: Callback, executor_core: str) -> R
         sends=[message.channel for message in callback.outgoing if message.channel in context.channels],
     )
     return Runnable(name=body_name(callback.name), activities=activities, callback=callback.in_executor, origin=callback.origin)
-
-
-def body_name(callback: str) -> str:
-    """The name of the runnable of a callback."""
-    return f"{callback}_Callback"
 
 
 def _add_own_task(context: AssemblyContext, callback: Callback, period: Time, body: Runnable) -> None:

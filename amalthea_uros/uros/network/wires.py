@@ -19,10 +19,10 @@ from amalthea_uros.perf.network import Direction, Network, Purpose, Wire
 from amalthea_uros.perf.os import OperatingSystem, Policy, Scheduler
 from amalthea_uros.perf.software import Preemption, Runnable, Task
 from amalthea_uros.perf.system import System
+from amalthea_uros.uros.network.queueing import Queued
+from amalthea_uros.uros.network.receiving import Receivers
 from amalthea_uros.uros.transports.choice import keeps_sender
 from amalthea_uros.uros.transports.line import Frame, Line
-from amalthea_uros.uros.transports.queueing import Queued
-from amalthea_uros.uros.transports.receiving import Receivers
 
 _UNLIMITED = 1_000_000
 #: The type of the cores.

@@ -10,10 +10,10 @@ from amalthea_uros.perf.network import Direction
 from amalthea_uros.perf.stimuli import Burst, Periodic, Stimulus
 from amalthea_uros.spec.transports import Can, Transport
 from amalthea_uros.units import SECOND, Time, percent_text
-from amalthea_uros.uros.callbacks import Callback, Message
-from amalthea_uros.uros.can import FRAME_BYTES, CanBus, Identifier, frames, max_message_bits
+from amalthea_uros.uros.application.callbacks import Callback, Message
+from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.middleware.profile import Profile
-from amalthea_uros.uros.notes import Notes
+from amalthea_uros.uros.transports.can import FRAME_BYTES, CanBus, Identifier, frames, max_message_bits
 from amalthea_uros.uros.transports.messages import WireMessage, wire_messages
 
 #: The greatest identifier of 11 bits.

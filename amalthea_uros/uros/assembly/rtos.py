@@ -10,8 +10,8 @@ from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.executors import Executor
 from amalthea_uros.spec.os import Os, SleepTicks
 from amalthea_uros.units import Time, time_text
-from amalthea_uros.uros.notes import Notes
-from amalthea_uros.uros.tasks import PlannedTask
+from amalthea_uros.uros.application.notes import Notes
+from amalthea_uros.uros.assembly.tasks import PlannedTask
 
 #: Of an operating system whose tick is known, and nothing else: a sleep can end a tick before or after.
 _INEXACT = SleepTicks(early=1, late=1)

@@ -10,18 +10,18 @@ from amalthea_uros.perf.network import Purpose
 from amalthea_uros.perf.system import System
 from amalthea_uros.spec.transports import Can, CanFd
 from amalthea_uros.units import Time
-from amalthea_uros.uros.callbacks import Callback
-from amalthea_uros.uros.context import AssemblyContext
+from amalthea_uros.uros.application.callbacks import Callback
+from amalthea_uros.uros.assembly.context import AssemblyContext
+from amalthea_uros.uros.network.checks import check_foreign, check_lengths, check_load, check_reading, check_transport
+from amalthea_uros.uros.network.queueing import Queued, Queueing
+from amalthea_uros.uros.network.receiving import Receivers, add_receivers, without_idle
+from amalthea_uros.uros.network.wires import WirePlan, with_wire
 from amalthea_uros.uros.transports.can_fd import CanFdLine
-from amalthea_uros.uros.transports.checks import check_foreign, check_lengths, check_load, check_reading, check_transport
 from amalthea_uros.uros.transports.choice import is_bus, is_in_system, line_of
 from amalthea_uros.uros.transports.classic_can import CanLine
 from amalthea_uros.uros.transports.foreign import ForeignFrame, arbitration_rank, described_frames, without_own
 from amalthea_uros.uros.transports.line import Frame, Line
 from amalthea_uros.uros.transports.messages import WireMessage, wire_messages
-from amalthea_uros.uros.transports.queueing import Queued, Queueing
-from amalthea_uros.uros.transports.receiving import Receivers, add_receivers, without_idle
-from amalthea_uros.uros.transports.wires import WirePlan, with_wire
 
 #: Loses the arbitration against all identifiers.
 _OF_CLIENT = 2**31

@@ -22,7 +22,7 @@ from amalthea_uros.perf.hardware import (
 )
 from amalthea_uros.spec import hardware as spec
 from amalthea_uros.units import Frequency, frequency_text
-from amalthea_uros.uros.notes import Notes
+from amalthea_uros.uros.application.notes import Notes
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -14,10 +14,10 @@ from amalthea_uros.perf.events import RunnableChange, RunnableEvent
 from amalthea_uros.perf.stimuli import Counter, EventTriggered, Periodic, RelativePeriodic, Stimulus
 from amalthea_uros.perf.system import System
 from amalthea_uros.units import Time
-from amalthea_uros.uros.application import body_name
-from amalthea_uros.uros.bus_messages import BusMessage
-from amalthea_uros.uros.bus_system import Transmission, with_bus
-from amalthea_uros.uros.can import CanBus, block_bytes
+from amalthea_uros.uros.application.callbacks import body_name
+from amalthea_uros.uros.network.bus_system import Transmission, with_bus
+from amalthea_uros.uros.transports.bus_messages import BusMessage
+from amalthea_uros.uros.transports.can import CanBus, block_bytes
 
 #: Greater than all identifiers.
 _OF_CLIENT = 2**29

@@ -17,13 +17,13 @@ from amalthea_uros.perf.stimuli import InterProcess
 from amalthea_uros.perf.system import System
 from amalthea_uros.spec.middleware import MiddlewareTask
 from amalthea_uros.spec.transports import Interrupt
-from amalthea_uros.uros.activities import activity_sequence, trigger_name
-from amalthea_uros.uros.context import AssemblyContext
-from amalthea_uros.uros.executor import message_cost
-from amalthea_uros.uros.executors.serving import stated_executors
-from amalthea_uros.uros.interrupts import add_isr
+from amalthea_uros.uros.application.serving import stated_executors
+from amalthea_uros.uros.assembly.activities import activity_sequence, trigger_name
+from amalthea_uros.uros.assembly.context import AssemblyContext
+from amalthea_uros.uros.assembly.executor_runnables import message_cost
+from amalthea_uros.uros.assembly.interrupts import add_isr
+from amalthea_uros.uros.assembly.tasks import PlannedTask
 from amalthea_uros.uros.middleware.profile import MiddlewareThread
-from amalthea_uros.uros.tasks import PlannedTask
 from amalthea_uros.uros.transports.line import receive_interrupt
 from amalthea_uros.uros.transports.messages import WireMessage
 

@@ -11,7 +11,9 @@ from amalthea_uros.perf.network import Direction, Purpose
 from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.transports import Can, CanFd, CustomTransport, Driver, Serial, Transport, UsbCdc
 from amalthea_uros.units import SECOND, Time, data_size_text, percent_text, time_text
-from amalthea_uros.uros.notes import Notes
+from amalthea_uros.uros.application.notes import Notes
+from amalthea_uros.uros.network.queueing import Queued
+from amalthea_uros.uros.network.wires import WirePlan
 from amalthea_uros.uros.transports.can_fd import SIZES
 from amalthea_uros.uros.transports.choice import driver_of, is_bus
 from amalthea_uros.uros.transports.driver import WAITING, bytes_between_reads, steady_time
@@ -19,8 +21,6 @@ from amalthea_uros.uros.transports.foreign import ForeignFrame
 from amalthea_uros.uros.transports.framing import CHUNK, longest_frame
 from amalthea_uros.uros.transports.line import Line, WireSection, wire_sections
 from amalthea_uros.uros.transports.messages import WireMessage
-from amalthea_uros.uros.transports.queueing import Queued
-from amalthea_uros.uros.transports.wires import WirePlan
 
 #: Baud rates that users advise, from the default on.
 _BAUD_RATES = (115_200, 230_400, 460_800, 921_600, 1_000_000, 1_500_000, 2_000_000, 3_000_000)

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from amalthea_uros.perf.stimuli import Arrivals, Counter
 from amalthea_uros.spec.executors import Executor
 from amalthea_uros.units import Time, time_text
-from amalthea_uros.uros.callbacks import Callback
-from amalthea_uros.uros.notes import Notes
+from amalthea_uros.uros.application.callbacks import Callback
+from amalthea_uros.uros.application.notes import Notes
 
 
 @dataclass(frozen=True, slots=True)

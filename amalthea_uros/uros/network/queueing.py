@@ -13,16 +13,16 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from amalthea_uros.diagnostics import Location
+from amalthea_uros.perf.distributions import Uniform
 from amalthea_uros.perf.executors import HandleKind
 from amalthea_uros.perf.network import Direction, Purpose, Span, Transmission
-from amalthea_uros.perf.stimuli import Counter, InterProcess, Stimulus
+from amalthea_uros.perf.stimuli import Counter, InterProcess, Periodic, RelativePeriodic, Stimulus
 from amalthea_uros.perf.system import System
 from amalthea_uros.units import Time
-from amalthea_uros.uros.application import body_name
-from amalthea_uros.uros.bus_traffic import runs_per_message
-from amalthea_uros.uros.executor import notification_name
+from amalthea_uros.uros.application.callbacks import body_name
+from amalthea_uros.uros.assembly.executor_runnables import notification_name
 from amalthea_uros.uros.middleware.profile import Heartbeat, Profile
-from amalthea_uros.uros.transports.arrivals import arrivals
+from amalthea_uros.uros.network.bus_traffic import runs_per_message
 from amalthea_uros.uros.transports.choice import keeps_sender
 from amalthea_uros.uros.transports.foreign import ForeignFrame
 from amalthea_uros.uros.transports.line import Line, span_of, time_on
@@ -275,3 +275,19 @@ def _sum(spans: Iterable[Span]) -> Span:
     found = list(spans)
     known = [span.most for span in found if span.most is not None]
     return Span(least=sum(span.least for span in found), most=sum(known) if len(known) == len(found) else None)
+
+
+def arrivals(name: str, interval: Time, jitter: Time = 0, origin: Location | None = None, min_distance: Time = 0) -> Stimulus:
+    """Messages that come after a minimum time, each of which can be late.
+
+    Messages that are sent less often are never denser than those that are sent after exactly that time.
+
+    Parameters
+    ----------
+    min_distance : of two messages, whatever their jitter
+    """
+    if jitter:
+        late = Uniform(lower=0, upper=jitter)
+        return Periodic(name=name, period=interval, jitter=late, min_distance=min_distance or None, origin=origin)
+    distance = Uniform(lower=interval, upper=interval)
+    return RelativePeriodic(name=name, distance=distance, has_maximum=False, origin=origin)

@@ -51,7 +51,7 @@ def profile_of(middleware: Middleware, folder: Path | None = None) -> Profile:
 @cache
 def known_data(name: str) -> ProfileData:
     """The figures of a profile that comes with amuros."""
-    return read_section(Path(__file__).parent / name.replace("-", "_") / "profile.yaml", ProfileData)
+    return read_section(Path(__file__).parent / "middleware" / name.replace("-", "_") / "profile.yaml", ProfileData)
 
 
 def _known(name: str, place: Location | None) -> str:

@@ -22,7 +22,7 @@ from amalthea_uros.perf.os import OperatingSystem, Policy, Scheduler
 from amalthea_uros.perf.software import Preemption, Task
 from amalthea_uros.perf.stimuli import Stimulus
 from amalthea_uros.perf.system import System
-from amalthea_uros.uros.can import CanBus
+from amalthea_uros.uros.transports.can import CanBus
 
 #: The core of the bus, if nothing else has this name.
 BUS = "CAN"

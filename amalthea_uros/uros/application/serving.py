@@ -9,7 +9,7 @@ from amalthea_uros.spec.application import Callback, Node
 from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.executors import Executor
 from amalthea_uros.spec.middleware import Middleware
-from amalthea_uros.uros.notes import Notes
+from amalthea_uros.uros.application.notes import Notes
 
 _OWN_TASK, _FIRST = "own-task", "executor"
 

@@ -9,13 +9,13 @@ from amalthea_uros.diagnostics import Location
 from amalthea_uros.perf.executors import Executor
 from amalthea_uros.perf.software import Channel, Runnable
 from amalthea_uros.spec.description import Description
-from amalthea_uros.uros.demand import DemandConverter
-from amalthea_uros.uros.hardware import Controller
+from amalthea_uros.uros.application.notes import Notes
+from amalthea_uros.uros.assembly.demand import DemandConverter
+from amalthea_uros.uros.assembly.hardware import Controller
+from amalthea_uros.uros.assembly.rtos import PriorityScale, priority_scale
+from amalthea_uros.uros.assembly.stimuli import StimulusRegistry
+from amalthea_uros.uros.assembly.tasks import PlannedIsr, PlannedTask
 from amalthea_uros.uros.middleware.profile import Profile
-from amalthea_uros.uros.notes import Notes
-from amalthea_uros.uros.rtos import PriorityScale, priority_scale
-from amalthea_uros.uros.stimuli import StimulusRegistry
-from amalthea_uros.uros.tasks import PlannedIsr, PlannedTask
 
 
 @dataclass(slots=True, kw_only=True)

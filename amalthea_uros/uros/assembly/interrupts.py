@@ -7,10 +7,10 @@ from collections.abc import Iterable
 from amalthea_uros.perf.activities import Call, Trigger
 from amalthea_uros.perf.software import Runnable
 from amalthea_uros.spec.transports import Interrupt
-from amalthea_uros.uros.activities import activity_sequence
-from amalthea_uros.uros.context import AssemblyContext
-from amalthea_uros.uros.executors.serving import stated_executors
-from amalthea_uros.uros.tasks import PlannedIsr
+from amalthea_uros.uros.application.serving import stated_executors
+from amalthea_uros.uros.assembly.activities import activity_sequence
+from amalthea_uros.uros.assembly.context import AssemblyContext
+from amalthea_uros.uros.assembly.tasks import PlannedIsr
 
 
 def add_isr(
