@@ -57,7 +57,6 @@ if TYPE_CHECKING:
     from amalthea_uros.analyze.sensitivity import Sensitivity as Sensitivity
     from amalthea_uros.analyze.sensitivity import sensitivity as sensitivity
     from amalthea_uros.analyze.system import analyze_system as analyze_system
-    from amalthea_uros.analyze.ways.results import Way as Way
     from amalthea_uros.bridge.build import build_model as build_model
     from amalthea_uros.bridge.extract import Extraction as Extraction
     from amalthea_uros.bridge.extract import extract as extract
@@ -192,7 +191,6 @@ _NAMES = {
     "judge.summary": ("Schedulable", "Summary"),
     "analyze.system": ("analyze_system",),
     "judge.verdict": ("Verdict",),
-    "analyze.ways.results": ("Way",),
     "bridge.build": ("build_model",),
     "bridge.extract": ("Extraction", "extract"),
     "diagnostics": ("Finding", "Location", "Severity"),

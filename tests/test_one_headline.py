@@ -54,7 +54,7 @@ def changed(old, new):
 
 def test_a_path_ends_with_the_label_that_its_last_callback_writes():
     analysis = analysis_of(BOARD)
-    way = analysis.ways["to-motor"]
+    way = analysis.chains["to-motor"]
     assert (way.start, way.end) == ("/cmd_vel", "motor")
     # Whether it writes before or after it publishes is not stated: the worst case is the end of the callback.
     last = analysis.executors["Executor"].handles["Control"].response.worst
@@ -78,7 +78,7 @@ def analysis_of(text):
 
 def test_the_worst_latency_is_the_same_everywhere(app, tmp_path):
     """Text, JSON, report, explanation and library: as picoseconds, or as the text for them."""
-    way = analyze_files(app).analysis.ways["to-host"]
+    way = analyze_files(app).analysis.chains["to-host"]
     chain = analyze_files(app).analysis.chains["to-host"]
     requirement = next(each for each in analyze_files(app).analysis.requirements if each.name == "to-host_reaction")
     assert requirement.value == way.worst
@@ -86,8 +86,8 @@ def test_the_worst_latency_is_the_same_everywhere(app, tmp_path):
     shown = re.search(r"to-host +/cmd_vel +/wheel_speed +\S+ \S+ +(\S+ ms)", amuros("analyze", app).stdout).group(1)
     assert abs(float(shown.split()[0]) * 1e9 - way.worst) < 1e8
     document = json.loads(amuros("analyze", app, "--output", "json").stdout)
-    (found,) = (each for each in document["ways"] if each["name"] == "to-host")
-    assert found["worst_ps"] == way.worst
+    (found,) = (each for each in document["chains"] if each["name"] == "to-host")
+    assert sum(hop["worst_ps"] for hop in found["hops"]) == way.worst
     assert time_text(way.worst) in amuros("analyze", app, "--explain", "to-host").stdout.splitlines()[0]
     amuros("report", app, "-o", tmp_path / "report.html")
     assert shown in (tmp_path / "report.html").read_text()
@@ -105,7 +105,7 @@ def test_what_nobody_stated_is_never_met(case):
     old, new, key, chain = UNSTATED[case]
     analysis = analysis_of(changed(old, new))
     requirement = next(each for each in analysis.requirements if each.name == f"{chain}_reaction")
-    assert (requirement.verdict, analysis.ways[chain].worst) == ("unknown", None)
+    assert (requirement.verdict, analysis.chains[chain].worst) == ("unknown", None)
     assert key in requirement.reason
 
 

@@ -259,7 +259,7 @@ def contradictions(seed, until=S):
     for name, times in seen.sent.items():
         result = processes[name]
         at_most(f"{name} on the wire", times, result.response.worst if result.response else None)
-    for way in analysis.ways:
+    for way in analysis.message_chains:
         end = "On_0-command" if way.name == "On_0-motor" else way.name
         end = end if end in ("On_0-command", "Pwm", "Control_0-motor") else end.replace("-", "-/")
         outputs = player.pending_outputs[end]

@@ -27,8 +27,7 @@ best: amuros.Improvements = amuros.improvements(analysis, "chain")
 listed: amuros.System = amuros.taskset([{"period": 5, "wcet": 1}, (10, 2, 8)], unit="ms")
 new: Task = amuros.Model.new().add_task("T", period="5 ms", wcet="1 ms", priority=1)
 
-way: amuros.Way = analysis.ways["command"]
-hops: tuple[amuros.Hop, ...] = way.hops
+hops: tuple[amuros.Hop, ...] = analysis.chains["command"].hops
 handle: amuros.HandleResult = analysis.executors["Executor"].handles["drive"]
 texts: Mapping[str, str] = amuros.generate("app.yaml").texts
 fine: bool = amuros.check_colcon_meta("app.yaml", "colcon.meta").is_fine

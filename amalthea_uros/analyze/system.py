@@ -10,6 +10,7 @@ from amalthea_uros._internal.by_name import Results
 from amalthea_uros.analyze.callbacks import CallbackEvaluator
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.chains.job_chains import JobBudget
+from amalthea_uros.analyze.chains.messages.evaluate import evaluate_executors_and_messages
 from amalthea_uros.analyze.constraints.evaluator import ConstraintEvaluator
 from amalthea_uros.analyze.constraints.process_evidence import evidence_of, judged
 from amalthea_uros.analyze.constraints.requirements import evaluate_requirements
@@ -22,9 +23,6 @@ from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import ChainResult
 from amalthea_uros.analyze.results.processes import ProcessorResult, ProcessResult
-from amalthea_uros.analyze.ways.chain_results import chain_result
-from amalthea_uros.analyze.ways.evaluate import evaluate_ways
-from amalthea_uros.analyze.ways.results import Way
 from amalthea_uros.executors.findings import note_executors
 from amalthea_uros.executors.results import ExecutorResult
 from amalthea_uros.executors.semantics.loops import timing_context
@@ -69,13 +67,13 @@ def analyze_system(system: System, settings: Settings | None = None) -> Analysis
     solution = solve(timing_context(system, settings))
     system = solution.context.system
     unknown = unknown_phases(system)
-    executors, ways = evaluate_ways(solution)
+    executors, crossing = evaluate_executors_and_messages(solution)
     note_executors(executors, solution)
-    every = _of_all_phases(solution, unknown, executors, ways)
-    found = every or _analysis(solution, JobBudget(), executors, ways)
+    every = _of_all_phases(solution, unknown, executors, crossing)
+    found = every or _analysis(solution, JobBudget(), executors, crossing)
     phases, notes = phase_assumptions(system, are_all_evaluated=every is not None), solution.context.notes
-    # Executors and ways are evaluated once, for all phases; nothing else is based on the solution for all phases if there are cases.
-    is_used = every is None or bool(executors or ways)
+    # Executors and messages are evaluated once, for all phases; if there are cases, nothing else is based on the solution for these.
+    is_used = every is None or bool(executors or crossing)
     return replace(
         found,
         assumptions=tuple(dict.fromkeys((*found.assumptions, *(notes.assumptions if is_used else ()), *phases))),
@@ -84,7 +82,7 @@ def analyze_system(system: System, settings: Settings | None = None) -> Analysis
 
 
 def _of_all_phases(
-    solution: Solution, unknown: Sequence[Occurrence], executors: Results[ExecutorResult], ways: Results[Way]
+    solution: Solution, unknown: Sequence[Occurrence], executors: Results[ExecutorResult], crossing: Results[ChainResult]
 ) -> Analysis | None:
     """The analysis over all combinations of unknown phases; None if there are too many."""
     phases = Phases.of(solution, unknown)
@@ -92,19 +90,21 @@ def _of_all_phases(
         return None
     cases, budget = phases.cases, JobBudget()
     return merged(
-        {number: _analysis(each, budget, executors, ways) for number, each in phases.solutions(cases.of_everything())},
+        {number: _analysis(each, budget, executors, crossing) for number, each in phases.solutions(cases.of_everything())},
         cases,
         solution,
     )
 
 
-def _analysis(solution: Solution, budget: JobBudget, executors: Results[ExecutorResult], ways: Results[Way]) -> Analysis:
+def _analysis(
+    solution: Solution, budget: JobBudget, executors: Results[ExecutorResult], crossing: Results[ChainResult]
+) -> Analysis:
     """The analysis of a system; chains are evaluated for all phases of the jobs that they pass, other unknown phases are any job.
 
     Parameters
     ----------
     executors : those that spin in loops, for all phases
-    ways : of the chains that cross wires, the agent or executors that loop, for all phases
+    crossing : the chains that cross wires, the agent or executors in loops, for all phases
     """
     context = solution.context
     system = context.system
@@ -114,8 +114,8 @@ def _analysis(solution: Solution, budget: JobBudget, executors: Results[Executor
     schedules = evaluation.timing.schedules
     processes = Results(_processes(solution, schedules, executors))
     callbacks = Results(CallbackEvaluator(solution, schedules, executors).all())
-    of_ways = {way.name: chain_result(way) for way in ways}
-    chains = Results(of_ways.get(chain.name) or _chain(chain, evaluation) for chain in system.events.chains)
+    known = {chain.name: chain for chain in crossing}
+    chains = Results(known.get(chain.name) or _chain(chain, evaluation) for chain in system.events.chains)
     verdicts = evaluate_requirements(system, processes, callbacks, context.notes)
     requirements = Results((*verdicts, *ConstraintEvaluator(evaluation, {chain.name: chain for chain in chains}).all()))
     processors = Results(_processors(solution))
@@ -130,7 +130,6 @@ def _analysis(solution: Solution, budget: JobBudget, executors: Results[Executor
         assumptions=tuple(context.notes.assumptions),
         findings=tuple(context.notes.found),
         executors=executors,
-        ways=ways,
     )
 
 

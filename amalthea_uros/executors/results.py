@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import StrEnum
+from fractions import Fraction
 
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros._internal.shown import Shown
@@ -44,7 +45,7 @@ class HopKind(StrEnum):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Hop:
+class Hop(Shown):
     """A part of a chain that crosses wires, the agent or executors in loops.
 
     Attributes
@@ -53,6 +54,7 @@ class Hop:
     best, worst : bounds of that time; `worst` is None if it is unknown, for the `reason`
     source : what the bounds are based on: a method, or who stated them
     parts : what the worst case consists of; empty if it is one thing
+    share : its part of the upper bound of the chain; None if that is unknown
     remedy : what to state or change, if it is unknown
     """
 
@@ -62,6 +64,7 @@ class Hop:
     worst: Time | None
     source: str = ""
     parts: tuple[Part, ...] = ()
+    share: Fraction | None = None
     reason: str = ""
     remedy: str = ""
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.analyze.explanations.chains import Hop
+from amalthea_uros.analyze.explanations.chains import ProcessHop
 from amalthea_uros.analyze.explanations.hop_causes import Cause, CauseKind
 from amalthea_uros.units import time_text
 
 
-def cause_text(cause: Cause, hop: Hop) -> str:
+def cause_text(cause: Cause, hop: ProcessHop) -> str:
     """Why a part of a hop takes its time, said of its process: "waits for its next job, which runs every 20 ms"."""
     match cause.kind:
         case CauseKind.JUST_MISSED:
@@ -36,15 +36,15 @@ def cause_text(cause: Cause, hop: Hop) -> str:
             return "triggered: its response time"
 
 
-def _that_takes_part(hop: Hop) -> str:
+def _that_takes_part(hop: ProcessHop) -> str:
     return f" that takes part: 1 in {hop.one_in:,}" if hop.one_in > 1 else ""
 
 
-def _every(hop: Hop) -> str:
+def _every(hop: ProcessHop) -> str:
     if hop.period is None:
         return "at unknown intervals"
     return f"{'' if hop.one_in > 1 else 'which runs '}every {time_text(hop.period)}"
 
 
-def _period(hop: Hop) -> str:
+def _period(hop: ProcessHop) -> str:
     return "some time" if hop.period is None else time_text(hop.period)

@@ -16,9 +16,8 @@ from amalthea_uros.analyze.results.chains import ChainResult
 from amalthea_uros.analyze.results.processes import CallbackResult, ProcessorResult, ProcessResult
 from amalthea_uros.analyze.results.requirements import RequirementResult
 from amalthea_uros.analyze.sensitivity import Sensitivity
-from amalthea_uros.analyze.ways.results import Way
 from amalthea_uros.compare.results import Comparison, ComparisonRow, DistributionRow, MeasuredLimit
-from amalthea_uros.executors.results import ExecutorResult, HandleResult
+from amalthea_uros.executors.results import ExecutorResult, HandleResult, Hop
 from amalthea_uros.measure.series import Measurement
 from amalthea_uros.report.json import (
     analysis_result,
@@ -35,8 +34,7 @@ from amalthea_uros.report.json import (
     optimization,
     simulation_result,
 )
-from amalthea_uros.report.json.executors import handle_json
-from amalthea_uros.report.json.ways import hop_json
+from amalthea_uros.report.json.executors import handle_json, hop_json
 from amalthea_uros.services.analyze import AnalysisResult, Explanation
 from amalthea_uros.services.build import BuildResult
 from amalthea_uros.services.calibrate import Calibration
@@ -149,12 +147,8 @@ def _(handle: HandleResult) -> list[Record]:
 
 
 @all_records.register
-def _(way: Way) -> list[Record]:
-    """One row for each hop; a way without any has a row with the reason."""
-    own: Record = {"way": way.name, "start": way.start, "end": way.end}
-    rows = [own | flat({name: value for name, value in hop_json(hop, way).items() if name != "parts"}) for hop in way.hops]
-    nothing: Record = dict.fromkeys(("kind", "name", "best_ps", "worst_ps", "share", "source"))
-    return rows or [own | nothing | {"reason": way.reason, "remedy": way.remedy}]
+def _(hop: Hop) -> list[Record]:
+    return [flat({name: value for name, value in hop_json(hop).items() if name != "parts"})]
 
 
 @all_records.register

@@ -75,7 +75,7 @@ def test_a_topic_in_the_middle_is_sent_and_received(app):
     on_wire = [event.process for event in events_of(described) if isinstance(event, ProcessEvent)]
     callbacks = [described.system.transmissions[name].callback for name in on_wire]
     assert callbacks == ["drive", "drive", "log"]
-    way = analyze_system(described.system).ways["way"]
+    way = analyze_system(described.system).chains["way"]
     # There, back, and to log; the agent takes 1 ms each time.
     assert [hop.worst for hop in way.hops if hop.kind == "agent"] == [10**9] * 3
     assert way.worst == sum(hop.worst for hop in way.hops)
@@ -88,14 +88,14 @@ def test_a_callback_that_the_path_leaves_out_is_on_the_way(app):
 
 def test_a_task_of_a_callback_gets_its_messages_from_the_executor(app):
     described = app("/halt, stop, stopped, brake", stop="writes: [stopped], runs_in: own-task")
-    way = analyze_system(described.system).ways["way"]
+    way = analyze_system(described.system).chains["way"]
     assert [hop.kind for hop in way.hops] == ["agent", "wire", "executor", "tasks"]
     assert way.worst is not None
 
 
 def test_an_executor_without_a_loop_looks_for_messages_in_each_job(app):
     described = app("/halt, stop, stopped, brake", executor=PERIODIC)
-    way = analyze_system(described.system).ways["way"]
+    way = analyze_system(described.system).chains["way"]
     assert [hop.kind for hop in way.hops] == ["agent", "wire", "polling"]
     wait, _ = way.hops[-1].parts
     # A message that comes just after a job has begun waits for the period.
@@ -107,7 +107,7 @@ def test_without_a_transport_the_latency_is_unknown(app):
     described = app("/cmd_vel, drive, speed, pwm", transport="")
     assert [(each.rule, each.location.line) for each in described.findings if each.rule.startswith("CHN")] == [("CHN010", 21)]
     assert isinstance(events_of(described)[0], CustomEvent)
-    assert "describe 'transport'" in analyze_system(described.system).ways["way"].reason
+    assert "describe 'transport'" in analyze_system(described.system).chains["way"].reason
 
 
 @pytest.mark.parametrize(

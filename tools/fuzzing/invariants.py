@@ -200,7 +200,7 @@ def same_model(path: Path, folder: Path) -> None:
             getattr(described, part) == getattr(built, part), f"{part} of the model that was built differ from those described"
         )
     results = [analyze_files(file).analysis for file in (path, first)]
-    for kind in ("processes", "executors", "ways", "chains", "requirements"):
+    for kind in ("processes", "executors", "chains", "requirements"):
         of_description, of_model = ([*map(_figures, getattr(result, kind))] for result in results)
         require(
             of_description == of_model,
@@ -249,24 +249,25 @@ def generate(path: Path, folder: Path) -> None:
         _check_json(report)
 
 
-def ways(path: Path, folder: Path) -> None:
-    """Times on the way of a message add up, in each format."""
+def message_chains(path: Path, folder: Path) -> None:
+    """Times of the hops of a chain add up, in each format."""
     report = folder / "analysis.json"
     run("analyze", path, "--output", f"json={report}")
     try:
-        found = analyze_files(path).analysis.ways
+        found = analyze_files(path).analysis.message_chains
     except AmurosError:
         return
-    for way in found:
-        known = [hop.worst for hop in way.hops if hop.worst is not None]
+    for chain in found:
+        known = [hop.worst for hop in chain.hops if hop.worst is not None]
         require(
-            all(hop.best <= hop.worst for hop in way.hops if hop.worst is not None), f"a hop of {way.name} has crossed bounds"
+            all(hop.best <= hop.worst for hop in chain.hops if hop.worst is not None),
+            f"a hop of {chain.name} has crossed bounds",
         )
-        require(way.worst is None or (bool(way.hops) and way.worst == sum(known)), f"hops of {way.name} do not add up")
-        require(way.worst is None or len(known) == len(way.hops), f"{way.name} is bounded, but a hop is not")
-        require(way.worst is not None or bool(way.reason), f"{way.name} is unknown without a reason")
-        run("analyze", path, "--chain", way.name)
-        run("analyze", path, "--explain", way.name)
+        require(chain.worst is None or (bool(chain.hops) and chain.worst == sum(known)), f"hops of {chain.name} do not add up")
+        require(chain.worst is None or len(known) == len(chain.hops), f"{chain.name} is bounded, but a hop is not")
+        require(chain.worst is not None or bool(chain.reason), f"{chain.name} is unknown without a reason")
+        run("analyze", path, "--chain", chain.name)
+        run("analyze", path, "--explain", chain.name)
 
 
 def import_code(path: Path, folder: Path) -> None:
@@ -409,7 +410,7 @@ def _require_equal(old: Path, new: Path) -> None:
 
 
 _OF_BOTH: tuple[Invariant, ...] = (check, analyze, simulate, campaign, agreement, comparison)
-_OF_DESCRIPTIONS: tuple[Invariant, ...] = (build, same_model, generate, ways, *_OF_BOTH)
+_OF_DESCRIPTIONS: tuple[Invariant, ...] = (build, same_model, generate, message_chains, *_OF_BOTH)
 _OF_MODELS: tuple[Invariant, ...] = (
     info,
     load_and_save,

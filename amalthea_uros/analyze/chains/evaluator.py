@@ -187,7 +187,7 @@ class ChainEvaluator:
         UnboundedStageError : there is no bound.
         """
         for link in route.links:
-            if link.kind is LinkKind.TOPIC:
+            if link.kind is LinkKind.MESSAGE:
                 raise UnboundedStageError(
                     f"the message {link.names[0]!r} leaves the system and comes back, and nobody stated how long that takes"
                 )

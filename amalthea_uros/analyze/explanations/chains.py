@@ -22,7 +22,6 @@ from amalthea_uros.analyze.phases.merged import Phases
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import ChainResult, Quantity, Value
 from amalthea_uros.analyze.results.requirements import RequirementResult
-from amalthea_uros.analyze.ways.results import Way
 from amalthea_uros.perf.constraints import LatencyConstraint
 from amalthea_uros.perf.events import EventChain
 from amalthea_uros.timing.activation.phases import unknown_phases
@@ -36,7 +35,7 @@ _REACTIONS = (Quantity.MAX_REACTION_TIME, Quantity.MAX_REDUCED_REACTION_TIME)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Hop:
+class ProcessHop:
     """The contribution of a process to a latency; times are relative to the first read.
 
     Attributes
@@ -76,21 +75,19 @@ class ChainExplanation:
     ----------
     value : that is explained; None if there is none, for the `reason`
     route : the events and the links between them
-    hops : their waits and runs, with `overwritten`, add up to the value; empty for the `reason`
+    hops : of a chain without message hops: their waits and runs, with `overwritten`, add up to the value; empty for the `reason`
     overwritten : for data age, the time from the last output until the next one
     requirements : the verdicts on limits of the chain
-    way : its hops, if it crosses wires, the agent or executors that loop; None for other chains
     """
 
     chain: ChainResult
     quantity: Quantity
     value: Value | None = None
     route: str = ""
-    hops: tuple[Hop, ...] = ()
+    hops: tuple[ProcessHop, ...] = ()
     overwritten: Time = 0
     reason: str = ""
     requirements: tuple[RequirementResult, ...] = ()
-    way: Way | None = None
 
     def share(self, time: Time) -> Fraction:
         """The part of the value that a time is."""
@@ -132,10 +129,10 @@ def explain_chain(analysis: Analysis, name: str, quantity: Quantity = Quantity.M
 def _explained(analysis: Analysis, name: str, quantity: Quantity) -> ChainExplanation:
     result = analysis.chains[name]
     value = result.value(quantity)
-    way = next((way for way in analysis.ways if way.name == name), None)
-    if way is not None:
-        reason = "" if value is not None else result.reason or f"the {quantity.replace('_', ' ')} of ways is not bounded"
-        return ChainExplanation(chain=result, quantity=quantity, value=value, route=result.routes[0], way=way, reason=reason)
+    if result.crosses_messages:
+        unbounded = f"the {quantity.replace('_', ' ')} of chains over wires and executors is not bounded"
+        reason = "" if value is not None else result.reason or unbounded
+        return ChainExplanation(chain=result, quantity=quantity, value=value, route=result.routes[0], reason=reason)
     if value is None or value.value is None:
         reason = result.reason or "no method gives this value"
         return ChainExplanation(chain=result, quantity=quantity, reason=reason)
@@ -175,7 +172,7 @@ class _RouteExplanation:
     def timing(self) -> StageTiming:
         return self.evaluator.timing
 
-    def hops(self) -> tuple[tuple[Hop, ...], Time] | None:
+    def hops(self) -> tuple[tuple[ProcessHop, ...], Time] | None:
         """The hops, and the time until the output is overwritten; None if they do not add up to the value."""
         try:
             latencies = self.evaluator.latencies(self.route)
@@ -315,14 +312,14 @@ class _RouteExplanation:
     def _picoseconds(self, time: Time) -> Time:
         return -(-time // self.timing.unit)
 
-    def _placed(self, steps: Sequence[_Step]) -> tuple[Hop, ...]:
+    def _placed(self, steps: Sequence[_Step]) -> tuple[ProcessHop, ...]:
         """The hops in picoseconds; as all times are rounded from the beginning, waits and runs still add up."""
         found = []
         now, origin = 0, self._picoseconds(steps[0].wait)
         for step in steps:
             read, write = now + step.wait, now + step.wait + step.run
             found.append(
-                Hop(
+                ProcessHop(
                     process=step.process,
                     job=step.job,
                     release=None if step.release is None else self._picoseconds(read - step.release) - origin,

@@ -14,10 +14,10 @@ from amalthea_uros.analyze.results.processes import CallbackResult, ProcessorRes
 from amalthea_uros.analyze.results.requirements import RequirementResult
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.judge.summary import Summary
+from amalthea_uros.perf.constraints import LatencyConstraint
 
 if TYPE_CHECKING:
     from amalthea_uros.analyze.response_times.solution import Solution
-    from amalthea_uros.analyze.ways.results import Way
     from amalthea_uros.executors.results import ExecutorResult
 
 Judged: TypeAlias = ProcessResult | RequirementResult
@@ -35,7 +35,6 @@ class Analysis(Shown):
     worst_solutions : for each process the solution of the phase in which its response time is the worst; empty if all are known
     summary : whether everything is met, and what is missed or unknown
     executors : those that spin in loops
-    ways : chains over wires, the agent or executors that loop; those with limits first
     assumptions : on which the numbers are based
     findings : what the analysis does not take into account
     """
@@ -52,7 +51,6 @@ class Analysis(Shown):
     findings: tuple[Finding, ...]
     worst_solutions: Mapping[str, Solution] = field(default_factory=dict, repr=False, compare=False)
     executors: Results[ExecutorResult] = field(default_factory=Results)
-    ways: Results[Way] = field(default_factory=Results)
 
     def __repr__(self) -> str:
         parts = [counted(len(self.processes), "process"), counted(len(self.chains), "chain")]
@@ -65,6 +63,14 @@ class Analysis(Shown):
         """The callbacks without those of executors that spin in loops, of which the executors have more to say."""
         looping = {executor.task for executor in self.executors}
         return tuple(callback for callback in self.callbacks if callback.process not in looping)
+
+    @property
+    def message_chains(self) -> tuple[ChainResult, ...]:
+        """The chains that cross wires, the agent or executors in loops; those with limits first."""
+        constraints = self.solution.context.system.constraints.constraints
+        limited = {each.chain for each in constraints if isinstance(each, LatencyConstraint)}
+        found = (chain for chain in self.chains if chain.crosses_messages)
+        return tuple(sorted(found, key=lambda chain: chain.name not in limited))
 
     def solution_of(self, process: str) -> Solution:
         """The solution that the response time of a process is from."""

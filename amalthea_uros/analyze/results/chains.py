@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 
+from amalthea_uros._internal.by_name import Results
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.results.processes import bound_text
+from amalthea_uros.executors.results import Hop
 from amalthea_uros.timing.response import Claim
 from amalthea_uros.units import Time
 
@@ -70,6 +72,12 @@ class ChainResult(Shown):
     all_values : the values of all methods
     why : why the values are exact or only bounds
     reason : why some or all values are missing
+    remedy : what to do about it, if that is known
+    crosses_messages : whether it crosses wires, the agent or executors in loops; what follows is only known of such chains
+    start, end : what its latency starts and ends with, such as `/cmd_vel` and `pwm`
+    hops : in order; empty if they are not known, for the `reason`
+    loss : how messages can be lost; "" if none can. Then the sum of the hops only holds for messages that are not lost
+    assumptions : on which the hops are based
     """
 
     name: str
@@ -79,6 +87,13 @@ class ChainResult(Shown):
     all_values: tuple[Value, ...] = ()
     why: str = ""
     reason: str = ""
+    remedy: str = ""
+    crosses_messages: bool = False
+    start: str = ""
+    end: str = ""
+    hops: Results[Hop] = field(default_factory=Results)
+    loss: str = ""
+    assumptions: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         shown = [value for value in self.values if value.quantity in EXPLAINED] or self.values
@@ -88,3 +103,21 @@ class ChainResult(Shown):
     def value(self, quantity: Quantity) -> Value | None:
         """The tightest value of a quantity."""
         return next((value for value in self.values if value.quantity is quantity), None)
+
+    @property
+    def best(self) -> Time | None:
+        """A lower bound of the latency from the first event to the last; None if it is unknown."""
+        value = self.value(Quantity.MIN_FIRST_TO_FIRST)
+        return None if value is None else value.value
+
+    @property
+    def worst(self) -> Time | None:
+        """An upper bound of the reduced reaction time; None if there is none."""
+        value = self.value(Quantity.MAX_REDUCED_REACTION_TIME)
+        return None if value is None else value.value
+
+    @property
+    def worst_if_not_lost(self) -> Time | None:
+        """The sum of the hops, an upper bound for messages that are not lost; None if one is unknown, or there are no hops."""
+        times = [hop.worst for hop in self.hops]
+        return None if not times or None in times else sum(filter(None, times))

@@ -25,13 +25,13 @@ from amalthea_uros.report.html.sections import (
     histograms,
     hops,
     load,
+    message_chains,
     methods,
     observed,
     pools,
     response_times,
     system,
     tightest,
-    ways,
     worst_window,
 )
 from amalthea_uros.report.judged import judged_rows, why
@@ -42,7 +42,7 @@ from amalthea_uros.services.report import ReportContent
 _SECTIONS: Sequence[Callable[[ReportContent], Section | None]] = (
     changes.section,
     tightest.section,
-    ways.section,
+    message_chains.section,
     system.section,
     load.section,
     response_times.section,

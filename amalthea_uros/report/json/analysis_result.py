@@ -13,8 +13,7 @@ from amalthea_uros.analyze.results.requirements import RequirementResult
 from amalthea_uros.report.closing_line import closing_line
 from amalthea_uros.report.findings import finding_json, joined
 from amalthea_uros.report.json import changes, explanation, impact
-from amalthea_uros.report.json.executors import executor_json
-from amalthea_uros.report.json.ways import way_json
+from amalthea_uros.report.json.executors import executor_json, hop_json
 from amalthea_uros.services.analyze import AnalysisResult
 from amalthea_uros.timing.basics.quantities import JobMetric
 
@@ -30,7 +29,6 @@ def content(result: AnalysisResult) -> dict[str, Any]:
         "processes": [process_json(process) for process in analysis.processes],
         "callbacks": [callback_json(callback) for callback in analysis.callbacks],
         "executors": [executor_json(executor) for executor in analysis.executors],
-        "ways": [way_json(way) for way in analysis.ways],
         "chains": [_chain_json(chain, result.all_methods) for chain in analysis.chains],
         "requirements": [requirement_json(requirement) for requirement in analysis.requirements],
         "summary": summary_json(analysis),
@@ -154,6 +152,13 @@ def _chain_json(chain: ChainResult, all_methods: bool) -> dict[str, Any]:
         "routes": list(chain.routes),
         "why": chain.why,
         "reason": chain.reason,
+        "remedy": chain.remedy,
+        "start": chain.start,
+        "end": chain.end,
+        "hops": [hop_json(hop) for hop in chain.hops],
+        "worst_if_not_lost_ps": chain.worst_if_not_lost,
+        "loss": chain.loss,
+        "assumptions": list(chain.assumptions),
         "values": [value_json(value) for value in (chain.all_values if all_methods else chain.values)],
     }
 

@@ -1,10 +1,10 @@
-"""Executors that spin in loops, for programs."""
+"""Executors that spin in loops, and the hops of chains over them, for programs."""
 
 from __future__ import annotations
 
 from typing import Any
 
-from amalthea_uros.executors.results import ExecutorResult, HandleResult, Loss, Part
+from amalthea_uros.executors.results import ExecutorResult, HandleResult, Hop, Loss, Part
 
 
 def executor_json(executor: ExecutorResult) -> dict[str, Any]:
@@ -46,3 +46,18 @@ def _loss_json(loss: Loss) -> dict[str, Any]:
 def part_json(part: Part) -> dict[str, Any]:
     """A part of a response time or of a hop."""
     return {"name": part.name, "min_ps": part.least, "max_ps": part.most, "why": part.why}
+
+
+def hop_json(hop: Hop) -> dict[str, Any]:
+    """A hop, with its part of the latency."""
+    return {
+        "kind": hop.kind,
+        "name": hop.name,
+        "best_ps": hop.best,
+        "worst_ps": hop.worst,
+        "share": None if hop.share is None else float(hop.share),
+        "source": hop.source,
+        "reason": hop.reason,
+        "remedy": hop.remedy,
+        "parts": list(map(part_json, hop.parts)),
+    }

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from amalthea_uros.analyze.explanations.chains import ChainExplanation, Hop
+from amalthea_uros.analyze.explanations.chains import ChainExplanation, ProcessHop
 from amalthea_uros.analyze.explanations.execution_shares import ExecutionShare
 from amalthea_uros.analyze.explanations.hop_causes import Cause, Execution
 from amalthea_uros.analyze.explanations.processes import CallbackExplanation, ProcessExplanation
@@ -130,7 +130,7 @@ def _chain_json(explanation: ChainExplanation) -> dict[str, Any]:
     }
 
 
-def _cause_json(cause: Cause, hop: Hop) -> dict[str, Any]:
+def _cause_json(cause: Cause, hop: ProcessHop) -> dict[str, Any]:
     return {
         "kind": cause.kind,
         "time_ps": cause.time,

@@ -13,11 +13,11 @@ from amalthea_uros.report.closing_line import closing_line
 from amalthea_uros.report.judged import judged_rows, limit_text, margin_text, requirements_of, why, worst_chains
 from amalthea_uros.report.latencies import value_text
 from amalthea_uros.report.markdown_text import escaped, table
+from amalthea_uros.report.message_chains import HEADINGS as MESSAGE_HEADINGS
+from amalthea_uros.report.message_chains import RIGHT as MESSAGE_RIGHT
+from amalthea_uros.report.message_chains import latency_row
 from amalthea_uros.report.simulated import REMINDER
 from amalthea_uros.report.simulated import closing_line as observed_line
-from amalthea_uros.report.ways import HEADINGS as HEADINGS_OF_WAYS
-from amalthea_uros.report.ways import RIGHT as RIGHT_OF_WAYS
-from amalthea_uros.report.ways import latency_row
 from amalthea_uros.services.impact_text import HEADINGS, RIGHT, cells, unchanged_text
 from amalthea_uros.services.report import ReportContent
 
@@ -52,7 +52,7 @@ def _all_lines(content: ReportContent) -> Iterator[str]:
     yield from _warnings(content)
     yield from _changes(content)
     yield from _requirements(content)
-    yield from _ways(content)
+    yield from _message_chains(content)
     yield from _chains(content)
     if content.simulation is not None:
         line = observed_line(content.simulation.simulation).removesuffix(REMINDER).rstrip()
@@ -99,14 +99,14 @@ def _requirements(content: ReportContent) -> Iterator[str]:
     yield from _table(("requirement", "what", "value", "limit", "margin", "claim", "verdict", "why"), rows, right=(2, 3, 4))
 
 
-def _ways(content: ReportContent) -> Iterator[str]:
-    ways = content.analysis.ways
-    if not ways:
+def _message_chains(content: ReportContent) -> Iterator[str]:
+    chains = content.analysis.message_chains
+    if not chains:
         return
     yield from ("", "### Latency of messages, end to end", "")
-    yield from _table((*HEADINGS_OF_WAYS, "why"), list(map(latency_row, ways[:_MOST_ROWS])), right=RIGHT_OF_WAYS)
-    if len(ways) > _MOST_ROWS:
-        yield from ("", f"{counted(len(ways) - _MOST_ROWS, 'more chain')} not shown.")
+    yield from _table((*MESSAGE_HEADINGS, "why"), list(map(latency_row, chains[:_MOST_ROWS])), right=MESSAGE_RIGHT)
+    if len(chains) > _MOST_ROWS:
+        yield from ("", f"{counted(len(chains) - _MOST_ROWS, 'more chain')} not shown.")
 
 
 def _chains(content: ReportContent) -> Iterator[str]:

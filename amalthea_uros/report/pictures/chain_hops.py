@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.analyze.explanations.chains import ChainExplanation, Hop
+from amalthea_uros.analyze.explanations.chains import ChainExplanation, ProcessHop
 from amalthea_uros.report.pictures.arrows import arrows_at, draw_activations
 from amalthea_uros.report.pictures.page import MARGIN, TOP, WIDTH, LegendEntry, document, draw_legend
 from amalthea_uros.report.pictures.style import ARROW_END, PALETTE, SMALL_SIZE, TEXT_SIZE
@@ -30,7 +30,7 @@ MOST_HOPS = 40
 class _Lane:
     """A hop: it waits from `begin` to its read, then runs to its write."""
 
-    hop: Hop
+    hop: ProcessHop
     begin: Time
     colour: int
     top: float
@@ -69,7 +69,7 @@ def draw_hops(explanation: ChainExplanation, limit: Time | None = None) -> Marku
     return document(title, _subtitle(explanation, explanation.value.value, limit), body, height + MARGIN)
 
 
-def _lanes(hops: Sequence[Hop]) -> list[_Lane]:
+def _lanes(hops: Sequence[ProcessHop]) -> list[_Lane]:
     colours: dict[str, int] = {}
     lanes = []
     begin = hops[0].read - hops[0].wait
@@ -89,7 +89,7 @@ def _axis(explanation: ChainExplanation, lanes: Sequence[_Lane], limit: Time | N
     return TimeAxis(min(times), max(ends), left, WIDTH - _RIGHT - left)
 
 
-def _details(hop: Hop) -> str:
+def _details(hop: ProcessHop) -> str:
     job = () if hop.job is None else (f"job {hop.job}",)
     waits = (f"waits {time_text(hop.wait)}",) if hop.wait else ()
     return ", ".join((*job, *waits, f"runs {time_text(hop.run)}"))
@@ -104,7 +104,7 @@ def _labels(lane: _Lane, axis: TimeAxis) -> Markup:
     )
 
 
-def _description(hop: Hop) -> str:
+def _description(hop: ProcessHop) -> str:
     known = (("released", hop.release), ("started", hop.start))
     return ", ".join(
         (

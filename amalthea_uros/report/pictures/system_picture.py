@@ -38,14 +38,14 @@ _DASHES = {
     LinkKind.TRIGGER: "7 3",
     LinkKind.OS_EVENT: "2 3",
     LinkKind.SERVER_CALL: "2 3",
-    LinkKind.TOPIC: "9 3 2 3",
+    LinkKind.MESSAGE: "9 3 2 3",
 }
 _MEANINGS = {
     LinkKind.DATA: "data",
     LinkKind.TRIGGER: "activation",
     LinkKind.OS_EVENT: "OS event",
     LinkKind.SERVER_CALL: "server call",
-    LinkKind.TOPIC: "messages of a topic",
+    LinkKind.MESSAGE: "messages of a topic",
 }
 
 

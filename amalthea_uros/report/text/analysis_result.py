@@ -11,12 +11,12 @@ from amalthea_uros.analyze.results.requirements import RequirementResult
 from amalthea_uros.judge.verdict import WORST_FIRST, Verdict
 from amalthea_uros.report.closing_line import closing_line
 from amalthea_uros.report.latencies import write_chains
+from amalthea_uros.report.message_chains import write_message_chains
 from amalthea_uros.report.process_order import by_core_and_priority
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.report.text import impact
 from amalthea_uros.report.text.executors import write_executors
 from amalthea_uros.report.text.metrics import write_callbacks, write_metrics
-from amalthea_uros.report.ways import write_ways
 from amalthea_uros.services.analyze import AnalysisResult
 from amalthea_uros.units import Rounding, Time, frequency_text, percent_text, rounded_time_text, time_text
 
@@ -26,7 +26,7 @@ BAR = 20
 def write(result: AnalysisResult, terminal: Terminal) -> None:
     """Write tables of loads, response times, chains and requirements, with methods, assumptions and the verdict."""
     analysis = result.analysis
-    write_ways(analysis.ways, terminal)
+    write_message_chains(analysis.message_chains, terminal)
     _processors(terminal, analysis)
     _processes(terminal, analysis)
     write_callbacks(terminal, analysis.of_periodic_executors)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from amalthea_uros.executors.results import ExecutorResult, HandleResult
+from amalthea_uros.report.message_chains import part_time
 from amalthea_uros.report.terminal import Terminal
-from amalthea_uros.report.ways import part_time
 from amalthea_uros.units import Rounding, Time, rounded_time_text, time_text
 
 

@@ -20,10 +20,10 @@ from amalthea_uros.perf.executors import HandleKind
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.report.chain_causes import cause_text
 from amalthea_uros.report.hops import write_hops
+from amalthea_uros.report.message_chains import write_hops_of_chain
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.report.text import improvements
 from amalthea_uros.report.text.executors import write_terms
-from amalthea_uros.report.ways import write_hops_of_way
 from amalthea_uros.services.analyze import Explanation
 from amalthea_uros.services.improvements import Improvements
 from amalthea_uros.timing.response import Response
@@ -252,8 +252,8 @@ def _chain(explanation: ChainExplanation, found: Improvements | None, terminal: 
         _largest_cause(explanation, terminal)
     if found is not None:
         improvements.write_best(found, terminal)
-    if explanation.way is not None:
-        write_hops_of_way(explanation.way, terminal)
+    if explanation.chain.crosses_messages:
+        write_hops_of_chain(explanation.chain, terminal)
     elif value is not None and value.value is not None:
         _worst_case(explanation, value, value.value, terminal)
     if found is not None:

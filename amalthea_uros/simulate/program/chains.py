@@ -39,7 +39,7 @@ from amalthea_uros.timing.jobs.positions import ActivityPosition
 from amalthea_uros.trace.table import EntityKind
 
 #: Links whose effect is not followed, because the model does not say when it takes place.
-_NOT_FOLLOWED = (LinkKind.OS_EVENT, LinkKind.SERVER_CALL, LinkKind.TOPIC)
+_NOT_FOLLOWED = (LinkKind.OS_EVENT, LinkKind.SERVER_CALL, LinkKind.MESSAGE)
 
 #: When a response at no activity of a job occurs: where the record of the process has the time; 0: now.
 _RESPONSE_TIMES = {JobPhase.ACTIVATION: ACTIVATION, JobPhase.START: START, JobPhase.END: 0}

@@ -47,7 +47,7 @@ class LinkKind(StrEnum):
     NEXT_JOB = "the next job"
     TRIGGER = "a trigger"
     DATA = "data"
-    TOPIC = "a topic"
+    MESSAGE = "a message"
     OS_EVENT = "an OS event"
     SERVER_CALL = "a server call"
     NOTHING = "nothing"
@@ -56,7 +56,7 @@ class LinkKind(StrEnum):
 #: Where nothing takes the effect on.
 GAPS = (LinkKind.NOTHING, LinkKind.NEXT_JOB)
 #: Links for which the time of the effect in the jobs is unknown, or the time that a message takes.
-UNTIMED = (*GAPS, LinkKind.OS_EVENT, LinkKind.SERVER_CALL, LinkKind.TOPIC)
+UNTIMED = (*GAPS, LinkKind.OS_EVENT, LinkKind.SERVER_CALL, LinkKind.MESSAGE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,7 +151,7 @@ class Dataflow:
         if first.position is None or then.position is None:
             return ()
         links = self._shared(first, self._own_accesses(first, writes), then, self._own_accesses(then, reads))
-        return tuple(link for link in links if link.kind is LinkKind.TOPIC)
+        return tuple(link for link in links if link.kind is LinkKind.MESSAGE)
 
     def _between_accesses(self, first: EventOccurrence, then: EventOccurrence) -> tuple[Link, ...]:
         """The data if both events are accesses to the same: so it is stated that they are meant."""
@@ -166,7 +166,7 @@ class Dataflow:
         """
         shared = [name for name in written if name in read]
         inside = [name for name in shared if not self.is_topic(name)]
-        kind = LinkKind.DATA if inside else LinkKind.TOPIC
+        kind = LinkKind.DATA if inside else LinkKind.MESSAGE
         names: dict[tuple[Hashable, ...], list[str]] = {}
         for name in inside or shared:
             # The last write counts, and the first read after which the data are there.
@@ -207,7 +207,7 @@ class Dataflow:
                     consumers.setdefault(name, []).append(process)
             for process in self.system.processes:
                 for name in self.by_name(process, source):
-                    found = LinkKind.TOPIC if kind is LinkKind.DATA and self.is_topic(name) else kind
+                    found = LinkKind.MESSAGE if kind is LinkKind.DATA and self.is_topic(name) else kind
                     yield from (
                         DirectLink(found, process, name, other) for other in consumers.get(name, ()) if other != process
                     )

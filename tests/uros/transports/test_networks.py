@@ -369,6 +369,6 @@ def test_messages_that_keep_a_connection_alive_are_on_the_wire(author):
 def test_a_message_that_can_be_dropped_has_no_bound(author):
     chains = "chains: [{name: there, path: [/cmd_vel, Drive, /odom]}, {name: drive, path: [/cmd_vel, Drive]}]"
     analysis = analyze_system(author.describe(f"{dedent(QUICK)}\n{chains}\n").system)
-    assert analysis.ways["there"].worst is None
-    assert analysis.ways["there"].loss == "a message of 'odom' is dropped if another thread of the middleware is sending"
-    assert analysis.ways["drive"].worst is not None
+    assert analysis.chains["there"].worst is None
+    assert analysis.chains["there"].loss == "a message of 'odom' is dropped if another thread of the middleware is sending"
+    assert analysis.chains["drive"].worst is not None

@@ -5,7 +5,7 @@ from __future__ import annotations
 from amalthea_uros.executors.results import ExecutorResult, HandleResult
 from amalthea_uros.report.html.blocks import Block, Cell, Folded, Section, Table, table
 from amalthea_uros.report.html.times import at_least, at_most
-from amalthea_uros.report.ways import part_time
+from amalthea_uros.report.message_chains import part_time
 from amalthea_uros.services.report import ReportContent
 from amalthea_uros.units import time_text
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from amalthea_uros.analyze.explanations.chains import ChainExplanation, Hop, explain_chain
+from amalthea_uros.analyze.explanations.chains import ChainExplanation, ProcessHop, explain_chain
 from amalthea_uros.analyze.results.chains import Quantity
 from amalthea_uros.report.html import shortened
 from amalthea_uros.report.html.blocks import Block, Figure, Folded, Heading, Section, Sentences, table
@@ -69,7 +69,7 @@ def _limit(chain: str, quantity: Quantity, content: ReportContent) -> Time | Non
     return min((each.limit for each in limits if each.limit is not None), default=None)
 
 
-def _row(hop: Hop) -> tuple[str, ...]:
+def _row(hop: ProcessHop) -> tuple[str, ...]:
     return (
         hop.process,
         "-" if hop.job is None else f"{hop.job:,}",

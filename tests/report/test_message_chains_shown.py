@@ -1,4 +1,4 @@
-"""Ways of messages in tables, pages and summaries."""
+"""Chains over wires and executors in tables, pages and summaries."""
 
 import pytest
 
@@ -27,17 +27,12 @@ def shown(tmp_path_factory):
     return amuros.report(path, with_simulation=False)
 
 
-def test_a_way_has_a_row_for_each_hop(shown):
-    (way,) = shown.content.analysis.ways
-    rows = way.to_records()
-    assert [(row["way"], row["kind"]) for row in rows] == [("command", kind) for kind in ("agent", "wire", "executor")]
-    assert sum(row["worst_ps"] for row in rows) == way.worst
+def test_a_chain_has_a_row_for_each_hop(shown):
+    (chain,) = shown.content.analysis.chains
+    rows = chain.hops.to_records()
+    assert [row["kind"] for row in rows] == ["agent", "wire", "executor"]
+    assert sum(row["worst_ps"] for row in rows) == chain.worst
     assert sum(row["share"] for row in rows) == pytest.approx(1)
-
-
-def test_a_way_that_is_not_known_has_a_row_with_the_reason():
-    (row,) = amuros.Way(name="w", start="a", end="b", hops=(), reason="nobody said", remedy="Say it.").to_records()
-    assert (row["way"], row["worst_ps"], row["reason"], row["remedy"]) == ("w", None, "nobody said", "Say it.")
 
 
 def test_the_handles_of_an_executor_are_rows(shown):
@@ -48,23 +43,23 @@ def test_the_handles_of_an_executor_are_rows(shown):
 
 def test_a_page_has_the_latency_and_the_hops(shown):
     page = shown.html
-    assert page.index('id="ways"') < page.index("Latency of messages, end to end") < page.index("Hops of command")
+    assert page.index('id="message-chains"') < page.index("Latency of messages, end to end") < page.index("Hops of command")
     for text in ("agent: Agent", "wire: Serial", "executor: Executor", "sleep"):
         assert text in page
 
 
 def test_a_summary_has_the_latency(shown):
     (line,) = [line for line in shown.markdown.splitlines() if line.startswith("| command | /cmd_vel |")]
-    (way,) = shown.content.analysis.ways
-    assert amuros.units.rounded_time_text(way.worst, amuros.units.Rounding.UP) in line
+    (chain,) = shown.content.analysis.chains
+    assert amuros.units.rounded_time_text(chain.worst, amuros.units.Rounding.UP) in line
     assert "most of it: messages before it (executor Executor)" in line
 
 
 def test_a_latency_that_is_unknown_is_none(tmp_path):
     path = tmp_path / "way.yaml"
     path.write_text(WAY.replace("  agent: {to_controller: LATENCY}\n", ""))
-    (way,) = amuros.analyze(path).ways
-    agent, *_ = way.to_records()
+    (chain,) = amuros.analyze(path).chains
+    agent, *_ = chain.hops.to_records()
     assert (agent["kind"], agent["worst_ps"], agent["share"]) == ("agent", None, None)
     assert agent["reason"]
     assert agent["remedy"]

@@ -8,8 +8,8 @@ from dataclasses import replace
 
 from hand_made_systems import READ, WRITE, Proc, access, chain, system, ticks
 
+from amalthea_uros.analyze.chains.messages.evaluate import evaluate_executors_and_messages
 from amalthea_uros.analyze.response_times.propagation import solve
-from amalthea_uros.analyze.ways.evaluate import evaluate_ways
 from amalthea_uros.executors.semantics.loops import timing_context
 from amalthea_uros.perf.activities import Call, Chance, ProbabilitySwitch
 from amalthea_uros.perf.distributions import Constant
@@ -123,9 +123,9 @@ def board(*chains, agent=AGENT, publication=None, handles=(), wire=None, **handl
     )
 
 
-def ways_of(found):
-    """The ways of a system by name."""
-    return {way.name: way for way in evaluate_ways(solve(timing_context(found)))[1]}
+def message_chains(found):
+    """The results of the chains of a system that cross messages, by name."""
+    return evaluate_executors_and_messages(solve(timing_context(found)))[1]
 
 
 def tick(interval=50_000, cost=200):
@@ -149,4 +149,18 @@ def _transmission(name, direction, agent, topic):
     return Transmission(name=name, wire="UART", direction=direction, agent=agent, topic=topic, purpose=purpose)
 
 
-__all__ = ["ACK", "CMD", "MS", "ODOM", "SLEEP", "US", "Publication", "Span", "Wire", "WireKind", "board", "tick", "ways_of"]
+__all__ = [
+    "ACK",
+    "CMD",
+    "MS",
+    "ODOM",
+    "SLEEP",
+    "US",
+    "Publication",
+    "Span",
+    "Wire",
+    "WireKind",
+    "board",
+    "message_chains",
+    "tick",
+]

@@ -1,19 +1,19 @@
-"""Ways over wires and executors, hop by hop, on a board that is described in `ways_by_hand`.
+"""Chains over wires and executors, hop by hop, on a board that is described in `message_board`.
 
 On the wire to the board, /cmd can be blocked by one acknowledgement that is being sent (non-preemptive, Davis and others 2007), and
-the other way round: CMD + ACK. On the other wire /odom is alone: ODOM.
+the other chain round: CMD + ACK. On the other wire /odom is alone: ODOM.
 """
 
 from dataclasses import replace
 
 import pytest
 from hand_made_systems import ticks
-from ways_by_hand import ACK, CMD, MS, ODOM, US, Publication, Span, Wire, WireKind, board, tick, ways_of
+from message_board import ACK, CMD, MS, ODOM, US, Publication, Span, Wire, WireKind, board, message_chains, tick
 
+from amalthea_uros.analyze.chains.messages.evaluate import evaluate_executors_and_messages
 from amalthea_uros.analyze.response_times.propagation import solve
 from amalthea_uros.analyze.results.chains import Quantity
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.analyze.ways.evaluate import evaluate_ways
 from amalthea_uros.executors.bounds.backlog import Arriving, max_backlog
 from amalthea_uros.executors.bounds.publications import sending_times
 from amalthea_uros.executors.bounds.transmissions import arrival_jitter
@@ -58,30 +58,30 @@ def response_of(found, name):
 
 def test_the_hops_of_a_message_to_an_output_add_up():
     found = board(TO_PWM)
-    way = ways_of(found)["to pwm"]
-    assert (way.start, way.end, way.reason, way.loss) == ("/cmd", "pwm", "", "")
-    assert [hop.kind for hop in way.hops] == [HopKind.AGENT, HopKind.WIRE, HopKind.EXECUTOR, HopKind.SAMPLING]
-    agent, wire, executor, pwm = way.hops
+    chain = message_chains(found)["to pwm"]
+    assert (chain.start, chain.end, chain.reason, chain.loss) == ("/cmd", "pwm", "", "")
+    assert [hop.kind for hop in chain.hops] == [HopKind.AGENT, HopKind.WIRE, HopKind.EXECUTOR, HopKind.SAMPLING]
+    agent, wire, executor, pwm = chain.hops
     assert (agent.best, agent.worst) == (MS, 2 * MS)
     assert (wire.best, wire.worst) == (CMD * US, (CMD + ACK) * US)
     assert executor.worst == response_of(found, "cmd")
     # Written just after pwm has read: a period, and its response time; nothing is above it.
     assert pwm.worst == 5 * MS + 50 * US
-    assert way.worst == sum(hop.worst for hop in way.hops)
-    assert way.best == sum(hop.best for hop in way.hops)
-    assert sum(way.share(hop) for hop in way.hops) == 1
+    assert chain.worst == sum(hop.worst for hop in chain.hops)
+    assert chain.best == sum(hop.best for hop in chain.hops)
+    assert sum(hop.share for hop in chain.hops) == 1
 
 
 def test_the_parts_of_each_hop_add_up_to_it():
     for publication in (None, RELIABLE):
-        for way in ways_of(board(TO_PWM, TO_HOST, BY_TIMER, handles=[tick()], publication=publication)).values():
-            for hop in filter(lambda hop: hop.parts, way.hops):
+        for chain in message_chains(board(TO_PWM, TO_HOST, BY_TIMER, handles=[tick()], publication=publication)):
+            for hop in filter(lambda hop: hop.parts, chain.hops):
                 assert sum(part.most for part in hop.parts) == hop.worst
 
 
 def test_a_message_to_the_host_does_not_wait_for_its_own_acknowledgement():
     found = board(TO_HOST, publication=RELIABLE)
-    *_, executor, wire, agent = ways_of(found)["to host"].hops
+    *_, executor, wire, agent = message_chains(found)["to host"].hops
     # To the agent, there, and back, where one /cmd can be on the wire.
     wait = sending_times(solution(found))["odom_out"]
     assert wait == Span(least=ODOM * US + MS + ACK * US, most=ODOM * US + 2 * MS + (ACK + CMD) * US)
@@ -106,25 +106,25 @@ def test_a_callback_waits_up_to_the_timeout_if_its_round_trip_has_no_bound(chang
     assert sending_times(solution(board(publication=RELIABLE, **changes)))["odom_out"].most == ODOM * US + RELIABLE.timeout
 
 
-def test_an_unknown_latency_of_the_agent_leaves_the_way_unknown_and_names_the_key():
-    way = ways_of(board(TO_PWM, agent=Span(least=MS)))["to pwm"]
-    assert (way.worst, way.delivered) == (None, None)
-    assert "to_controller" in way.reason
-    assert "middleware.agent.to_controller" in way.remedy
-    assert way.best == sum(hop.best for hop in way.hops) > CMD * US
+def test_an_unknown_latency_of_the_agent_leaves_the_chain_unknown_and_names_the_key():
+    chain = message_chains(board(TO_PWM, agent=Span(least=MS)))["to pwm"]
+    assert (chain.worst, chain.worst_if_not_lost) == (None, None)
+    assert "to_controller" in chain.reason
+    assert "middleware.agent.to_controller" in chain.remedy
+    assert chain.best == sum(hop.best for hop in chain.hops) > CMD * US
 
 
 def test_messages_that_a_wire_can_lose_have_no_bound_but_one_for_those_that_arrive():
     lossy = Wire(name="UART", kind=WireKind.SERIAL, cores=("c1", "c2"), loses_messages=True)
-    safe, way = (ways_of(board(TO_PWM, **changes))["to pwm"] for changes in ({}, {"wire": lossy}))
-    assert way.worst is None
-    assert way.delivered == safe.worst
-    assert "UART" in way.loss
+    safe, chain = (message_chains(board(TO_PWM, **changes))["to pwm"] for changes in ({}, {"wire": lossy}))
+    assert chain.worst is None
+    assert chain.worst_if_not_lost == safe.worst
+    assert "UART" in chain.loss
 
 
 def test_data_that_a_timer_reads_wait_for_its_period_and_its_response_time():
     found = board(BY_TIMER, handles=[tick(interval=50_000)])
-    sensor, timer, pwm = ways_of(found)["by timer"].hops
+    sensor, timer, pwm = message_chains(found)["by timer"].hops
     # The sensor executes for 20 us, and pwm preempts it once.
     assert sensor.worst == 70 * US
     assert timer.worst == 50 * MS + response_of(found, "tick")
@@ -134,9 +134,9 @@ def test_data_that_a_timer_reads_wait_for_its_period_and_its_response_time():
 def test_data_that_a_callback_for_messages_reads_have_no_bound_if_these_are_irregular():
     handle, cost = tick()
     handle = replace(handle, kind=HandleKind.SUBSCRIPTION, is_periodic=False, depth=10)
-    way = ways_of(board(BY_TIMER, handles=[(handle, cost)]))["by timer"]
-    assert way.worst is None
-    assert "tick" in way.reason
+    chain = message_chains(board(BY_TIMER, handles=[(handle, cost)]))["by timer"]
+    assert chain.worst is None
+    assert "tick" in chain.reason
 
 
 def test_arrivals_vary_by_what_varies_before_them():
@@ -153,26 +153,26 @@ def test_arrivals_are_unknown_if_the_wire_is():
     assert arrival_jitter(solution(board(agent=Span(least=MS)))) == {"cmd": None}
 
 
-def test_a_callback_that_does_not_publish_the_topic_is_not_on_the_way():
+def test_a_callback_that_does_not_publish_the_topic_is_not_on_its_path():
     other = Publication(topic="other", transmission="odom_ack")
-    way = ways_of(board(TO_HOST, publication=other))["to host"]
-    assert way.worst is None
-    assert way.reason == "'cmd' does not publish '/odom'"
+    chain = message_chains(board(TO_HOST, publication=other))["to host"]
+    assert chain.worst is None
+    assert chain.reason == "'cmd' does not publish '/odom'"
 
 
-def test_what_nothing_connects_is_no_way():
-    way = ways_of(board(("unconnected", "on_cmd_end", "on_tick_end"), handles=[tick()]))["unconnected"]
-    assert way.worst is None
-    assert way.reason == "no data flow or trigger connects 'cmd' to 'tick'"
+def test_what_nothing_connects_is_no_chain():
+    chain = message_chains(board(("unconnected", "on_cmd_end", "on_tick_end"), handles=[tick()]))["unconnected"]
+    assert chain.worst is None
+    assert chain.reason == "no data flow or trigger connects 'cmd' to 'tick'"
 
 
-def test_a_round_as_a_whole_is_no_member_of_a_way():
+def test_a_round_as_a_whole_is_no_member_of_a_chain():
     found = board()
     events = found.events.events
     whole = replace(events[0], name="round_start", process="Executor")
     chain = board(("round", "round_start", "on_cmd_end")).events.chains
     found = replace(found, events=replace(found.events, events=(*events, whole), chains=chain))
-    assert "whole round" in ways_of(found)["round"].reason
+    assert "whole round" in message_chains(found)["round"].reason
 
 
 @pytest.mark.parametrize("waits", [False, True])
@@ -180,11 +180,11 @@ def test_a_task_that_publishes_is_bounded_if_it_does_not_wait_for_the_acknowledg
     found = board(("by task", "sensor_start", "odom_at_host"))
     waiting = [replace(each, waits=waits and each.name == "odom_out") for each in found.network.transmissions]
     found = replace(found, network=replace(found.network, transmissions=tuple(waiting)))
-    assert "does not publish" in ways_of(found)["by task"].reason
-    way = ways_of(with_sender(found, "sensor", "odom_out"))["by task"]
+    assert "does not publish" in message_chains(found)["by task"].reason
+    chain = message_chains(with_sender(found, "sensor", "odom_out"))["by task"]
     # To the end of the job, which pwm preempts once.
-    assert way.worst == (None if waits else (70 + ODOM) * US + 2 * MS)
-    assert ("acknowledgement of '/odom'" in way.reason) is waits
+    assert chain.worst == (None if waits else (70 + ODOM) * US + 2 * MS)
+    assert ("acknowledgement of '/odom'" in chain.reason) is waits
 
 
 @pytest.mark.parametrize("waits", [False, True])
@@ -201,23 +201,23 @@ def test_a_task_of_its_own_that_waits_has_no_known_response_time(waits):
     assert (analysis.executors["Executor"].handles["cmd"].response.worst is None) is waits
 
 
-def test_limits_are_judged_by_the_ways():
+def test_limits_are_judged_by_the_hops():
     limits = [(LatencyKind.REACTION, 200, Verdict.MET), (LatencyKind.REACTION, 3, Verdict.MISSED)]
     limits += [(LatencyKind.REACTION, 20, Verdict.UNKNOWN), (LatencyKind.AGE, 200, Verdict.UNKNOWN)]
     found = board(TO_PWM)
-    way = ways_of(found)["to pwm"]
-    assert 3 * MS < way.best < 20 * MS < way.worst < 200 * MS
+    chain = message_chains(found)["to pwm"]
+    assert 3 * MS < chain.best < 20 * MS < chain.worst < 200 * MS
     constraints = tuple(
         LatencyConstraint(name=f"limit {index}", chain="to pwm", kind=kind, maximum=limit * MS)
         for index, (kind, limit, _) in enumerate(limits)
     )
     analysis = analyze_system(replace(found, constraints=Constraints(constraints=constraints)))
     assert [analysis.requirements[each.name].verdict for each in constraints] == [verdict for *_, verdict in limits]
-    assert analysis.chains["to pwm"].value(Quantity.MAX_REDUCED_REACTION_TIME).value == way.worst
-    assert list(analysis.ways) == [way]
+    assert analysis.chains["to pwm"].value(Quantity.MAX_REDUCED_REACTION_TIME).value == chain.worst
+    assert list(analysis.message_chains) == [chain]
 
 
-def test_an_unknown_way_is_never_met():
+def test_an_unknown_chain_is_never_met():
     limit = LatencyConstraint(name="limit", chain="to pwm", kind=LatencyKind.REACTION, maximum=10**15)
     found = replace(board(TO_PWM, agent=Span(least=MS)), constraints=Constraints(constraints=(limit,)))
     analysis = analyze_system(found)
@@ -225,10 +225,10 @@ def test_an_unknown_way_is_never_met():
     assert [finding.rule for finding in analysis.findings if finding.rule.startswith("CHN")] == ["CHN009"]
 
 
-def test_ways_with_limits_come_first():
+def test_chains_with_limits_come_first():
     limit = LatencyConstraint(name="limit", chain="to pwm", kind=LatencyKind.REACTION, maximum=200 * MS)
     found = replace(board(TO_HOST, TO_PWM), constraints=Constraints(constraints=(limit,)))
-    assert [way.name for way in analyze_system(found).ways] == ["to pwm", "to host"]
+    assert [chain.name for chain in analyze_system(found).message_chains] == ["to pwm", "to host"]
 
 
 def test_a_message_never_waits_for_one_of_the_thread_that_its_driver_keeps():
@@ -326,6 +326,6 @@ def test_a_publication_has_no_bound_if_its_write_has_none():
     tasks = [replace(each, activities=(ticks(300_000),)) if each.name == "odom_out" else each for each in found.software.tasks]
     found = replace(found, software=replace(found.software, tasks=tuple(tasks)))
     assert sending_times(solution(found))["odom_out"].most is None
-    result = evaluate_ways(solution(found))[0]["Executor"]
+    result = evaluate_executors_and_messages(solution(found))[0]["Executor"]
     assert result.handles["cmd"].response.worst is None
     assert "'odom_out', or what it writes while it waits, takes to be written has no bound" in result.reason

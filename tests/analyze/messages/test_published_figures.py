@@ -80,7 +80,7 @@ def wires(tmp_path):
         path = tmp_path / "app.yaml"
         path.write_text(APPLICATION.format(transport=row.transport))
         analysis = analyze_system(describe(path).system)
-        there, back = (hop.best / MS for hop in analysis.ways["ping"].hops if hop.kind is HopKind.WIRE)
+        there, back = (hop.best / MS for hop in analysis.chains["ping"].hops if hop.kind is HopKind.WIRE)
         solution = analysis.solution
         answer = min(solution.bcet(name) for name in solution.context.system.transmissions if name.endswith("acknowledgement"))
         return there, back, answer / MS

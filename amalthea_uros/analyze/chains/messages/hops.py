@@ -1,0 +1,205 @@
+"""The hops at callbacks of executors in loops, and at other tasks and interrupt service routines.
+
+A message waits for the rest of the running iteration, a sleep, messages before it and callbacks before its own; the analysis of
+executors bounds this as the response time of the callback. What reads data instead waits for its next run: a timer is due within its
+period at the latest, so that the data wait at most that long before the timer becomes due. If it was due already, its call comes even
+earlier: either before the data, then the next grid point counts, or after them, with the data.
+
+Other processes are bounded by the analysis of chains. A chain over several controllers without a common clock is bounded by the sum of
+its parts (M. Günzel and others, RTAS 2021, theorem 5.8): the reduced reaction time of a part that is activated by the one before or
+starts the chain, and the full reaction time of one that reads at its own times, as data can come just after a read. Executors and
+wires separate parts in the same way.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from amalthea_uros._internal.by_name import Results
+from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
+from amalthea_uros.analyze.chains.messages.segments import CallbackSegment, EntryKind, TaskSegment
+from amalthea_uros.analyze.chains.route_latencies import RouteLatencies
+from amalthea_uros.analyze.chains.stage_timing import UnboundedStageError
+from amalthea_uros.analyze.results.chains import Quantity, Value
+from amalthea_uros.executors.results import ExecutorResult, HandleResult, Hop, HopKind, Part
+from amalthea_uros.perf.events import Event, ProcessChange, ProcessEvent
+from amalthea_uros.perf.executors import HandleKind
+from amalthea_uros.timing.awaited import awaited
+from amalthea_uros.timing.dataflow.events import UnresolvedError
+from amalthea_uros.timing.dataflow.links import UNTIMED
+from amalthea_uros.timing.dataflow.routes import routes
+from amalthea_uros.units import Time
+
+
+@dataclass(frozen=True, slots=True)
+class CallbackHops:
+    """The hops at the callbacks of executors.
+
+    Attributes
+    ----------
+    executors : the results of all executors in loops
+    jitter : of the arrivals at handles, by name, besides what is stated; None if it is unknown
+    """
+
+    executors: Results[ExecutorResult]
+    jitter: Mapping[str, Time | None]
+
+    def response(self, segment: CallbackSegment) -> Hop:
+        """From the arrival of a message, or from when a timer is due, to the end of the callback."""
+        name, executor = segment.handle.name, segment.executor.name
+        result = self._result(segment)
+        bounds = result.response
+        if bounds.worst is None:
+            return Hop(
+                kind=HopKind.EXECUTOR,
+                name=executor,
+                best=bounds.best,
+                worst=None,
+                reason=f"the response time of {name!r} in {executor!r} has no bound: {bounds.reason or 'it was not analysed'}",
+                remedy=f"See the results of the executor {executor!r}.",
+            )
+        return Hop(
+            kind=HopKind.EXECUTOR,
+            name=executor,
+            best=bounds.best,
+            worst=bounds.worst,
+            source=f"response time of {name}: {bounds.method} ({bounds.source})",
+            parts=result.terms,
+        )
+
+    def loss(self, segment: CallbackSegment) -> str:
+        """How messages of a callback can be lost; "" if none can."""
+        lost, name = self._result(segment).lost, segment.handle.name
+        return "" if lost is None else f"{lost.what} of {name!r} can be lost: {lost.sequence}"
+
+    def sampling(self, segment: CallbackSegment) -> Hop:
+        """From a write of data that a callback reads to the end of the callback that reads them, or newer ones."""
+        response, handle = self.response(segment), segment.handle
+        if response.worst is None:
+            return replace(response, kind=HopKind.SAMPLING, best=0)
+        # Timers keep their grid when periods are missed; the next message can come at any time if one is lost.
+        is_timer = handle.kind is HandleKind.TIMER
+        interval, reason = self._longest_interval(segment), "" if is_timer else self.loss(segment)
+        if interval is None or reason:
+            return Hop(
+                kind=HopKind.SAMPLING,
+                name=segment.executor.name,
+                best=0,
+                worst=None,
+                reason=reason or f"the time between two messages of {handle.name!r} has no maximum",
+                remedy=f"Read the data in a timer callback, or let the path begin with the topic of {handle.name!r}.",
+            )
+        wait = Part(name=f"until {handle.name} is due next", least=0, most=interval, why="the data came just after it was due")
+        return replace(
+            response,
+            kind=HopKind.SAMPLING,
+            # It can have been called already, and read the data at its very end.
+            best=0,
+            worst=interval + response.worst,
+            source=f"period and response time of {handle.name}",
+            parts=(wait, *(response.parts or (Part(name=f"response time of {handle.name}", least=0, most=response.worst),))),
+        )
+
+    def _result(self, segment: CallbackSegment) -> HandleResult:
+        return self.executors[segment.executor.name].handles[segment.handle.name]
+
+    def _longest_interval(self, segment: CallbackSegment) -> Time | None:
+        """The maximum time between two nominal arrivals, or expirations; None if there is none."""
+        handle = segment.handle
+        if handle.kind is HandleKind.TIMER:
+            return handle.interval
+        jitter = self.jitter.get(handle.name, 0)
+        if handle.interval is None or jitter is None or not handle.is_periodic:
+            return None
+        return handle.interval + handle.jitter + jitter
+
+
+def task_hop(segment: TaskSegment, entry: EntryKind, is_last: bool, evaluator: ChainEvaluator) -> Hop:
+    """From the entry of processes outside executors to their last event; if another hop follows, to the end of the job."""
+    name, context = " -> ".join(dict.fromkeys(segment.processes)), evaluator.context
+    awaiting = (each for process in segment.processes for each in awaited(process, context.system, context.dataflow))
+    if (message := next(awaiting, None)) is not None:
+        return _unknown(
+            entry,
+            name,
+            f"the response time of {name!r} does not include that it waits for the acknowledgement of {message.topic!r}",
+            "Let an executor with a 'loop' run the callback, send with best effort, or set 'reliable: {waits: false}' if the port "
+            "does not wait.",
+        )
+    try:
+        bounds = _bounds(_events(segment, entry, is_last), entry, evaluator)
+    except (UnboundedStageError, UnresolvedError) as error:
+        return _unknown(entry, name, str(error), f"See the results of {name!r}.")
+    if bounds is None:
+        reason = f"the maximum time between two activations of {segment.processes[0]!r} is unknown"
+        return _unknown(entry, name, reason, f"See the results of {segment.processes[0]!r}.")
+    value, wait = bounds
+    parts = (
+        Part(name=f"until {segment.processes[0]} is activated", least=0, most=wait),
+        Part(name=f"from its activation through {name}", least=0, most=value.value),
+    )
+    return Hop(
+        kind=_kind(entry),
+        name=name,
+        best=_best(segment, evaluator) if is_last and entry is EntryKind.FIRST else 0,
+        worst=(value.value or 0) + wait,
+        source=f"{value.method} ({value.source})",
+        parts=parts if wait else (),
+    )
+
+
+def _bounds(events: Sequence[Event], entry: EntryKind, evaluator: ChainEvaluator) -> tuple[Value, Time] | None:
+    """The tightest bound of a latency, and how long a message waits until then; None if it has no maximum."""
+    quantity = Quantity.MAX_REACTION_TIME if entry is EntryKind.DATA else Quantity.MAX_REDUCED_REACTION_TIME
+    bounds = []
+    for route in routes(events, evaluator.context.dataflow):
+        for link, first, then in zip(route.links, route.events, route.events[1:], strict=False):
+            if link.kind in UNTIMED:
+                raise UnboundedStageError(f"nothing of known time connects {first!r} to {then!r}")
+        latencies = evaluator.latencies(route)
+        best = _tightest(latencies, quantity)
+        if best is None:
+            raise UnboundedStageError(latencies.why_unbounded or "no method bounds it")
+        bounds.append(best)
+    value = max(bounds, key=lambda each: each.value or 0)
+    if entry is not EntryKind.POLLING:
+        return value, 0
+    activations = evaluator.solution.event_models.get(getattr(events[0], "process", ""))
+    wait = activations.max_interarrival if activations is not None else None
+    return None if wait is None else (value, wait)
+
+
+def _best(segment: TaskSegment, evaluator: ChainEvaluator) -> Time:
+    """A lower bound of the time from the first to the last event."""
+    times = []
+    for route in routes(segment.events, evaluator.context.dataflow):
+        values = evaluator.latencies(route).values()
+        bounds = [each.value for each in values if each.quantity is Quantity.MIN_FIRST_TO_FIRST]
+        times.append(max((time for time in bounds if time is not None), default=0))
+    return min(times, default=0)
+
+
+def _events(segment: TaskSegment, entry: EntryKind, is_last: bool) -> list[Event]:
+    """The events of a segment, from where a message or data enter it to where they leave it."""
+    first, last = segment.processes[0], segment.processes[-1]
+    events = list(segment.events)
+    if entry is not EntryKind.FIRST:
+        change = ProcessChange.START if entry is EntryKind.DATA else ProcessChange.ACTIVATE
+        events.insert(0, ProcessEvent(name=f"{first}_entered", process=first, change=change))
+    if not is_last:
+        events.append(ProcessEvent(name=f"{last}_left", process=last, change=ProcessChange.TERMINATE))
+    return events
+
+
+def _tightest(latencies: RouteLatencies, quantity: Quantity) -> Value | None:
+    bounds = [each for each in latencies.values() if each.quantity is quantity and each.value is not None]
+    return min(bounds, key=lambda each: each.value or 0, default=None)
+
+
+def _kind(entry: EntryKind) -> HopKind:
+    return {EntryKind.POLLING: HopKind.POLLING, EntryKind.DATA: HopKind.SAMPLING}.get(entry, HopKind.TASKS)
+
+
+def _unknown(entry: EntryKind, name: str, reason: str, remedy: str) -> Hop:
+    return Hop(kind=_kind(entry), name=name, best=0, worst=None, reason=reason, remedy=remedy)

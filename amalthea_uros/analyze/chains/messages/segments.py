@@ -1,0 +1,219 @@
+"""What a chain passes: messages on wires, callbacks of executors in loops, and other processes, in order, and what connects them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from typing import TypeAlias
+
+from amalthea_uros.errors import UnknownError
+from amalthea_uros.perf.activities import Call
+from amalthea_uros.perf.events import CustomEvent, Event, EventChain, RunnableChange, RunnableEvent
+from amalthea_uros.perf.executors import Executor, Handle
+from amalthea_uros.perf.network import Transmission
+from amalthea_uros.timing.context import TimingContext
+from amalthea_uros.timing.dataflow.chains import UnfoldError, sequences, unfold
+from amalthea_uros.timing.dataflow.events import EventOccurrence, UnresolvedError
+from amalthea_uros.timing.dataflow.links import LinkKind
+from amalthea_uros.timing.jobs.positions import ActivityPosition
+
+
+@dataclass(frozen=True, slots=True)
+class MessageSegment:
+    """A message on a wire."""
+
+    transmission: Transmission
+
+
+@dataclass(frozen=True, slots=True)
+class CallbackSegment:
+    """A callback of an executor in a loop."""
+
+    executor: Executor
+    handle: Handle
+
+
+@dataclass(frozen=True, slots=True)
+class TaskSegment:
+    """Events of other processes, which follow each other."""
+
+    events: tuple[Event, ...]
+    processes: tuple[str, ...]
+
+
+ChainSegment: TypeAlias = MessageSegment | CallbackSegment | TaskSegment
+
+
+class EntryKind(Enum):
+    """How a message or data get to a process."""
+
+    FIRST = "the chain starts here"
+    TRIGGER = "it is activated"
+    DATA = "it reads data at its own times"
+    POLLING = "it looks for messages in each job"
+
+
+def name_of(segment: ChainSegment, *, is_end: bool = False) -> str:
+    """What people call a segment: its topic, its callback, its first or its last process."""
+    match segment:
+        case MessageSegment(transmission):
+            topic = transmission.topic
+            return transmission.name if topic is None else f"/{topic.removeprefix('/')}"
+        case CallbackSegment(_, handle):
+            return handle.name
+        case TaskSegment(_, processes):
+            return processes[-1 if is_end else 0]
+
+
+@dataclass(frozen=True, slots=True)
+class Segments:
+    """Finds the segments of chains, and the data and triggers between them."""
+
+    context: TimingContext
+
+    def of(self, chain: EventChain) -> list[ChainSegment]:
+        """The segments of a chain, in order; events that follow each other in one place are one segment.
+
+        Raises
+        ------
+        UnknownError : it has branches, or one of its events has no place of its own.
+        """
+        try:
+            paths = sequences(unfold(chain, self.context.system)[0])
+        except UnfoldError as error:
+            raise UnknownError(str(error)) from None
+        if len(paths) != 1:
+            raise UnknownError("it has parallel paths, whose latency over wires and executors is not computed; split the chain")
+        segments: list[ChainSegment] = []
+        for name in paths[0]:
+            before = segments[-1] if segments else None
+            segment = self._segment(self.context.system.events_by_name[name], before)
+            if isinstance(segment, TaskSegment) and isinstance(before, TaskSegment):
+                segments[-1] = TaskSegment((*before.events, *segment.events), (*before.processes, *segment.processes))
+            elif segment != before:
+                segments.append(segment)
+        return self._with_takers(segments)
+
+    def _segment(self, event: Event, before: ChainSegment | None) -> ChainSegment:
+        """Where an event occurs; if that can be in several places, the segment before it if it is one of these."""
+        try:
+            occurrences = self.context.dataflow.events.of(event)
+        except UnresolvedError as error:
+            if isinstance(event, CustomEvent):
+                what = "describe 'transport' and 'agent' of the middleware"
+                raise UnknownError(f"{event.name!r} occurs outside the model: {what}") from None
+            raise UnknownError(str(error)) from None
+        possible = {self._at(event, occurrence) for occurrence in occurrences}
+        if before in possible:
+            return before
+        if len(possible) != 1:
+            raise UnknownError(f"the event {event.name!r} can occur in several places; set its process")
+        return possible.pop()
+
+    def _at(self, event: Event, occurrence: EventOccurrence) -> ChainSegment:
+        system, process = self.context.system, occurrence.process.name
+        if process in system.transmissions:
+            return MessageSegment(system.transmissions[process])
+        executor = system.executor_of_task.get(process)
+        if executor is None:
+            return TaskSegment((event,), (process,))
+        handle = None if occurrence.position is None else self._handle_around(occurrence.position, executor)
+        if handle is None:
+            raise UnknownError(
+                f"the event {event.name!r} is one of a whole round of {executor.name!r}; name a callback or a topic"
+            )
+        return CallbackSegment(executor, handle)
+
+    def _handle_around(self, position: ActivityPosition, executor: Executor) -> Handle | None:
+        """The handle whose callback, or whose taking of a message, an activity is part of."""
+        handles = {handle.runnable: handle for handle in executor.handles}
+        handles |= {handle.take: handle for handle in executor.handles if handle.take is not None}
+        around = [
+            handles[each.activity.runnable]
+            for each in self.context.dataflow.events.positions(executor.task)
+            if isinstance(each.activity, Call)
+            and each.activity.runnable in handles
+            and each.number <= position.number <= each.last
+        ]
+        return around[-1] if around else None
+
+    def _with_takers(self, segments: list[ChainSegment]) -> list[ChainSegment]:
+        """The segments with the callbacks that only take messages for others, without what a message passes by itself."""
+        completed: list[ChainSegment] = []
+        for segment in segments:
+            before = completed[-1] if completed else None
+            if not isinstance(segment, TaskSegment) or not isinstance(before, MessageSegment):
+                completed.append(segment)
+                continue
+            passed = before.transmission.processes
+            kept = [each for each in zip(segment.events, segment.processes, strict=True) if each[1] not in passed]
+            if kept:
+                completed += self._takers(before.transmission)
+                completed.append(TaskSegment(tuple(event for event, _ in kept), tuple(process for _, process in kept)))
+        return completed
+
+    def _takers(self, transmission: Transmission) -> list[ChainSegment]:
+        """The callback of an executor that a message makes ready, if there is one."""
+        executors = self.context.system.executors
+        ready = [
+            CallbackSegment(each, handle)
+            for each in executors
+            for handle in each.handles
+            if handle.transmission == transmission.name
+        ]
+        return [*ready[:1]]
+
+    def entry(self, before: ChainSegment | None, segment: CallbackSegment | TaskSegment) -> EntryKind:
+        """How the effect gets from one segment to the next, which no message makes ready.
+
+        Raises
+        ------
+        UnknownError : nothing connects them, or nobody knows how long it takes.
+        """
+        if before is None:
+            return EntryKind.FIRST
+        if isinstance(segment, TaskSegment):
+            if isinstance(before, MessageSegment):
+                # The last process that it passes may activate the next one.
+                last = before.transmission.processes[-1:]
+                is_activated = any(self.context.dataflow.triggers(each, segment.processes[0]) for each in last)
+                return EntryKind.TRIGGER if is_activated else EntryKind.POLLING
+            if self.activates(before, segment.processes[0]):
+                return EntryKind.TRIGGER
+        assert not isinstance(before, MessageSegment)
+        kinds = {
+            link.kind
+            for one in self._ends(before, -1)
+            for other in self._ends(segment, 0)
+            for link in self.context.dataflow.data(one, other)
+            if self._is_within(link.write, before) and self._is_within(link.read, segment)
+        }
+        if LinkKind.DATA in kinds:
+            return EntryKind.DATA
+        first, then = name_of(before), name_of(segment)
+        if LinkKind.MESSAGE in kinds:
+            raise UnknownError(
+                f"a message takes the effect from {first!r} to {then!r} over the agent; add its topic to the path"
+            )
+        raise UnknownError(f"no data flow or trigger connects {first!r} to {then!r}")
+
+    def activates(self, segment: CallbackSegment | TaskSegment, process: str) -> bool:
+        """Whether a callback, or the last process of a segment, activates another process."""
+        source = segment.executor.task if isinstance(segment, CallbackSegment) else segment.processes[-1]
+        return any(self._is_within(link.write, segment) for link in self.context.dataflow.triggers(source, process))
+
+    def _ends(self, segment: CallbackSegment | TaskSegment, index: int) -> list[EventOccurrence]:
+        """Where the last or the first event of a segment occurs."""
+        locate = self.context.dataflow.events.of
+        if isinstance(segment, TaskSegment):
+            return locate(segment.events[index])
+        names = [name for name in (segment.handle.runnable, segment.handle.take) if name is not None]
+        task, change = segment.executor.task, RunnableChange.TERMINATE
+        events = [RunnableEvent(name=name, runnable=name, change=change, process=task) for name in names]
+        return [occurrence for event in events for occurrence in locate(event)]
+
+    def _is_within(self, position: ActivityPosition | None, segment: ChainSegment) -> bool:
+        """Whether an activity is part of a callback; for other processes it is one of their jobs."""
+        if not isinstance(segment, CallbackSegment) or position is None:
+            return True
+        return self._handle_around(position, segment.executor) == segment.handle
