@@ -25,8 +25,8 @@ from pyecore import ecore
 from pyecore.resources import ResourceSet
 from pyecore.resources.xmi import XMI_URL, XMIOptions, XMIResource
 
-from amalthea_uros.metamodel.factfile import FeatureFact, Kind, NumberFact
-from amalthea_uros.metamodel.versions import OLDEST_SUPPORTED, Facts, facts, newest_version, supported_versions
+from amalthea_uros.metamodel.factfile import FeatureFact, FeatureKind, NumberFact
+from amalthea_uros.metamodel.versions import OLDEST_SUPPORTED, VersionFacts, facts, newest_version, supported_versions
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -128,7 +128,7 @@ def _number_type(number: NumberFact) -> ecore.EDataType:
     return ecore.EDataType(number.name, kind, from_string=kind)
 
 
-def _add_class(package: ecore.EPackage, known: Facts, name: str) -> ecore.EClass:
+def _add_class(package: ecore.EPackage, known: VersionFacts, name: str) -> ecore.EClass:
     """The class of that name, added after its supertypes if it is not there yet."""
     found = package.getEClassifier(name)
     if found is None:
@@ -141,15 +141,15 @@ def _add_class(package: ecore.EPackage, known: Facts, name: str) -> ecore.EClass
 
 def _feature(package: ecore.EPackage, fact: FeatureFact) -> ecore.EStructuralFeature:
     declared = package.getEClassifier(fact.type) or getattr(ecore, fact.type, None)
-    if fact.kind is Kind.ATTRIBUTE:
+    if fact.kind is FeatureKind.ATTRIBUTE:
         return ecore.EAttribute(fact.name, declared, defaultValueLiteral=fact.default)
     upper = -1 if fact.many else 1
-    return ecore.EReference(fact.name, declared, upper=upper, containment=fact.kind is Kind.CONTAINMENT)
+    return ecore.EReference(fact.name, declared, upper=upper, containment=fact.kind is FeatureKind.CONTAINMENT)
 
 
-def _add_opposites(package: ecore.EPackage, known: Facts) -> None:
+def _add_opposites(package: ecore.EPackage, known: VersionFacts) -> None:
     for fact in known.classes.values():
         for feature in fact.features:
-            if feature.kind is Kind.CONTAINMENT and feature.opposite is not None:
+            if feature.kind is FeatureKind.CONTAINMENT and feature.opposite is not None:
                 opposite = package.getEClassifier(feature.type).findEStructuralFeature(feature.opposite)
                 package.getEClassifier(fact.name).findEStructuralFeature(feature.name).eOpposite = opposite

@@ -8,7 +8,7 @@ from collections import Counter
 from xml.etree import ElementTree
 
 from amalthea_uros.metamodel import classes as am
-from amalthea_uros.metamodel.factfile import Kind
+from amalthea_uros.metamodel.factfile import FeatureKind
 from amalthea_uros.metamodel.naming import unique_name
 from amalthea_uros.metamodel.versions import facts
 
@@ -132,7 +132,7 @@ def unknown(node, cls, known):
         feature = features.get(child.tag)
         if feature is None:
             yield "element", child.tag
-        elif feature.kind is Kind.CONTAINMENT:
+        elif feature.kind is FeatureKind.CONTAINMENT:
             given = child.get("{http://www.w3.org/2001/XMLSchema-instance}type", feature.type).removeprefix("am:")
             yield from unknown(child, given, known) if given in known.classes else [("class", given)]
 

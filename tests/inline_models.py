@@ -6,7 +6,7 @@ import re
 from migration import meaning, migrated, model, opened
 
 from amalthea_uros.xmi.migrate.chain import migrate as take_on
-from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.notes import StepNotes
 
 # Files
 
@@ -62,7 +62,7 @@ def check_twice(folder, source, target, content):
     models, _ = migrated(written(folder, source, content), target)
     expected = meaning(models)
     models.trees[0].version = source
-    notes = Notes()
+    notes = StepNotes()
     take_on(models, target, notes)
     assert meaning(models) == expected
     assert notes.all == []

@@ -2,7 +2,7 @@
 
 from migration import meaning
 
-from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.notes import StepNotes
 
 PACKAGES = (
     *("central", "common", "components", "config", "constraints", "events", "hw", "mapping", "os", "propertyconstraints"),
@@ -43,7 +43,7 @@ def twice(models, step):
     """The meaning of a set before and after a step is taken once more."""
     before = meaning(models)
     models.begin_step(models.trees[0].version)
-    step.change(models, Notes())
+    step.change(models, StepNotes())
     return before, meaning(models)
 
 

@@ -4,7 +4,7 @@ from collections import Counter
 
 from amalthea_uros.xmi.files import read_text
 from amalthea_uros.xmi.migrate.chain import migrate
-from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.notes import StepNotes
 from amalthea_uros.xmi.migrate.read_set import read_set
 
 MAX_SIZE = 100_000_000
@@ -23,12 +23,12 @@ def model(version, content, root="Amalthea"):
 
 def opened(*paths):
     """The linked nodes of some files."""
-    return read_set([(path, read_text(path)) for path in paths], MAX_SIZE, Notes())
+    return read_set([(path, read_text(path)) for path in paths], MAX_SIZE, StepNotes())
 
 
 def migrated(paths, target):
     """The nodes of some files after migration, and the notes of it."""
-    notes = Notes()
+    notes = StepNotes()
     models = read_set([(path, read_text(path)) for path in paths], MAX_SIZE, notes)
     migrate(models, target, notes)
     return models, notes.all

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from amalthea_uros.metamodel import classes
 from amalthea_uros.metamodel.defaults import enum_class
-from amalthea_uros.metamodel.factfile import Kind
+from amalthea_uros.metamodel.factfile import FeatureKind
 from amalthea_uros.metamodel.features import features_of
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.metamodel.versions import facts, supported_versions
@@ -105,7 +105,7 @@ def stored_features(version: str, class_name: str) -> tuple[tuple[str, Any], ...
 
 
 def is_container(fact) -> bool:
-    return fact.kind is Kind.REFERENCE and fact.opposite is not None
+    return fact.kind is FeatureKind.REFERENCE and fact.opposite is not None
 
 
 @cache
@@ -192,11 +192,11 @@ class Builder:
         self.left -= 1
         features = stored_features(self.version, class_name)
         for name, fact in features:
-            if fact.kind is Kind.ATTRIBUTE and self.rng.random() < (0.9 if name == "name" else 0.4):
+            if fact.kind is FeatureKind.ATTRIBUTE and self.rng.random() < (0.9 if name == "name" else 0.4):
                 setattr(made, name, value_for(self.rng, self.version, name, fact))
         if made.is_referable and self.rng.random() < 0.8:
             made.name = f"{made.name or ''}{self.left}"
-        parts = [(name, fact) for name, fact in features if fact.kind is Kind.CONTAINMENT]
+        parts = [(name, fact) for name, fact in features if fact.kind is FeatureKind.CONTAINMENT]
         self.rng.shuffle(parts)
         for name, fact in parts:
             self.fill(made, name, fact, depth)
@@ -221,7 +221,7 @@ class Builder:
         targets = [element for element in self.elements if element.is_referable and names[element.unique_name] == 1]
         for holder in self.elements:
             for name, fact in stored_features(self.version, type(holder).__name__):
-                if fact.kind is not Kind.REFERENCE or not is_meant(fact):
+                if fact.kind is not FeatureKind.REFERENCE or not is_meant(fact):
                     continue
                 fitting = [target for target in targets if isinstance(target, getattr(classes, fact.type))]
                 if fitting and self.rng.random() < 0.7:
@@ -255,7 +255,7 @@ def meaning(*roots: Any, version: str) -> list[Any]:
 def note_places(version: str, element: Any, place: str, places: dict[Any, str]) -> None:
     places[element] = place
     for name, fact in stored_features(version, type(element).__name__):
-        if fact.kind is Kind.CONTAINMENT:
+        if fact.kind is FeatureKind.CONTAINMENT:
             for number, part in enumerate(as_list(getattr(element, name))):
                 note_places(version, part, f"{place}/{name}.{number}", places)
 
@@ -264,11 +264,11 @@ def element_meaning(version: str, element: Any, places: dict[Any, str]) -> Any:
     found: dict[str, Any] = {}
     for name, fact in stored_features(version, type(element).__name__):
         value = getattr(element, name)
-        if fact.kind is Kind.ATTRIBUTE:
+        if fact.kind is FeatureKind.ATTRIBUTE:
             said = default_of(version, fact) if value is None else plain(fact, value)
             if said is not None:
                 found[name] = said
-        elif as_list(value) and fact.kind is Kind.REFERENCE:
+        elif as_list(value) and fact.kind is FeatureKind.REFERENCE:
             found[name] = [places.get(target, target.unresolved) for target in as_list(value)]
         elif as_list(value):
             found[name] = [element_meaning(version, part, places) for part in as_list(value)]

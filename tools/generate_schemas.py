@@ -18,8 +18,8 @@ from typing import NamedTuple
 
 from templating import ROOT, templates
 
-from amalthea_uros.metamodel.factfile import FeatureFact, Kind, NumberFact
-from amalthea_uros.metamodel.versions import Facts, facts, supported_versions
+from amalthea_uros.metamodel.factfile import FeatureFact, FeatureKind, NumberFact
+from amalthea_uros.metamodel.versions import VersionFacts, facts, supported_versions
 
 TARGET = ROOT / "schemas"
 
@@ -67,15 +67,15 @@ class Double(NamedTuple):
     exclusive: bool = False
 
 
-def concrete(declared: Facts) -> list[str]:
+def concrete(declared: VersionFacts) -> list[str]:
     """The names of the classes with instances."""
     return [name for name, cls in declared.classes.items() if not cls.abstract]
 
 
-def base_lines(declared: Facts) -> dict[str, set[str]]:
+def base_lines(declared: VersionFacts) -> dict[str, set[str]]:
     """The types that each schema type derives from, such that those of a concrete class form one line."""
     features = (f for name in concrete(declared) for f in declared.features(name))
-    containers = {f.type for f in features if f.kind is Kind.CONTAINMENT} | set(concrete(declared))
+    containers = {f.type for f in features if f.kind is FeatureKind.CONTAINMENT} | set(concrete(declared))
     above = {name: set(declared.supertypes(name)) & containers - {name} for name in declared.classes if name in containers}
     while pair := side_by_side(above, concrete(declared)):
         below = {name: {n for n in concrete(declared) if name == n or name in above[n]} for name in pair}
@@ -97,7 +97,7 @@ def side_by_side(above: dict[str, set[str]], names: list[str]) -> tuple[str, str
     return None
 
 
-def schema_classes(declared: Facts) -> list[SchemaClass]:
+def schema_classes(declared: VersionFacts) -> list[SchemaClass]:
     """The schema types of a version, in the order of the facts."""
     above = base_lines(declared)
     return [
@@ -105,7 +105,7 @@ def schema_classes(declared: Facts) -> list[SchemaClass]:
     ]
 
 
-def schema_class(declared: Facts, name: str, base: str) -> SchemaClass:
+def schema_class(declared: VersionFacts, name: str, base: str) -> SchemaClass:
     """One class as a schema type; abstract types are empty, so that they can be put in line."""
     abstract = declared.classes[name].abstract
     inherits = base != OBJECT and not declared.classes[base].abstract
@@ -116,7 +116,7 @@ def schema_class(declared: Facts, name: str, base: str) -> SchemaClass:
         base=base,
         abstract=abstract,
         elements=elements(own),
-        attributes=[Declaration(f.name, data_type(f)) for f in own if f.kind is not Kind.CONTAINMENT],
+        attributes=[Declaration(f.name, data_type(f)) for f in own if f.kind is not FeatureKind.CONTAINMENT],
         inherited=elements(known),
     )
 
@@ -124,15 +124,15 @@ def schema_class(declared: Facts, name: str, base: str) -> SchemaClass:
 def elements(features: list[FeatureFact]) -> list[Declaration]:
     """The features that may be written as child elements."""
     return [
-        Declaration(f.name, f"am:{f.type if f.kind is Kind.CONTAINMENT else OBJECT}")
+        Declaration(f.name, f"am:{f.type if f.kind is FeatureKind.CONTAINMENT else OBJECT}")
         for f in features
-        if f.kind is not Kind.ATTRIBUTE
+        if f.kind is not FeatureKind.ATTRIBUTE
     ]
 
 
 def data_type(feature: FeatureFact) -> str:
     """The schema type of a feature written as XML attribute: of references a list of ids."""
-    if feature.kind is Kind.REFERENCE:
+    if feature.kind is FeatureKind.REFERENCE:
         return "xs:string"
     return DATA_TYPES.get(feature.type, f"am:{feature.type}")
 

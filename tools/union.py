@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, field
 
-from amalthea_uros.metamodel.factfile import Kind
+from amalthea_uros.metamodel.factfile import FeatureKind
 from amalthea_uros.metamodel.versions import facts, supported_versions
 
 #: The enumeration lost its name to a class in 2.0.0.
@@ -32,7 +32,7 @@ class UnionFeature:
     """A feature with everything that any version declares of it."""
 
     name: str
-    kinds: set[Kind] = field(default_factory=set)
+    kinds: set[FeatureKind] = field(default_factory=set)
     types: dict[str, None] = field(default_factory=dict)
     many: bool = False
     versions: set[str] = field(default_factory=set)
@@ -47,9 +47,9 @@ class UnionFeature:
         if len(self.kinds) > 1:
             return "containment_or_reference"
         kind = next(iter(self.kinds))
-        if kind is Kind.ATTRIBUTE:
+        if kind is FeatureKind.ATTRIBUTE:
             return "attribute"
-        return ("containment" if kind is Kind.CONTAINMENT else "reference") + ("s" if self.many else "")
+        return ("containment" if kind is FeatureKind.CONTAINMENT else "reference") + ("s" if self.many else "")
 
 
 @dataclass

@@ -6,14 +6,14 @@ from collections.abc import Sequence
 from typing import Any
 
 from amalthea_uros.bridge.context import Building
-from amalthea_uros.bridge.entries import Table
+from amalthea_uros.bridge.entries import ClassTable
 from amalthea_uros.bridge.tables.constraints import CONSTRAINTS, DATA_AGES, ORDERS, build_data_group, build_requirement
 from amalthea_uros.bridge.tables.events import CHAINS, EVENTS
 from amalthea_uros.bridge.tables.hardware import HardwareBuilder
 from amalthea_uros.bridge.tables.mapping import build_mapping
 from amalthea_uros.bridge.tables.middleware import build_middleware
 from amalthea_uros.bridge.tables.os import SEMAPHORES, build_overhead, build_system, fill_system
-from amalthea_uros.bridge.tables.parameters import Definitions
+from amalthea_uros.bridge.tables.parameters import SchedulingDefinitions
 from amalthea_uros.bridge.tables.software import CHANNELS, LABELS, MODE_LABELS, OS_EVENTS, PROCESSES, RUNNABLES, build_modes
 from amalthea_uros.bridge.tables.stimuli import CLOCKS, STIMULI
 from amalthea_uros.metamodel import classes as am
@@ -50,10 +50,10 @@ class _Build:
     def __init__(self, system: System, context: Building) -> None:
         self.system = system
         self.context = context
-        self.definitions = Definitions(context)
-        self._waiting: list[tuple[Table, list[Element], Sequence[Named]]] = []
+        self.definitions = SchedulingDefinitions(context)
+        self._waiting: list[tuple[ClassTable, list[Element], Sequence[Named]]] = []
 
-    def objects(self, table: Table, items: Sequence[Named]) -> Any:
+    def objects(self, table: ClassTable, items: Sequence[Named]) -> Any:
         """Objects whose features are set when all objects exist."""
         elements = table.create_all(items, self.context)
         self._waiting.append((table, elements, items))

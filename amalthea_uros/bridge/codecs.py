@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import Any, NamedTuple
 
 from amalthea_uros.bridge.context import Building, Extracting
-from amalthea_uros.bridge.kinds import Kind
+from amalthea_uros.bridge.kinds import ObjectKind
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel import magnitudes
 from amalthea_uros.metamodel.classes.enums import DataRateUnit, DataSizeUnit
@@ -155,7 +155,7 @@ def extract_reason(element: am.IAnnotatable) -> str | None:
 # References
 
 
-def reference(kind: Kind) -> Codec:
+def reference(kind: ObjectKind) -> Codec:
     """The name of an object."""
 
     def build(name: str | None, context: Building) -> Element | None:
@@ -164,7 +164,7 @@ def reference(kind: Kind) -> Codec:
     return Codec(build, _name_of)
 
 
-def references(kind: Kind) -> Codec:
+def references(kind: ObjectKind) -> Codec:
     """The names of objects, in order."""
 
     def build(names: tuple[str, ...], context: Building) -> list[Element]:
@@ -176,7 +176,7 @@ def references(kind: Kind) -> Codec:
     return Codec(build, extract)
 
 
-def all_references(kind: Kind) -> Codec:
+def all_references(kind: ObjectKind) -> Codec:
     """The names of objects, in order; if one of them is not taken into account, all are unknown."""
     some = references(kind)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from amalthea_uros.bridge.kinds import Kind, kind_of
+from amalthea_uros.bridge.kinds import ObjectKind, kind_of
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import WriteError
 from amalthea_uros.metamodel.element import Element
@@ -13,7 +13,7 @@ from amalthea_uros.metamodel.versions import facts, version_key
 from amalthea_uros.perf.named import Named
 
 #: Kinds of objects that contain others with names; the rest, such as activity graphs, need not be searched.
-_HOLDERS = {Kind.STRUCTURE, Kind.MODULE, Kind.OPERATING_SYSTEM}
+_HOLDERS = {ObjectKind.STRUCTURE, ObjectKind.MODULE, ObjectKind.OPERATING_SYSTEM}
 
 
 class Building:
@@ -33,7 +33,7 @@ class Building:
         self.types: dict[int, Element] = {}
         self.findings: list[Finding] = []
         self._known: dict[type[Element], frozenset[str]] = {}
-        self._elements: dict[tuple[Kind, str], Element] = {}
+        self._elements: dict[tuple[ObjectKind, str], Element] = {}
         self._holder: Named | None = None
 
     def known_features(self, cls: type[Element]) -> frozenset[str]:
@@ -57,7 +57,7 @@ class Building:
         if item.origin is not None:
             self.origins[element] = item.origin
 
-    def find(self, kind: Kind, name: str) -> Element | None:
+    def find(self, kind: ObjectKind, name: str) -> Element | None:
         """The object of that name; None, with a finding, if there is none."""
         found = self._elements.get((kind, name))
         if found is None:
@@ -112,9 +112,9 @@ class Extracting:
 
     def name(self) -> None:
         """Give every referable object a name that is unique within its kind."""
-        taken: set[tuple[Kind, str]] = set()
+        taken: set[tuple[ObjectKind, str]] = set()
         #: The next number to try for a name, so that thousands of equal names are numbered in linear time.
-        numbers: dict[tuple[Kind, str], int] = {}
+        numbers: dict[tuple[ObjectKind, str], int] = {}
         for kind, element in self._named():
             own = element.__dict__.get("name") or f"unnamed_{type(element).__name__}"
             found = own
@@ -129,7 +129,7 @@ class Extracting:
             taken.add((kind, found))
             self.names[element] = found
 
-    def _named(self) -> Iterator[tuple[Kind, Element]]:
+    def _named(self) -> Iterator[tuple[ObjectKind, Element]]:
         """All objects that are referenced by name, in the order of the files."""
         stack: list[Element] = [document.root for document in reversed(self.model.documents)]
         while stack:
@@ -182,5 +182,5 @@ class Extracting:
         return tuple(dict.fromkeys(self.findings))
 
 
-def _text(kind: Kind) -> str:
+def _text(kind: ObjectKind) -> str:
     return kind.name.lower().replace("_", " ")

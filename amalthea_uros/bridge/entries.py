@@ -28,7 +28,7 @@ class Field:
     codec: Codec = PLAIN
 
 
-class Entry:
+class ClassEntry:
     """A class of perf and the corresponding class of AMALTHEA.
 
     A value that is not given in AMALTHEA becomes the default of the field; if there is no default, the object is incomplete, which is
@@ -121,12 +121,12 @@ def _default(field: Any) -> Any:
     return field.default_factory() if field.default_factory is not MISSING else field.default
 
 
-class Table:
+class ClassTable:
     """Entries for the alternatives of one type."""
 
-    def __init__(self, *entries: Entry) -> None:
-        self.by_model_class: Mapping[type[Any], Entry] = {entry.model_class: entry for entry in entries}
-        self.by_amalthea_class: Mapping[type[Element], Entry] = {entry.amalthea_class: entry for entry in entries}
+    def __init__(self, *entries: ClassEntry) -> None:
+        self.by_model_class: Mapping[type[Any], ClassEntry] = {entry.model_class: entry for entry in entries}
+        self.by_amalthea_class: Mapping[type[Element], ClassEntry] = {entry.amalthea_class: entry for entry in entries}
 
     def create_all(self, items: Iterable[Any], context: Building) -> list[Element]:
         """Objects whose features are set later, by `fill`."""
@@ -160,12 +160,12 @@ class Table:
         return None if None in found else found
 
 
-def part(table: Table) -> Codec:
+def part(table: ClassTable) -> Codec:
     """An object within another one."""
     return Codec(table.build, lambda value, context, _element: table.extract(value, context))
 
 
-def parts(table: Table) -> Codec:
+def parts(table: ClassTable) -> Codec:
     """Objects within another one, in order; those that are incomplete are left out."""
     return Codec(
         lambda items, context: [table.build(item, context) for item in items],
@@ -173,6 +173,6 @@ def parts(table: Table) -> Codec:
     )
 
 
-def all_parts(table: Table) -> Codec:
+def all_parts(table: ClassTable) -> Codec:
     """Objects within another one, in order; if one of them is incomplete, all are unknown."""
     return Codec(parts(table).build, lambda values, context, _element: table.extract_each(values, context))

@@ -8,7 +8,7 @@ from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.element import Element
 
 
-class Kind(Enum):
+class ObjectKind(Enum):
     """A kind of named objects."""
 
     __hash__ = object.__hash__  # each kind is equal only to itself; the hash of Enum is slow
@@ -35,36 +35,36 @@ class Kind(Enum):
 
 
 #: The kind of the objects of a class; subclasses belong to it too.
-KINDS: dict[type[Element], Kind] = {
-    am.FrequencyDomain: Kind.CLOCK,
-    am.ProcessingUnitDefinition: Kind.CORE_TYPE,
-    am.HwStructure: Kind.STRUCTURE,
-    am.HwModule: Kind.MODULE,
-    am.HwConnection: Kind.MODULE,
-    am.Scheduler: Kind.SCHEDULER,
-    am.OsOverhead: Kind.OVERHEAD,
-    am.OperatingSystem: Kind.OPERATING_SYSTEM,
-    am.Semaphore: Kind.SEMAPHORE,
-    am.Stimulus: Kind.STIMULUS,
-    am.Clock: Kind.STIMULUS_CLOCK,
-    am.Process: Kind.PROCESS,
-    am.Runnable: Kind.RUNNABLE,
-    am.Label: Kind.DATA,
-    am.Channel: Kind.DATA,
-    am.OsEvent: Kind.OS_EVENT,
-    am.Mode: Kind.MODE,
-    am.ModeLabel: Kind.MODE_LABEL,
-    am.Event: Kind.EVENT,
-    am.EventChain: Kind.CHAIN,
-    am.TimingConstraint: Kind.CONSTRAINT,
-    am.DataAgeConstraint: Kind.CONSTRAINT,
-    am.RunnableSequencingConstraint: Kind.CONSTRAINT,
+KINDS: dict[type[Element], ObjectKind] = {
+    am.FrequencyDomain: ObjectKind.CLOCK,
+    am.ProcessingUnitDefinition: ObjectKind.CORE_TYPE,
+    am.HwStructure: ObjectKind.STRUCTURE,
+    am.HwModule: ObjectKind.MODULE,
+    am.HwConnection: ObjectKind.MODULE,
+    am.Scheduler: ObjectKind.SCHEDULER,
+    am.OsOverhead: ObjectKind.OVERHEAD,
+    am.OperatingSystem: ObjectKind.OPERATING_SYSTEM,
+    am.Semaphore: ObjectKind.SEMAPHORE,
+    am.Stimulus: ObjectKind.STIMULUS,
+    am.Clock: ObjectKind.STIMULUS_CLOCK,
+    am.Process: ObjectKind.PROCESS,
+    am.Runnable: ObjectKind.RUNNABLE,
+    am.Label: ObjectKind.DATA,
+    am.Channel: ObjectKind.DATA,
+    am.OsEvent: ObjectKind.OS_EVENT,
+    am.Mode: ObjectKind.MODE,
+    am.ModeLabel: ObjectKind.MODE_LABEL,
+    am.Event: ObjectKind.EVENT,
+    am.EventChain: ObjectKind.CHAIN,
+    am.TimingConstraint: ObjectKind.CONSTRAINT,
+    am.DataAgeConstraint: ObjectKind.CONSTRAINT,
+    am.RunnableSequencingConstraint: ObjectKind.CONSTRAINT,
 }
 
-_KIND_OF: dict[type[Element], Kind | None] = {}
+_KIND_OF: dict[type[Element], ObjectKind | None] = {}
 
 
-def kind_of(cls: type[Element]) -> Kind | None:
+def kind_of(cls: type[Element]) -> ObjectKind | None:
     """The kind of the objects of a class; None if they are not referenced by name."""
     if cls not in _KIND_OF:
         _KIND_OF[cls] = next((KINDS[base] for base in cls.__mro__ if base in KINDS), None)

@@ -17,7 +17,7 @@ from amalthea_uros.bridge.context import Extracting
 from amalthea_uros.bridge.kinds import kind_of
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.element import Element
-from amalthea_uros.metamodel.features import Feature, features_of
+from amalthea_uros.metamodel.features import ElementFeature, features_of
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.metamodel.versions import version_key
 from amalthea_uros.perf.system import System
@@ -163,7 +163,7 @@ class _Update:
             else:
                 self._change_references(feature, before, after, target)
 
-    def _change_references(self, feature: Feature, before: Sequence[Any], after: Sequence[Any], target: Element) -> None:
+    def _change_references(self, feature: ElementFeature, before: Sequence[Any], after: Sequence[Any], target: Element) -> None:
         """Set references; in a list that also has others, only those that differ."""
         old, new = ([self._target(value) for value in values] for values in (before, after))
         held = _values(target, feature)
@@ -171,7 +171,9 @@ class _Update:
             new = [value for value in held if value not in old or value in new] + [value for value in new if value not in held]
         setattr(target, feature.name, new if feature.many else next(iter(new), None))
 
-    def _change_parts(self, feature: Feature, before: Sequence[Element], after: Sequence[Element], target: Element) -> None:
+    def _change_parts(
+        self, feature: ElementFeature, before: Sequence[Element], after: Sequence[Element], target: Element
+    ) -> None:
         """Change the parts that are on both sides, add and remove others."""
         held = _own(_values(target, feature))
         if not feature.many and not held:
@@ -194,7 +196,7 @@ class _Update:
             elif key in kept:
                 self._change_part(feature, target, old[key], part, present[key])
 
-    def _change_part(self, feature: Feature, target: Element, old: Element, new: Element, present: Element) -> None:
+    def _change_part(self, feature: ElementFeature, target: Element, old: Element, new: Element, present: Element) -> None:
         if type(present) is not type(new) or type(old) is not type(new):
             self._replace(feature, target, present, self._copy(new))
         elif isinstance(new, am.Quantity | am.Value):
@@ -205,7 +207,7 @@ class _Update:
             self._change(old, new, present)
 
     @staticmethod
-    def _replace(feature: Feature, target: Element, present: Element | None, new: Element | None) -> None:
+    def _replace(feature: ElementFeature, target: Element, present: Element | None, new: Element | None) -> None:
         if not feature.many:
             setattr(target, feature.name, new)
             return
@@ -230,12 +232,12 @@ def _identified(parts: Iterable[Element], key_of: Callable[[Element], Hashable])
     return found
 
 
-def _values(element: Element, feature: Feature) -> list[Any]:
+def _values(element: Element, feature: ElementFeature) -> list[Any]:
     value = element.__dict__.get(feature.name)
     return [] if value is None else list(value) if feature.many else [value]
 
 
-def _parts(element: Element, feature: Feature) -> list[Any]:
+def _parts(element: Element, feature: ElementFeature) -> list[Any]:
     return [] if feature.kind == "attribute" else [value for value in _values(element, feature) if feature.contains(value)]
 
 
@@ -250,11 +252,11 @@ def _meaning(element: Element) -> Hashable:
     return type(element), tuple((name, meanings) for name, meanings in stated if meanings)
 
 
-def _meanings(feature: Feature, values: Iterable[Any]) -> Hashable:
+def _meanings(feature: ElementFeature, values: Iterable[Any]) -> Hashable:
     return tuple(_meaning_of_values(feature, values))
 
 
-def _meaning_of_values(feature: Feature, values: Iterable[Any]) -> Iterator[Hashable]:
+def _meaning_of_values(feature: ElementFeature, values: Iterable[Any]) -> Iterator[Hashable]:
     for value in values:
         if feature.kind == "attribute":
             yield type(value), value

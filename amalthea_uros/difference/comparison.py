@@ -15,14 +15,14 @@ from typing import TYPE_CHECKING, Any
 
 from amalthea_uros.difference.alignment import increasing
 from amalthea_uros.difference.fingerprint import Fingerprints, is_sequence, unknown_content
-from amalthea_uros.difference.matching import Matching
-from amalthea_uros.difference.names import Names, has_identity
+from amalthea_uros.difference.matching import ElementMatching
+from amalthea_uros.difference.names import ElementNames, has_identity
 from amalthea_uros.difference.parts import PartsMatcher, Side
 from amalthea_uros.difference.unset import UnsetAttributes
 from amalthea_uros.difference.value_text import UNSET, is_inline, label, readable_name, shortened, value_text
 from amalthea_uros.metamodel.classes.base import Amalthea
 from amalthea_uros.metamodel.element import Element
-from amalthea_uros.metamodel.features import Feature, features_of
+from amalthea_uros.metamodel.features import ElementFeature, features_of
 from amalthea_uros.metamodel.naming import name_of
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ class ChangeKind(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Change:
+class ModelChange:
     """One difference.
 
     Attributes
@@ -74,29 +74,29 @@ class Change:
     new_element: Element | None
 
 
-def difference(old: Model, new: Model) -> list[Change]:
+def difference(old: Model, new: Model) -> list[ModelChange]:
     """The differences in meaning, in the order of the new model; a removed object has the position of its container."""
     was_enabled = gc.isenabled()
     # The comparison makes many objects and no garbage: scanning both models for it would take half of the time.
     gc.disable()
     try:
-        changes = _Comparison(old, new).changes()
+        changes = _ModelComparison(old, new).changes()
         if len(changes) <= _SHORTEST_EXCHANGE:
             return changes
         # Where names were exchanged, as in a swap, the same content under other names is the shorter description.
-        return min(changes, _Comparison(old, new, by_content=True).changes(), key=len)
+        return min(changes, _ModelComparison(old, new, by_content=True).changes(), key=len)
     finally:
         if was_enabled:
             gc.enable()
 
 
-class _Comparison:
+class _ModelComparison:
     def __init__(self, old: Model, new: Model, by_content: bool = False) -> None:
         self.models = old, new
         unset_attributes = UnsetAttributes([*old.documents, *new.documents])
         self.unset_attributes = unset_attributes
-        self.old_names, self.new_names = Names(old), Names(new)
-        self.matching = Matching(self.old_names, self.new_names, unset_attributes, by_content)
+        self.old_names, self.new_names = ElementNames(old), ElementNames(new)
+        self.matching = ElementMatching(self.old_names, self.new_names, unset_attributes, by_content)
         numbers: dict[Hashable, int] = {}
         self.old = Side(self.old_names, Fingerprints(unset_attributes, self.old_names.token, numbers))
         self.new = Side(self.new_names, Fingerprints(unset_attributes, self.new_names.token, numbers))
@@ -104,9 +104,9 @@ class _Comparison:
         self.counterparts: dict[Element, Element] = dict(self.matching.pairs)
         #: Objects without counterpart; their parts were added or removed with them.
         self.unmatched: set[Element] = {*self.matching.removed, *self.matching.added}
-        self.found: list[Change] = []
+        self.found: list[ModelChange] = []
 
-    def changes(self) -> list[Change]:
+    def changes(self) -> list[ModelChange]:
         self.versions()
         self.features(*(tuple(document.root for document in model.documents) for model in self.models))
         for old, new in self.matching.pairs:
@@ -139,9 +139,9 @@ class _Comparison:
     ) -> None:
         shown = new if new is not None else old
         assert shown is not None
-        self.found.append(Change(kind, type(shown).__name__, shown.qualified_name, feature, old_text, new_text, old, new))
+        self.found.append(ModelChange(kind, type(shown).__name__, shown.qualified_name, feature, old_text, new_text, old, new))
 
-    def place(self, change: Change) -> int:
+    def place(self, change: ModelChange) -> int:
         if change.new_element is not None:
             return self.new_names.order[change.new_element]
         holder = change.old_element
@@ -194,12 +194,12 @@ class _Comparison:
                 self.parts(feature, old, new)
         self.unknown(old, new)
 
-    def attribute(self, feature: Feature, old: Elements, new: Elements) -> None:
+    def attribute(self, feature: ElementFeature, old: Elements, new: Elements) -> None:
         old_value, new_value = self.meaning(feature, old, new), self.meaning(feature, new, old)
         if old_value != new_value and not (old_value != old_value and new_value != new_value):
             self.change(*_first_of_each(old, new), feature.xml_name, value_text(old_value), value_text(new_value))
 
-    def meaning(self, feature: Feature, elements: Elements, others: Elements) -> Any:
+    def meaning(self, feature: ElementFeature, elements: Elements, others: Elements) -> Any:
         """The first value that differs from the default."""
         unset_attributes = [self.unset_attributes.of(element)[feature.name] for element in elements or others]
         values = [a.meaning(e.__dict__.get(feature.name)) for a, e in zip(unset_attributes, elements, strict=False)]
@@ -207,7 +207,7 @@ class _Comparison:
             (v for v, a in zip(values, unset_attributes, strict=False) if v != a.stands_for), unset_attributes[0].stands_for
         )
 
-    def references(self, feature: Feature, old: Elements, new: Elements) -> None:
+    def references(self, feature: ElementFeature, old: Elements, new: Elements) -> None:
         old_targets, new_targets = (
             [value for value in _values(feature, elements) if not feature.contains(value)] for elements in (old, new)
         )
@@ -221,7 +221,7 @@ class _Comparison:
             old_text, new_text = (readable_name(targets[0]) if targets else UNSET for targets in (old_targets, new_targets))
             self.change(*_first_of_each(old, new), feature.xml_name, old_text, new_text)
 
-    def parts(self, feature: Feature, old: Elements, new: Elements) -> None:
+    def parts(self, feature: ElementFeature, old: Elements, new: Elements) -> None:
         old_parts, new_parts = (
             [part for part in _values(feature, elements) if feature.contains(part) and not has_identity(part)]
             for elements in (old, new)
@@ -233,7 +233,9 @@ class _Comparison:
         elif old_parts or new_parts:
             self.single_part(feature, (old, new), *_first_of_each(old_parts, new_parts))
 
-    def part_lists(self, feature: Feature, holders: tuple[Elements, Elements], old: list[Element], new: list[Element]) -> None:
+    def part_lists(
+        self, feature: ElementFeature, holders: tuple[Elements, Elements], old: list[Element], new: list[Element]
+    ) -> None:
         if not old and not new:
             return
         matcher = PartsMatcher(old, new, self.old, self.new)
@@ -250,7 +252,7 @@ class _Comparison:
             self.change(*_first_of_each(*holders), feature.xml_name, "", f"reordered {_names(map(_described, moved))}")
 
     def single_part(
-        self, feature: Feature, holders: tuple[Elements, Elements], old: Element | None, new: Element | None
+        self, feature: ElementFeature, holders: tuple[Elements, Elements], old: Element | None, new: Element | None
     ) -> None:
         if all(part is None or is_inline(part) for part in (old, new)):
             texts = value_text(old), value_text(new)
@@ -319,7 +321,7 @@ def _described(part: Element) -> str:
     return f"{type(part).__name__} {label(part)}".rstrip()
 
 
-def _values(feature: Feature, elements: Elements) -> list[Any]:
+def _values(feature: ElementFeature, elements: Elements) -> list[Any]:
     found: list[Any] = []
     for element in elements:
         value = element.__dict__.get(feature.name)
@@ -349,7 +351,7 @@ def _owner_text(element: Element) -> str:
     return label(owner) if owner is not None else type(element.container).__name__
 
 
-def _holding_feature(element: Element) -> Feature:
+def _holding_feature(element: Element) -> ElementFeature:
     holder = element.container
     assert holder is not None
     for feature in features_of(type(holder)).values():

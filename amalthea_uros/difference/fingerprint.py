@@ -11,7 +11,7 @@ from amalthea_uros.metamodel.classes.constraints import AbstractEventChain
 from amalthea_uros.metamodel.classes.sw import IActivityGraphItemContainer, ModeSwitch, Switch
 from amalthea_uros.metamodel.containment import ContainmentList
 from amalthea_uros.metamodel.element import Element, Extras
-from amalthea_uros.metamodel.features import Feature, features_of
+from amalthea_uros.metamodel.features import ElementFeature, features_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Hashable
@@ -123,7 +123,7 @@ class Fingerprints:
             return tuple(map(self._token, value))
         if isinstance(value, Extras):
             return tuple(sorted(unknown_content(value).items()))
-        feature: Feature = features_of(type(element))[name]
+        feature: ElementFeature = features_of(type(element))[name]
         if not feature.contains(value):
             return self._token(value)
         return None if has_identity(value) and not self._stops else (self._part(value),)

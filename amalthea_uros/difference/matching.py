@@ -12,7 +12,7 @@ from amalthea_uros.metamodel.features import features_of
 if TYPE_CHECKING:
     from collections.abc import Callable, Hashable, Iterable
 
-    from amalthea_uros.difference.names import Names, Token
+    from amalthea_uros.difference.names import ElementNames, Token
     from amalthea_uros.difference.unset import UnsetAttributes
 
 Pair = tuple[Element, Element]
@@ -36,7 +36,7 @@ def pair_up(
     return [(element, waiting[key].popleft()) for element in old if waiting.get(key := old_key(element))]
 
 
-class Matching:
+class ElementMatching:
     """The objects with an identity of two models, in pairs.
 
     Attributes
@@ -49,7 +49,9 @@ class Matching:
     by_content : content is more than names: objects with the same name and different content may have exchanged their names with others
     """
 
-    def __init__(self, old: Names, new: Names, unset_attributes: UnsetAttributes, by_content: bool = False) -> None:
+    def __init__(
+        self, old: ElementNames, new: ElementNames, unset_attributes: UnsetAttributes, by_content: bool = False
+    ) -> None:
         self._old, self._new, self._unset_attributes = old, new, unset_attributes
         #: Objects that are the same whatever is found about renames.
         self._certain: list[Pair] = []
@@ -105,7 +107,7 @@ class Matching:
     def _match_namespaces(self) -> None:
         """Match objects that got into a namespace or out of one: they have the same name in the same place."""
 
-        def key(names: Names) -> Callable[[Element], Hashable]:
+        def key(names: ElementNames) -> Callable[[Element], Hashable]:
             return lambda e: (type(e), e.__dict__.get("name"), names.owner(e)) if "namespace" in features_of(type(e)) else None
 
         alike = _unique_pairs(_grouped(self.removed, key(self._old)), _grouped(self.added, key(self._new)))
@@ -129,7 +131,7 @@ class Matching:
         return pairs + [pair for pair in _unique_pairs(*refined) if taken.isdisjoint(pair)]
 
     def _refined(
-        self, names: Names, groups: dict[Hashable, list[Element]], numbers: dict[Hashable, int]
+        self, names: ElementNames, groups: dict[Hashable, list[Element]], numbers: dict[Hashable, int]
     ) -> dict[Hashable, list[Element]]:
         """The groups split by the neighbours of their objects, and by the neighbours of these (colour refinement)."""
         colours: dict[Element, Hashable] = {element: key for key, group in groups.items() for element in group}
@@ -145,7 +147,7 @@ class Matching:
         return _grouped(colours, colours.__getitem__)
 
     def _loose_keys(
-        self, names: Names, unmatched: dict[Element, None], numbers: dict[Hashable, int]
+        self, names: ElementNames, unmatched: dict[Element, None], numbers: dict[Hashable, int]
     ) -> dict[Hashable, list[Element]]:
         def loose(target: Element) -> Token:
             token = names.token(target)
@@ -181,7 +183,7 @@ class Matching:
         numbers: dict[Hashable, int] = {}
         matched = self._common | set(self._new.translation.values())
 
-        def fingerprints(names: Names) -> Fingerprints:
+        def fingerprints(names: ElementNames) -> Fingerprints:
             return Fingerprints(self._unset_attributes, names.token, numbers, lambda part: names.token(part) in matched)
 
         old, new = fingerprints(self._old), fingerprints(self._new)
@@ -206,7 +208,7 @@ def _unique_pairs(old: dict[Hashable, list[Element]], new: dict[Hashable, list[E
     return [(old[key][0], new[key][0]) for key in old if len(old[key]) == 1 and len(new.get(key, ())) == 1]
 
 
-def _position_key(element: Element, names: Names) -> Hashable:
+def _position_key(element: Element, names: ElementNames) -> Hashable:
     namespace = element.__dict__.get("namespace")
     around = names.token(namespace) if namespace is not None else None
     return (type(element), element.__dict__.get("name"), names.owner(element), around)

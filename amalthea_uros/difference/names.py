@@ -25,7 +25,7 @@ def has_identity(element: Element) -> bool:
     return element.is_referable and type(element) is not CallArgument
 
 
-class Names:
+class ElementNames:
     """The objects of one model by token.
 
     Attributes

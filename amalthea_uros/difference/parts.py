@@ -15,13 +15,13 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Hashable, Iterable
 
     from amalthea_uros.difference.fingerprint import Fingerprints
-    from amalthea_uros.difference.names import Names
+    from amalthea_uros.difference.names import ElementNames
 
 
 class Side(NamedTuple):
     """The old or the new model as seen by the comparison of parts."""
 
-    names: Names
+    names: ElementNames
     fingerprints: Fingerprints
 
     def key(self, part: Element) -> Hashable:

@@ -8,7 +8,7 @@ from typing import Any
 from amalthea_uros.metamodel import classes
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.features import features_of
-from amalthea_uros.metamodel.versions import Facts, facts, nearest_version, newest_version
+from amalthea_uros.metamodel.versions import VersionFacts, facts, nearest_version, newest_version
 
 #: The enumeration lost its name to a class in 2.0.0.
 _RENAMED_ENUMS = {"Condition": "CombinatorialCondition"}
@@ -38,7 +38,7 @@ def defaults_of(version: str, cls: type[Element]) -> dict[str, Any]:
 _DEFAULTS: dict[tuple[str, type[Element]], dict[str, Any]] = {}
 
 
-def default_value(declared: Facts, class_name: str, feature_name: str) -> Any:
+def default_value(declared: VersionFacts, class_name: str, feature_name: str) -> Any:
     """The default of an attribute (names as in files) in one version; None if there is none."""
     feature = declared.feature(class_name, feature_name)
     text = declared.default(feature) if feature else None

@@ -29,7 +29,7 @@ from functools import cache
 from typing import NamedTuple
 
 
-class Kind(Enum):
+class FeatureKind(Enum):
     """The kind of a feature."""
 
     ATTRIBUTE = ""
@@ -37,7 +37,7 @@ class Kind(Enum):
     REFERENCE = "->"
 
 
-_KINDS = {kind.value: kind for kind in Kind}
+_KINDS = {kind.value: kind for kind in FeatureKind}
 
 
 class FeatureFact(NamedTuple):
@@ -49,7 +49,7 @@ class FeatureFact(NamedTuple):
     """
 
     name: str
-    kind: Kind
+    kind: FeatureKind
     type: str
     lower: int = 0
     upper: int | None = 1
@@ -71,7 +71,7 @@ class FeatureFact(NamedTuple):
     @property
     def stored(self) -> bool:
         """Whether the feature is written to files; a reference with an opposite mirrors a containment and is not."""
-        mirrors = self.kind is Kind.REFERENCE and self.opposite is not None
+        mirrors = self.kind is FeatureKind.REFERENCE and self.opposite is not None
         return not self.derived and not self.readonly and not mirrors
 
 
@@ -119,7 +119,7 @@ Fact = ClassFact | EnumFact | NumberFact
 
 
 @dataclass(frozen=True, slots=True)
-class Block:
+class FactBlock:
     """The text of a fact and the (first, last) versions for which it is valid; no ranges means always."""
 
     module: str
@@ -132,11 +132,11 @@ class Block:
         return _fact(self.module, head.partition(" @ ")[0].split(), body)
 
 
-def blocks(module: str, text: str) -> Iterable[Block]:
+def blocks(module: str, text: str) -> Iterable[FactBlock]:
     """Blocks of one facts file, in its order."""
     for chunk in text.strip().split("\n\n"):
         _, _, versions = chunk.partition("\n")[0].partition(" @ ")
-        yield Block(module, chunk, _ranges(versions))
+        yield FactBlock(module, chunk, _ranges(versions))
 
 
 def _ranges(text: str) -> tuple[tuple[str, str | None], ...]:
@@ -174,8 +174,8 @@ def _features(lines: tuple[str, ...]) -> tuple[FeatureFact, ...]:
 def _feature(line: str) -> FeatureFact:
     declaration, _, default = line.partition(" = ")
     name, *words = declaration.split()
-    kind = _KINDS.get(words[0], Kind.ATTRIBUTE)
-    type_name, *flags = words if kind is Kind.ATTRIBUTE else words[1:]
+    kind = _KINDS.get(words[0], FeatureKind.ATTRIBUTE)
+    type_name, *flags = words if kind is FeatureKind.ATTRIBUTE else words[1:]
     bounds = next((flag for flag in flags if _BOUNDS.fullmatch(flag)), "")
     lower, upper = _bounds(bounds)
     return FeatureFact(

@@ -16,7 +16,7 @@ FeatureKind = Literal["attribute", "reference", "containment", "either"]
 _set = object.__setattr__
 
 
-class Feature:
+class ElementFeature:
     """One feature of a class; as a descriptor it gives the unset value."""
 
     __slots__ = ("kind", "many", "name", "xml_name")
@@ -64,50 +64,50 @@ class Feature:
 
 def attribute(xml_name: str) -> Any:
     """A number, text, truth value or literal."""
-    return Feature(xml_name, "attribute")
+    return ElementFeature(xml_name, "attribute")
 
 
 def reference(xml_name: str) -> Any:
     """A reference to an object that is contained elsewhere."""
-    return Feature(xml_name, "reference")
+    return ElementFeature(xml_name, "reference")
 
 
 def references(xml_name: str) -> Any:
     """Ordered references to objects that are contained elsewhere."""
-    return Feature(xml_name, "reference", many=True)
+    return ElementFeature(xml_name, "reference", many=True)
 
 
 def containment(xml_name: str) -> Any:
     """A part of the object."""
-    return Feature(xml_name, "containment")
+    return ElementFeature(xml_name, "containment")
 
 
 def containments(xml_name: str) -> Any:
     """Ordered parts of the object."""
-    return Feature(xml_name, "containment", many=True)
+    return ElementFeature(xml_name, "containment", many=True)
 
 
 def containment_or_reference(xml_name: str) -> Any:
     """A part of the object in older versions, a reference in newer ones."""
-    return Feature(xml_name, "either")
+    return ElementFeature(xml_name, "either")
 
 
-_FEATURES: dict[type, dict[str, Feature]] = {}
-_CONTAINMENTS: dict[type, tuple[Feature, ...]] = {}
+_FEATURES: dict[type, dict[str, ElementFeature]] = {}
+_CONTAINMENTS: dict[type, tuple[ElementFeature, ...]] = {}
 
 
-def features_of(cls: type[Element]) -> dict[str, Feature]:
+def features_of(cls: type[Element]) -> dict[str, ElementFeature]:
     """All features of a class by their Python names, those of the supertypes first."""
     found = _FEATURES.get(cls)
     if found is None:
         found = {}
         for base in reversed(cls.__mro__):
-            found.update((name, value) for name, value in vars(base).items() if isinstance(value, Feature))
+            found.update((name, value) for name, value in vars(base).items() if isinstance(value, ElementFeature))
         _FEATURES[cls] = found
     return found
 
 
-def containments_of(cls: type[Element]) -> tuple[Feature, ...]:
+def containments_of(cls: type[Element]) -> tuple[ElementFeature, ...]:
     """The features of a class that may contain parts."""
     found = _CONTAINMENTS.get(cls)
     if found is None:

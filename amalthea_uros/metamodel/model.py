@@ -15,7 +15,7 @@ from amalthea_uros.metamodel.containment import Revision
 from amalthea_uros.metamodel.editing import Editing
 from amalthea_uros.metamodel.element import Element, references_of
 from amalthea_uros.metamodel.naming import qualified_name
-from amalthea_uros.metamodel.source import Source
+from amalthea_uros.metamodel.source import SourceText
 from amalthea_uros.metamodel.versions import nearest_version, newest_version
 
 E = TypeVar("E", bound=Element)
@@ -62,7 +62,7 @@ class Document:
         self.root = root
         self.version = version or newest_version()
         self.path = path
-        self.source: Source | None = None
+        self.source: SourceText | None = None
         self.prolog: list[str] = []
         self.epilog: list[str] = []
         self.spellings: dict[tuple[Element, str], Spelling] = {}

@@ -45,7 +45,7 @@ class Prefixes(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Source:
+class SourceText:
     """Text and layout of one file.
 
     Attributes

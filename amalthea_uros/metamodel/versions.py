@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from functools import cache, cached_property
 from pathlib import Path
 
-from amalthea_uros.metamodel.factfile import Block, ClassFact, EnumFact, FeatureFact, Kind, NumberFact, blocks
+from amalthea_uros.metamodel.factfile import ClassFact, EnumFact, FactBlock, FeatureFact, FeatureKind, NumberFact, blocks
 
 _FACTS = Path(__file__).with_name("facts")
 
@@ -41,7 +41,7 @@ def version_key(version: str) -> tuple[int, ...]:
 
 
 @cache
-def _blocks() -> tuple[Block, ...]:
+def _blocks() -> tuple[FactBlock, ...]:
     paths = sorted(path for path in _FACTS.iterdir() if path.name != "versions.txt")
     return tuple(block for path in paths for block in blocks(path.stem, path.read_text(encoding="utf-8")))
 
@@ -68,7 +68,7 @@ def nearest_version(version: str) -> str:
     return older[-1] if older else known_versions()[0]
 
 
-def _holds(block: Block, version: str) -> bool:
+def _holds(block: FactBlock, version: str) -> bool:
     key = version_key(version)
     return not block.ranges or any(
         version_key(first) <= key and (last is None or key <= version_key(last)) for first, last in block.ranges
@@ -76,7 +76,7 @@ def _holds(block: Block, version: str) -> bool:
 
 
 @dataclass(frozen=True)
-class Facts:
+class VersionFacts:
     """What one AMALTHEA version declares.
 
     Attributes
@@ -128,7 +128,7 @@ class Facts:
 
     def default(self, feature: FeatureFact) -> str | None:
         """The default value of an attribute as text, None if it has none."""
-        if feature.kind is not Kind.ATTRIBUTE:
+        if feature.kind is not FeatureKind.ATTRIBUTE:
             return None
         if feature.default is not None:
             return feature.default
@@ -138,7 +138,7 @@ class Facts:
 
 
 @cache
-def facts(version: str) -> Facts:
+def facts(version: str) -> VersionFacts:
     """What `version` declares.
 
     Raises
@@ -148,7 +148,7 @@ def facts(version: str) -> Facts:
     if version not in known_versions():
         raise KeyError(version)
     declared = [block.fact() for block in _blocks() if _holds(block, version)]
-    return Facts(
+    return VersionFacts(
         version=version,
         classes={fact.name: fact for fact in declared if isinstance(fact, ClassFact)},
         enums={fact.name: fact for fact in declared if isinstance(fact, EnumFact)},

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.metamodel.versions import spelled
 from amalthea_uros.services.migrate import MigrationResult
-from amalthea_uros.services.migration import FileState, Kind, MigrationChange
+from amalthea_uros.services.migration import FileState, MigrationChange, NoteKind
 
 #: Of more versions only the first and the last are named.
 _MOST_VERSIONS = 3
@@ -83,7 +83,7 @@ def _from(versions: Iterable[str]) -> str:
 
 def _counts(changes: Iterable[MigrationChange]) -> list[str]:
     counts = Counter(change.kind for change in changes)
-    return [f"{counts[kind]:,} {kind}" for kind in Kind if counts[kind]]
+    return [f"{counts[kind]:,} {kind}" for kind in NoteKind if counts[kind]]
 
 
 def _version_key(version: str) -> tuple[int, ...]:

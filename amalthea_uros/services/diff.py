@@ -12,7 +12,7 @@ from amalthea_uros._internal.shown import Shown
 from amalthea_uros.bridge.extract import extract
 from amalthea_uros.design.changes.timing_changes import TimingChange, timing_changes
 from amalthea_uros.diagnostics import Finding
-from amalthea_uros.difference.comparison import Change, difference
+from amalthea_uros.difference.comparison import ModelChange, difference
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.metamodel.versions import known_versions, newest_version
 from amalthea_uros.perf.named import Brief
@@ -42,7 +42,7 @@ class DiffResult(Brief, Shown):
 
     old: str
     new: str
-    changes: tuple[Change, ...]
+    changes: tuple[ModelChange, ...]
     findings: tuple[Finding, ...] = ()
     timing: tuple[TimingChange, ...] = ()
     impact: Impact | None = None

@@ -18,7 +18,7 @@ from amalthea_uros.names import require
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.services.inputs import as_paths, refuse_descriptions
 from amalthea_uros.services.migrated_paths import Destination, given_files
-from amalthea_uros.services.migration import FileState, Kind, MigratedFile, MigrationChange
+from amalthea_uros.services.migration import FileState, MigratedFile, MigrationChange, NoteKind
 from amalthea_uros.services.migration_writer import Writer
 from amalthea_uros.xmi.files import FileText
 from amalthea_uros.xmi.load import SUFFIX
@@ -53,7 +53,7 @@ class MigrationResult(Brief, Shown):
     @property
     def lost(self) -> tuple[MigrationChange, ...]:
         """What is not in the result."""
-        return tuple(change for change in self.changes if change.kind is Kind.LOST)
+        return tuple(change for change in self.changes if change.kind is NoteKind.LOST)
 
     @property
     def is_complete(self) -> bool:

@@ -7,7 +7,7 @@ from enum import StrEnum
 from pathlib import Path
 
 from amalthea_uros.diagnostics import Location
-from amalthea_uros.xmi.migrate.notes import Kind as Kind
+from amalthea_uros.xmi.migrate.notes import NoteKind as NoteKind
 
 
 class FileState(StrEnum):
@@ -48,7 +48,7 @@ class MigrationChange:
     location : in the old file
     """
 
-    kind: Kind
+    kind: NoteKind
     step: str
     message: str
     detail: str

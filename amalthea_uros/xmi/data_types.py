@@ -9,7 +9,7 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from amalthea_uros.metamodel.defaults import enum_class
-from amalthea_uros.metamodel.versions import Facts
+from amalthea_uros.metamodel.versions import VersionFacts
 
 
 class DataType(NamedTuple):
@@ -158,7 +158,7 @@ class ValueCache(dict[str, Any]):
         return value
 
 
-def data_type_of(declared: Facts, type_name: str) -> DataType:
+def data_type_of(declared: VersionFacts, type_name: str) -> DataType:
     """The data type of an Ecore type in one AMALTHEA version."""
     if type_name in declared.enums:
         return _enumeration(declared, type_name)
@@ -168,7 +168,7 @@ def data_type_of(declared: Facts, type_name: str) -> DataType:
     return _DOUBLE if number.java_type == "double" else _INTEGER
 
 
-def _enumeration(declared: Facts, type_name: str) -> DataType:
+def _enumeration(declared: VersionFacts, type_name: str) -> DataType:
     enum = enum_class(type_name)
     members = {literal: enum(literal) for literal in declared.enums[type_name].literals}
 

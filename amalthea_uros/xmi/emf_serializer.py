@@ -18,14 +18,14 @@ from amalthea_uros.xmi.escape import escape, impossible_character
 from amalthea_uros.xmi.plan import ClassPlan, FeaturePlan, plans
 
 
-class Part(NamedTuple):
+class ChildPart(NamedTuple):
     """A child element that holds an object."""
 
     feature: FeaturePlan
     element: Element
 
 
-class Href(NamedTuple):
+class ChildReference(NamedTuple):
     """A child element that refers to an object of another file.
 
     Attributes
@@ -39,7 +39,7 @@ class Href(NamedTuple):
     tag: str
 
 
-Child = Part | Href
+Child = ChildPart | ChildReference
 
 
 class WritePlan(NamedTuple):
@@ -238,9 +238,9 @@ class EmfSerializer:
             elif feature.many:
                 if feature.only_one and len(value) > 1:
                     self.refuse(element, f"{feature.name!r} can have only one object in AMALTHEA {self.document.facts_version}")
-                found += [Part(feature, part) for part in value if self.check_part(element, feature, part)]
+                found += [ChildPart(feature, part) for part in value if self.check_part(element, feature, part)]
             elif self.check_part(element, feature, value):
-                found.append(Part(feature, value))
+                found.append(ChildPart(feature, value))
         return found
 
     def hrefs(self, element: Element, feature: FeaturePlan, value: Any) -> list[Child]:
@@ -260,18 +260,18 @@ class EmfSerializer:
         for target, number in first_numbers.items():
             content = self.document.href_content.get((element, feature.xml_name, target))
             href = hrefs[number]
-            if content and isinstance(href, Href):
+            if content and isinstance(href, ChildReference):
                 self.kept += content
                 hrefs[number] = href._replace(tag=f"{href.tag[:-2]}>{''.join(content)}</{feature.xml_name}>")
 
-    def href(self, feature: FeaturePlan, target: Element) -> Href:
+    def href(self, feature: FeaturePlan, target: Element) -> ChildReference:
         """`<task href="amlt:/#T?type=Task"/>`, with `xsi:type` where the declared class is abstract."""
         text = self.target(target)[0]
         typed = ""
         if feature.target_is_abstract:
             self.uses_xsi = True
             typed = f' {self.prefixes.xsi_type}="{self.prefixes.type_prefix}{type(target).__name__}"'
-        return Href(feature, text, f'<{feature.xml_name}{typed} href="amlt:/#{escape(text)}"/>')
+        return ChildReference(feature, text, f'<{feature.xml_name}{typed} href="amlt:/#{escape(text)}"/>')
 
     def check_part(self, element: Element, feature: FeaturePlan, part: Any) -> bool:
         """Whether an object may be a part of another one; if not, a finding says so."""
@@ -335,7 +335,7 @@ class KeptContent(NamedTuple):
         before: dict[Element | None, list[str]] = {}
         after: dict[str, list[str]] = {}
         if content:
-            parts = {child.element for child in children if isinstance(child, Part)}
+            parts = {child.element for child in children if isinstance(child, ChildPart)}
             single = {child.feature.xml_name for child in children if not child.feature.many or child.feature.only_one}
             for anchor, raw in content:
                 tag = tag_of(raw)

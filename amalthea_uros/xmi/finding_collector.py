@@ -7,7 +7,7 @@ from pathlib import Path
 
 from amalthea_uros._internal.similar import Suggestions
 from amalthea_uros.diagnostics import Finding, Location, Severity
-from amalthea_uros.metamodel.source import Source
+from amalthea_uros.metamodel.source import SourceText
 
 
 class CollectedFinding:
@@ -24,7 +24,7 @@ class CollectedFinding:
         self.attribute = attribute
         self.count = 1
 
-    def finding(self, path: Path, source: Source) -> Finding:
+    def finding(self, path: Path, source: SourceText) -> Finding:
         """The finding, at the first occurrence."""
         where = location(path, source, self.offset, self.attribute)
         times = f" ({self.count} times, this is the first)" if self.count > 1 else ""
@@ -52,7 +52,7 @@ class FindingCollector:
         return iter(self._findings.values())
 
 
-def location(path: Path, source: Source, byte_offset: int, attribute: str = "") -> Location:
+def location(path: Path, source: SourceText, byte_offset: int, attribute: str = "") -> Location:
     """The location of a tag, given by its offset in bytes of UTF-8, or of one of its attributes."""
     offset = source.character_offset(byte_offset)
     line, column = source.position(source.attribute_offset(offset, attribute) if attribute else offset)

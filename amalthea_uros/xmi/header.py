@@ -21,7 +21,7 @@ XSI_NAMESPACE = "http://www.w3.org/2001/XMLSchema-instance"
 _VERSION = re.compile(r"[0-9]{1,4}(\.[0-9]{1,4}){1,3}").fullmatch
 
 
-class Header(NamedTuple):
+class ModelHeader(NamedTuple):
     """The declarations of the root element.
 
     Attributes
@@ -65,7 +65,7 @@ class NotAModelError(Exception):
         self.rule, self.message, self.help = rule, message, help_text
 
 
-def read_header(name: str, attributes: dict[str, str]) -> Header:
+def read_header(name: str, attributes: dict[str, str]) -> ModelHeader:
     """The declarations of a root element.
 
     Raises
@@ -96,7 +96,7 @@ def read_header(name: str, attributes: dict[str, str]) -> Header:
         if given != uri:
             raise NotAModelError("XMI005", f"the prefix {usual!r} is bound to {given!r}", f'Write xmlns:{usual}="{uri}".')
     xmi, xsi = _prefix(namespaces, XMI_NAMESPACE, "xmi"), _prefix(namespaces, XSI_NAMESPACE, "xsi")
-    return Header(
+    return ModelHeader(
         version=version,
         facts_version=nearest_version(version),
         xmi_id=f"{xmi}:id",

@@ -8,9 +8,9 @@ from typing import Any
 
 from amalthea_uros.metamodel import classes
 from amalthea_uros.metamodel.element import Element
-from amalthea_uros.metamodel.factfile import FeatureFact, Kind
+from amalthea_uros.metamodel.factfile import FeatureFact, FeatureKind
 from amalthea_uros.metamodel.features import features_of
-from amalthea_uros.metamodel.versions import Facts, facts
+from amalthea_uros.metamodel.versions import VersionFacts, facts
 from amalthea_uros.xmi.data_types import DataType, ValueCache, data_type_of
 
 #: Prefix of class names in `xsi:type`.
@@ -47,18 +47,18 @@ class FeaturePlan:
         "xml_name",
     )
 
-    def __init__(self, name: str, many: bool, fact: FeatureFact, declared: Facts, class_name: str) -> None:
+    def __init__(self, name: str, many: bool, fact: FeatureFact, declared: VersionFacts, class_name: str) -> None:
         self.name = name
         self.xml_name = fact.name
         self.many = many
         self.only_one = many and not fact.many
-        self.is_reference = fact.kind is Kind.REFERENCE
+        self.is_reference = fact.kind is FeatureKind.REFERENCE
         self.data_type: DataType | None = None
         self.target: type[Element] = Element
         self.target_is_abstract = False
         self.default_text: str | None = None
         self.omitted: Any = None
-        if fact.kind is Kind.ATTRIBUTE:
+        if fact.kind is FeatureKind.ATTRIBUTE:
             self.data_type = data_type_of(declared, fact.type)
             default = declared.default(fact)
             if default is not None:
@@ -122,7 +122,7 @@ class ClassPlan:
 
     __slots__ = ("attributes", "children", "cls", "features", "referable")
 
-    def __init__(self, class_name: str, declared: Facts) -> None:
+    def __init__(self, class_name: str, declared: VersionFacts) -> None:
         self.cls: type[Element] = getattr(classes, class_name)
         held = {feature.xml_name: feature for feature in features_of(self.cls).values()}
         self.features = tuple(

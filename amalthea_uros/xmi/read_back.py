@@ -15,7 +15,7 @@ from amalthea_uros.metamodel.model import Document
 from amalthea_uros.metamodel.naming import place
 from amalthea_uros.xmi import refusals
 from amalthea_uros.xmi.emf_serializer import EmfSerializer, tag_of
-from amalthea_uros.xmi.header import Header, NotAModelError, read_header
+from amalthea_uros.xmi.header import ModelHeader, NotAModelError, read_header
 from amalthea_uros.xmi.plan import TYPE_PREFIX, ClassPlan, FeaturePlan
 from amalthea_uros.xmi.source_merger import SourceMerger
 
@@ -25,7 +25,7 @@ _HELP = (
 )
 
 
-class _Open(NamedTuple):
+class _OpenElement(NamedTuple):
     """An open element.
 
     Attributes
@@ -48,7 +48,7 @@ def check_read_back(text: str, document: Document, serializer: EmfSerializer, me
     ------
     WriteError : reading the text would not give the same model.
     """
-    comparison = _Comparison(document, serializer, merger)
+    comparison = _ReadBackComparison(document, serializer, merger)
     if refusals.lacks_namespace(text):
         comparison.refuse(document.root, "the prefix 'xsi' would not be declared")
     parser = comparison.parser
@@ -62,14 +62,14 @@ def check_read_back(text: str, document: Document, serializer: EmfSerializer, me
         parser.StartElementHandler = parser.EndElementHandler = None
 
 
-class _Comparison:
+class _ReadBackComparison:
     def __init__(self, document: Document, serializer: EmfSerializer, merger: SourceMerger | None) -> None:
         self.document = document
         self.serializer = serializer
         self.merger = merger
         self.parser = expat.ParserCreate()
-        self.header: Header | None = None
-        self.stack: list[_Open] = []
+        self.header: ModelHeader | None = None
+        self.stack: list[_OpenElement] = []
         self.skipped_depth = 0
 
     # Events
@@ -115,9 +115,9 @@ class _Comparison:
         extras = extras_if_any(root)
         if {key: attributes[key] for key in attributes.keys() - header.own_attributes} != (extras.attributes if extras else {}):
             self.refuse(root, "its unknown attributes would change")
-        self.stack.append(_Open(root, plan, {}, frozenset()))
+        self.stack.append(_OpenElement(root, plan, {}, frozenset()))
 
-    def start_known(self, parent: _Open, holder: Element, feature: FeaturePlan, attributes: dict[str, str]) -> bool:
+    def start_known(self, parent: _OpenElement, holder: Element, feature: FeaturePlan, attributes: dict[str, str]) -> bool:
         """Compare a child element that the metamodel knows; whether the reader would use it."""
         assert self.header
         name = feature.xml_name
@@ -128,7 +128,7 @@ class _Comparison:
             if list(attributes) != ["href"] or is_surplus or name in parent.attributes:
                 return False
             self.compare_href(holder, feature, number, attributes["href"])
-            self.stack.append(_Open(None, None, {}, frozenset()))
+            self.stack.append(_OpenElement(None, None, {}, frozenset()))
         else:
             if type_name is not None and self.header.type_prefix != TYPE_PREFIX:
                 type_name = TYPE_PREFIX + type_name.removeprefix(self.header.type_prefix)
@@ -156,7 +156,7 @@ class _Comparison:
                 known = plan.attributes.get(key)
                 if known is not None and element.__dict__.get(known.name) is not None:
                     self.refuse(element, f"the attribute {key!r} would be missing")
-        self.stack.append(_Open(element, plan, {}, frozenset(attributes)))
+        self.stack.append(_OpenElement(element, plan, {}, frozenset(attributes)))
 
     def is_copied(self, element: Element) -> bool:
         """Whether the start tag was copied from the source, where it was read with these attributes."""

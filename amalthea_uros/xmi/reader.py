@@ -19,13 +19,13 @@ from amalthea_uros.metamodel.classes import Amalthea
 from amalthea_uros.metamodel.containment import ContainmentList
 from amalthea_uros.metamodel.element import Element, extras_of
 from amalthea_uros.metamodel.model import Document
-from amalthea_uros.metamodel.source import Prefixes, Source
+from amalthea_uros.metamodel.source import Prefixes, SourceText
 from amalthea_uros.xmi import refusals
 from amalthea_uros.xmi.escape import WHITE_SPACE, escape_text
 from amalthea_uros.xmi.files import FileText
 from amalthea_uros.xmi.finding_collector import CollectedFinding, FindingCollector
 from amalthea_uros.xmi.handlers import Handlers, connect, disconnect
-from amalthea_uros.xmi.header import XSI_NAMESPACE, Header, NotAModelError, read_header
+from amalthea_uros.xmi.header import XSI_NAMESPACE, ModelHeader, NotAModelError, read_header
 from amalthea_uros.xmi.plan import TYPE_PREFIX, ClassPlan, FeaturePlan, plans, reference_texts
 
 _KEPT = "Unknown content is ignored, but preserved when the file is saved."
@@ -87,10 +87,10 @@ def read(path: Path, content: FileText) -> ReadResult:
     ------
     ReadError : not XML, not an AMALTHEA model, a version too old, or refused for safety.
     """
-    return _finish(_Reader(path, content, expat.ParserCreate()))
+    return _finish(_ModelReader(path, content, expat.ParserCreate()))
 
 
-class Events(Protocol):
+class ParserEvents(Protocol):
     """What reports the elements of a model in the way of a parser of expat, such as those of a model that was migrated.
 
     Attributes
@@ -101,32 +101,32 @@ class Events(Protocol):
     made: list[Element]
 
 
-def read_events(path: Path, content: FileText, events: Events) -> ReadResult:
+def read_events(path: Path, content: FileText, events: ParserEvents) -> ReadResult:
     """Read what something else than a parser reports of a file.
 
     Raises
     ------
     ReadError : nested too deep.
     """
-    reader = _Reader(path, content, events)
+    reader = _ModelReader(path, content, events)
     events.made = reader.elements
     return _finish(reader)
 
 
-def _finish(reader: _Reader) -> ReadResult:
+def _finish(reader: _ModelReader) -> ReadResult:
     try:
         return reader.read()
     finally:
         disconnect(reader.parser)
 
 
-class _Reader:
+class _ModelReader:
     def __init__(self, path: Path, content: FileText, parser: Any) -> None:
         self.path = path
         self.content = content
         #: Of expat, or what reports the nodes of a migrated model in the same way.
         self.parser = parser
-        self.header: Header | None = None
+        self.header: ModelHeader | None = None
         self.elements: list[Element] = []
         self.starts: list[int] = []
         self.ends: list[int] = []
@@ -175,7 +175,7 @@ class _Reader:
         document = Document(root, header.version, self.path)
         prefixes = Prefixes(header.xmi_id, header.xsi_type, header.type_prefix)
         content = self.content
-        document.source = source = Source(
+        document.source = source = SourceText(
             content.text, header.version, content.encoding, content.zip_entry, prefixes, self.elements, self.starts, self.ends
         )
         document.prolog, document.epilog = self.prolog, self.epilog
@@ -212,7 +212,7 @@ class _Reader:
         for key in attributes.keys() - header.own_attributes:
             self.unknown_attribute(root, plan, key, attributes[key])
 
-    def start_handler(self, header: Header) -> StartHandler:
+    def start_handler(self, header: ModelHeader) -> StartHandler:
         """The handler of start tags, with everything it needs in local names: it runs once per element."""
         parser, stack, part = self.parser, self.stack, plans(header.facts_version).part
         xmi_id, xsi_type = header.xmi_id, header.xsi_type

@@ -7,7 +7,7 @@ from xml.parsers import expat
 
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.errors import ReadError
-from amalthea_uros.metamodel.source import Source
+from amalthea_uros.metamodel.source import SourceText
 from amalthea_uros.xmi.finding_collector import location
 
 #: Real models nest about 15 deep; far deeper, recursion over a model would fail with a less helpful message.
@@ -16,7 +16,7 @@ MAX_DEPTH = 200
 
 def refusal(path: Path, text: str, offset: int, rule: str, message: str, help_text: str = "") -> ReadError:
     """The exception for a problem at an offset (in bytes of UTF-8) of a file that cannot be read because of it."""
-    return ReadError([Finding(rule, Severity.ERROR, message, location(path, Source(text), offset), help_text)])
+    return ReadError([Finding(rule, Severity.ERROR, message, location(path, SourceText(text), offset), help_text)])
 
 
 def has_doctype(path: Path, text: str, offset: int) -> ReadError:

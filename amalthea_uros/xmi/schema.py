@@ -13,9 +13,9 @@ from lxml import etree
 from amalthea_uros._internal.resources import resource_folder
 from amalthea_uros._internal.similar import similar
 from amalthea_uros.diagnostics import Finding, Location, Severity
-from amalthea_uros.metamodel.factfile import Kind
+from amalthea_uros.metamodel.factfile import FeatureKind
 from amalthea_uros.metamodel.model import Document
-from amalthea_uros.metamodel.versions import NAMESPACE_PREFIX, Facts, facts, spelled, supported_versions
+from amalthea_uros.metamodel.versions import NAMESPACE_PREFIX, VersionFacts, facts, spelled, supported_versions
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -208,7 +208,7 @@ def _repeats(error: xmlschema.XMLSchemaValidationError) -> bool:
 class _Diagnosis:
     """Finds the problems of an invalid file one by one and describes them in the terms of AMALTHEA."""
 
-    def __init__(self, root: etree._Element, declared: Facts) -> None:
+    def __init__(self, root: etree._Element, declared: VersionFacts) -> None:
         self.root = root
         self.declared = declared
         #: Elements of an unknown or wrong class: their attributes and content cannot be checked.
@@ -264,7 +264,7 @@ class _Diagnosis:
         for element in self.root.iter("*"):
             if len(element.attrib) <= _MANY_ATTRIBUTES:
                 continue
-            known = {*self._names(self._class_of(element), Kind.ATTRIBUTE, Kind.REFERENCE)}
+            known = {*self._names(self._class_of(element), FeatureKind.ATTRIBUTE, FeatureKind.REFERENCE)}
             is_known = element is self.root or self._feature(element) is not None
             for name in map(str, element.attrib):
                 if name in known or name.startswith((_XMI, _XSI)):
@@ -299,12 +299,12 @@ class _Diagnosis:
         if text:
             return text.strip().rpartition(":")[2]
         feature = self._feature(element)
-        return feature.type if feature and feature.kind is Kind.CONTAINMENT else None
+        return feature.type if feature and feature.kind is FeatureKind.CONTAINMENT else None
 
-    def _names(self, class_name: str | None, *kinds: Kind) -> list[str]:
+    def _names(self, class_name: str | None, *kinds: FeatureKind) -> list[str]:
         """The names of the features of a class, or of a bare reference."""
         if class_name is None:
-            return ["href"] if Kind.ATTRIBUTE in kinds else []
+            return ["href"] if FeatureKind.ATTRIBUTE in kinds else []
         return [f.name for f in self.declared.features(class_name) if f.stored and f.kind in kinds]
 
     def _text(self, element: etree._Element, error: xmlschema.XMLSchemaValidationError) -> _Text:
@@ -327,12 +327,12 @@ class _Diagnosis:
         owner = self._class_of(cast("etree._Element", element.getparent()))
         name = etree.QName(element).localname
         written = f"{element.prefix}:{name}" if element.prefix else name
-        advice = _nearest(name, self._names(owner, Kind.CONTAINMENT, Kind.REFERENCE))
+        advice = _nearest(name, self._names(owner, FeatureKind.CONTAINMENT, FeatureKind.REFERENCE))
         return f'{owner or "a reference"} has no element "{written}"', advice
 
     def _unknown_attribute(self, element: etree._Element, name: str) -> _Text:
         owner = self._class_of(element)
-        advice = _nearest(name, self._names(owner, Kind.ATTRIBUTE, Kind.REFERENCE))
+        advice = _nearest(name, self._names(owner, FeatureKind.ATTRIBUTE, FeatureKind.REFERENCE))
         return f'{owner or "a reference"} has no attribute "{name.replace(_XMI, "xmi:")}"', advice
 
     def _wrong_class(self, element: etree._Element) -> _Text:

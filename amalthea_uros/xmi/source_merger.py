@@ -14,8 +14,8 @@ from typing import Any, NamedTuple
 
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Document
-from amalthea_uros.metamodel.source import Source, attributes_of_tag
-from amalthea_uros.xmi.emf_serializer import Child, EmfSerializer, Href, Part, tag_of
+from amalthea_uros.metamodel.source import SourceText, attributes_of_tag
+from amalthea_uros.xmi.emf_serializer import Child, ChildPart, ChildReference, EmfSerializer, tag_of
 from amalthea_uros.xmi.escape import escape, unescape
 from amalthea_uros.xmi.plan import ClassPlan, reference_texts
 
@@ -27,7 +27,7 @@ _NODE = re.compile(
 )
 
 
-class Node(NamedTuple):
+class SourcePiece(NamedTuple):
     """A piece of the content of an element in the source.
 
     Attributes
@@ -44,7 +44,7 @@ class Node(NamedTuple):
 class SourceMerger:
     """Reads the source of one document again, to preserve the way in which it is written."""
 
-    def __init__(self, document: Document, source: Source, serializer: EmfSerializer) -> None:
+    def __init__(self, document: Document, source: SourceText, serializer: EmfSerializer) -> None:
         self.document = document
         self.source = source
         self.text = source.text
@@ -71,7 +71,7 @@ class SourceMerger:
             if not text.startswith(separator, at):
                 return False
             at += len(separator)
-            if isinstance(child, Href):
+            if isinstance(child, ChildReference):
                 if not text.startswith(child.tag, at):
                     return False
                 at += len(child.tag)
@@ -155,7 +155,7 @@ class SourceMerger:
 
     # Content
 
-    def content(self, element: Element, children: list[Child], at: int, end: int, separator: str) -> list[str | Part]:
+    def content(self, element: Element, children: list[Child], at: int, end: int, separator: str) -> list[str | ChildPart]:
         """The content between two offsets of the source, with the present children: text to copy and parts to write.
 
         Parameters
@@ -169,11 +169,11 @@ class SourceMerger:
         if not _in_order(nodes, children) or _would_follow_duplicate(nodes, children):
             return _reordered(nodes, children, new_extra, separator)
         after, before = _added(nodes, children)
-        found: list[str | Part] = [item for child in after.get(None, ()) for item in (separator, _item(child))]
+        found: list[str | ChildPart] = [item for child in after.get(None, ()) for item in (separator, _item(child))]
         for node in nodes:
             if node.kept:
                 found += [item for child in before.get(id(node.child), ()) for item in (_item(child), separator)]
-                found.append(node.child if isinstance(node.child, Part) else node.text)
+                found.append(node.child if isinstance(node.child, ChildPart) else node.text)
                 found += [item for child in after.get(id(node.child), ()) for item in (separator, _item(child))]
             elif found and isinstance(found[-1], str) and found[-1].isspace():
                 found.pop()
@@ -182,10 +182,10 @@ class SourceMerger:
         is_blank = all(isinstance(item, str) and item.isspace() for item in found)
         return [] if is_blank and not all(node.kept for node in nodes) else found
 
-    def nodes(self, element: Element, children: list[Child], extra: list[str], at: int, end: int) -> Iterator[Node]:
+    def nodes(self, element: Element, children: list[Child], extra: list[str], at: int, end: int) -> Iterator[SourcePiece]:
         """The pieces of the content of an element; unknown elements that are found are removed from `extra`."""
-        parts = {child.element: child for child in children if isinstance(child, Part)}
-        hrefs = [child for child in children if isinstance(child, Href)]
+        parts = {child.element: child for child in children if isinstance(child, ChildPart)}
+        hrefs = [child for child in children if isinstance(child, ChildReference)]
         while at < end:
             start = at
             place = self.source.by_start.get(start)
@@ -193,22 +193,22 @@ class SourceMerger:
                 at = self.end(place)
                 part = parts.get(self.source.elements[place])
                 stays = part is not None and self.is_same_part(part.feature.xml_name, place)
-                yield Node(self.text[start:at], part if stays else None, stays)
+                yield SourcePiece(self.text[start:at], part if stays else None, stays)
                 continue
             match = _NODE.match(self.text, start)
             assert match
             if not match["open"]:
                 at = match.end()
-                yield Node(match[0], None, True)
+                yield SourcePiece(match[0], None, True)
                 continue
             at = self._element_end(match)
             raw = self.text[start:at]
             href = self._take_href(element, match, hrefs)
             if href is None and raw in extra:
                 extra.remove(raw)
-                yield Node(raw, None, True)
+                yield SourcePiece(raw, None, True)
             else:
-                yield Node(raw, href, href is not None)
+                yield SourcePiece(raw, href, href is not None)
 
     def _element_end(self, opening: re.Match[str]) -> int:
         """Offset after an element without an object, whose start tag is given."""
@@ -225,7 +225,7 @@ class SourceMerger:
                 depth += 1
         return match.end()
 
-    def _take_href(self, element: Element, opening: re.Match[str], hrefs: list[Href]) -> Href | None:
+    def _take_href(self, element: Element, opening: re.Match[str], hrefs: list[ChildReference]) -> ChildReference | None:
         """The present reference that an element of the source represents; each is used once."""
         for attribute in attributes_of_tag(self.text, opening.start()):
             if attribute["name"] != "href":
@@ -250,16 +250,16 @@ def _equal(one: Any, other: Any) -> bool:
     return bool(one == other) and (not isinstance(one, float) or copysign(1, one) == copysign(1, other))
 
 
-def _item(child: Child) -> str | Part:
-    return child if isinstance(child, Part) else child.tag
+def _item(child: Child) -> str | ChildPart:
+    return child if isinstance(child, ChildPart) else child.tag
 
 
-def _before_last_space(found: list[str | Part]) -> int:
+def _before_last_space(found: list[str | ChildPart]) -> int:
     last = found[-1] if found else None
     return len(found) - 1 if isinstance(last, str) and last.isspace() else len(found)
 
 
-def _in_order(nodes: list[Node], children: list[Child]) -> bool:
+def _in_order(nodes: list[SourcePiece], children: list[Child]) -> bool:
     """Whether the children that stay have the order of the source within each feature; between features the order has no meaning."""
     positions = {id(child): position for position, child in enumerate(children)}
     last: dict[str, int] = {}
@@ -272,14 +272,14 @@ def _in_order(nodes: list[Node], children: list[Child]) -> bool:
     return True
 
 
-def _would_follow_duplicate(nodes: list[Node], children: list[Child]) -> bool:
+def _would_follow_duplicate(nodes: list[SourcePiece], children: list[Child]) -> bool:
     """Whether a new value could get behind an unknown one of the same feature, so that this one would count instead."""
     present = {id(node.child) for node in nodes}
     unknown = {tag_of(node.text) for node in nodes if node.kept and node.child is None}
     return any(child.feature.xml_name in unknown and id(child) not in present for child in children)
 
 
-def _added(nodes: list[Node], children: list[Child]) -> tuple[dict[int | None, list[Child]], dict[int, list[Child]]]:
+def _added(nodes: list[SourcePiece], children: list[Child]) -> tuple[dict[int | None, list[Child]], dict[int, list[Child]]]:
     """The children that the source does not have, by the id of the child after which (None: first) or before which they belong."""
     present = {id(node.child) for node in nodes}
     firsts: dict[str, Child] = {}
@@ -301,12 +301,12 @@ def _added(nodes: list[Node], children: list[Child]) -> tuple[dict[int | None, l
     return after, before
 
 
-def _reordered(nodes: list[Node], children: list[Child], extra: list[str], separator: str) -> list[str | Part]:
+def _reordered(nodes: list[SourcePiece], children: list[Child], extra: list[str], separator: str) -> list[str | ChildPart]:
     """The children in EMF's order, because their new order contradicts that of the source; comments first, unknown elements last."""
     others = [node.text for node in nodes if node.kept and node.child is None and not node.text.isspace()]
-    found: list[str | Part] = [piece for text in others if not tag_of(text) for piece in (separator, text)]
+    found: list[str | ChildPart] = [piece for text in others if not tag_of(text) for piece in (separator, text)]
     extra = [*(piece for text in others if tag_of(text) for piece in (separator, text)), *extra]
-    by_child = {id(node.child): node for node in nodes if isinstance(node.child, Href)}
+    by_child = {id(node.child): node for node in nodes if isinstance(node.child, ChildReference)}
     for child in children:
         found += [separator, by_child[id(child)].text if id(child) in by_child else _item(child)]
     return [*found, *extra, nodes[-1].text if nodes[-1].text.isspace() else ""]

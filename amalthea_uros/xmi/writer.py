@@ -13,9 +13,9 @@ from amalthea_uros.errors import WriteError
 from amalthea_uros.metamodel.changes import propagate_renames
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Document
-from amalthea_uros.metamodel.source import Prefixes, Source
+from amalthea_uros.metamodel.source import Prefixes, SourceText
 from amalthea_uros.metamodel.versions import NAMESPACE_PREFIX, version_key
-from amalthea_uros.xmi.emf_serializer import Child, EmfSerializer, KeptContent, Part, WritePlan, used_prefixes
+from amalthea_uros.xmi.emf_serializer import Child, ChildPart, EmfSerializer, KeptContent, WritePlan, used_prefixes
 from amalthea_uros.xmi.escape import escape
 from amalthea_uros.xmi.header import XMI_NAMESPACE, XSI_NAMESPACE
 from amalthea_uros.xmi.plan import ClassPlan, FeaturePlan
@@ -56,7 +56,7 @@ def document_text(document: Document, canonical: bool = False) -> str:
     return text
 
 
-def usable_source(document: Document) -> Source | None:
+def usable_source(document: Document) -> SourceText | None:
     """The source, unless the root or the version of the document was replaced, so that everything has to be written anew."""
     source = document.source
     if source is None or source.elements[0] is not document.root or source.version != document.version:
@@ -65,7 +65,7 @@ def usable_source(document: Document) -> Source | None:
 
 
 class _Writer:
-    def __init__(self, document: Document, source: Source | None) -> None:
+    def __init__(self, document: Document, source: SourceText | None) -> None:
         self.root = document.root
         self.modified = document.changes.modified
         self.source = source
@@ -131,7 +131,7 @@ class _Writer:
         spaces = xsi + own if version_key(self.version) >= (1,) else own + xsi
         return f' xmi:version="2.0" xmlns:xmi="{XMI_NAMESPACE}"{spaces}'
 
-    def part(self, part: Part, indent: str) -> None:
+    def part(self, part: ChildPart, indent: str) -> None:
         """Write an object and everything in it."""
         feature, element = part
         tag = feature.xml_name
@@ -195,7 +195,7 @@ class _Writer:
         kept = KeptContent.of(extra, children)
         self.serializer.kept += [raw for _, raw in extra]
         for child in children:
-            if isinstance(child, Part):
+            if isinstance(child, ChildPart):
                 out += [separator + raw for raw in kept.before.get(child.element, ())]
                 out.append(separator)
                 self.part(child, inner)
@@ -224,7 +224,7 @@ class _Writer:
             out.append(">")
             for child in children:
                 out.append(separator)
-                if isinstance(child, Part):
+                if isinstance(child, ChildPart):
                     self.part(child, indent + _INDENT)
                 else:
                     out.append(child.tag)
@@ -237,7 +237,7 @@ class _Writer:
         out.append(">")
         inner = indent + _INDENT
         for item in items:
-            if isinstance(item, Part):
+            if isinstance(item, ChildPart):
                 self.part(item, inner)
             else:
                 out.append(item)

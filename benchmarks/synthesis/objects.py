@@ -7,12 +7,12 @@ from functools import cache
 from typing import TYPE_CHECKING, TypeAlias
 from urllib.parse import quote_plus
 
-from amalthea_uros.metamodel.factfile import FeatureFact, Kind
+from amalthea_uros.metamodel.factfile import FeatureFact, FeatureKind
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from amalthea_uros.metamodel.versions import Facts
+    from amalthea_uros.metamodel.versions import VersionFacts
 
 Value: TypeAlias = "str | bool | int | float | Object | list[Object]"
 
@@ -69,7 +69,7 @@ def _encoded(name: str) -> str:
 @dataclass(frozen=True, slots=True)
 class _Row:
     name: str
-    kind: Kind
+    kind: FeatureKind
     type: str
     default: str | None
     typed_href: bool
@@ -85,7 +85,7 @@ class _Shape:
 class Writer:
     """Gives the XML of objects: everything about order, defaults and types comes from the facts of one version."""
 
-    def __init__(self, facts: Facts) -> None:
+    def __init__(self, facts: VersionFacts) -> None:
         self._facts = facts
         self._shape = cache(self._declared)
 
@@ -100,7 +100,7 @@ class Writer:
         return _Shape("IReferable" in self._facts.supertypes(cls), rows, frozenset(row.name for row in rows))
 
     def _row(self, feature: FeatureFact) -> _Row:
-        typed_href = feature.kind is Kind.REFERENCE and self._facts.classes[feature.type].abstract
+        typed_href = feature.kind is FeatureKind.REFERENCE and self._facts.classes[feature.type].abstract
         return _Row(feature.name, feature.kind, feature.type, _written_default(feature), typed_href)
 
     def _write(self, lines: list[str], element: Object, tag: str, declared: str, indent: str) -> None:
@@ -117,11 +117,11 @@ class Writer:
             value = element.values.get(row.name, row.default)
             if value is None or value == []:
                 continue
-            if row.kind is Kind.ATTRIBUTE:
+            if row.kind is FeatureKind.ATTRIBUTE:
                 attributes.append(f'{row.name}="{_literal(value)}"')
                 continue
             targets = element.objects(row.name)
-            if row.kind is Kind.REFERENCE and all(target.document == element.document for target in targets):
+            if row.kind is FeatureKind.REFERENCE and all(target.document == element.document for target in targets):
                 attributes.append(f'{row.name}="{" ".join(target.unique_name for target in targets)}"')
             else:
                 children.extend((row, target) for target in targets)
@@ -130,7 +130,7 @@ class Writer:
             return
         lines.append(f"{indent}<{' '.join(attributes)}>\n")
         for row, child in children:
-            if row.kind is Kind.CONTAINMENT:
+            if row.kind is FeatureKind.CONTAINMENT:
                 self._write(lines, child, row.name, row.type, indent + "  ")
             else:
                 lines.append(f"{indent}  {_href(row, child)}\n")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from amalthea_uros.metamodel.factfile import Kind
+from amalthea_uros.metamodel.factfile import FeatureKind
 from synthesis.plan import title
 
 if TYPE_CHECKING:
@@ -153,7 +153,7 @@ def _mode_label(plan: Plan) -> Object:
 def data_type(plan: Plan, definition: Object) -> Object:
     """The data type of a label: the definition itself, or an object that refers to it where the version demands that."""
     feature = plan.facts.feature("Label", "dataType")
-    if feature is not None and feature.kind is Kind.REFERENCE:
+    if feature is not None and feature.kind is FeatureKind.REFERENCE:
         return definition
     return plan.new("TypeRef", typeDef=definition)
 

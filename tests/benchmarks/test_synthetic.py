@@ -11,8 +11,8 @@ import pytest
 from lxml import etree
 from synthetic import main, synthetic_folder, synthetic_model
 
-from amalthea_uros.metamodel.factfile import FeatureFact, Kind
-from amalthea_uros.metamodel.versions import Facts, facts
+from amalthea_uros.metamodel.factfile import FeatureFact, FeatureKind
+from amalthea_uros.metamodel.versions import VersionFacts, facts
 
 XMI_ID = "{http://www.omg.org/XMI}id"
 XSI_TYPE = "{http://www.w3.org/2001/XMLSchema-instance}type"
@@ -28,7 +28,7 @@ class Node(NamedTuple):
 
     def references(self) -> Iterator[tuple[FeatureFact, str]]:
         for name, fact in self.features.items():
-            if fact.kind is Kind.REFERENCE:
+            if fact.kind is FeatureKind.REFERENCE:
                 yield from ((fact, target) for target in self.element.get(name, "").split())
                 for child in self.element.findall(name):
                     yield fact, child.get("href").removeprefix("amlt:/#")
@@ -38,7 +38,7 @@ def parse(text: str) -> etree._Element:
     return etree.fromstring(text.encode())
 
 
-def nodes(root: etree._Element, known: Facts) -> Iterator[Node]:
+def nodes(root: etree._Element, known: VersionFacts) -> Iterator[Node]:
     def walk(element: etree._Element, declared: str) -> Iterator[Node]:
         cls = element.get(XSI_TYPE, f"am:{declared}").removeprefix("am:")
         features = {fact.name: fact for fact in known.features(cls)}
@@ -51,7 +51,7 @@ def nodes(root: etree._Element, known: Facts) -> Iterator[Node]:
 
 
 @pytest.fixture(scope="module", params=VERSIONS)
-def known(request) -> Facts:
+def known(request) -> VersionFacts:
     return facts(request.param)
 
 
@@ -149,7 +149,7 @@ def test_type_is_written_where_it_differs_from_the_declared_one(model, known):
 def test_defaults_with_a_literal_are_written(model):
     for node in model:
         with_literal = {
-            name for name, fact in node.features.items() if fact.kind is Kind.ATTRIBUTE and fact.default is not None
+            name for name, fact in node.features.items() if fact.kind is FeatureKind.ATTRIBUTE and fact.default is not None
         }
         assert with_literal <= set(node.element.attrib)
 
@@ -164,11 +164,11 @@ def test_values_are_of_the_declared_type(model, known):
     for node in model:
         for name, fact in node.features.items():
             value = node.element.get(name)
-            if value is not None and fact.kind is Kind.ATTRIBUTE:
+            if value is not None and fact.kind is FeatureKind.ATTRIBUTE:
                 assert re.fullmatch(written_as(fact, known), value), (node.cls, name, value)
 
 
-def written_as(fact: FeatureFact, known: Facts) -> str:
+def written_as(fact: FeatureFact, known: VersionFacts) -> str:
     """The pattern of the values of an attribute."""
     if fact.type in known.enums:
         _, *others = known.enums[fact.type].literals
@@ -251,7 +251,7 @@ def test_folder_writes_a_feature_as_attribute_or_as_children(folder):
         here = ids(found)
         for node in found:
             for name, fact in node.features.items():
-                children = node.element.findall(name) if fact.kind is Kind.REFERENCE else []
+                children = node.element.findall(name) if fact.kind is FeatureKind.REFERENCE else []
                 assert not (children and name in node.element.attrib)
                 assert not children or any(child.get("href").removeprefix("amlt:/#") not in here for child in children)
 

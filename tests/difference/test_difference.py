@@ -9,7 +9,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from amalthea_uros.difference.alignment import align, increasing
-from amalthea_uros.difference.comparison import Change, ChangeKind, difference
+from amalthea_uros.difference.comparison import ChangeKind, ModelChange, difference
 from amalthea_uros.metamodel.classes import (
     ActivityGraph,
     Amalthea,
@@ -98,7 +98,7 @@ def calls(*runnables: Runnable) -> ActivityGraph:
     return ActivityGraph(items=[RunnableCall(runnable=r) for r in runnables])
 
 
-def told(changes: list[Change]) -> list[tuple[str, str, str, str, str, str]]:
+def told(changes: list[ModelChange]) -> list[tuple[str, str, str, str, str, str]]:
     return [(c.kind.value, c.class_name, c.qualified_name, c.feature, c.old, c.new) for c in changes]
 
 

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from amalthea_uros.metamodel import classes
-from amalthea_uros.metamodel.features import Feature
+from amalthea_uros.metamodel.features import ElementFeature
 from amalthea_uros.metamodel.versions import facts, supported_versions
 
 TEXT = (Path(__file__).parents[2] / "tools" / "metamodel_descriptions.txt").read_text(encoding="utf-8")
@@ -23,7 +23,7 @@ def shown(entry: str) -> bool:
     """Whether a generated class declares the feature, so that its docstring is the place of the text."""
     class_name, _, feature_name = entry.partition(".")
     declared = vars(getattr(classes, class_name)).values()
-    return any(isinstance(feature, Feature) and feature.xml_name == feature_name for feature in declared)
+    return any(isinstance(feature, ElementFeature) and feature.xml_name == feature_name for feature in declared)
 
 
 def test_entries_name_what_the_versions_declare() -> None:

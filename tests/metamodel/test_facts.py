@@ -8,7 +8,7 @@ import pytest
 from support import ROOT, SHARED
 
 from amalthea_uros.metamodel import classes
-from amalthea_uros.metamodel.factfile import Kind
+from amalthea_uros.metamodel.factfile import FeatureKind
 from amalthea_uros.metamodel.features import features_of
 from amalthea_uros.metamodel.versions import facts, known_versions, nearest_version, supported_versions
 
@@ -52,8 +52,8 @@ def test_every_opposite_is_a_containment_and_its_mirror(version):
         for fact in declared.features(name):
             if fact.opposite is not None:
                 other = declared.feature(fact.type, fact.opposite)
-                assert {fact.kind, other.kind} == {Kind.CONTAINMENT, Kind.REFERENCE}
-                assert fact.stored is (fact.kind is Kind.CONTAINMENT)
+                assert {fact.kind, other.kind} == {FeatureKind.CONTAINMENT, FeatureKind.REFERENCE}
+                assert fact.stored is (fact.kind is FeatureKind.CONTAINMENT)
 
 
 @pytest.mark.parametrize("version", supported_versions())
@@ -64,9 +64,9 @@ def test_every_class_and_feature_has_its_python_side(version):
         for fact in declared.features(name):
             if fact.stored:
                 kinds = {
-                    Kind.ATTRIBUTE: ("attribute",),
-                    Kind.CONTAINMENT: ("containment", "either"),
-                    Kind.REFERENCE: ("reference", "either"),
+                    FeatureKind.ATTRIBUTE: ("attribute",),
+                    FeatureKind.CONTAINMENT: ("containment", "either"),
+                    FeatureKind.REFERENCE: ("reference", "either"),
                 }
                 assert held[fact.name].kind in kinds[fact.kind]
                 assert held[fact.name].many or not fact.many

@@ -17,7 +17,7 @@ from amalthea_uros.services.migrate import migrate_files
 from amalthea_uros.services.migration import FileState
 from amalthea_uros.xmi.migrate import chain
 from amalthea_uros.xmi.migrate.chain import _UP
-from amalthea_uros.xmi.migrate.notes import Kind
+from amalthea_uros.xmi.migrate.notes import NoteKind
 from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.versions import version_of
 
@@ -385,7 +385,7 @@ class TestWhatIsLost:
         result = migrate_files(path)
         (change,) = result.changes
         assert (change.kind, change.object, change.location.line, change.detail) == (
-            Kind.LOST,
+            NoteKind.LOST,
             "Amalthea / swModel",
             3,
             "'to do'",

@@ -6,7 +6,7 @@ import pytest
 from support import MODEL, SHARED
 
 from amalthea_uros import check, load
-from amalthea_uros.metamodel.factfile import Kind
+from amalthea_uros.metamodel.factfile import FeatureKind
 from amalthea_uros.metamodel.versions import facts
 
 TABLE = SHARED / "reference" / "app4mc-rules.json"
@@ -39,7 +39,9 @@ def test_the_reference_table(version):
     assert {
         name
         for name, feature in own.items()
-        if feature.required and not feature.many and (feature.kind is not Kind.ATTRIBUTE or declared.default(feature) is None)
+        if feature.required
+        and not feature.many
+        and (feature.kind is not FeatureKind.ATTRIBUTE or declared.default(feature) is None)
     } == required
     assert {
         name: (feature.lower, -1 if feature.upper is None else feature.upper)

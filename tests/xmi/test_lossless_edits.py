@@ -12,7 +12,7 @@ from strategies import Builder, as_list, concrete, meaning, models, parse, store
 
 from amalthea_uros import load, save
 from amalthea_uros.metamodel import classes
-from amalthea_uros.metamodel.factfile import Kind
+from amalthea_uros.metamodel.factfile import FeatureKind
 from amalthea_uros.metamodel.features import features_of
 from amalthea_uros.metamodel.versions import supported_versions
 from amalthea_uros.xmi.writer import document_text
@@ -116,12 +116,12 @@ class Editor:
         return self.rng.choice(items)
 
     def set_attribute(self) -> None:
-        element, name, fact = self.choice(self.places(Kind.ATTRIBUTE))
+        element, name, fact = self.choice(self.places(FeatureKind.ATTRIBUTE))
         setattr(element, name, value_for(self.rng, self.version, name, fact))
         self.tags.add(element)
 
     def unset_attribute(self) -> None:
-        places = [(e, n) for e, n, _ in self.places(Kind.ATTRIBUTE) if getattr(e, n) is not None]
+        places = [(e, n) for e, n, _ in self.places(FeatureKind.ATTRIBUTE) if getattr(e, n) is not None]
         element, name = self.choice(places)
         delattr(element, name)
         self.tags.add(element)
@@ -132,7 +132,7 @@ class Editor:
         self.tags.add(element)
 
     def add(self) -> None:
-        element, name, fact = self.choice(self.places(Kind.CONTAINMENT))
+        element, name, fact = self.choice(self.places(FeatureKind.CONTAINMENT))
         feature = features_of(type(element))[name]
         if not fact.many:
             assume(not as_list(getattr(element, name)))
@@ -161,7 +161,7 @@ class Editor:
 
     def take_out(self, part) -> None:
         holder = part.container
-        for name, _ in self.features(holder, Kind.CONTAINMENT):
+        for name, _ in self.features(holder, FeatureKind.CONTAINMENT):
             held = getattr(holder, name)
             if held is part:
                 setattr(holder, name, None)
@@ -173,7 +173,7 @@ class Editor:
         inside = set(part.walk())
         places = [
             (holder, name)
-            for holder, name, fact in self.places(Kind.CONTAINMENT)
+            for holder, name, fact in self.places(FeatureKind.CONTAINMENT)
             if holder not in inside
             and isinstance(part, getattr(classes, fact.type))
             and (fact.many or not as_list(getattr(holder, name)))
@@ -184,7 +184,7 @@ class Editor:
         self.put(holder, features_of(type(holder))[name], part)
 
     def refer(self) -> None:
-        element, name, fact = self.choice(self.places(Kind.REFERENCE))
+        element, name, fact = self.choice(self.places(FeatureKind.REFERENCE))
         targets = [e for e in self.model.walk() if e.is_referable and isinstance(e, getattr(classes, fact.type))]
         chosen = [self.rng.choice(targets) for _ in range(self.rng.randint(0, 3 if fact.many else 1))] if targets else []
         self.tags.add(element)
@@ -193,7 +193,7 @@ class Editor:
 
 def targets_of(version, element):
     for name, fact in stored_features(version, type(element).__name__):
-        if fact.kind is Kind.REFERENCE:
+        if fact.kind is FeatureKind.REFERENCE:
             yield from as_list(getattr(element, name))
 
 

@@ -10,8 +10,8 @@ from effort import every
 from lxml import etree
 
 from amalthea_uros._internal.resources import resource_folder
-from amalthea_uros.metamodel.factfile import Kind
-from amalthea_uros.metamodel.versions import Facts, facts, supported_versions
+from amalthea_uros.metamodel.factfile import FeatureKind
+from amalthea_uros.metamodel.versions import VersionFacts, facts, supported_versions
 from amalthea_uros.xmi.schema import MAX_PROBLEMS, NoSchemaError, SchemaProblem, schema_path, validate
 
 VERSION = "3.3.0"
@@ -65,23 +65,23 @@ def test_an_installed_package_holds_the_schemas_itself(tmp_path, monkeypatch):
 # What is legal
 
 
-def sample_value(declared: Facts, type_name: str) -> str:
+def sample_value(declared: VersionFacts, type_name: str) -> str:
     if type_name in declared.enums:
         return declared.enums[type_name].literals[-1]
     return {"EString": "any <text>", "EBoolean": "true"}.get(type_name, "1")
 
 
-def fill(element: etree._Element, declared: Facts, class_name: str, rng: random.Random) -> None:
+def fill(element: etree._Element, declared: VersionFacts, class_name: str, rng: random.Random) -> None:
     """Give an object every feature, contained ones with every class that they may hold, in an order by chance."""
     children = []
     for feature in declared.features(class_name):
         if not feature.stored:
             continue
         types = declared.concrete_subtypes(feature.type) if feature.type in declared.classes else ()
-        if feature.kind is Kind.ATTRIBUTE:
+        if feature.kind is FeatureKind.ATTRIBUTE:
             element.set(feature.name, sample_value(declared, feature.type))
             continue
-        if feature.kind is Kind.REFERENCE:
+        if feature.kind is FeatureKind.REFERENCE:
             element.set(feature.name, "a?type=A b?type=B")
             children.append((feature.name, None))
         elif feature.type in types:
@@ -95,14 +95,14 @@ def fill(element: etree._Element, declared: Facts, class_name: str, rng: random.
             child.set(f"{{{XSI}}}type", f"am:{type_name}")
 
 
-def ways_to_contain(declared: Facts) -> dict[str, tuple[tuple[str, str], ...]]:
+def ways_to_contain(declared: VersionFacts) -> dict[str, tuple[tuple[str, str], ...]]:
     """For every class that may be in a file a way from the root to it, as features and classes."""
     ways: dict[str, tuple[tuple[str, str], ...]] = {"Amalthea": ()}
     waiting = ["Amalthea"]
     while waiting:
         owner = waiting.pop(0)
         for feature in declared.features(owner):
-            if feature.kind is Kind.CONTAINMENT:
+            if feature.kind is FeatureKind.CONTAINMENT:
                 for class_name in declared.concrete_subtypes(feature.type):
                     if class_name not in ways:
                         ways[class_name] = (*ways[owner], (feature.name, class_name))
@@ -137,7 +137,7 @@ TOLERATED = {
 def test_a_class_is_accepted_only_where_it_belongs(version):
     declared = facts(version)
     types = read_by_xmlschema(version).types
-    held = {f.type for c in declared.classes for f in declared.features(c) if f.kind is Kind.CONTAINMENT and c in types}
+    held = {f.type for c in declared.classes for f in declared.features(c) if f.kind is FeatureKind.CONTAINMENT and c in types}
     accepted = {
         (upper, name)
         for upper in held

@@ -15,8 +15,8 @@ from amalthea_uros.bridge.codecs import (
     same_names,
 )
 from amalthea_uros.bridge.context import Building, Extracting
-from amalthea_uros.bridge.entries import Entry, Field, Table
-from amalthea_uros.bridge.kinds import Kind
+from amalthea_uros.bridge.entries import ClassEntry, ClassTable, Field
+from amalthea_uros.bridge.kinds import ObjectKind
 from amalthea_uros.bridge.tables.conditions import CONDITION
 from amalthea_uros.bridge.tables.distributions import DISCRETE
 from amalthea_uros.bridge.tables.stimuli import COUNTER
@@ -30,7 +30,7 @@ from amalthea_uros.perf import activities as perf
 def _build_demand(demand: perf.Demand, context: Building) -> am.Ticks:
     entries = []
     for name, ticks in demand.by_core_type:
-        core_type: Any = context.find(Kind.CORE_TYPE, name)
+        core_type: Any = context.find(ObjectKind.CORE_TYPE, name)
         entries.append(am.TicksEntry(key=core_type, value=DISCRETE.build(ticks, context)))
     return am.Ticks(default=None if demand.ticks is None else DISCRETE.build(demand.ticks, context), extended=entries)
 
@@ -50,7 +50,7 @@ def _extract_demand(ticks: Any, context: Extracting, _element: Element) -> perf.
     return perf.Demand(default, tuple(by_core_type))
 
 
-_CORE_TYPE = reference(Kind.CORE_TYPE)
+_CORE_TYPE = reference(ObjectKind.CORE_TYPE)
 
 #: Demand as Ticks; without a value on any core if something is missing.
 DEMAND = Codec(_build_demand, lambda ticks, context, element: _extract_demand(ticks, context, element) or perf.Demand())
@@ -110,7 +110,7 @@ _TAKING_TIME = (
 _ACCESS = "access"
 
 
-class _Activities(Table):
+class _Activities(ClassTable):
     """All activities of an activity graph; those with another structure in AMALTHEA have functions of their own."""
 
     def build(self, item: Any, context: Building) -> Any:
@@ -287,7 +287,7 @@ def _waiting(element: Any, context: Extracting) -> perf.Waiting | None:
     return found
 
 
-_LABEL, _RUNNABLE, _RUNNABLES = reference(Kind.DATA), reference(Kind.RUNNABLE), references(Kind.RUNNABLE)
+_LABEL, _RUNNABLE, _RUNNABLES = reference(ObjectKind.DATA), reference(ObjectKind.RUNNABLE), references(ObjectKind.RUNNABLE)
 _WAITING_CODEC = same_names(perf.Waiting, am.WaitingBehaviour)
 _BLOCKING: dict[perf.Waiting | None, am.BlockingType] = {
     perf.Waiting.ACTIVE: am.BlockingType.ACTIVE_WAIT,
@@ -308,12 +308,12 @@ ITEMS = Codec(
 
 
 def _extract_events(value: Any, context: Extracting, element: Element) -> tuple[str, ...]:
-    names: tuple[str, ...] = references(Kind.OS_EVENT).extract(value.events, context, element)
+    names: tuple[str, ...] = references(ObjectKind.OS_EVENT).extract(value.events, context, element)
     return names
 
 
 _EVENT_MASK = Codec(
-    lambda names, context: am.EventMask(events=references(Kind.OS_EVENT).build(names, context)), _extract_events
+    lambda names, context: am.EventMask(events=references(ObjectKind.OS_EVENT).build(names, context)), _extract_events
 )
 PROTECTIONS = {
     "NONE": "NO_PROTECTION",
@@ -325,25 +325,25 @@ _WAITING = Field("waiting", "waiting_behaviour", _WAITING_CODEC)
 _COUNTER = Field("counter", "counter", COUNTER)
 _MASK = Field("events", "event_mask", _EVENT_MASK)
 _ITEMS = Field("activities", "items", ITEMS)
-_CHANNEL = Field("channel", "data", reference(Kind.DATA))
-_MODE_LABEL = Field("label", "data", reference(Kind.MODE_LABEL))
+_CHANNEL = Field("channel", "data", reference(ObjectKind.DATA))
+_MODE_LABEL = Field("label", "data", reference(ObjectKind.MODE_LABEL))
 _ALL_OF_THEM = Codec(
     lambda value, _: am.WaitEventType.AND if value else am.WaitEventType.OR,
     lambda value, _context, _element: value is not am.WaitEventType.OR,
 )
 
-ACTIVITIES: Table = _Activities(
-    Entry(
+ACTIVITIES: ClassTable = _Activities(
+    ClassEntry(
         perf.Call,
         am.RunnableCall,
-        Field("runnable", "runnable", reference(Kind.RUNNABLE)),
+        Field("runnable", "runnable", reference(ObjectKind.RUNNABLE)),
         _COUNTER,
         Field("times", "statistic", _CALLS),
     ),
-    Entry(
+    ClassEntry(
         perf.LabelAccess,
         am.LabelAccess,
-        Field("label", "data", reference(Kind.DATA)),
+        Field("label", "data", reference(ObjectKind.DATA)),
         Field("kind", "access", same_names(perf.AccessKind, am.LabelAccessEnum)),
         Field(
             "communication",
@@ -359,7 +359,7 @@ ACTIVITIES: Table = _Activities(
         Field("protection", "data_stability", same_names(perf.Protection, am.LabelAccessDataStability, **PROTECTIONS)),
         Field("times", "statistic", _ACCESSES),
     ),
-    Entry(
+    ClassEntry(
         perf.Group,
         am.Group,
         Field("name", "name"),
@@ -367,21 +367,21 @@ ACTIVITIES: Table = _Activities(
         Field("ordered", "ordered"),
         Field("interruptible", "interruptible"),
     ),
-    Entry(perf.Loop, am.WhileLoop, _ITEMS, Field("condition", "condition", CONDITION)),
-    Entry(
+    ClassEntry(perf.Loop, am.WhileLoop, _ITEMS, Field("condition", "condition", CONDITION)),
+    ClassEntry(
         perf.SemaphoreAccess,
         am.SemaphoreAccess,
-        Field("semaphore", "semaphore", reference(Kind.SEMAPHORE)),
+        Field("semaphore", "semaphore", reference(ObjectKind.SEMAPHORE)),
         Field("operation", "access", same_names(perf.SemaphoreOperation, am.SemaphoreAccessEnum)),
         _WAITING,
     ),
-    Entry(perf.Trigger, am.InterProcessTrigger, Field("stimulus", "stimulus", reference(Kind.STIMULUS)), _COUNTER),
-    Entry(perf.RaiseEvent, am.CustomEventTrigger, Field("event", "event", reference(Kind.EVENT))),
-    Entry(perf.SetEvent, am.SetEvent, _MASK, Field("process", "process", reference(Kind.PROCESS)), _COUNTER),
-    Entry(perf.ClearEvent, am.ClearEvent, _MASK, _COUNTER),
-    Entry(perf.WaitEvent, am.WaitEvent, _MASK, Field("all_of_them", "mask_type", _ALL_OF_THEM), _WAITING, _COUNTER),
-    Entry(perf.Send, am.ChannelSend, _CHANNEL, Field("elements", "elements")),
-    Entry(
+    ClassEntry(perf.Trigger, am.InterProcessTrigger, Field("stimulus", "stimulus", reference(ObjectKind.STIMULUS)), _COUNTER),
+    ClassEntry(perf.RaiseEvent, am.CustomEventTrigger, Field("event", "event", reference(ObjectKind.EVENT))),
+    ClassEntry(perf.SetEvent, am.SetEvent, _MASK, Field("process", "process", reference(ObjectKind.PROCESS)), _COUNTER),
+    ClassEntry(perf.ClearEvent, am.ClearEvent, _MASK, _COUNTER),
+    ClassEntry(perf.WaitEvent, am.WaitEvent, _MASK, Field("all_of_them", "mask_type", _ALL_OF_THEM), _WAITING, _COUNTER),
+    ClassEntry(perf.Send, am.ChannelSend, _CHANNEL, Field("elements", "elements")),
+    ClassEntry(
         perf.Receive,
         am.ChannelReceive,
         _CHANNEL,
@@ -391,7 +391,7 @@ ACTIVITIES: Table = _Activities(
         Field("index", "element_index"),
         Field("at_least", "lower_bound"),
     ),
-    Entry(
+    ClassEntry(
         perf.ModeAccess,
         am.ModeLabelAccess,
         _MODE_LABEL,
@@ -399,7 +399,7 @@ ACTIVITIES: Table = _Activities(
         Field("value", "value"),
         Field("step", "step"),
     ),
-    Entry(perf.SchedulePoint, am.SchedulePoint),
-    Entry(perf.Terminate, am.TerminateProcess, _COUNTER),
-    Entry(perf.Migrate, am.EnforcedMigration, Field("scheduler", "resource_owner", reference(Kind.SCHEDULER))),
+    ClassEntry(perf.SchedulePoint, am.SchedulePoint),
+    ClassEntry(perf.Terminate, am.TerminateProcess, _COUNTER),
+    ClassEntry(perf.Migrate, am.EnforcedMigration, Field("scheduler", "resource_owner", reference(ObjectKind.SCHEDULER))),
 )

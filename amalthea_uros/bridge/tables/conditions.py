@@ -9,8 +9,8 @@ from typing import Any
 
 from amalthea_uros.bridge.codecs import Codec, build_reason, enumeration, extract_reason, reference
 from amalthea_uros.bridge.context import Building, Extracting
-from amalthea_uros.bridge.entries import Entry, Field, Table, parts
-from amalthea_uros.bridge.kinds import Kind
+from amalthea_uros.bridge.entries import ClassEntry, ClassTable, Field, parts
+from amalthea_uros.bridge.kinds import ObjectKind
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.perf import conditions as perf
@@ -25,10 +25,10 @@ _RELATION = enumeration(
         perf.Relation.GREATER_OR_EQUAL: am.RelationalOperator.GREATER_THAN_OR_EQUAL,
     }
 )
-_MODE_LABEL = reference(Kind.MODE_LABEL)
+_MODE_LABEL = reference(ObjectKind.MODE_LABEL)
 
 
-class _Comparisons(Table):
+class _Comparisons(ClassTable):
     """Comparisons; what is not stated completely, or is of another class, can be true or false."""
 
     def build(self, item: Any, context: Building) -> Any:
@@ -42,25 +42,25 @@ class _Comparisons(Table):
         return found or perf.Undecided(reason=reason or f"a {type(element).__name__} that is incomplete or not supported")
 
 
-_COMPARISONS: Table = _Comparisons(
-    Entry(
+_COMPARISONS: ClassTable = _Comparisons(
+    ClassEntry(
         perf.ModeValueIs,
         am.ModeValueCondition,
         Field("label", "label", _MODE_LABEL),
         Field("relation", "relation", _RELATION),
         Field("value", "value"),
     ),
-    Entry(
+    ClassEntry(
         perf.ModeLabelsAre,
         am.ModeLabelCondition,
         Field("first", "label1", _MODE_LABEL),
         Field("relation", "relation", _RELATION),
         Field("second", "label2", _MODE_LABEL),
     ),
-    Entry(
+    ClassEntry(
         perf.ChannelFillIs,
         am.ChannelFillCondition,
-        Field("channel", "channel", reference(Kind.DATA)),
+        Field("channel", "channel", reference(ObjectKind.DATA)),
         Field("relation", "relation", _RELATION),
         Field("level", "fill_level"),
     ),
@@ -87,8 +87,8 @@ def _extract(value: Element, context: Extracting, _element: Element) -> perf.Con
 
 CONDITION = Codec(_build, _extract)
 
-_ASSIGNMENTS = Table(
-    Entry(perf.ModeAssignment, am.ModeAssignment, Field("label", "label", _MODE_LABEL), Field("value", "value"))
+_ASSIGNMENTS = ClassTable(
+    ClassEntry(perf.ModeAssignment, am.ModeAssignment, Field("label", "label", _MODE_LABEL), Field("value", "value"))
 )
 _ENTRIES = parts(_ASSIGNMENTS)
 

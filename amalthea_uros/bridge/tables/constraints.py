@@ -6,29 +6,29 @@ from typing import Any
 
 from amalthea_uros.bridge.codecs import FREQUENCY, TIME, Codec, reference, references, same_names, time_property
 from amalthea_uros.bridge.context import Building, Extracting
-from amalthea_uros.bridge.entries import Entry, Field, Table, part
-from amalthea_uros.bridge.kinds import Kind
+from amalthea_uros.bridge.entries import ClassEntry, ClassTable, Field, part
+from amalthea_uros.bridge.kinds import ObjectKind
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.perf import constraints as perf
 
-_EVENT = reference(Kind.EVENT)
+_EVENT = reference(ObjectKind.EVENT)
 _TOLERANCE = Field("tolerance", "tolerance", TIME)
 #: AMALTHEA limits no jitter of a latency or of a time of jobs.
 _JITTER = time_property("jitter")
 _EVERY = Field("every_occurrence", "multiple_occurrences_allowed")
 
-CONSTRAINTS = Table(
-    Entry(
+CONSTRAINTS = ClassTable(
+    ClassEntry(
         perf.LatencyConstraint,
         am.EventChainLatencyConstraint,
-        Field("chain", "scope", reference(Kind.CHAIN)),
+        Field("chain", "scope", reference(ObjectKind.CHAIN)),
         Field("kind", "type", same_names(perf.LatencyKind, am.LatencyType)),
         Field("minimum", "minimum", TIME),
         Field("maximum", "maximum", TIME),
         Field("jitter", "custom_properties", _JITTER),
     ),
-    Entry(
+    ClassEntry(
         perf.DelayConstraint,
         am.DelayConstraint,
         Field("source", "source", _EVENT),
@@ -37,7 +37,7 @@ CONSTRAINTS = Table(
         Field("lower", "lower", TIME),
         Field("upper", "upper", TIME),
     ),
-    Entry(
+    ClassEntry(
         perf.RepetitionConstraint,
         am.RepetitionConstraint,
         Field("event", "event", _EVENT),
@@ -48,17 +48,17 @@ CONSTRAINTS = Table(
         Field("jitter", "jitter", TIME),
         Field("period", "period", TIME),
     ),
-    Entry(
+    ClassEntry(
         perf.EventSynchronization,
         am.EventSynchronizationConstraint,
-        Field("events", "events", references(Kind.EVENT)),
+        Field("events", "events", references(ObjectKind.EVENT)),
         _TOLERANCE,
         _EVERY,
     ),
-    Entry(
+    ClassEntry(
         perf.ChainSynchronization,
         am.EventChainSynchronizationConstraint,
-        Field("chains", "scope", references(Kind.CHAIN)),
+        Field("chains", "scope", references(ObjectKind.CHAIN)),
         Field("end", "type", same_names(perf.ChainEnd, am.SynchronizationType)),
         _TOLERANCE,
         _EVERY,
@@ -66,7 +66,7 @@ CONSTRAINTS = Table(
 )
 
 
-class _Ages(Entry):
+class _Ages(ClassEntry):
     """Data age: as a time or as a number of cycles, which are two classes in AMALTHEA."""
 
     def fill(self, element: Any, item: Any, context: Building) -> Element:
@@ -97,12 +97,12 @@ class _Ages(Entry):
         )
 
 
-DATA_AGES = Table(
+DATA_AGES = ClassTable(
     _Ages(
         perf.DataAgeConstraint,
         am.DataAgeConstraint,
-        Field("runnable", "runnable", reference(Kind.RUNNABLE)),
-        Field("label", "label", reference(Kind.DATA)),
+        Field("runnable", "runnable", reference(ObjectKind.RUNNABLE)),
+        Field("label", "label", reference(ObjectKind.DATA)),
     )
 )
 
@@ -112,15 +112,15 @@ _BOUND = Field("bound", "limit_type", same_names(perf.Bound, am.LimitType, UPPER
 _VALUE = Field("value", "limit_value")
 _FLOAT = Field("value", "limit_value", Codec(lambda value, _: float(value), lambda value, _context, _element: value))
 
-_LIMITS = Table(
-    Entry(
+_LIMITS = ClassTable(
+    ClassEntry(
         perf.TimeLimit,
         am.TimeRequirementLimit,
         Field("metric", "metric", same_names(perf.TimeMetric, am.TimeMetric, END_TO_END="ENDTOEND")),
         Field("value", "limit_value", TIME),
         _BOUND,
     ),
-    Entry(
+    ClassEntry(
         perf.CountLimit,
         am.CountRequirementLimit,
         Field(
@@ -137,7 +137,7 @@ _LIMITS = Table(
         _VALUE,
         _BOUND,
     ),
-    Entry(
+    ClassEntry(
         perf.LoadLimit,
         am.CPUPercentageRequirementLimit,
         Field(
@@ -147,9 +147,9 @@ _LIMITS = Table(
         ),
         _FLOAT,
         _BOUND,
-        Field("core", "hardware_context", reference(Kind.MODULE)),
+        Field("core", "hardware_context", reference(ObjectKind.MODULE)),
     ),
-    Entry(
+    ClassEntry(
         perf.RatioLimit,
         am.PercentageRequirementLimit,
         Field(
@@ -168,7 +168,7 @@ _LIMITS = Table(
         _FLOAT,
         _BOUND,
     ),
-    Entry(
+    ClassEntry(
         perf.FrequencyLimit,
         am.FrequencyRequirementLimit,
         Field(
@@ -219,10 +219,10 @@ def build_requirement(requirement: perf.Requirement, context: Building) -> am.Re
     context.at(requirement)
     element: am.Requirement
     if requirement.runnable is not None:
-        runnable = reference(Kind.RUNNABLE).build(requirement.runnable, context)
+        runnable = reference(ObjectKind.RUNNABLE).build(requirement.runnable, context)
         element = am.RunnableRequirement(name=requirement.name, runnable=runnable)
     else:
-        process = reference(Kind.PROCESS).build(requirement.process, context)
+        process = reference(ObjectKind.PROCESS).build(requirement.process, context)
         element = am.ProcessRequirement(name=requirement.name, process=process)
     _build_limit(requirement.limit, context, element)
     if requirement.severity is not None:
@@ -238,9 +238,9 @@ def extract_requirement(element: am.Requirement, context: Extracting) -> perf.Re
     runnable: str | None = None
     match element:
         case am.ProcessRequirement(process=holder):
-            process = reference(Kind.PROCESS).extract(holder, context, element)
+            process = reference(ObjectKind.PROCESS).extract(holder, context, element)
         case am.RunnableRequirement(runnable=holder):
-            runnable = reference(Kind.RUNNABLE).extract(holder, context, element)
+            runnable = reference(ObjectKind.RUNNABLE).extract(holder, context, element)
         case _:
             context.leave_out(element)
             return None
@@ -268,19 +268,21 @@ _ORDERING = same_names(
     IMMEDIATE_AT_END="IMMEDIATE_SUCCESSOR_END_SEQUENCE",
 )
 _GROUPS = Codec(
-    lambda groups, context: [am.RunnableEntityGroup(runnables=references(Kind.RUNNABLE).build(g, context)) for g in groups],
+    lambda groups, context: [
+        am.RunnableEntityGroup(runnables=references(ObjectKind.RUNNABLE).build(g, context)) for g in groups
+    ],
     lambda values, context, _element: tuple(
-        references(Kind.RUNNABLE).extract(group.runnables, context, group) for group in values
+        references(ObjectKind.RUNNABLE).extract(group.runnables, context, group) for group in values
     ),
 )
 
-ORDERS = Table(
-    Entry(
+ORDERS = ClassTable(
+    ClassEntry(
         perf.OrderConstraint,
         am.RunnableSequencingConstraint,
         Field("groups", "runnable_groups", _GROUPS),
         Field("ordering", "order_type", _ORDERING),
-        Field("processes", "process_scope", references(Kind.PROCESS)),
+        Field("processes", "process_scope", references(ObjectKind.PROCESS)),
     )
 )
 
@@ -289,7 +291,7 @@ _DATA_GROUPS: dict[perf.DataGroupKind, type[am.DataCoherencyGroup | am.DataStabi
     perf.DataGroupKind.COHERENCY: am.DataCoherencyGroup,
     perf.DataGroupKind.STABILITY: am.DataStabilityGroup,
 }
-_LABELS = references(Kind.DATA)
+_LABELS = references(ObjectKind.DATA)
 
 
 def build_data_group(group: perf.DataGroup, context: Building) -> am.DataCoherencyGroup | am.DataStabilityGroup:

@@ -6,13 +6,13 @@ from typing import Any
 
 from amalthea_uros.bridge.codecs import PLAIN, TIME, Codec, same_names
 from amalthea_uros.bridge.context import Extracting
-from amalthea_uros.bridge.entries import Entry, Field, Table, all_parts, part
+from amalthea_uros.bridge.entries import ClassEntry, ClassTable, Field, all_parts, part
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.perf import distributions as perf
 
 
-class _Distributions(Table):
+class _Distributions(ClassTable):
     """What misses a parameter still has its bounds, if both are stated."""
 
     def extract(self, element: Element, context: Extracting) -> Any:
@@ -31,7 +31,7 @@ def _given(column: Field, element: Element, context: Extracting) -> Any:
     return None if value is None else column.codec.extract(value, context, element)
 
 
-def _table(prefix: str, number: Codec, mean: Codec) -> Table:
+def _table(prefix: str, number: Codec, mean: Codec) -> ClassTable:
     """The table of one kind.
 
     Parameters
@@ -47,15 +47,17 @@ def _table(prefix: str, number: Codec, mean: Codec) -> Table:
     lower, upper = Field("lower", "lower_bound", number), Field("upper", "upper_bound", number)
     average = Field("average", "average", mean)
     sampling = Field("sampling", "sampling_type", same_names(perf.Sampling, am.SamplingType))
-    bucket = Table(Entry(perf.Bucket, amalthea_class("HistogramEntry"), lower, upper, Field("occurrences", "occurrences")))
+    bucket = ClassTable(
+        ClassEntry(perf.Bucket, amalthea_class("HistogramEntry"), lower, upper, Field("occurrences", "occurrences"))
+    )
     return _Distributions(
         # Before the class that it is written as, which has a parameter more.
-        Entry(perf.Bounds, amalthea_class("GaussDistribution"), lower, upper),
-        Entry(perf.Constant, amalthea_class("Constant"), Field("value", "value", number)),
-        Entry(perf.Boundaries, amalthea_class("Boundaries"), lower, upper, sampling),
-        Entry(perf.Statistics, amalthea_class("Statistics"), lower, average, upper),
-        Entry(perf.Uniform, amalthea_class("UniformDistribution"), lower, upper),
-        Entry(
+        ClassEntry(perf.Bounds, amalthea_class("GaussDistribution"), lower, upper),
+        ClassEntry(perf.Constant, amalthea_class("Constant"), Field("value", "value", number)),
+        ClassEntry(perf.Boundaries, amalthea_class("Boundaries"), lower, upper, sampling),
+        ClassEntry(perf.Statistics, amalthea_class("Statistics"), lower, average, upper),
+        ClassEntry(perf.Uniform, amalthea_class("UniformDistribution"), lower, upper),
+        ClassEntry(
             perf.Gauss,
             amalthea_class("GaussDistribution"),
             Field("mean", "mean", mean),
@@ -63,7 +65,7 @@ def _table(prefix: str, number: Codec, mean: Codec) -> Table:
             lower,
             upper,
         ),
-        Entry(
+        ClassEntry(
             perf.Weibull,
             amalthea_class("WeibullEstimatorsDistribution"),
             lower,
@@ -71,8 +73,8 @@ def _table(prefix: str, number: Codec, mean: Codec) -> Table:
             upper,
             Field("exceeding", "p_remain_promille"),
         ),
-        Entry(perf.Beta, amalthea_class("BetaDistribution"), Field("alpha", "alpha"), Field("beta", "beta"), lower, upper),
-        Entry(perf.Histogram, amalthea_class("Histogram"), Field("buckets", "entries", all_parts(bucket))),
+        ClassEntry(perf.Beta, amalthea_class("BetaDistribution"), Field("alpha", "alpha"), Field("beta", "beta"), lower, upper),
+        ClassEntry(perf.Histogram, amalthea_class("Histogram"), Field("buckets", "entries", all_parts(bucket))),
     )
 
 

@@ -6,73 +6,73 @@ from typing import Any
 
 from amalthea_uros.bridge.codecs import reference, references, same_names
 from amalthea_uros.bridge.context import Building, Extracting
-from amalthea_uros.bridge.entries import Entry, Field, Table
-from amalthea_uros.bridge.kinds import Kind
+from amalthea_uros.bridge.entries import ClassEntry, ClassTable, Field
+from amalthea_uros.bridge.kinds import ObjectKind
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.perf import events as perf
 
-_PROCESS = Field("process", "process", reference(Kind.PROCESS))
-_RUNNABLE = Field("runnable", "runnable", reference(Kind.RUNNABLE))
-_CORE = Field("core", "processing_unit", reference(Kind.MODULE))
+_PROCESS = Field("process", "process", reference(ObjectKind.PROCESS))
+_RUNNABLE = Field("runnable", "runnable", reference(ObjectKind.RUNNABLE))
+_CORE = Field("core", "processing_unit", reference(ObjectKind.MODULE))
 
-EVENTS = Table(
-    Entry(
+EVENTS = ClassTable(
+    ClassEntry(
         perf.ProcessEvent,
         am.ProcessEvent,
         Field("change", "event_type", same_names(perf.ProcessChange, am.ProcessEventType)),
-        Field("process", "entity", reference(Kind.PROCESS)),
+        Field("process", "entity", reference(ObjectKind.PROCESS)),
         _CORE,
     ),
-    Entry(
+    ClassEntry(
         perf.RunnableEvent,
         am.RunnableEvent,
         Field("change", "event_type", same_names(perf.RunnableChange, am.RunnableEventType)),
-        Field("runnable", "entity", reference(Kind.RUNNABLE)),
+        Field("runnable", "entity", reference(ObjectKind.RUNNABLE)),
         _PROCESS,
         _CORE,
     ),
-    Entry(
+    ClassEntry(
         perf.LabelEvent,
         am.LabelEvent,
         Field("change", "event_type", same_names(perf.LabelChange, am.LabelEventType)),
-        Field("label", "entity", reference(Kind.DATA)),
+        Field("label", "entity", reference(ObjectKind.DATA)),
         _RUNNABLE,
         _PROCESS,
     ),
-    Entry(
+    ClassEntry(
         perf.ModeLabelEvent,
         am.ModeLabelEvent,
         Field("change", "event_type", same_names(perf.ModeChange, am.ModeLabelEventType)),
-        Field("label", "entity", reference(Kind.MODE_LABEL)),
+        Field("label", "entity", reference(ObjectKind.MODE_LABEL)),
         _RUNNABLE,
         _PROCESS,
     ),
-    Entry(
+    ClassEntry(
         perf.ChannelEvent,
         am.ChannelEvent,
         Field("change", "event_type", same_names(perf.ChannelChange, am.ChannelEventType)),
-        Field("channel", "entity", reference(Kind.DATA)),
+        Field("channel", "entity", reference(ObjectKind.DATA)),
         _RUNNABLE,
         _PROCESS,
     ),
-    Entry(
+    ClassEntry(
         perf.SemaphoreEvent,
         am.SemaphoreEvent,
         Field("change", "event_type", same_names(perf.SemaphoreChange, am.SemaphoreEventType)),
-        Field("semaphore", "entity", reference(Kind.SEMAPHORE)),
+        Field("semaphore", "entity", reference(ObjectKind.SEMAPHORE)),
         _RUNNABLE,
         _PROCESS,
         _CORE,
     ),
-    Entry(perf.StimulusEvent, am.StimulusEvent, Field("stimulus", "entity", reference(Kind.STIMULUS))),
-    Entry(perf.CustomEvent, am.CustomEvent, Field("kind", "event_type")),
-    Entry(perf.EventSet, am.EventSet, Field("events", "events", references(Kind.EVENT))),
+    ClassEntry(perf.StimulusEvent, am.StimulusEvent, Field("stimulus", "entity", reference(ObjectKind.STIMULUS))),
+    ClassEntry(perf.CustomEvent, am.CustomEvent, Field("kind", "event_type")),
+    ClassEntry(perf.EventSet, am.EventSet, Field("events", "events", references(ObjectKind.EVENT))),
 )
 
 # Chains. An item refers to a chain or contains one; the kind of the items is an attribute of the chain that has them.
 
-_EVENT, _CHAIN = reference(Kind.EVENT), reference(Kind.CHAIN)
+_EVENT, _CHAIN = reference(ObjectKind.EVENT), reference(ObjectKind.CHAIN)
 
 
 def _fill(element: Any, chain: perf.EventChain | perf.Segment, context: Building) -> Any:
@@ -118,7 +118,7 @@ def _extract_item(item: Any, context: Extracting) -> perf.ChainItem | None:
     )
 
 
-class _Chains(Entry):
+class _Chains(ClassEntry):
     def fill(self, element: Element, item: Any, context: Building) -> Element:
         context.at(item)
         found: Element = _fill(element, item, context)
@@ -134,4 +134,4 @@ class _Chains(Entry):
         )
 
 
-CHAINS = Table(_Chains(perf.EventChain, am.EventChain))
+CHAINS = ClassTable(_Chains(perf.EventChain, am.EventChain))

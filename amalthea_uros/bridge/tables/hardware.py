@@ -10,8 +10,8 @@ from typing import Any, TypeVar
 
 from amalthea_uros.bridge.codecs import FREQUENCY, RATE, SIZE, enumeration, reference, references, same_names
 from amalthea_uros.bridge.context import Building, Extracting
-from amalthea_uros.bridge.entries import Entry, Field, Table
-from amalthea_uros.bridge.kinds import Kind
+from amalthea_uros.bridge.entries import ClassEntry, ClassTable, Field
+from amalthea_uros.bridge.kinds import ObjectKind
 from amalthea_uros.bridge.tables.distributions import TICKS
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.element import Element
@@ -29,10 +29,10 @@ _ARBITRATION = enumeration(
         perf.Arbitration.PRIORITY: am.SchedPolicy.PRIORITY_BASED,
     }
 )
-_CLOCK, _CORE_TYPE, _MODULE = reference(Kind.CLOCK), reference(Kind.CORE_TYPE), reference(Kind.MODULE)
-_MODULES = references(Kind.MODULE)
+_CLOCK, _CORE_TYPE, _MODULE = reference(ObjectKind.CLOCK), reference(ObjectKind.CORE_TYPE), reference(ObjectKind.MODULE)
+_MODULES = references(ObjectKind.MODULE)
 
-CLOCKS = Table(Entry(perf.Clock, am.FrequencyDomain, Field("frequency", "default_value", FREQUENCY)))
+CLOCKS = ClassTable(ClassEntry(perf.Clock, am.FrequencyDomain, Field("frequency", "default_value", FREQUENCY)))
 
 
 def _set_latency(element: Any, latency: perf.Latency, context: Building) -> None:
@@ -174,9 +174,9 @@ class HardwareBuilder:
     def join(self, connection: perf.Connection) -> None:
         """Give a connection its ports: it initiates at its source and is responded to at its target."""
         self.context.at(connection)
-        element: Any = self.context.find(Kind.MODULE, connection.name)
-        source: Any = self.context.find(Kind.MODULE, connection.source)
-        target: Any = self.context.find(Kind.MODULE, connection.target)
+        element: Any = self.context.find(ObjectKind.MODULE, connection.name)
+        source: Any = self.context.find(ObjectKind.MODULE, connection.source)
+        target: Any = self.context.find(ObjectKind.MODULE, connection.target)
         _set_latency(element, connection.latency, self.context)
         if source is not None and target is not None:
             element.port1 = self._port(source, connection, am.PortType.INITIATOR)
@@ -194,7 +194,7 @@ class HardwareBuilder:
     def accesses(self, core: perf.Core) -> None:
         """What a core accesses."""
         self.context.at(core)
-        element: Any = self.context.find(Kind.MODULE, core.name)
+        element: Any = self.context.find(ObjectKind.MODULE, core.name)
         for access in core.accesses:
             found = am.HwAccessElement(name=access.memory, destination=_MODULE.build(access.memory, self.context))
             _set_latency(found, access.latency, self.context)

@@ -7,19 +7,19 @@ from typing import Any
 
 from amalthea_uros.bridge.codecs import reference, references
 from amalthea_uros.bridge.context import Building, Extracting
-from amalthea_uros.bridge.entries import Entry, Field, Table
-from amalthea_uros.bridge.kinds import Kind
-from amalthea_uros.bridge.tables.parameters import Definitions, Given, extract_parameters
+from amalthea_uros.bridge.entries import ClassEntry, ClassTable, Field
+from amalthea_uros.bridge.kinds import ObjectKind
+from amalthea_uros.bridge.tables.parameters import Given, SchedulingDefinitions, extract_parameters
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.perf import mapping as perf
 from amalthea_uros.perf.os import InterruptController, Scheduler
 from amalthea_uros.perf.system import System
 
-_PROCESS, _SCHEDULER, _CORES = reference(Kind.PROCESS), reference(Kind.SCHEDULER), references(Kind.MODULE)
-_DATA, _MEMORY, _CORE = reference(Kind.DATA), reference(Kind.MODULE), reference(Kind.MODULE)
+_PROCESS, _SCHEDULER, _CORES = reference(ObjectKind.PROCESS), reference(ObjectKind.SCHEDULER), references(ObjectKind.MODULE)
+_DATA, _MEMORY, _CORE = reference(ObjectKind.DATA), reference(ObjectKind.MODULE), reference(ObjectKind.MODULE)
 
-ISR_ALLOCATIONS = Table(
-    Entry(
+ISR_ALLOCATIONS = ClassTable(
+    ClassEntry(
         perf.IsrAllocation,
         am.ISRAllocation,
         Field("isr", "isr", _PROCESS),
@@ -27,8 +27,8 @@ ISR_ALLOCATIONS = Table(
         Field("priority", "priority"),
     )
 )
-PLACEMENTS = Table(
-    Entry(
+PLACEMENTS = ClassTable(
+    ClassEntry(
         perf.Placement,
         am.MemoryMapping,
         Field("element", "abstract_element", _DATA),
@@ -38,7 +38,7 @@ PLACEMENTS = Table(
 )
 
 
-def build_mapping(system: System, definitions: Definitions) -> am.MappingModel:
+def build_mapping(system: System, definitions: SchedulingDefinitions) -> am.MappingModel:
     """The mapping of software to hardware."""
     context = definitions.context
     schedulers: list[Scheduler | InterruptController] = [
@@ -57,14 +57,14 @@ def _scheduler_allocation(scheduler: Scheduler | InterruptController, context: B
     context.at(scheduler)
     if not scheduler.cores and scheduler.executing_core is None:
         return None
-    element: Any = context.find(Kind.SCHEDULER, scheduler.name)
+    element: Any = context.find(ObjectKind.SCHEDULER, scheduler.name)
     executing = None if scheduler.executing_core is None else _CORE.build(scheduler.executing_core, context)
     return am.SchedulerAllocation(
         scheduler=element, responsibility=_CORES.build(scheduler.cores, context), executing_pu=executing
     )
 
 
-def _task_allocation(allocation: perf.TaskAllocation, system: System, definitions: Definitions) -> am.TaskAllocation:
+def _task_allocation(allocation: perf.TaskAllocation, system: System, definitions: SchedulingDefinitions) -> am.TaskAllocation:
     context = definitions.context
     task = system.processes.get(allocation.task)
     if task is not None:

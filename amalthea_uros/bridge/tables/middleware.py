@@ -13,7 +13,7 @@ from typing import Any, TypeVar
 
 from amalthea_uros.bridge.context import Building, Extracting
 from amalthea_uros.bridge.json_text import MalformedError, from_text, to_text
-from amalthea_uros.bridge.kinds import Kind
+from amalthea_uros.bridge.kinds import ObjectKind
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.perf.executors import Executor
@@ -30,10 +30,10 @@ def build_middleware(system: System, software: am.SWModel, context: Building) ->
     """Set the properties of all executors and of the network."""
     for executor in system.executors:
         context.at(executor)
-        _attach(context.find(Kind.PROCESS, executor.task), _EXECUTOR, to_text(executor, without=("task",)))
+        _attach(context.find(ObjectKind.PROCESS, executor.task), _EXECUTOR, to_text(executor, without=("task",)))
     for transmission in system.network.transmissions:
         context.at(transmission)
-        _attach(context.find(Kind.PROCESS, transmission.name), _TRANSMISSION, to_text(transmission, without=("name",)))
+        _attach(context.find(ObjectKind.PROCESS, transmission.name), _TRANSMISSION, to_text(transmission, without=("name",)))
     network = replace(system.network, transmissions=())
     if network != Network():
         _attach(software, _NETWORK, to_text(network))

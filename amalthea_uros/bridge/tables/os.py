@@ -7,16 +7,16 @@ from typing import Any
 
 from amalthea_uros.bridge.codecs import enumeration, reference, same_names
 from amalthea_uros.bridge.context import Building, Extracting
-from amalthea_uros.bridge.entries import Entry, Field, Table
-from amalthea_uros.bridge.kinds import Kind
+from amalthea_uros.bridge.entries import ClassEntry, ClassTable, Field
+from amalthea_uros.bridge.kinds import ObjectKind
 from amalthea_uros.bridge.tables.activities import ACTIVITIES, DEMAND, ITEMS, PROTECTIONS
-from amalthea_uros.bridge.tables.parameters import Definitions, Given, extract_parameters, extract_policy
+from amalthea_uros.bridge.tables.parameters import Given, SchedulingDefinitions, extract_parameters, extract_policy
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.perf import os as perf
 from amalthea_uros.perf.activities import Protection
 
-SEMAPHORES = Table(
-    Entry(
+SEMAPHORES = ClassTable(
+    ClassEntry(
         perf.Semaphore,
         am.Semaphore,
         Field("kind", "semaphore_type", same_names(perf.SemaphoreKind, am.SemaphoreType, COUNTING="COUNTING_SEMAPHORE")),
@@ -37,7 +37,7 @@ _SERVICES = {service: f"api_{service.name.lower()}" for service in perf.Service}
 _PROTECTION = enumeration(
     {Protection[one]: am.OsDataConsistencyMode[other] for one, other in PROTECTIONS.items() if one != "INHERITED"}
 )
-_OVERHEAD, _SCHEDULER = reference(Kind.OVERHEAD), reference(Kind.SCHEDULER)
+_OVERHEAD, _SCHEDULER = reference(ObjectKind.OVERHEAD), reference(ObjectKind.SCHEDULER)
 
 
 def build_overhead(overhead: perf.Overhead, element: Any, context: Building) -> None:
@@ -98,7 +98,7 @@ def build_system(system: perf.OperatingSystem, context: Building) -> am.Operatin
     return element
 
 
-def fill_system(system: perf.OperatingSystem, element: am.OperatingSystem, definitions: Definitions) -> None:
+def fill_system(system: perf.OperatingSystem, element: am.OperatingSystem, definitions: SchedulingDefinitions) -> None:
     """Everything of an operating system that refers to something."""
     context = definitions.context
     context.at(system)
@@ -119,7 +119,9 @@ def fill_system(system: perf.OperatingSystem, element: am.OperatingSystem, defin
         _fill_scheduler(controller, interrupts, definitions)
 
 
-def _fill_scheduler(scheduler: perf.Scheduler | perf.InterruptController, element: Any, definitions: Definitions) -> None:
+def _fill_scheduler(
+    scheduler: perf.Scheduler | perf.InterruptController, element: Any, definitions: SchedulingDefinitions
+) -> None:
     definitions.context.at(scheduler)
     definitions.set_policy(element, scheduler, scheduler.policy)
     given = Given(None, None, scheduler.parameters)

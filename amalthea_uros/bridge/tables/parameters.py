@@ -116,7 +116,7 @@ def _type_of(parameter: Parameter) -> am.ParameterType:
     return am.ParameterType.STRING
 
 
-class Definitions:
+class SchedulingDefinitions:
     """Definitions of policies and parameters, as they are needed."""
 
     def __init__(self, context: Building) -> None:

@@ -15,8 +15,8 @@ from amalthea_uros.bridge.codecs import (
     same_names,
 )
 from amalthea_uros.bridge.context import Building, Extracting
-from amalthea_uros.bridge.entries import Entry, Field, Table
-from amalthea_uros.bridge.kinds import Kind
+from amalthea_uros.bridge.entries import ClassEntry, ClassTable, Field
+from amalthea_uros.bridge.kinds import ObjectKind
 from amalthea_uros.bridge.tables.activities import ITEMS, PROTECTIONS
 from amalthea_uros.bridge.tables.conditions import CONDITION
 from amalthea_uros.metamodel import classes as am
@@ -37,8 +37,8 @@ def _extract_stimuli(values: list[Any], context: Extracting, element: Element) -
     return tuple(_STIMULUS.extract(value, context, element) or context.unresolved_stimulus(value) for value in values)
 
 
-_STIMULUS = reference(Kind.STIMULUS)
-_STIMULI = Field("stimuli", "stimuli", Codec(references(Kind.STIMULUS).build, _extract_stimuli))
+_STIMULUS = reference(ObjectKind.STIMULUS)
+_STIMULI = Field("stimuli", "stimuli", Codec(references(ObjectKind.STIMULUS).build, _extract_stimuli))
 _SIZE = Field("size", "size", SIZE)
 
 _LIMIT = Codec(
@@ -48,8 +48,8 @@ _LIMIT = Codec(
 )
 _PREEMPTION = same_names(perf.Preemption, am.Preemption)
 
-PROCESSES = Table(
-    Entry(
+PROCESSES = ClassTable(
+    ClassEntry(
         perf.Task,
         am.Task,
         _STIMULI,
@@ -57,10 +57,12 @@ PROCESSES = Table(
         Field("preemption", "preemption", _PREEMPTION),
         Field("activation_limit", "multiple_task_activation_limit", _LIMIT),
     ),
-    Entry(perf.Isr, am.ISR, _STIMULI, _ACTIVITIES, Field("category", "category", same_names(perf.IsrCategory, am.ISRCategory))),
+    ClassEntry(
+        perf.Isr, am.ISR, _STIMULI, _ACTIVITIES, Field("category", "category", same_names(perf.IsrCategory, am.ISRCategory))
+    ),
 )
-RUNNABLES = Table(
-    Entry(
+RUNNABLES = ClassTable(
+    ClassEntry(
         perf.Runnable,
         am.Runnable,
         _ACTIVITIES,
@@ -70,8 +72,8 @@ RUNNABLES = Table(
         Field("condition", "execution_condition", CONDITION),
     )
 )
-LABELS = Table(
-    Entry(
+LABELS = ClassTable(
+    ClassEntry(
         perf.Label,
         am.Label,
         _SIZE,
@@ -99,8 +101,8 @@ def _extract_element_type(value: Any, context: Extracting, element: Element) -> 
     return size
 
 
-CHANNELS = Table(
-    Entry(
+CHANNELS = ClassTable(
+    ClassEntry(
         perf.Channel,
         am.Channel,
         Field("element_size", "element_type", Codec(_build_element_type, _extract_element_type)),
@@ -109,9 +111,14 @@ CHANNELS = Table(
         Field("external", "custom_properties", marked("external", default=False)),
     )
 )
-OS_EVENTS = Table(Entry(perf.OsEvent, am.OsEvent))
-MODE_LABELS = Table(
-    Entry(perf.ModeLabel, am.ModeLabel, Field("mode", "mode", reference(Kind.MODE)), Field("initial", "initial_value", PLAIN))
+OS_EVENTS = ClassTable(ClassEntry(perf.OsEvent, am.OsEvent))
+MODE_LABELS = ClassTable(
+    ClassEntry(
+        perf.ModeLabel,
+        am.ModeLabel,
+        Field("mode", "mode", reference(ObjectKind.MODE)),
+        Field("initial", "initial_value", PLAIN),
+    )
 )
 
 

@@ -16,8 +16,8 @@ from amalthea_uros.bridge.codecs import (
     same_names,
 )
 from amalthea_uros.bridge.context import Building, Extracting
-from amalthea_uros.bridge.entries import Entry, Field, Table, all_parts, part, parts
-from amalthea_uros.bridge.kinds import Kind
+from amalthea_uros.bridge.entries import ClassEntry, ClassTable, Field, all_parts, part, parts
+from amalthea_uros.bridge.kinds import ObjectKind
 from amalthea_uros.bridge.tables.conditions import ASSIGNMENTS, CONDITION
 from amalthea_uros.bridge.tables.distributions import NUMBER, TIME_SPAN
 from amalthea_uros.metamodel import classes as am
@@ -31,7 +31,7 @@ _SOURCE, _SOURCE_WITHOUT_PHASE = "source", "sourceWithoutPhase"
 _PERIOD_OF_ARRIVALS, _JITTER_OF_ARRIVALS, _JITTER = "arrivalPeriod", "arrivalJitter", "jitter"
 
 
-class _Counters(Table):
+class _Counters(ClassTable):
     """Counters, with custom properties for the message or timer that they represent: its name, whether its phase is known, arrivals."""
 
     def build(self, item: Any, context: Building) -> Any:
@@ -69,7 +69,7 @@ def _extract_arrivals(element: Any) -> perf.Arrivals | None:
 
 
 #: Numbers that are not given have these values in every version: prescaler 1, offset 0.
-COUNTER = part(_Counters(Entry(perf.Counter, am.Counter, Field("prescaler", "prescaler"), Field("offset", "offset"))))
+COUNTER = part(_Counters(ClassEntry(perf.Counter, am.Counter, Field("prescaler", "prescaler"), Field("offset", "offset"))))
 
 _COMMON = (
     Field("condition", "execution_condition", CONDITION),
@@ -78,17 +78,17 @@ _COMMON = (
 _PERIOD = (Field("period", "recurrence", TIME), Field("offset", "offset", TIME))
 _COUNTER = Field("counter", "counter", COUNTER)
 
-_SCENARIO = Table(
-    Entry(
+_SCENARIO = ClassTable(
+    ClassEntry(
         perf.Scenario,
         am.Scenario,
-        Field("clock", "clock", reference(Kind.STIMULUS_CLOCK)),
+        Field("clock", "clock", reference(ObjectKind.STIMULUS_CLOCK)),
         Field("offset", "sampling_offset"),
         Field("recurrence", "sampling_recurrence"),
     )
 )
-_POINTS = Table(
-    Entry(
+_POINTS = ClassTable(
+    ClassEntry(
         perf.ArrivalCurvePoint,
         am.ArrivalCurveEntry,
         Field("occurrences", "number_of_occurrences"),
@@ -98,7 +98,7 @@ _POINTS = Table(
 )
 
 
-class _Stimuli(Table):
+class _Stimuli(ClassTable):
     """Stimuli; what is incomplete activates at an unknown rate, like a custom one."""
 
     def extract(self, element: Element, context: Extracting) -> Any:
@@ -107,8 +107,8 @@ class _Stimuli(Table):
         return found or perf.Custom(name=context.names[element], description="incomplete", origin=context.location(element))
 
 
-STIMULI: Table = _Stimuli(
-    Entry(
+STIMULI: ClassTable = _Stimuli(
+    ClassEntry(
         perf.Periodic,
         am.PeriodicStimulus,
         *_PERIOD,
@@ -116,7 +116,7 @@ STIMULI: Table = _Stimuli(
         Field("min_distance", "min_distance", TIME),
         *_COMMON,
     ),
-    Entry(
+    ClassEntry(
         perf.RelativePeriodic,
         am.RelativePeriodicStimulus,
         Field("offset", "offset", TIME),
@@ -124,8 +124,8 @@ STIMULI: Table = _Stimuli(
         Field("has_maximum", "custom_properties", marked("maximumKnown", default=True)),
         *_COMMON,
     ),
-    Entry(perf.Synthetic, am.PeriodicSyntheticStimulus, *_PERIOD, Field("times", "occurrence_times", TIMES), *_COMMON),
-    Entry(
+    ClassEntry(perf.Synthetic, am.PeriodicSyntheticStimulus, *_PERIOD, Field("times", "occurrence_times", TIMES), *_COMMON),
+    ClassEntry(
         perf.Burst,
         am.PeriodicBurstStimulus,
         *_PERIOD,
@@ -134,8 +134,8 @@ STIMULI: Table = _Stimuli(
         Field("count", "occurrence_count"),
         *_COMMON,
     ),
-    Entry(perf.Single, am.SingleStimulus, Field("time", "occurrence", TIME), *_COMMON),
-    Entry(
+    ClassEntry(perf.Single, am.SingleStimulus, Field("time", "occurrence", TIME), *_COMMON),
+    ClassEntry(
         perf.VariableRate,
         am.VariableRateStimulus,
         Field("step", "step", TIME),
@@ -145,24 +145,24 @@ STIMULI: Table = _Stimuli(
         Field("scenario", "scenario", part(_SCENARIO)),
         *_COMMON,
     ),
-    Entry(perf.ArrivalCurve, am.ArrivalCurveStimulus, Field("points", "entries", parts(_POINTS)), *_COMMON),
-    Entry(perf.InterProcess, am.InterProcessStimulus, _COUNTER, *_COMMON),
-    Entry(
+    ClassEntry(perf.ArrivalCurve, am.ArrivalCurveStimulus, Field("points", "entries", parts(_POINTS)), *_COMMON),
+    ClassEntry(perf.InterProcess, am.InterProcessStimulus, _COUNTER, *_COMMON),
+    ClassEntry(
         perf.EventTriggered,
         am.EventStimulus,
-        Field("events", "triggering_events", all_references(Kind.EVENT)),
+        Field("events", "triggering_events", all_references(ObjectKind.EVENT)),
         _COUNTER,
         *_COMMON,
     ),
-    Entry(perf.Custom, am.CustomStimulus, Field("description", "description"), *_COMMON),
+    ClassEntry(perf.Custom, am.CustomStimulus, Field("description", "description"), *_COMMON),
 )
 
-_STEPS = Table(
-    Entry(perf.ClockStep, am.ClockStep, Field("time", "time", TIME), Field("frequency", "frequency", FREQUENCY)),
+_STEPS = ClassTable(
+    ClassEntry(perf.ClockStep, am.ClockStep, Field("time", "time", TIME), Field("frequency", "frequency", FREQUENCY)),
 )
 
-CLOCKS = Table(
-    Entry(
+CLOCKS = ClassTable(
+    ClassEntry(
         perf.ClockFunction,
         am.ClockFunction,
         Field("curve", "curve_type", same_names(perf.Curve, am.CurveType)),
@@ -171,5 +171,7 @@ CLOCKS = Table(
         Field("swing", "peak_to_peak", FREQUENCY),
         Field("shift", "x_offset", TIME),
     ),
-    Entry(perf.ClockSteps, am.ClockStepList, Field("steps", "entries", all_parts(_STEPS)), Field("period", "period", TIME)),
+    ClassEntry(
+        perf.ClockSteps, am.ClockStepList, Field("steps", "entries", all_parts(_STEPS)), Field("period", "period", TIME)
+    ),
 )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from amalthea_uros.design.changes.timing_changes import TimingChange
-from amalthea_uros.difference.comparison import Change
+from amalthea_uros.difference.comparison import ModelChange
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.report.findings import finding_json
 from amalthea_uros.report.json import changes, impact
@@ -35,7 +35,7 @@ def _timing_json(change: TimingChange) -> dict[str, Any]:
     }
 
 
-def change_json(change: Change) -> dict[str, Any]:
+def change_json(change: ModelChange) -> dict[str, Any]:
     """A difference with its places in the files."""
     return {
         "kind": change.kind,

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.difference.comparison import Change, ChangeKind
+from amalthea_uros.difference.comparison import ChangeKind, ModelChange
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.features import features_of
 from amalthea_uros.report.terminal import Terminal
@@ -38,14 +38,14 @@ def write_closing(result: DiffResult, terminal: Terminal) -> None:
         impact.write(result.impact, terminal)
 
 
-def _by_object(changes: Iterable[Change]) -> Iterable[list[Change]]:
-    groups: dict[tuple[Element | None, Element | None], list[Change]] = {}
+def _by_object(changes: Iterable[ModelChange]) -> Iterable[list[ModelChange]]:
+    groups: dict[tuple[Element | None, Element | None], list[ModelChange]] = {}
     for change in changes:
         groups.setdefault((change.old_element, change.new_element), []).append(change)
     return groups.values()
 
 
-def _write_object(group: list[Change], terminal: Terminal) -> None:
+def _write_object(group: list[ModelChange], terminal: Terminal) -> None:
     first = group[0]
     mark, colour = _MARKS[first.kind]
     terminal.line(terminal.style(f"{mark} {first.class_name} {first.qualified_name}", colour) + _remark(first))
@@ -54,7 +54,7 @@ def _write_object(group: list[Change], terminal: Terminal) -> None:
             terminal.line(f"    {_sentence(change)}")
 
 
-def _remark(change: Change) -> str:
+def _remark(change: ModelChange) -> str:
     """The content of an added or removed object without a unique name, and the number of its parts."""
     if change.feature:
         return ""
@@ -66,7 +66,7 @@ def _remark(change: Change) -> str:
     return f" ({known})" if known else ""
 
 
-def _sentence(change: Change) -> str:
+def _sentence(change: ModelChange) -> str:
     if change.kind is ChangeKind.MOVED:
         return f"moved: {change.old} -> {change.new}"
     if _is_list(change):
@@ -74,13 +74,13 @@ def _sentence(change: Change) -> str:
     return f"{change.feature}: {change.old} -> {change.new}"
 
 
-def _is_list(change: Change) -> bool:
+def _is_list(change: ModelChange) -> bool:
     element = change.new_element or change.old_element
     assert element is not None
     return any(feature.many and feature.xml_name == change.feature for feature in features_of(type(element)).values())
 
 
-def _summary(changes: Sequence[Change]) -> str:
+def _summary(changes: Sequence[ModelChange]) -> str:
     if not changes:
         return "no differences in meaning"
     counts = Counter(change.kind for change in changes)

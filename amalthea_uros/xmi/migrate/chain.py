@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from amalthea_uros.xmi.migrate.model_set import ModelSet, Tree, all_below
-from amalthea_uros.xmi.migrate.notes import Notes, bring_back, give_up
+from amalthea_uros.xmi.migrate.notes import StepNotes, bring_back, give_up
 from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps import DOWN, UP
 from amalthea_uros.xmi.migrate.versions import position
@@ -15,7 +15,7 @@ _DOWN = {step.source: step for step in DOWN}
 _BEHIND = 2
 
 
-def migrate(models: ModelSet, target: str, notes: Notes) -> None:
+def migrate(models: ModelSet, target: str, notes: StepNotes) -> None:
     """Take all files of a set to a version; each joins the others at its own.
 
     Raises
@@ -38,7 +38,7 @@ def migrate(models: ModelSet, target: str, notes: Notes) -> None:
     drop_dangling(models, notes)
 
 
-def _take(models: ModelSet, step: Step, notes: Notes) -> str:
+def _take(models: ModelSet, step: Step, notes: StepNotes) -> str:
     if step.change is not None:
         models.begin_step(step.source)
         notes.version = step.target
@@ -65,7 +65,7 @@ def version_of_content(tree: Tree, target: str) -> str:
     return found
 
 
-def drop_dangling(models: ModelSet, notes: Notes) -> None:
+def drop_dangling(models: ModelSet, notes: StepNotes) -> None:
     """Remove references to objects that a step removed."""
     nodes = all_below([tree.root for tree in models.trees])
     attached = set(nodes)

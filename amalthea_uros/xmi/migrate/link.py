@@ -16,8 +16,8 @@ from amalthea_uros.metamodel.naming import NO_NAME, TYPE_MARK
 from amalthea_uros.xmi.migrate.classes import is_of, local_name, may_be
 from amalthea_uros.xmi.migrate.model_set import ModelSet, Origins
 from amalthea_uros.xmi.migrate.node import Node, proxy
-from amalthea_uros.xmi.migrate.notes import Notes
-from amalthea_uros.xmi.migrate.parse import Href, Parsed
+from amalthea_uros.xmi.migrate.notes import StepNotes
+from amalthea_uros.xmi.migrate.parse import ParsedFile, PendingHref
 
 #: Attributes that are text in all classes of all versions, whatever they look like.
 _TEXT = frozenset(
@@ -51,7 +51,7 @@ def file_of(href: str) -> str:
     return "" if not mark or ":" in file else unquote(file)
 
 
-def link(parsed: Sequence[Parsed], origins: Origins, notes: Notes) -> ModelSet:
+def link(parsed: Sequence[ParsedFile], origins: Origins, notes: StepNotes) -> ModelSet:
     """The set of some files with every reference linked; what is in no file is linked to a proxy."""
     models = ModelSet([one.tree for one in parsed], origins)
     linker = _Linker(parsed, models)
@@ -62,7 +62,7 @@ def link(parsed: Sequence[Parsed], origins: Origins, notes: Notes) -> ModelSet:
 
 
 class _Linker:
-    def __init__(self, parsed: Sequence[Parsed], models: ModelSet) -> None:
+    def __init__(self, parsed: Sequence[ParsedFile], models: ModelSet) -> None:
         self.models = models
         self.by_path = {_normal(one.tree.path): one for one in parsed}
         self.ids: dict[str, Node] = {}
@@ -89,7 +89,7 @@ class _Linker:
         #: Targets that were not found by their names, and which therefore may share them with others.
         self.by_identity: dict[Node, None] = {}
 
-    def link(self, one: Parsed) -> None:
+    def link(self, one: ParsedFile) -> None:
         """Link the references of one file."""
         # Ids are mostly UUIDs, which can be told by their first character.
         found, root = self.found, one.tree.root
@@ -112,7 +112,7 @@ class _Linker:
             target = self.elsewhere(one, href.text) or self.outside(one, href)
             href.holder.refer(href.tag, target)
 
-    def elsewhere(self, one: Parsed, href: str) -> Node | None:
+    def elsewhere(self, one: ParsedFile, href: str) -> Node | None:
         """The object that an `href` names."""
         fragment = href.rpartition("#")[2]
         named = self.file_at(one, href) if file_of(href) else one
@@ -121,11 +121,11 @@ class _Linker:
         # The file was renamed or is not here; such an id is unique wherever it is.
         return self.ids.get(fragment) if _UUID(fragment) else None
 
-    def file_at(self, one: Parsed, href: str) -> Parsed | None:
+    def file_at(self, one: ParsedFile, href: str) -> ParsedFile | None:
         """The file that an `href` names, if it belongs to the set."""
         return self.by_path.get(_normal(one.tree.path.parent / file_of(href)))
 
-    def outside(self, one: Parsed, href: Href) -> Node:
+    def outside(self, one: ParsedFile, href: PendingHref) -> Node:
         """What stands for the target of an `href` that is in no file."""
         file, _, fragment = href.text.rpartition("#")
         is_outside = bool(file_of(href.text)) and self.file_at(one, href.text) is None
@@ -137,7 +137,7 @@ class _Linker:
             made.attributes.setdefault("class", href.type)
         return made
 
-    def targets(self, one: Parsed, texts: list[str]) -> list[Node] | None:
+    def targets(self, one: ParsedFile, texts: list[str]) -> list[Node] | None:
         """The objects that the texts name; None if this is no reference."""
         found = []
         for text in texts:
@@ -152,7 +152,7 @@ class _Linker:
             found.append(target)
         return found
 
-    def target(self, one: Parsed, text: str) -> Node | None:
+    def target(self, one: ParsedFile, text: str) -> Node | None:
         """The object that a text names."""
         text = text.removeprefix("#")
         root = one.tree.root
@@ -164,7 +164,7 @@ class _Linker:
             self.found[text, root] = found
         return found
 
-    def by_id(self, one: Parsed, text: str) -> Node | None:
+    def by_id(self, one: ParsedFile, text: str) -> Node | None:
         if TYPE_MARK in text:
             return None  # ids of this form are names, and may be out of date
         found = one.ids.get(text) or self.ids.get(text)
@@ -172,7 +172,7 @@ class _Linker:
             self.by_identity[found] = None
         return found
 
-    def named(self, one: Parsed, text: str) -> Node | None:
+    def named(self, one: ParsedFile, text: str) -> Node | None:
         """The object of a name; the first one in the same file of several."""
         if TYPE_MARK not in text:
             text = unquote(text)  # some converters encoded the whole text again, `?type=` included
@@ -231,7 +231,7 @@ class _Linker:
             self.models.proxies.append(made)
         return made
 
-    def make_unique(self, notes: Notes) -> None:
+    def make_unique(self, notes: StepNotes) -> None:
         """Give names of their own to objects to which references were not by name, where the name does not tell them from others."""
         if not self.by_identity:
             return

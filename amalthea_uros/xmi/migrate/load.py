@@ -19,7 +19,7 @@ from amalthea_uros.metamodel.versions import newest_version, spelled
 from amalthea_uros.xmi.files import FileText
 from amalthea_uros.xmi.migrate.chain import migrate, version_of_content
 from amalthea_uros.xmi.migrate.model_set import ModelSet, Tree
-from amalthea_uros.xmi.migrate.notes import Kind, Note, Notes
+from amalthea_uros.xmi.migrate.notes import Note, NoteKind, StepNotes
 from amalthea_uros.xmi.migrate.read_set import read_set
 from amalthea_uros.xmi.migrate.steps import DOWN
 from amalthea_uros.xmi.migrate.tree_reader import read_trees
@@ -120,7 +120,7 @@ def migrate_set(
     ------
     ReadError : a file cannot be read, or no migration leads to the version; carries the findings of all of them.
     """
-    notes = Notes()
+    notes = StepNotes()
     models = read_set(files, max_size, notes, elsewhere)
     refused = [
         finding
@@ -252,7 +252,7 @@ _NAMED = 4
 
 def _losses(migrated: MigratedSet) -> list[Finding]:
     """What the migration could not keep, in one finding at the first place."""
-    lost = [note for note in migrated.notes if note.kind is Kind.LOST]
+    lost = [note for note in migrated.notes if note.kind is NoteKind.LOST]
     if not lost:
         return []
     first = lost[0]
@@ -309,7 +309,7 @@ def _place(where: Location | None) -> tuple[str, int | None, int | None] | None:
 
 def _noted(migrated: MigratedSet) -> Iterable[tuple[str, Location | None, str]]:
     origins = migrated.models.origins
-    notes = [note for note in migrated.notes if note.kind is Kind.LOST and note.version]
+    notes = [note for note in migrated.notes if note.kind is NoteKind.LOST and note.version]
     total = Counter(note.message for note in notes)
     named: Counter[str] = Counter()
     for note in notes:

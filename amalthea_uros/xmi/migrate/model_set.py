@@ -11,7 +11,7 @@ from operator import attrgetter
 from pathlib import Path
 
 from amalthea_uros.diagnostics import Location
-from amalthea_uros.metamodel.source import Source
+from amalthea_uros.metamodel.source import SourceText
 from amalthea_uros.xmi.files import FileText
 from amalthea_uros.xmi.finding_collector import location
 from amalthea_uros.xmi.migrate.node import Node
@@ -160,11 +160,11 @@ class Origins:
         self.ends: list[int] = []
         self.parents: list[int] = []
         self.labels: list[tuple[str, str]] = []
-        self._files: list[tuple[int, Path, Source]] = []
+        self._files: list[tuple[int, Path, SourceText]] = []
 
     def begin_file(self, path: Path, text: str) -> None:
         """All elements from now on are in that file."""
-        self._files.append((len(self.starts), path, Source(text)))
+        self._files.append((len(self.starts), path, SourceText(text)))
 
     def add(self, start: int, parent: int, tag: str, name: str) -> int:
         """An element more; what it has as origin."""

@@ -10,7 +10,7 @@ from typing import NamedTuple
 from amalthea_uros.xmi.migrate.node import Node
 
 
-class Kind(StrEnum):
+class NoteKind(StrEnum):
     """What happened to something."""
 
     RENAMED = "renamed"
@@ -34,7 +34,7 @@ class Note(NamedTuple):
     attribute : the attribute of the element that it is about, "" if it is about the element
     """
 
-    kind: Kind
+    kind: NoteKind
     version: str
     message: str
     origin: int
@@ -42,44 +42,44 @@ class Note(NamedTuple):
     attribute: str = ""
 
 
-class Notes:
+class StepNotes:
     """What the steps write down."""
 
     def __init__(self) -> None:
         self.all: list[Note] = []
         self.version = ""
 
-    def add(self, kind: Kind, node: Node, message: str, detail: str = "", attribute: str = "") -> None:
+    def add(self, kind: NoteKind, node: Node, message: str, detail: str = "", attribute: str = "") -> None:
         """Note what happened to a node."""
         self.all.append(Note(kind, self.version, message, node.origin, detail, attribute))
 
     def renamed(self, node: Node, message: str, detail: str = "", attribute: str = "") -> None:
         """The same thing has another name."""
-        self.add(Kind.RENAMED, node, message, detail, attribute)
+        self.add(NoteKind.RENAMED, node, message, detail, attribute)
 
     def moved(self, node: Node, message: str, detail: str = "", attribute: str = "") -> None:
         """The same thing is elsewhere."""
-        self.add(Kind.MOVED, node, message, detail, attribute)
+        self.add(NoteKind.MOVED, node, message, detail, attribute)
 
     def converted(self, node: Node, message: str, detail: str = "", attribute: str = "") -> None:
         """The same meaning is expressed by something else."""
-        self.add(Kind.CONVERTED, node, message, detail, attribute)
+        self.add(NoteKind.CONVERTED, node, message, detail, attribute)
 
     def defaulted(self, node: Node, message: str, detail: str = "", attribute: str = "") -> None:
         """A value that was not in the file is written now."""
-        self.add(Kind.DEFAULTED, node, message, detail, attribute)
+        self.add(NoteKind.DEFAULTED, node, message, detail, attribute)
 
     def kept(self, node: Node, message: str, detail: str = "", attribute: str = "") -> None:
         """The newer version has no place for it; it is a custom property now."""
-        self.add(Kind.KEPT, node, message, detail, attribute)
+        self.add(NoteKind.KEPT, node, message, detail, attribute)
 
     def lost(self, node: Node, message: str, detail: str = "", attribute: str = "") -> None:
         """It is not in the result."""
-        self.add(Kind.LOST, node, message, detail, attribute)
+        self.add(NoteKind.LOST, node, message, detail, attribute)
 
     def to_check(self, node: Node, message: str, detail: str = "", attribute: str = "") -> None:
         """It is unchanged, but the newer version does not allow it, or reads it in another way."""
-        self.add(Kind.TO_CHECK, node, message, detail, attribute)
+        self.add(NoteKind.TO_CHECK, node, message, detail, attribute)
 
 
 # What the published conversions lose at a step, and which is brought back as soon as the content goes beyond them
@@ -105,7 +105,7 @@ class Postponed:
 
     until: str
     restore: Callable[[], object]
-    kind: Kind
+    kind: NoteKind
     node: Node
     message: str
     detail: str = ""
@@ -113,7 +113,7 @@ class Postponed:
     is_kept: bool = False
 
 
-def bring_back(postponed: list[Postponed], version: str, notes: Notes) -> None:
+def bring_back(postponed: list[Postponed], version: str, notes: StepNotes) -> None:
     """Restore what was postponed until a version."""
     for one in postponed:
         if one.until == version:
@@ -122,7 +122,7 @@ def bring_back(postponed: list[Postponed], version: str, notes: Notes) -> None:
     postponed[:] = [one for one in postponed if one.until != version]
 
 
-def give_up(postponed: list[Postponed], notes: Notes) -> None:
+def give_up(postponed: list[Postponed], notes: StepNotes) -> None:
     """Note what is not restored, because the migration ends before."""
     for one in postponed:
         if not one.is_kept:

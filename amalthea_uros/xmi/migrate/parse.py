@@ -14,7 +14,7 @@ from amalthea_uros.xmi.handlers import Handlers, connect, disconnect
 from amalthea_uros.xmi.header import XMI_NAMESPACE, XSI_NAMESPACE
 from amalthea_uros.xmi.migrate.model_set import Origins, Tree
 from amalthea_uros.xmi.migrate.node import Node
-from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.notes import StepNotes
 from amalthea_uros.xmi.migrate.versions import itea_package, namespace_version
 
 _new = object.__new__
@@ -23,7 +23,7 @@ _new = object.__new__
 _ANY_FILE = "amlt:/#"
 
 
-class Href(NamedTuple):
+class PendingHref(NamedTuple):
     """A reference as an element: `<task href="amlt:/#T?type=Task"/>`.
 
     Attributes
@@ -38,7 +38,7 @@ class Href(NamedTuple):
 
 
 @dataclass
-class Parsed:
+class ParsedFile:
     """One file as nodes.
 
     Attributes
@@ -50,26 +50,26 @@ class Parsed:
 
     tree: Tree
     nodes: list[Node]
-    hrefs: list[Href] = field(default_factory=list)
+    hrefs: list[PendingHref] = field(default_factory=list)
     ids: dict[str, Node] = field(default_factory=dict)
 
 
-def parse(path: Path, content: FileText, origins: Origins, notes: Notes) -> Parsed:
+def parse(path: Path, content: FileText, origins: Origins, notes: StepNotes) -> ParsedFile:
     """The nodes of a file of any version.
 
     Raises
     ------
     ReadError : not well-formed, or refused for safety.
     """
-    parser = _Parser(path, content, origins, notes)
+    parser = _NodeParser(path, content, origins, notes)
     try:
         return parser.parse()
     finally:
         disconnect(parser.expat)
 
 
-class _Parser:
-    def __init__(self, path: Path, content: FileText, origins: Origins, notes: Notes) -> None:
+class _NodeParser:
+    def __init__(self, path: Path, content: FileText, origins: Origins, notes: StepNotes) -> None:
         self.path, self.content, self.origins, self.notes = path, content, origins, notes
         self.expat = expat.ParserCreate()
         self.root: Node | None = None
@@ -77,7 +77,7 @@ class _Parser:
         self.nodes: list[Node] = []
         #: The open elements; None for one without a node of its own.
         self.stack: list[Node | None] = []
-        self.hrefs: list[Href] = []
+        self.hrefs: list[PendingHref] = []
         self.ids: dict[str, Node] = {}
         self.packages: dict[str, str] = {}
         self.types: dict[str, str] = {}
@@ -85,7 +85,7 @@ class _Parser:
         self.comments: list[str] = []
         self.prolog: list[str] = []
 
-    def parse(self) -> Parsed:
+    def parse(self) -> ParsedFile:
         parser = self.expat
         handlers = Handlers(
             self.start_root,
@@ -107,7 +107,7 @@ class _Parser:
         assert self.root is not None
         names = {node.tag for node in self.nodes} | {node.type for node in self.nodes}
         tree = Tree(self.path, self.content, self.version, self.root, self.prolog, self.comments, frozenset(names))
-        return Parsed(tree, self.nodes, self.hrefs, self.ids)
+        return ParsedFile(tree, self.nodes, self.hrefs, self.ids)
 
     def start_root(self, name: str, attributes: dict[str, str]) -> None:
         prefixes = {key.partition(":")[2]: uri for key, uri in attributes.items() if key.startswith("xmlns")}
@@ -171,7 +171,7 @@ class _Parser:
 
     def start_href(self, holder: Node, tag: str, attributes: dict[str, str]) -> None:
         """A reference as an element."""
-        self.hrefs.append(Href(holder, tag, _href(attributes["href"]), self.type_of(attributes.get(self.xsi_type, ""))))
+        self.hrefs.append(PendingHref(holder, tag, _href(attributes["href"]), self.type_of(attributes.get(self.xsi_type, ""))))
         self.stack.append(None)
 
     def take_marked(self, node: Node, type_text: str) -> None:

@@ -11,14 +11,16 @@ from amalthea_uros.errors import ReadError
 from amalthea_uros.xmi.files import FileText, read_text
 from amalthea_uros.xmi.migrate.link import file_of, link
 from amalthea_uros.xmi.migrate.model_set import ModelSet, Origins
-from amalthea_uros.xmi.migrate.notes import Notes
-from amalthea_uros.xmi.migrate.parse import Parsed, parse
+from amalthea_uros.xmi.migrate.notes import StepNotes
+from amalthea_uros.xmi.migrate.parse import ParsedFile, parse
 
 #: What the names of model files begin their suffix with: `.amxmi`, in ITEA versions also `.amxmi-sw` and the like.
 SUFFIX = ".amxmi"
 
 
-def read_set(files: Iterable[tuple[Path, FileText]], max_size: int, notes: Notes, elsewhere: Collection[Path] = ()) -> ModelSet:
+def read_set(
+    files: Iterable[tuple[Path, FileText]], max_size: int, notes: StepNotes, elsewhere: Collection[Path] = ()
+) -> ModelSet:
     """Read some files, and those to which they refer by file names, as one set.
 
     Parameters
@@ -30,7 +32,7 @@ def read_set(files: Iterable[tuple[Path, FileText]], max_size: int, notes: Notes
     ReadError : a file cannot be read; carries the findings of all of them.
     """
     origins = Origins()
-    parsed: list[Parsed] = []
+    parsed: list[ParsedFile] = []
     refused: list[Finding] = []
     waiting = list(files)
     known = {resolved(path) for path in (*elsewhere, *(path for path, _ in waiting))}

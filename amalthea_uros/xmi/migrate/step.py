@@ -6,10 +6,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from amalthea_uros.xmi.migrate.model_set import ModelSet
-from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.notes import StepNotes
 
 #: Changes the active files of the set.
-Change = Callable[[ModelSet, Notes], None]
+Change = Callable[[ModelSet, StepNotes], None]
 
 
 @dataclass(frozen=True)

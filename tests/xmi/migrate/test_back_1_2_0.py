@@ -5,7 +5,7 @@ from inline_models import InlineModels
 from migration import meaning, migrated, opened
 
 from amalthea_uros.xmi.migrate.model_set import all_below
-from amalthea_uros.xmi.migrate.notes import Kind
+from amalthea_uros.xmi.migrate.notes import NoteKind
 from amalthea_uros.xmi.migrate.write import tree_text
 
 PRIORITY = '<schedulingParameterDefinitions name="priority" type="Integer" many="false" mandatory="true"/>'
@@ -59,20 +59,20 @@ def taken_back(models, *contents):
     """The roots in 1.2.0; from there, everything comes back."""
     paths = models.files("newer", "2.0.0", *contents)
     older, models.notes = migrated(paths, "1.2.0")
-    assert models.messages(Kind.LOST) == []
+    assert models.messages(NoteKind.LOST) == []
     between = models.files("older", "1.2.0", *contents)
     for path, tree in zip(between, older.trees, strict=True):
         path.write_text(tree_text(tree), encoding="utf-8")
     assert meaning(older) == meaning(opened(*between))
     back, notes = migrated(between, "2.0.0")
-    assert [note for note in notes if note.kind is Kind.LOST] == []
+    assert [note for note in notes if note.kind is NoteKind.LOST] == []
     assert meaning(back) == meaning(opened(*paths))
     return older.roots
 
 
 def refused(models, *contents):
     migrated_notes = migrated(models.files("newer", "2.0.0", *contents), "1.2.0")[1]
-    return [note.message for note in migrated_notes if note.kind is Kind.LOST]
+    return [note.message for note in migrated_notes if note.kind is NoteKind.LOST]
 
 
 def found(roots, *path):
@@ -239,7 +239,7 @@ def test_defaults_of_parameters_are_stated(models):
     content = os_model(scheduler("OSEK"), OSEK + parameter_definition("priority", "Integer", default)) + allocated("")
     (node,) = found(taken_back(models, content), "mappingModel", "taskAllocation")
     assert node.child("schedulingParameters").attributes == {"priority": "7"}
-    assert len(models.messages(Kind.DEFAULTED)) == 1
+    assert len(models.messages(NoteKind.DEFAULTED)) == 1
 
 
 def test_a_stated_parameter_needs_no_default(models):
@@ -247,7 +247,7 @@ def test_a_stated_parameter_needs_no_default(models):
     content = os_model(scheduler("OSEK"), OSEK + parameter_definition("priority", "Integer", default))
     (node,) = found(taken_back(models, content + allocated(integer("priority", 3))), "mappingModel", "taskAllocation")
     assert [child.attributes for child in node.all("schedulingParameters")] == [{"priority": "3"}]
-    assert models.messages(Kind.DEFAULTED) == []
+    assert models.messages(NoteKind.DEFAULTED) == []
 
 
 def test_a_default_that_was_changed_in_1_2_0_counts(models):

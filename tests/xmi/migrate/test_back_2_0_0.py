@@ -3,7 +3,7 @@
 import pytest
 from inline_models import InlineModels
 
-from amalthea_uros.xmi.migrate.notes import Kind
+from amalthea_uros.xmi.migrate.notes import NoteKind
 
 
 @pytest.fixture
@@ -26,7 +26,7 @@ def condition(content):
 def test_a_limit_that_is_not_stated_is_1(models, before, after):
     content = '<osModel><semaphores name="S" {}/></osModel>'
     assert models.migrate("2.1.0", "2.0.0", content.format(before)) == models.read("2.0.0", content.format(after))
-    assert len(models.messages(Kind.DEFAULTED)) == (before == "")
+    assert len(models.messages(NoteKind.DEFAULTED)) == (before == "")
 
 
 @pytest.mark.parametrize("tag", ["tasks", "isrs", "runnables"])
@@ -43,7 +43,7 @@ def test_local_mode_labels_are_an_error(models, tag):
     <modes xsi:type="am:NumericMode" name="m"/><modeLabels name="G" mode="m?type=NumericMode"/>
     <{tag} name="X"><activityGraph><items xsi:type="am:RunnableCall"/></activityGraph></{tag}></swModel><eventModel/>"""
     assert models.migrate("2.1.0", "2.0.0", before) == models.read("2.0.0", after)
-    assert sorted(message.partition(":")[0] for message in models.messages(Kind.LOST)) == [
+    assert sorted(message.partition(":")[0] for message in models.messages(NoteKind.LOST)) == [
         "assignment between a mode label and a local one",
         "assignment to a local mode label",
         "context of a runnable call",
@@ -64,7 +64,7 @@ def test_local_mode_labels_are_an_error(models, tag):
 )
 def test_new_conditions_are_an_error(models, content):
     models.migrate("2.1.0", "2.0.0", condition(content))
-    assert len(models.messages(Kind.LOST)) == 1
+    assert len(models.messages(NoteKind.LOST)) == 1
 
 
 @pytest.mark.parametrize(

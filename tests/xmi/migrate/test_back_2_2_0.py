@@ -3,7 +3,7 @@
 import pytest
 from inline_models import InlineModels
 
-from amalthea_uros.xmi.migrate.notes import Kind
+from amalthea_uros.xmi.migrate.notes import NoteKind
 
 TYPE = '<typeDefinitions xsi:type="am:BaseTypeDefinition" name="unsigned 8"/>'
 TYPE_REF = 'xsi:type="am:TypeRef" typeDef="unsigned+8?type=BaseTypeDefinition"'
@@ -51,7 +51,7 @@ def test_a_type_that_refers_to_nothing_is_an_error(models):
     content = """<swModel><typeDefinitions xsi:type="am:DataTypeDefinition" name="D"><dataType xsi:type="am:TypeRef"/>
     </typeDefinitions></swModel>"""
     models.migrate("3.0.0", "2.2.0", content)
-    assert models.messages(Kind.LOST) == ["data type that refers to nothing"]
+    assert models.messages(NoteKind.LOST) == ["data type that refers to nothing"]
 
 
 def test_interfaces_have_a_datatype(models):
@@ -76,7 +76,7 @@ def test_ownership_is_kept_where_the_type_does_not_say_it(models, kind, stated, 
     attributes = f'semaphoreType="{kind}"'
     before = semaphore(attributes + (f' ownership="{stated}"' if stated else ""))
     assert models.migrate("3.0.0", "2.2.0", before) == models.read("2.2.0", semaphore(attributes, kept))
-    assert len(models.messages(Kind.KEPT)) == bool(kept)
+    assert len(models.messages(NoteKind.KEPT)) == bool(kept)
     restored = models.read("3.0.0", semaphore(attributes + (f' ownership="{kept}"' if kept else "")))
     if kept:
         assert models.migrate("2.2.0", "3.0.0", semaphore(attributes, kept)) == restored
@@ -84,9 +84,9 @@ def test_ownership_is_kept_where_the_type_does_not_say_it(models, kind, stated, 
 
 def test_a_mutex_is_an_error(models):
     models.migrate("3.0.0", "2.2.0", semaphore('semaphoreType="Mutex"'))
-    assert models.messages(Kind.LOST) == ["semaphore type Mutex: only AMALTHEA 3.0.0 and later have it"]
+    assert models.messages(NoteKind.LOST) == ["semaphore type Mutex: only AMALTHEA 3.0.0 and later have it"]
 
 
 def test_a_property_that_was_never_restored_is_an_error(models):
     models.migrate("3.0.0", "2.2.0", semaphore('semaphoreType="Resource"', "false"))
-    assert models.messages(Kind.LOST) == ["custom property of an earlier migration back that was never restored"]
+    assert models.messages(NoteKind.LOST) == ["custom property of an earlier migration back that was never restored"]

@@ -5,7 +5,7 @@ import pytest
 from migration import migrated
 
 from amalthea_uros import load
-from amalthea_uros.xmi.migrate.notes import Kind
+from amalthea_uros.xmi.migrate.notes import NoteKind
 
 
 @pytest.mark.parametrize(
@@ -25,7 +25,7 @@ def test_a_part_becomes_a_whole_model(tmp_path, root, place, type_name):
     models, notes = migrated([path], "0.7.1")
     (part,) = models.trees[0].root.find(*place)
     assert (part.type, part.name) == (type_name, "X")
-    assert Kind.LOST not in {note.kind for note in notes}
+    assert NoteKind.LOST not in {note.kind for note in notes}
     assert [finding.rule for finding in load(path).findings if finding.rule not in ("XMI008", "XMI009")] == []
 
 
@@ -33,7 +33,9 @@ def test_a_pin_alone_means_nothing(tmp_path):
     (path,) = itea.write(tmp_path, "1.3.0", m__amxmi=itea.model("1.3.0", "", root="hw:ComplexPin", attributes='name="X"'))
     models, notes = migrated([path], "3.3.0")
     assert models.trees[0].root.children == []
-    assert [note.message for note in notes if note.kind is Kind.LOST] == ["root of a file that is part of an object in no file"]
+    assert [note.message for note in notes if note.kind is NoteKind.LOST] == [
+        "root of a file that is part of an object in no file"
+    ]
 
 
 def test_references_into_it_are_kept(tmp_path):

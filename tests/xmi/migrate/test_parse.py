@@ -7,14 +7,14 @@ from migration import model
 
 from amalthea_uros.xmi.files import FileText
 from amalthea_uros.xmi.migrate.model_set import Origins
-from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.notes import StepNotes
 from amalthea_uros.xmi.migrate.parse import parse
 
 _ITEA = "http://www.amalthea.itea2.org/model/1.2.0"
 
 
 def parsed(text):
-    notes = Notes()
+    notes = StepNotes()
     found = parse(Path("m.amxmi"), FileText(text), Origins(), notes)
     return found, [f"{note.message}: {note.detail}" for note in notes.all]
 

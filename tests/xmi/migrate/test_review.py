@@ -7,7 +7,7 @@ from migration import migrated
 
 import amalthea_uros as amuros
 from amalthea_uros.perf.activities import Execute
-from amalthea_uros.xmi.migrate.notes import Kind
+from amalthea_uros.xmi.migrate.notes import NoteKind
 
 # Clocks
 
@@ -37,14 +37,14 @@ def test_the_curve_of_a_clock_is_stated_beyond_the_published_conversions(tmp_pat
     parts = [part for part in found.children if part.tag != "customProperties"]
     assert {part.tag: part.get("value") for part in parts} == expected
     assert {part.get("unit") for part in parts if part.tag in ("peakToPeak", "yOffset")} <= {""}
-    assert len(of_kind(notes, Kind.TO_CHECK)) == bool(expected)
+    assert len(of_kind(notes, NoteKind.TO_CHECK)) == bool(expected)
 
 
 @pytest.mark.parametrize("target", ["0.9.5"])
 def test_until_then_the_curve_of_a_clock_is_a_text(tmp_path, target):
     [found], notes = clocks_of(tmp_path, target, SINE)
     assert [part.tag for part in found.children] == ["customProperties"]
-    assert of_kind(notes, Kind.LOST) == []
+    assert of_kind(notes, NoteKind.LOST) == []
 
 
 # Execution times
@@ -71,7 +71,7 @@ def test_the_standard_deviation_is_divided_like_the_mean(tmp_path, target, expec
     values = [node for tree in models.trees for node in tree.root.walk() if node.tag == "value" and "sd" in node.attributes]
     assert [node.get("sd") for node in values] == expected
     assert {node.get("mean") for node in values} == {"50"}
-    assert of_kind(notes, Kind.LOST) == []
+    assert of_kind(notes, NoteKind.LOST) == []
 
 
 UNEVEN = """<value xsi:type="am:NeedDeviation"><deviation><lowerBound xsi:type="am:LongObject" value="1"/>
@@ -92,7 +92,7 @@ def test_ticks_are_never_less_than_the_instructions_take(tmp_path, target, expec
     values = [node for tree in models.trees for node in tree.root.walk() if node.type.startswith("DiscreteValue")]
     names = ("value", "lowerBound", "upperBound", "mean")
     assert [" ".join(node.get(name) for name in names if node.get(name)) for node in values] == expected
-    assert any("upperBound 2 -> 3" in detail for _, detail in of_kind(notes, Kind.CONVERTED)) == (expected[0] == "1")
+    assert any("upperBound 2 -> 3" in detail for _, detail in of_kind(notes, NoteKind.CONVERTED)) == (expected[0] == "1")
 
 
 def test_decimals_are_divided_exactly(tmp_path):
@@ -124,7 +124,7 @@ def test_an_upper_bound_that_is_not_stated_is_left_open(tmp_path, target):
         *[("3", "")] * 2,
         ("0.0", ""),
     ]
-    assert len(of_kind(notes, Kind.TO_CHECK)) == 3
+    assert len(of_kind(notes, NoteKind.TO_CHECK)) == 3
 
 
 def test_execution_times_without_upper_bound_are_no_execution_times(tmp_path):
@@ -182,7 +182,7 @@ def test_the_kind_of_a_memory_comes_back(tmp_path, kind, target, memory_type, ke
     [definition] = models.parts("hwModel", "definitions")
     assert definition.get("memoryType") == memory_type
     assert [value.get("value") for value in definition.find("customProperties", "value")] == kept
-    assert bool(of_kind(notes, Kind.LOST)) == (kind != "_undefined_" and not kept)
+    assert bool(of_kind(notes, NoteKind.LOST)) == (kind != "_undefined_" and not kept)
 
 
 # References

@@ -19,7 +19,7 @@ from amalthea_uros.metamodel.model import Model
 from amalthea_uros.xmi.files import read_text
 from amalthea_uros.xmi.load import load
 from amalthea_uros.xmi.migrate.chain import migrate
-from amalthea_uros.xmi.migrate.notes import Kind, Notes
+from amalthea_uros.xmi.migrate.notes import NoteKind, StepNotes
 from amalthea_uros.xmi.migrate.read_set import read_set
 from amalthea_uros.xmi.migrate.tree_reader import read_trees
 from amalthea_uros.xmi.references import resolve
@@ -35,13 +35,13 @@ UNKNOWN = {"XMI010", "XMI011", "XMI012", "XMI013", "XMI014"}
 
 def taken(path, version):
     """The model of a file in another version, and what was lost."""
-    notes = Notes()
+    notes = StepNotes()
     models = read_set([(path, read_text(path))], MAX_SIZE, notes)
     migrate(models, version, notes)
     results, linked = read_trees(models, [version])
     model = Model(result.document for result in results)
     model.findings = tuple(resolve(results, linked))
-    lost = [note for note in notes.all if note.kind is Kind.LOST]
+    lost = [note for note in notes.all if note.kind is NoteKind.LOST]
     unknown = [finding for result in results for finding in result.findings if finding.rule in UNKNOWN]
     return model, [*lost, *unknown]
 

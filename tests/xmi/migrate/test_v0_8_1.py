@@ -6,7 +6,7 @@ import pytest
 from inline_models import check_early, check_step, check_twice, damaged, of_kind, text_property, written
 from migration import migrated
 
-from amalthea_uros.xmi.migrate.notes import Kind
+from amalthea_uros.xmi.migrate.notes import NoteKind
 
 
 @pytest.fixture
@@ -32,8 +32,10 @@ def test_a_default_of_the_allocation_does_not_hide_the_priority_of_its_task(same
         f'<swModel><tasks name="A">{text_property("priority", 5)}</tasks><tasks name="B">{text_property("priority", 1)}</tasks>'
         '</swModel><mappingModel><taskAllocation task="A?type=Task"/></mappingModel>',
     )
-    assert ("priority 0, the old default, left out: the priority of the task applies", "5") in of_kind(notes, Kind.CONVERTED)
-    assert not of_kind(notes, Kind.LOST)
+    assert ("priority 0, the old default, left out: the priority of the task applies", "5") in of_kind(
+        notes, NoteKind.CONVERTED
+    )
+    assert not of_kind(notes, NoteKind.LOST)
 
 
 def test_priority_0_of_a_task_is_kept_where_no_allocation_states_one(same):
@@ -42,7 +44,7 @@ def test_priority_0_of_a_task_is_kept_where_no_allocation_states_one(same):
         f'<swModel><tasks name="A">{text_property("priority", 0)}</tasks><tasks name="B"/></swModel>'
         '<mappingModel><taskAllocation task="B?type=Task"><schedulingParameters priority="3"/></taskAllocation></mappingModel>',
     )
-    assert not of_kind(notes, Kind.LOST)
+    assert not of_kind(notes, NoteKind.LOST)
 
 
 def test_priority_0_of_a_task_is_kept_for_the_allocation_that_states_none(same):
@@ -163,7 +165,7 @@ def test_a_custom_property_that_was_there_is_not_taken_for_what_the_task_states(
     assert (stated.target("key").name, stated.child("value").get("value")) == (parameter, "5")
     (kept,) = models.parts("swModel", "tasks", "customProperties")
     assert (kept.get("key"), kept.child("value").get("value")) == (f"{attribute} 2", "7")
-    assert f"{attribute} 2" in dict(reversed(pair) for pair in of_kind(notes, Kind.RENAMED))
+    assert f"{attribute} 2" in dict(reversed(pair) for pair in of_kind(notes, NoteKind.RENAMED))
 
 
 # Stimuli
@@ -271,7 +273,7 @@ def test_scheduling_units(same, tag):
             '<interruptControllers name="C"/>'
         ),
     )
-    assert of_kind(notes, Kind.LOST) == [("interrupt controller of a scheduling unit", "C?type=InterruptController")]
+    assert of_kind(notes, NoteKind.LOST) == [("interrupt controller of a scheduling unit", "C?type=InterruptController")]
 
 
 def test_a_custom_property_without_value_of_a_scheduling_unit_moves_like_others(same):
@@ -312,7 +314,7 @@ def test_what_else_a_scheduling_unit_states_is_not_lost_silently(same):
     notes = same(
         SYSTEM.format(f'<taskSchedulers name="S">{unit}</taskSchedulers>'), SYSTEM.format('<taskSchedulers name="S"/>')
     )
-    assert of_kind(notes, Kind.LOST) == [("other content of a scheduling unit", "x=1, y (z=2)")]
+    assert of_kind(notes, NoteKind.LOST) == [("other content of a scheduling unit", "x=1, y (z=2)")]
 
 
 def test_parameters_of_a_scheduler_in_its_algorithm(same):
@@ -349,12 +351,12 @@ def test_quartzes_are_collected_in_order_and_lose_their_parts(same):
         '<quartzes name="q1"><frequency value="1"/></quartzes><quartzes name="q2"/><quartzes name="q3"/><quartzes name="q4"/>'
         "</system></hwModel>",
     )
-    assert of_kind(notes, Kind.LOST) == [
+    assert of_kind(notes, NoteKind.LOST) == [
         ("access pattern of a memory type", "3-1-1"),
         ("memories of a quartz", "gone"),
         ("ports of a quartz", "p"),
     ]
-    assert of_kind(notes, Kind.MOVED) == [("quartz -> system", name) for name in ("q1", "q2", "q3")]
+    assert of_kind(notes, NoteKind.MOVED) == [("quartz -> system", name) for name in ("q1", "q2", "q3")]
 
 
 def test_a_model_without_system_has_no_quartzes(same):
@@ -397,7 +399,7 @@ def test_references_to_inner_chains_are_noted(files):
     model += 'eventChain="inner?type=EventChain"/></eventChains>'
     model += '<timingConstraints xsi:type="am:EventChainLatencyConstraint" name="l" scope="inner?type=EventChain"/>'
     _, notes = migrated(files("0.8.0", f"<constraintsModel>{model}</constraintsModel>"), "0.8.1")
-    assert of_kind(notes, Kind.KEPT) == [
+    assert of_kind(notes, NoteKind.KEPT) == [
         ("reference to an inner event chain", "inner?type=EventChain"),
         ("scope: reference to an inner event chain", "inner?type=EventChain"),
     ]

@@ -6,7 +6,7 @@ import pytest
 from inline_models import check_early, check_step, check_twice, damaged, of_kind, text_property, written
 from migration import migrated
 
-from amalthea_uros.xmi.migrate.notes import Kind
+from amalthea_uros.xmi.migrate.notes import NoteKind
 
 
 @pytest.fixture
@@ -38,7 +38,7 @@ def test_a_deviation_without_successor_is_kept_as_custom_property(same, kind):
     model = '<stimuliModel><stimuli xsi:type="am:' + kind + '" name="S">{}</stimuli></stimuliModel>'
     before = model.format(DEVIATION.format("stimulusDeviation"))
     notes = same(before, model.format(text_property("stimulusDeviation", KEPT)))
-    assert not of_kind(notes, Kind.LOST)
+    assert not of_kind(notes, NoteKind.LOST)
 
 
 def test_variable_rate_activations_have_no_deviation_but_sporadic_ones_do(same):
@@ -76,8 +76,8 @@ def test_what_a_clocked_stimulus_loses_is_noted(files):
         f'{DEVIATION.format("stimulusDeviation")}</stimuli><clocks xsi:type="am:ClockSinusFunction" name="c"/></stimuliModel>'
     )
     _, notes = migrated(files("0.8.2", text), "0.8.3")
-    assert of_kind(notes, Kind.LOST) == [("deviation of a periodic stimulus with a clock", KEPT)]
-    assert of_kind(notes, Kind.KEPT) == [("offset of a periodic stimulus with a clock", "1s")]
+    assert of_kind(notes, NoteKind.LOST) == [("deviation of a periodic stimulus with a clock", KEPT)]
+    assert of_kind(notes, NoteKind.KEPT) == [("offset of a periodic stimulus with a clock", "1s")]
 
 
 def test_the_description_of_a_sporadic_stimulus_is_lost_and_noted(same):
@@ -87,7 +87,7 @@ def test_the_description_of_a_sporadic_stimulus_is_lost_and_noted(same):
         '<stimuliModel><stimuli xsi:type="am:RelativePeriodicStimulus" name="S"/>'
         '<stimuli xsi:type="am:RelativePeriodicStimulus" name="T"/></stimuliModel>',
     )
-    assert of_kind(notes, Kind.LOST) == [("description of a sporadic stimulus", "'why'")]
+    assert of_kind(notes, NoteKind.LOST) == [("description of a sporadic stimulus", "'why'")]
 
 
 # Mode switches
@@ -103,7 +103,7 @@ def test_switches_in_switches(same, tag):
     graph += f"</graphEntries></callGraph></{tag}>"
     before = graph.format(' valueProvider="L?type=ModeLabel"', ' values="M/a?type=ModeLiteral"', "/>")
     notes = same(MODES.format(before), MODES.format(graph.format("", "", f">{ONE}</entries>")))
-    assert of_kind(notes, Kind.LOST) == [("mode label of a switch without entries", "L?type=ModeLabel")]
+    assert of_kind(notes, NoteKind.LOST) == [("mode label of a switch without entries", "L?type=ModeLabel")]
 
 
 RUNNABLE = '<runnables name="R"><runnableItems xsi:type="am:RunnableModeSwitch"><defaultEntry><items xsi:type="am:RunnableModeSwitch"{}'
@@ -131,7 +131,7 @@ def test_labels_and_literals_that_are_no_references_are_lost(same):
         MODES.format(task.format(' valueProvider="L"><entries values="a"/>')),
         MODES.format(task.format("><entries><condition/></entries>")),
     )
-    assert of_kind(notes, Kind.LOST) == [
+    assert of_kind(notes, NoteKind.LOST) == [
         ("mode label of a switch that is not a reference", "L"),
         ("mode literal of a switch that is not a reference", "a"),
     ]

@@ -3,7 +3,7 @@
 import pytest
 from migration import meaning, migrated, model, opened
 
-from amalthea_uros.xmi.migrate.notes import Kind
+from amalthea_uros.xmi.migrate.notes import NoteKind
 
 QUARTZ = '<quartzes name="Q"><frequency value="100.0" unit="MHz"/></quartzes>'
 
@@ -39,7 +39,7 @@ def module(root, name):
 
 
 def lost(notes):
-    return {note.message for note in notes if note.kind is Kind.LOST}
+    return {note.message for note in notes if note.kind is NoteKind.LOST}
 
 
 def properties(node):
@@ -64,7 +64,7 @@ class TestClocks:
 
     def test_a_ratio_of_zero_is_noted_as_assumption(self, convert):
         _, notes = convert(self.prescaled('clockRatio="0.0"'))
-        assert [note.detail for note in notes if note.kind is Kind.DEFAULTED] == ["0.0"]
+        assert [note.detail for note in notes if note.kind is NoteKind.DEFAULTED] == ["0.0"]
 
     def test_modules_with_the_same_ratio_share_a_domain(self, convert):
         prescaler = '<prescaler clockRatio="2.0" quartz="Q?type=Quartz"/>'
@@ -109,7 +109,7 @@ class TestClocks:
 
     def test_the_prescaler_of_a_structure_is_lost_and_shown(self, convert):
         _, notes = convert(on_chip('<prescaler clockRatio="2.0" quartz="Q?type=Quartz"/>'))
-        assert [note.detail for note in notes if note.kind is Kind.LOST] == ["clockRatio=2.0, quartz=Q"]
+        assert [note.detail for note in notes if note.kind is NoteKind.LOST] == ["clockRatio=2.0, quartz=Q"]
 
     def test_the_unit_is_stated_after_the_last_version_with_known_results_of_app4mc(self, convert):
         quartz = '<quartzes name="Q"><frequency value="2.0E8"/></quartzes>'
@@ -184,7 +184,9 @@ class TestDefinitions:
             "RAM": {},
             "FLASH_INT": {"memoryType": "FLASH_INT"},
         }
-        assert ("'type' of memory types", "RAM") in {(note.message, note.detail) for note in notes if note.kind is Kind.LOST}
+        assert ("'type' of memory types", "RAM") in {
+            (note.message, note.detail) for note in notes if note.kind is NoteKind.LOST
+        }
 
     def test_types_of_structures_are_lost(self, convert):
         root, notes = convert(
@@ -319,7 +321,7 @@ class TestAccessPaths:
         latency = '<latencies xsi:type="am:LatencyConstant" value="4"/>'
         root, notes = convert(on_chip('<cores name="C"/><memories name="R"/>', path(latency)))
         assert self.costs(root) == [{"readLatency": "4", "writeLatency": "4"}]
-        assert any(note.kind is Kind.DEFAULTED for note in notes)
+        assert any(note.kind is NoteKind.DEFAULTED for note in notes)
 
     def test_latencies_are_in_cycles_of_the_core(self, convert):
         core = '<cores name="C"><prescaler clockRatio="1.5" quartz="Q?type=Quartz"/></cores><memories name="R"/>'
@@ -340,7 +342,7 @@ class TestAccessPaths:
         content = on_chip('<cores name="C"/><memories name="R"/>', path(constant(9)))
         root, notes = convert(content)
         assert self.costs(root) == [{"readLatency": "9", "writeLatency": "9"}]
-        assumed = [note.detail for note in notes if note.kind is Kind.DEFAULTED]
+        assumed = [note.detail for note in notes if note.kind is NoteKind.DEFAULTED]
         assert assumed == (["9"])
 
     def test_latencies_of_a_quartz_without_frequency(self, convert):

@@ -6,7 +6,7 @@ import pytest
 from inline_models import check_step, of_kind, text_property, written
 from migration import meaning, migrated
 
-from amalthea_uros.xmi.migrate.notes import Kind
+from amalthea_uros.xmi.migrate.notes import NoteKind
 
 
 @pytest.fixture
@@ -115,7 +115,7 @@ def test_impossible_instructions_per_cycle_divide_nothing(same, value):
         runnable(need(default(10), extended("P", 8))) + units,
         runnable(ticks(constant(10), of_definition("P", constant(8, "value")))) + units,
     )
-    assert ("not a number of instructions per cycle, 1 is taken", value) in of_kind(notes, Kind.DEFAULTED)
+    assert ("not a number of instructions per cycle, 1 is taken", value) in of_kind(notes, NoteKind.DEFAULTED)
 
 
 @pytest.mark.parametrize(("features", "missing"), [("Instructions/IPC_2.0", ["Instructions/IPC_2.0"]), ("FLOP/x", [])])
@@ -124,7 +124,7 @@ def test_instructions_per_cycle_in_a_missing_file_are_reported(tmp_path, feature
     content = f"{runnable(need(default(10)))}<hwModel>{definition}</hwModel>"
     _, notes = migrated(written(tmp_path, "0.9.2", content), "0.9.3")
     message = "the number of instructions per cycle is in no file: 1 is taken"
-    assert of_kind(notes, Kind.DEFAULTED) == [(message, name) for name in missing]
+    assert of_kind(notes, NoteKind.DEFAULTED) == [(message, name) for name in missing]
 
 
 def test_what_is_no_number_stays(same):
@@ -133,7 +133,7 @@ def test_what_is_no_number_stays(same):
         runnable(need(extended("P", "many"))) + units,
         runnable(ticks(of_definition("P", constant("many", "value")))) + units,
     )
-    assert ("not a number, so not divided by the instructions per cycle", "many") in of_kind(notes, Kind.LOST)
+    assert ("not a number, so not divided by the instructions per cycle", "many") in of_kind(notes, NoteKind.LOST)
 
 
 def test_bounds_and_mean_are_divided_the_standard_deviation_is_not(same):
@@ -151,7 +151,7 @@ def test_bounds_and_mean_are_divided_the_standard_deviation_is_not(same):
 @pytest.mark.parametrize("other", ["", '<hwModel><definitions xsi:type="am:MemoryDefinition" name="M"/></hwModel>'])
 def test_missing_hardware_is_reported(tmp_path, other):
     _, notes = migrated(written(tmp_path, "0.9.2", runnable(need(default(1), extended("P", 8))) + other), "0.9.3")
-    assert of_kind(notes, Kind.DEFAULTED) == [
+    assert of_kind(notes, NoteKind.DEFAULTED) == [
         ("no definition of a processing unit in the files: 1 instruction per cycle is taken", ""),
         ("the definition of a processing unit is in no file: 1 instruction per cycle is taken", ""),
     ]
@@ -170,13 +170,13 @@ def test_needs_without_instructions_are_no_ticks(same):
     kept = f'<runnableItems xsi:type="am:ExecutionNeed"><needs key="FLOP">{constant(7, "value")}</needs></runnableItems>'
     notes = same(runnable(need(default(7, "FLOP"), extended("P", 3, "FLOP"))), runnable(kept))
     message = "execution needs of definitions have no keys other than instructions any more"
-    assert (message, "FLOP value=3") in of_kind(notes, Kind.LOST)
+    assert (message, "FLOP value=3") in of_kind(notes, NoteKind.LOST)
 
 
 def test_a_need_that_cannot_be_said_is_unknown_and_not_none(same):
     given = runnable(need(extended("P", 3, "FLOP")))
     notes = same(given, runnable(ticks()))
-    assert len(of_kind(notes, Kind.TO_CHECK)) == len(of_kind(notes, Kind.LOST)) == 1
+    assert len(of_kind(notes, NoteKind.TO_CHECK)) == len(of_kind(notes, NoteKind.LOST)) == 1
 
 
 def test_needs_in_groups_and_switches_are_found(same):
@@ -203,12 +203,12 @@ def test_schedulers_have_no_needs_but_ticks(same, scheduler):
         system(ticks(constant(5), tag="computationItems")),
     )
     lost = ("schedulers have no execution needs other than ticks any more", "FLOP value=2")
-    assert of_kind(notes, Kind.LOST) == [lost]
+    assert of_kind(notes, NoteKind.LOST) == [lost]
 
 
 def test_of_two_needs_of_the_same_key_the_last_one_counts(same):
     notes = same(runnable(need(default(5), default(6))), runnable(ticks(constant(6))))
-    assert of_kind(notes, Kind.LOST) == [("another need of the same key follows", "Instructions value=5")]
+    assert of_kind(notes, NoteKind.LOST) == [("another need of the same key follows", "Instructions value=5")]
 
 
 def test_custom_properties_and_comments_stay(tmp_path):
@@ -302,7 +302,7 @@ def test_weibull_parameters_are_kept_as_text(same):
     kept = text_property("WeibullParameters", "kappa=5.0 lambda=6.0")
     same(runnable(need(deviation(given))), runnable(ticks(kept, bounds)))
     without_bounds = same(runnable(need(deviation(weibull))), runnable(ticks(kept)))
-    assert of_kind(without_bounds, Kind.LOST) == [("states neither a value nor bounds", "")]
+    assert of_kind(without_bounds, NoteKind.LOST) == [("states neither a value nor bounds", "")]
 
 
 def test_bounds_are_kept_where_no_distribution_is_stated(same):
@@ -320,7 +320,7 @@ def test_one_bound_is_enough_to_be_kept(same, name):
     given = periodic.format(f"<jitter>{bound(name, 20, 'Time')}</jitter>")
     same(given, periodic.format(f'<jitter xsi:type="am:TimeBoundaries"><{name} value="20"/></jitter>'))
     notes = same(periodic.format("<jitter/>"), periodic.format(""))
-    assert of_kind(notes, Kind.LOST) == [("states neither a value nor bounds", "")]
+    assert of_kind(notes, NoteKind.LOST) == [("states neither a value nor bounds", "")]
 
 
 @pytest.mark.parametrize(
@@ -330,7 +330,7 @@ def test_unknown_attributes_of_distributions_are_lost(tmp_path, distribution, kn
     stated = " ".join(f'{name}="{text}"' for name, text in {**known, "odd": "2"}.items())
     given = bound("lowerBound", 1) + bound("upperBound", 2) + f'<distribution xsi:type="am:{distribution}" {stated}/>'
     models, notes = migrated(written(tmp_path, "0.9.2", runnable(need(deviation(given)))), "0.9.3")
-    assert of_kind(notes, Kind.LOST) == [("not an attribute of this class", "odd='2'")]
+    assert of_kind(notes, NoteKind.LOST) == [("not an attribute of this class", "odd='2'")]
     assert not any("odd" in text for node in models.walk() for text in (*node.attributes, *node.attributes.values()))
 
 
@@ -347,7 +347,7 @@ def test_a_missing_bound_of_a_number_is_0(same):
     given = deviation(bound("upperBound", 20) + '<distribution xsi:type="am:UniformDistribution"/>')
     result = '<default xsi:type="am:DiscreteValueUniformDistribution" lowerBound="0" upperBound="20"/>'
     notes = same(runnable(need(given)), runnable(ticks(result)))
-    assert ("a bound that is not stated is 0", "lowerBound") in of_kind(notes, Kind.DEFAULTED)
+    assert ("a bound that is not stated is 0", "lowerBound") in of_kind(notes, NoteKind.DEFAULTED)
 
 
 def test_a_gauss_distribution_without_bounds_is_not_cut_off(same):
@@ -361,7 +361,7 @@ def test_a_constant_without_a_value_and_a_deviation_without_content(same):
     same(runnable(need(empty)), runnable(ticks('<default xsi:type="am:DiscreteValueConstant"/>')))
     empty = '<default key="Instructions"><value xsi:type="am:NeedDeviation"/></default>'
     notes = same(runnable(need(empty)), runnable(ticks()))
-    assert of_kind(notes, Kind.LOST) == [("states neither a value nor bounds", "")]
+    assert of_kind(notes, NoteKind.LOST) == [("states neither a value nor bounds", "")]
 
 
 # Stimuli, hardware, operating systems
@@ -408,10 +408,10 @@ def test_chunks(same):
         return runnable(f'<runnableItems xsi:type="am:ChannelSend"><transmissionPolicy {attribute}="10"/></runnableItems>')
 
     notes = same(access("chunkProcessingInstructions"), access("chunkProcessingTicks"))
-    assert (notes[-1].kind, notes[-1].attribute) == (Kind.RENAMED, "chunkProcessingInstructions")
+    assert (notes[-1].kind, notes[-1].attribute) == (NoteKind.RENAMED, "chunkProcessingInstructions")
     units = hardware(("P", "0.5"))
     notes = same(access("chunkProcessingInstructions") + units, access("chunkProcessingTicks") + units)
-    assert [detail for _, detail in of_kind(notes, Kind.TO_CHECK)] == ["10"]
+    assert [detail for _, detail in of_kind(notes, NoteKind.TO_CHECK)] == ["10"]
 
 
 def overheads(content, more=""):
@@ -433,7 +433,7 @@ def test_overheads_of_operating_systems(same):
     not_stated = '<default xsi:type="am:DiscreteValueConstant"/>'
     notes = same(overheads(given), overheads(result.format(not_stated)))
     lost = ("fetch statistics of instructions have no successor", "count(value=3)")
-    assert lost in of_kind(notes, Kind.LOST)
+    assert lost in of_kind(notes, NoteKind.LOST)
 
 
 def test_overheads_are_ticks_of_each_definition(same):
@@ -472,7 +472,7 @@ def test_a_file_of_the_newer_version_is_converted_where_it_is_old(tmp_path):
     once, notes = migrated(written(tmp_path, "0.9.3", content), "0.9.3")
     twice, _ = migrated(written(tmp_path, "0.9.3", content.replace(need(default(5)), ticks(constant(5)))), "0.9.3")
     assert meaning(once) == meaning(twice)
-    assert not of_kind(notes, Kind.LOST)
+    assert not of_kind(notes, NoteKind.LOST)
 
 
 def test_jitter_of_constraints_is_a_time(same):

@@ -7,7 +7,7 @@ from inline_models import check_step, of_kind, text_property, written
 from migration import meaning, migrated, opened
 
 from amalthea_uros.xmi.migrate.chain import migrate
-from amalthea_uros.xmi.migrate.notes import Kind, Notes
+from amalthea_uros.xmi.migrate.notes import NoteKind, StepNotes
 
 
 @pytest.fixture
@@ -60,7 +60,7 @@ def test_a_deadline_without_value_is_no_requirement_for_0(tmp_path, target, left
     models, notes = migrated(paths, target)
     assert len(models.trees[0].root.find("constraintsModel", "requirements")) == left
     said = [note for note in notes if note.message == "a deadline without value is no requirement"]
-    assert [note.kind for note in said] == [Kind.CONVERTED] * (1 - left)
+    assert [note.kind for note in said] == [NoteKind.CONVERTED] * (1 - left)
 
 
 # Data types and ports
@@ -148,9 +148,9 @@ def test_a_label_without_initial_value_has_the_only_mode_of_its_uses(same):
     with_mode = '<modeLabels name="a" mode="m+1?type=EnumMode"/><modeLabels name="b"/><modeLabels name="c"/>'
     notes = same(given, model(with_mode, items, old=False))
     message = "a mode label without initial value has the mode of its uses"
-    assert of_kind(notes, Kind.DEFAULTED) == [(message, "m 1")]
+    assert of_kind(notes, NoteKind.DEFAULTED) == [(message, "m 1")]
     message = "mode label without initial value: its mode, which is mandatory now, is not known"
-    assert of_kind(notes, Kind.TO_CHECK) == [(message, "m 1, n"), (message, "")]
+    assert of_kind(notes, NoteKind.TO_CHECK) == [(message, "m 1, n"), (message, "")]
 
 
 def test_a_label_without_initial_value_has_the_mode_of_conditions_and_assignments(same):
@@ -179,13 +179,13 @@ def test_a_label_without_initial_value_has_the_mode_of_conditions_and_assignment
 
 def test_a_label_without_initial_value_has_the_mode_that_an_older_version_stated(tmp_path):
     paths = written(tmp_path, "0.9.3", software('<modeLabels name="a"/>'))
-    models, notes = opened(*paths), Notes()
+    models, notes = opened(*paths), StepNotes()
     (label,), mode = models.parts("swModel", "modeLabels"), models.parts("swModel", "modes")[1]
     models.set_aside[label, "mode"] = [mode]
     migrate(models, "0.9.4", notes)
     assert label.references == {"mode": [mode]}
     assert not models.set_aside
-    assert not of_kind(notes.all, Kind.LOST)
+    assert not of_kind(notes.all, NoteKind.LOST)
 
 
 # Conditions
@@ -284,7 +284,7 @@ def test_what_disables_is_excluded_from_each_alternative_that_does_not_exclude_i
         ),
     )
     message = "disablingModeValueList is a part of executionCondition now"
-    assert (message, "a == 2 OR c == 3") in of_kind(notes, Kind.CONVERTED)
+    assert (message, "a == 2 OR c == 3") in of_kind(notes, NoteKind.CONVERTED)
 
 
 def test_what_both_enables_and_disables_never_enables(becomes):
@@ -304,7 +304,7 @@ def test_a_conjunction_that_disables_is_kept_as_text(becomes):
     given = old_list("disabling", value("c", "3"), all_of(value("a", "1", False), value("b", "2", False)))
     text = "c == 3 OR (a == 1 AND b == 2)"
     notes = becomes(given, text_property("disablingModeValueList", text))
-    assert len(of_kind(notes, Kind.KEPT)) == 1
+    assert len(of_kind(notes, NoteKind.KEPT)) == 1
 
 
 def test_an_empty_list_disables_nothing(becomes):
@@ -325,7 +325,7 @@ def test_what_is_new_already_is_left_alone(tmp_path):
     result, notes = migrated(written(tmp_path, "0.9.4", model('<dataMapping platformName="C"/>')), "0.9.4")
     expected, _ = migrated(written(tmp_path, "0.9.4", model('<aliases target="C"/>')), "0.9.4")
     assert meaning(result) == meaning(expected)
-    assert not of_kind(notes, Kind.CONVERTED)
+    assert not of_kind(notes, NoteKind.CONVERTED)
 
 
 @pytest.mark.parametrize(

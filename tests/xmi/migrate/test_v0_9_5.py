@@ -6,7 +6,7 @@ import pytest
 from inline_models import check_step, of_kind, text_property, written
 from migration import meaning, migrated
 
-from amalthea_uros.xmi.migrate.notes import Kind
+from amalthea_uros.xmi.migrate.notes import NoteKind
 
 KEY = "old_definition_v0.9.4"
 
@@ -92,7 +92,7 @@ def test_steps_without_a_counter_keep_it_as_text(same, name):
             group('name="s"', f'<items xsi:type="am:{name}">{text_property("counter", "prescaler=2 offset=1")}</items>'),
         ),
     )
-    assert of_kind(notes, Kind.KEPT) == [(f"{name} has no counter any more", "prescaler=2 offset=1")]
+    assert of_kind(notes, NoteKind.KEPT) == [(f"{name} has no counter any more", "prescaler=2 offset=1")]
 
 
 def test_items_of_runnables_keep_their_order_and_the_rest_of_the_runnable(same):
@@ -186,7 +186,7 @@ def test_properties_that_are_there_stay(same):
     result = f"<scenario>{before}{text_property(KEY + ' 2', 'recurrence=10')}</scenario>"
     stimulus = '<stimuli xsi:type="am:VariableRateStimulus">{}</stimuli>'
     notes = same(stimuli(stimulus.format(given)), stimuli(stimulus.format(result)))
-    assert of_kind(notes, Kind.KEPT) == [("the recurrence of a scenario has no successor", "recurrence=10")]
+    assert of_kind(notes, NoteKind.KEPT) == [("the recurrence of a scenario has no successor", "recurrence=10")]
 
 
 # Snapshots of the development, damaged files, large files
@@ -199,7 +199,7 @@ def test_what_is_new_already_is_left_alone(tmp_path):
     result, notes = migrated(written(tmp_path, "0.9.5", new.format("", late.format("<runnableItems")) + clocks), "0.9.5")
     expected, _ = migrated(written(tmp_path, "0.9.5", new.format(late.format("<items"), "") + clocks), "0.9.5")
     assert meaning(result) == meaning(expected)
-    assert not of_kind(notes, Kind.LOST)
+    assert not of_kind(notes, NoteKind.LOST)
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,7 @@
 import pytest
 from inline_models import InlineModels
 
-from amalthea_uros.xmi.migrate.notes import Kind
+from amalthea_uros.xmi.migrate.notes import NoteKind
 
 EVENTS = '<eventModel><events xsi:type="am:ProcessEvent" name="a"/><events xsi:type="am:ProcessEvent" name="b"/></eventModel>'
 ENDS = 'stimulus="a?type=ProcessEvent" response="b?type=ProcessEvent"'
@@ -30,7 +30,7 @@ def test_segments_and_strands_of_one_chain_become_a_sequence_that_ends_with_the_
         </eventChain></items>
       </eventChains><eventChains name="x" {ENDS}/><eventChains name="y" {ENDS}/>"""
     assert models.migrate("0.9.5", "0.9.6", chains(before)) == models.read("0.9.6", chains(after))
-    assert any("segments and strands" in message for message in models.messages(Kind.CONVERTED))
+    assert any("segments and strands" in message for message in models.messages(NoteKind.CONVERTED))
 
 
 def test_parallel_chains_with_a_latency_constraint_are_to_be_checked(models):
@@ -38,9 +38,9 @@ def test_parallel_chains_with_a_latency_constraint_are_to_be_checked(models):
     strands = '<strands xsi:type="am:EventChainReference" eventChain="x?type=EventChain"/>'
     chain = f'<eventChains name="c" {ENDS}>{strands}</eventChains><eventChains name="x" {ENDS}/>'
     models.migrate("0.9.5", "0.9.7", chains(chain + constraint))
-    assert ["latency constraint" in message for message in models.messages(Kind.TO_CHECK)] == [True]
+    assert ["latency constraint" in message for message in models.messages(NoteKind.TO_CHECK)] == [True]
     models.migrate("0.9.5", "0.9.7", chains(chain))
-    assert models.messages(Kind.TO_CHECK) == []
+    assert models.messages(NoteKind.TO_CHECK) == []
 
 
 @pytest.mark.parametrize("scope", ["c", "outer", "outermost"])
@@ -53,12 +53,12 @@ def test_parallel_chains_are_to_be_checked_also_as_parts_of_chains_with_a_latenc
         <eventChains name="outer" {ENDS}>{inner}</eventChains>
         <eventChains name="outermost" {ENDS}>{segment.format("outer")}</eventChains>"""
     models.migrate("0.9.5", "0.9.7", chains(chain + constraint))
-    assert ["latency constraint" in message for message in models.messages(Kind.TO_CHECK)] == [True]
+    assert ["latency constraint" in message for message in models.messages(NoteKind.TO_CHECK)] == [True]
 
 
 def test_chains_without_ends_are_to_be_checked_once(models):
     models.migrate("0.9.5", "0.9.7", chains('<eventChains name="c"/>'))
-    assert len(models.messages(Kind.TO_CHECK)) == 2
+    assert len(models.messages(NoteKind.TO_CHECK)) == 2
 
 
 def test_a_file_of_0_9_6_may_have_chains_and_conditions_of_0_9_5(models):

@@ -3,7 +3,7 @@
 import pytest
 from inline_models import InlineModels
 
-from amalthea_uros.xmi.migrate.notes import Kind
+from amalthea_uros.xmi.migrate.notes import NoteKind
 
 
 @pytest.fixture
@@ -37,7 +37,7 @@ def test_interface_ports_become_ports_that_refer_to_interfaces(models):
       </components><interfaces name="Speed value"/></componentsModel>"""
     )
     assert models.migrate("0.9.6", "0.9.7", before) == models.read("0.9.7", after)
-    assert models.messages(Kind.LOST) == []
+    assert models.messages(NoteKind.LOST) == []
 
 
 def test_an_interface_may_be_in_another_file(models):
@@ -70,7 +70,7 @@ def test_what_is_mandatory_now_is_to_be_checked_and_not_invented(models):
         <stimuli xsi:type="am:VariableRateStimulus" name="V"/></stimuliModel>
       <componentsModel><systems name="S"><connectors name="x"><sourcePort/></connectors></systems></componentsModel>"""
     assert models.migrate("0.9.6", "0.9.7", content) == models.read("0.9.7", content)
-    assert sorted(message.partition(",")[0] for message in models.messages(Kind.TO_CHECK)) == [
+    assert sorted(message.partition(",")[0] for message in models.messages(NoteKind.TO_CHECK)) == [
         "PeriodicStimulus without recurrence",
         "RelativePeriodicStimulus without nextOccurrence",
         "SingleActivation without max",

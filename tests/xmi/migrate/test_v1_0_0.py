@@ -4,7 +4,7 @@ import pytest
 from inline_models import InlineModels
 from migration import migrated
 
-from amalthea_uros.xmi.migrate.notes import Kind
+from amalthea_uros.xmi.migrate.notes import NoteKind
 
 PROPERTY = '<customProperties key="{}"><value xsi:type="am:StringObject" value="{}"/></customProperties>'
 
@@ -28,7 +28,7 @@ def test_custom_properties_of_a_measurement_stay_with_what_was_measured(models):
     own = PROPERTY.format("tool", "own")
     found = models.migrate("0.9.9", "1.0.0", measured(own, MEASUREMENT))
     assert found == models.read("1.0.0", measured(own + PROPERTY.format("tool 2", "X"), ""))
-    [lost] = [note for note in models.notes if note.kind == Kind.LOST]
+    [lost] = [note for note in models.notes if note.kind == NoteKind.LOST]
     assert lost.detail == "of 'T 1': 5 us, 7 us, TimeBoundaries lowerBound 1 us upperBound 9 us"
 
 
@@ -45,21 +45,21 @@ def test_measurements_of_event_chains_and_notes_on_all_of_them_stay(models):
     chains = '<constraintsModel><eventChains name="E">{}</eventChains></constraintsModel>'
     after = note + chains.format(PROPERTY.format("measured runtimes", "5 us"))
     assert models.migrate("0.9.9", "1.2.0", chains.format("") + measurements) == models.read("1.2.0", after)
-    assert models.messages(Kind.LOST) == []
+    assert models.messages(NoteKind.LOST) == []
 
 
 def test_measurements_of_nothing_are_lost_with_a_note(models):
     content = """<measurementModel><measurements xsi:type="am:TaskMeasurement"/>
       <measurements xsi:type="am:RunnableMeasurement" runnable="X?type=Runnable"/></measurementModel>"""
     assert models.migrate("1.0.0", "1.1.0", measured("", content)) == models.read("1.1.0", measured("", ""))
-    assert len(models.messages(Kind.LOST)) == 2
+    assert len(models.messages(NoteKind.LOST)) == 2
 
 
 def test_only_events_of_processes_lose_the_deadline(models):
     text = '<eventModel><events xsi:type="am:ProcessEvent" name="e"{}/><events xsi:type="am:ProcessEvent" name="f"{}/></eventModel>'
     before = text.format(' eventType="deadline"', ' eventType="start"')
     assert models.migrate("0.9.9", "1.0.0", before) == models.read("1.0.0", text.format("", ' eventType="start"'))
-    assert len(models.messages(Kind.LOST)) == 1
+    assert len(models.messages(NoteKind.LOST)) == 1
 
 
 def test_no_occurrences_become_one(models):
@@ -69,15 +69,15 @@ def test_no_occurrences_become_one(models):
     before = text.format('occurrenceCount="0"', 'numberOfOccurrences="0"')
     after = text.format('occurrenceCount="1"', 'numberOfOccurrences="1"')
     assert models.migrate("1.1.0", "1.2.0", before) == models.read("1.2.0", after)
-    assert len(models.messages(Kind.CONVERTED)) == 2
-    assert models.messages(Kind.TO_CHECK) == ["occurrenceCount is not stated: it was 0 by default, and is 1 now"]
+    assert len(models.messages(NoteKind.CONVERTED)) == 2
+    assert models.messages(NoteKind.TO_CHECK) == ["occurrenceCount is not stated: it was 0 by default, and is 1 now"]
 
 
 @pytest.mark.parametrize("text", ["-1", "many", "", "1", "99"])
 def test_other_numbers_stay(models, text):
     content = f'<stimuliModel><stimuli xsi:type="am:PeriodicBurstStimulus" name="B" occurrenceCount="{text}"/></stimuliModel>'
     assert models.migrate("1.1.0", "1.2.0", content) == models.read("1.2.0", content)
-    assert len(models.messages(Kind.TO_CHECK)) == (text == "-1")
+    assert len(models.messages(NoteKind.TO_CHECK)) == (text == "-1")
 
 
 def test_what_2_1_0_does_not_allow_is_to_be_checked(models):
@@ -86,7 +86,7 @@ def test_what_2_1_0_does_not_allow_is_to_be_checked(models):
       <osModel><semaphores name="S" initialValue="-1" maxValue="-1"/></osModel>
       <mappingModel><memoryMapping/></mappingModel>"""
     assert models.migrate("2.0.0", "2.1.0", content) == models.read("2.1.0", content)
-    assert len(models.messages(Kind.TO_CHECK)) == 4
+    assert len(models.messages(NoteKind.TO_CHECK)) == 4
 
 
 def test_what_2_1_0_allows_is_not_to_be_checked(models):
@@ -95,4 +95,4 @@ def test_what_2_1_0_allows_is_not_to_be_checked(models):
       <osModel><semaphores name="S" initialValue="0" maxValue="1"/><semaphores name="T"/></osModel>
       <mappingModel><memoryMapping memory="what?"/></mappingModel>"""
     assert models.migrate("2.0.0", "2.1.0", content) == models.read("2.1.0", content)
-    assert models.messages(Kind.TO_CHECK) == ["maxValue is not stated: it was 0 by default, and is 1 now"]
+    assert models.messages(NoteKind.TO_CHECK) == ["maxValue is not stated: it was 0 by default, and is 1 now"]

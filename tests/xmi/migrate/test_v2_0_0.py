@@ -5,7 +5,7 @@ from inline_models import InlineModels
 from migration import migrated
 
 from amalthea_uros.xmi.migrate.model_set import all_below
-from amalthea_uros.xmi.migrate.notes import Kind
+from amalthea_uros.xmi.migrate.notes import NoteKind
 
 FLAGS = 'requiresParentScheduler="false" passesParametersUpwards="false" hasExactlyOneChild="false"'
 PRIORITY = '<schedulingParameterDefinitions name="priority" type="Integer" many="false" mandatory="true"/>'
@@ -77,7 +77,7 @@ def tasks(*contents):
 def test_other_algorithms_are_definitions_of_the_same_name(models, algorithm):
     after = new_os(f'<schedulerDefinitions name="{algorithm}"/>', algorithm, algorithm)
     assert models.migrate("1.2.0", "2.0.0", old_os(algorithm, algorithm)) == models.read("2.0.0", after)
-    assert models.messages(Kind.LOST) == []
+    assert models.messages(NoteKind.LOST) == []
 
 
 def test_known_algorithms_have_parameters(models):
@@ -294,7 +294,7 @@ def test_task_groups_of_osek(models):
     after = tasks("", "") + new_os(OSEK + PRIORITY + GROUP, "OSEK")
     after += allocated(integer("taskGroup", 2), integer("priority", 1) + integer("taskGroup", 0))
     assert models.migrate("1.2.0", "2.0.0", before) == models.read("2.0.0", after)
-    assert len(models.messages(Kind.DEFAULTED)) == 1
+    assert len(models.messages(NoteKind.DEFAULTED)) == 1
 
 
 def test_without_any_task_group_none_is_invented(models):
@@ -302,7 +302,7 @@ def test_without_any_task_group_none_is_invented(models):
     assert models.migrate("1.2.0", "2.0.0", before) == models.read(
         "2.0.0", tasks("") + new_os(OSEK + PRIORITY + GROUP, "OSEK") + allocated("")
     )
-    assert models.messages(Kind.DEFAULTED) == []
+    assert models.messages(NoteKind.DEFAULTED) == []
 
 
 def test_task_groups_below_a_grouping(models):
@@ -321,7 +321,7 @@ def test_schedulers_in_a_circle_end(models):
       <parentAssociation parent="S0?type=TaskScheduler"/></taskSchedulers>"""
     os = f'<osModel><operatingSystems name="OS">{scheduler}</operatingSystems></osModel>'
     models.migrate("1.2.0", "2.0.0", tasks(property_("osekTaskGroup", "1")) + os + allocated(""))
-    assert models.messages(Kind.LOST) == []
+    assert models.messages(NoteKind.LOST) == []
 
 
 def test_damaged_content_does_not_raise(models):
@@ -333,14 +333,14 @@ def test_damaged_content_does_not_raise(models):
       <parameterExtensions/></taskAllocation><isrAllocation isr="X?type=ISR"/></mappingModel>"""
     os = f'<osModel><operatingSystems name="OS">{scheduler}</operatingSystems></osModel>'
     models.migrate("1.2.0", "2.0.0", os + mapping)
-    assert sorted(models.messages(Kind.LOST)) == [
+    assert sorted(models.messages(NoteKind.LOST)) == [
         "scheduling algorithm without a class",
         "second scheduling algorithm",
         "unknown scheduling parameter",
         "unknown scheduling parameter",
         "unknown scheduling parameter",
     ]
-    assert models.messages(Kind.KEPT) == ["size of the quantum is not a number"]
+    assert models.messages(NoteKind.KEPT) == ["size of the quantum is not a number"]
 
 
 def test_comments_stay_with_the_scheduler_and_the_allocation(models):

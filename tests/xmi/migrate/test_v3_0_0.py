@@ -5,7 +5,7 @@ from inline_models import InlineModels
 from migration import migrated
 
 from amalthea_uros.xmi.migrate.model_set import all_below
-from amalthea_uros.xmi.migrate.notes import Kind
+from amalthea_uros.xmi.migrate.notes import NoteKind
 
 
 @pytest.fixture
@@ -67,7 +67,7 @@ def test_the_first_of_two_type_references_counts(models):
     after = '<labels name="L" dataType="u16?type=BaseTypeDefinition"/>'
     before = software(f'{other}<labels name="L">{both}</labels>')
     assert models.migrate("2.2.0", "3.0.0", before) == models.read("3.0.0", software(other + after))
-    assert models.messages(Kind.LOST) == ["second data type"]
+    assert models.messages(NoteKind.LOST) == ["second data type"]
 
 
 def test_a_type_of_another_file_is_a_reference_between_files(models):
@@ -86,7 +86,7 @@ def test_references_to_nothing_are_dropped_also_inside_of_types(models):
     )
     expected = software(after).replace("</swModel>", definition + "</swModel>")
     assert models.migrate("2.2.0", "3.0.0", software(before)) == models.read("3.0.0", expected)
-    assert len(models.messages(Kind.LOST)) == 2
+    assert len(models.messages(NoteKind.LOST)) == 2
 
 
 def test_custom_properties_of_a_type_reference_stay_with_the_label(models):
@@ -119,7 +119,7 @@ def test_a_second_type_and_an_unreadable_reference_do_not_raise(models):
     text = "\n".join(models.migrate("2.2.0", "3.0.0", software(before)))
     assert "labels  dataType='what?' name='L'" in text
     assert "name='labels_type'" in text
-    assert models.messages(Kind.LOST) == ["second data type"]
+    assert models.messages(NoteKind.LOST) == ["second data type"]
 
 
 def test_what_is_already_a_reference_stays(models):

@@ -8,7 +8,7 @@ from amalthea_uros._internal.plural import counted
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import Amalthea
 from amalthea_uros.metamodel.element import Element
-from amalthea_uros.metamodel.factfile import Kind
+from amalthea_uros.metamodel.factfile import FeatureKind
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import ModelRule
 from amalthea_uros.validate.rules.emf.features import per_class, stored_features
@@ -43,7 +43,7 @@ def _moved(holder: Element, names: Iterable[str], index: Mapping[Element, int]) 
 
 @per_class
 def _containments(cls: type[Element], version: str) -> tuple[str, ...]:
-    return tuple(name for name, fact in stored_features(cls, version).items() if fact.kind is Kind.CONTAINMENT)
+    return tuple(name for name, fact in stored_features(cls, version).items() if fact.kind is FeatureKind.CONTAINMENT)
 
 
 RULE = ModelRule(

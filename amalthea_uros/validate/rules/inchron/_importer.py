@@ -8,7 +8,7 @@ from amalthea_uros.metamodel.classes import DataSize, Frequency, INamespaceMembe
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Document
 from amalthea_uros.metamodel.naming import TYPE_MARK, encode, name_of, segments
-from amalthea_uros.metamodel.source import Source, attributes_of_tag
+from amalthea_uros.metamodel.source import SourceText, attributes_of_tag
 from amalthea_uros.validate.context import Context
 
 _NEWEST = "3.2.0"
@@ -39,7 +39,7 @@ def amount(quantity: Time | Frequency | DataSize | None) -> float:
     return (quantity.value or 0) if quantity is not None and has_unit(quantity) else 0
 
 
-def tag_of(element: Element) -> tuple[Source, Mapping[str, str]] | None:
+def tag_of(element: Element) -> tuple[SourceText, Mapping[str, str]] | None:
     """The source of the file of an object, and the attributes of its tag; None if it was not read from a file of its version."""
     document = element.document
     source = document.source if document is not None and document.migrated_from is None else None

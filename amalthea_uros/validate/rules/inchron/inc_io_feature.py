@@ -9,10 +9,10 @@ from functools import cache
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel import classes
 from amalthea_uros.metamodel.element import Element, extras_if_any
-from amalthea_uros.metamodel.factfile import Kind
+from amalthea_uros.metamodel.factfile import FeatureKind
 from amalthea_uros.metamodel.features import containments_of, features_of
 from amalthea_uros.metamodel.source import Prefixes
-from amalthea_uros.metamodel.versions import Facts, facts
+from amalthea_uros.metamodel.versions import VersionFacts, facts
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import Downgraded, ModelRule
 from amalthea_uros.validate.rules.inchron._importer import attributes_at, metamodel_of, tag_of
@@ -57,7 +57,7 @@ def _is_same(class_name: str, version: str, other: str) -> bool:
     )
 
 
-def _declared(element: Element, known: Facts) -> str | None:
+def _declared(element: Element, known: VersionFacts) -> str | None:
     """The declared class of the feature that holds an object; None if there is no such feature, which is reported for its holder."""
     holder = element.container
     if holder is None or type(holder).__name__ not in known.classes:
@@ -77,7 +77,7 @@ def _xsi_type(element: Element) -> str | None:
     return None if tag is None else tag[1].get(tag[0].prefixes.xsi_type)
 
 
-def _not_read(element: Element, class_name: str, known: Facts) -> Iterator[str | Downgraded]:
+def _not_read(element: Element, class_name: str, known: VersionFacts) -> Iterator[str | Downgraded]:
     """Messages about attributes and elements that were preserved although the metamodel has no place for them."""
     extras, document = extras_if_any(element), element.document
     if extras is None or document is None:
@@ -97,17 +97,17 @@ def _not_read(element: Element, class_name: str, known: Facts) -> Iterator[str |
             yield from _misplaced(class_name, tag["name"], given, known)
 
 
-def _is_literal(text: str, type_name: str, known: Facts) -> bool:
+def _is_literal(text: str, type_name: str, known: VersionFacts) -> bool:
     enum = known.enums.get(type_name)
     return enum is not None and text in enum.literals
 
 
-def _misplaced(class_name: str, name: str, given: str, known: Facts) -> Iterator[str]:
+def _misplaced(class_name: str, name: str, given: str, known: VersionFacts) -> Iterator[str]:
     """Why an element is not allowed in its place. A second element where only one is allowed is not reported here."""
     feature = known.feature(class_name, name)
     if feature is None:
         yield f"{class_name} has no element <{name}> in AMALTHEA {known.version}"
-    elif feature.kind is Kind.CONTAINMENT and (given or feature.type) not in _parts(feature.type, known.version):
+    elif feature.kind is FeatureKind.CONTAINMENT and (given or feature.type) not in _parts(feature.type, known.version):
         yield f"the element <{name}> of {class_name} cannot be of the class {given or feature.type} in AMALTHEA {known.version}"
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node, remove_all
-from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.notes import StepNotes
 from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.back_scheduling import change_scheduling
 from amalthea_uros.xmi.migrate.steps.kept import OWNERSHIP, TAGS, keep, references, refuse_stale
@@ -15,7 +15,7 @@ from amalthea_uros.xmi.migrate.steps.kept import OWNERSHIP, TAGS, keep, referenc
 _TYPED = {"labels": "dataType", "channels": "elementType"}
 
 
-def change_3_0_0(models: ModelSet, notes: Notes) -> None:
+def change_3_0_0(models: ModelSet, notes: StepNotes) -> None:
     """Change the content of the files of AMALTHEA 3.0.0."""
     refuse_stale(models, notes, "3.0.0")
     for node in models.of_type("TypeRef"):
@@ -32,14 +32,14 @@ def change_3_0_0(models: ModelSet, notes: Notes) -> None:
         _change_semaphore(node, notes)
 
 
-def _contain_type(node: Node, feature: str, notes: Notes) -> None:
+def _contain_type(node: Node, feature: str, notes: StepNotes) -> None:
     targets = node.references.pop(feature, None)
     if targets:
         node.add(feature, "TypeRef").refer("typeDef", *targets)
         notes.converted(node, f"{feature}: the reference became a TypeRef", targets[0].name, feature)
 
 
-def _change_semaphore(node: Node, notes: Notes) -> None:
+def _change_semaphore(node: Node, notes: StepNotes) -> None:
     if node.get("semaphoreType") == "Mutex":
         notes.lost(node, "semaphore type Mutex: only AMALTHEA 3.0.0 and later have it", attribute="semaphoreType")
     stated = node.attributes.pop("ownership", "true")
@@ -72,7 +72,7 @@ _LOST_TAGS = {
 _NEW_RELATIONS = {"LESS_THAN_OR_EQUAL", "GREATER_THAN_OR_EQUAL"}
 
 
-def change_2_1_0(models: ModelSet, notes: Notes) -> None:
+def change_2_1_0(models: ModelSet, notes: StepNotes) -> None:
     """Change the content of the files of AMALTHEA 2.1.0."""
     lost = []
     for node in models.walk():
@@ -87,7 +87,7 @@ def change_2_1_0(models: ModelSet, notes: Notes) -> None:
         _write_limit(node, notes)
 
 
-def _change_relation(node: Node, notes: Notes) -> None:
+def _change_relation(node: Node, notes: StepNotes) -> None:
     relation = node.get("relation")
     if node.type == "ChannelFillCondition":
         # What 2.0.0 compares the fill level by is stated nowhere.
@@ -97,7 +97,7 @@ def _change_relation(node: Node, notes: Notes) -> None:
         notes.lost(node, "relation of a condition: only AMALTHEA 2.1.0 and later have it", relation, "relation")
 
 
-def _write_limit(node: Node, notes: Notes) -> None:
+def _write_limit(node: Node, notes: StepNotes) -> None:
     """Write the limit of a semaphore where it is absent: that means 1 until now, and 0 in 2.0.0."""
     if "maxValue" not in node.attributes:
         node.attributes["maxValue"] = "1"
@@ -119,7 +119,7 @@ _RENAMED = {
 }
 
 
-def change_2_0_0(models: ModelSet, notes: Notes) -> None:
+def change_2_0_0(models: ModelSet, notes: StepNotes) -> None:
     """Change the content of the files of AMALTHEA 2.0.0."""
     refuse_stale(models, notes, "2.0.0")
     _change_conditions(models, notes)
@@ -127,7 +127,7 @@ def change_2_0_0(models: ModelSet, notes: Notes) -> None:
     change_scheduling(models, notes)
 
 
-def _change_conditions(models: ModelSet, notes: Notes) -> None:
+def _change_conditions(models: ModelSet, notes: StepNotes) -> None:
     lost = [node for node in models.walk() if node.type == "ChannelFillCondition"]
     for node in lost:
         notes.lost(node, "condition on the fill level of a channel: only AMALTHEA 2.0.0 and later have it")
@@ -137,7 +137,7 @@ def _change_conditions(models: ModelSet, notes: Notes) -> None:
         notes.renamed(node, f"{old[node]} -> {node.type}")
 
 
-def _keep_tags(models: ModelSet, notes: Notes) -> None:
+def _keep_tags(models: ModelSet, notes: StepNotes) -> None:
     for node in models.nodes("osOverheads"):
         tags = node.references.pop("tags", None)
         if tags:

@@ -14,7 +14,7 @@ from typing import TypeAlias
 from amalthea_uros.xmi.files import FileText
 from amalthea_uros.xmi.migrate.model_set import ModelSet, Origins, Tree
 from amalthea_uros.xmi.migrate.node import Node, remove_all
-from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.notes import StepNotes
 from amalthea_uros.xmi.migrate.steps.kept import (
     DEFINITION,
     DEFINITIONS,
@@ -36,7 +36,7 @@ from amalthea_uros.xmi.migrate.steps.scheduling import (
     QUANTIZED,
     QUANTUM,
     USER_SPECIFIC,
-    Definitions,
+    AddedDefinitions,
 )
 from amalthea_uros.xmi.migrate.steps.tools import keep_comments, text_value
 
@@ -55,12 +55,12 @@ def are_standard(models: ModelSet, algorithms: list[str], parameters: list[str])
         return False
     root = Node("Amalthea")
     made_in = root.add("osModel")
-    definitions = Definitions(ModelSet([Tree(Path(), FileText(""), "2.0.0", root)], Origins()))
+    definitions = AddedDefinitions(ModelSet([Tree(Path(), FileText(""), "2.0.0", root)], Origins()))
     for name in algorithms:
         definitions.scheduler(name, root)
     for name in parameters:
         definitions.parameter(name, root)
-    definitions.insert(Notes())
+    definitions.insert(StepNotes())
     return list(map(_content, present)) == [_content(node) for tag in tags for node in made_in.all(tag)]
 
 
@@ -93,7 +93,9 @@ _PARAMETER = "schedulingParameterDefinitions"
 Place = Callable[[Node, str, Node], bool]
 
 
-def write_defaults(holder: Node, keeper: Node, keys: ParameterKeys, scheduler: Node | None, kind: str, notes: Notes) -> None:
+def write_defaults(
+    holder: Node, keeper: Node, keys: ParameterKeys, scheduler: Node | None, kind: str, notes: StepNotes
+) -> None:
     """State what the defaults of the definitions say, which 1.2.0 does not have; of what can be stated there at all."""
     definition = None if scheduler is None else scheduler.target("definition")
     if definition is None:
@@ -127,7 +129,7 @@ def _has_place(name: str, value: Node, kind: str, definition: Node, scheduler: N
     return place_in_algorithm(Node("schedulingAlgorithm", definition.name if is_known else USER_SPECIFIC), name, copy)
 
 
-def change_parameters(holder: Node, keeper: Node, keys: ParameterKeys, place: Place, notes: Notes) -> None:
+def change_parameters(holder: Node, keeper: Node, keys: ParameterKeys, place: Place, notes: StepNotes) -> None:
     """Put the parameters of an allocation, scheduler or association where 1.2.0 has a place for them, else into custom properties."""
     placed: list[str] = []
     others: list[str] = []
@@ -222,7 +224,7 @@ _SCHEDULER = "schedulerDefinitions"
 _TAKEN_FOR_PARAMETERS = {PRIORITY, "osekTaskGroup"}
 
 
-def change_scheduling(models: ModelSet, notes: Notes) -> None:
+def change_scheduling(models: ModelSet, notes: StepNotes) -> None:
     """Turn definitions and parameters into what 1.2.0 has."""
     definitions, parameters = models.nodes(_SCHEDULER), models.nodes(_PARAMETER)
     for same_kind in (definitions, parameters):
@@ -261,7 +263,7 @@ def _are_complete(schedulers: list[Node], allocations: list[Node]) -> bool:
     return not any(kept(node, prefix("2.0.0")) for node in (*schedulers, *allocations))
 
 
-def _rename_properties(processes: Iterable[Node], notes: Notes) -> None:
+def _rename_properties(processes: Iterable[Node], notes: StepNotes) -> None:
     """Rename custom properties that mean nothing since 2.0.0, and of which the step up would make parameters."""
     for process in processes:
         for node in process.all("customProperties"):
@@ -271,7 +273,7 @@ def _rename_properties(processes: Iterable[Node], notes: Notes) -> None:
                 notes.renamed(process, "custom property that is a scheduling parameter in older versions", key)
 
 
-def _refuse_ambiguous(definitions: Iterable[Node], notes: Notes) -> None:
+def _refuse_ambiguous(definitions: Iterable[Node], notes: StepNotes) -> None:
     """Definitions are kept by name, so each needs its own."""
     names: set[str] = set()
     for node in definitions:
@@ -280,7 +282,7 @@ def _refuse_ambiguous(definitions: Iterable[Node], notes: Notes) -> None:
         names.add(node.name)
 
 
-def _change_scheduler(scheduler: Node, notes: Notes) -> None:
+def _change_scheduler(scheduler: Node, notes: StepNotes) -> None:
     definition = scheduler.target("definition")
     algorithm = None
     write_defaults(scheduler, scheduler, OWN, scheduler, "algorithmParameters", notes)
@@ -294,7 +296,7 @@ def _change_scheduler(scheduler: Node, notes: Notes) -> None:
     change_parameters(scheduler, scheduler, OWN, place, notes)
 
 
-def _add_algorithm(scheduler: Node, definition: Node, notes: Notes) -> Node | None:
+def _add_algorithm(scheduler: Node, definition: Node, notes: StepNotes) -> Node | None:
     if definition.tag != _SCHEDULER:
         notes.lost(scheduler, "the definition of the scheduler is in none of the files", name_of(definition), "definition")
         return None
@@ -307,7 +309,7 @@ def _add_algorithm(scheduler: Node, definition: Node, notes: Notes) -> Node | No
     return made
 
 
-def _keep_definition(node: Node, notes: Notes) -> None:
+def _keep_definition(node: Node, notes: StepNotes) -> None:
     holder = node.parent
     if holder is None:
         return

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from amalthea_uros.xmi.migrate.model_set import ModelSet, Tree
 from amalthea_uros.xmi.migrate.node import Node
-from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.notes import StepNotes
 
 _MICROCONTROLLER = ("hwModel", "system", "ecus", "microcontrollers")
 _OPERATING_SYSTEM = ("osModel", "operatingSystems")
@@ -86,7 +86,7 @@ _TYPED_PLACES: dict[str, tuple[str, ...]] = {
 _PLACELESS = frozenset({"ComplexPin", "ComplexPort", "HwPort", "Pin", "Prescaler"})
 
 
-def wrap_roots(models: ModelSet, notes: Notes) -> None:
+def wrap_roots(models: ModelSet, notes: StepNotes) -> None:
     """Put the roots of files that are not whole models into models."""
     for tree in models.active:
         root = tree.root
@@ -98,7 +98,7 @@ def wrap_roots(models: ModelSet, notes: Notes) -> None:
             tree.root = Node("Amalthea", origin=root.origin)
 
 
-def wrap_objects(models: ModelSet, notes: Notes) -> None:
+def wrap_objects(models: ModelSet, notes: StepNotes) -> None:
     """The same for single objects in ITEA versions, whose steps look for them in sub-models; these may be roots there."""
     for tree in models.active:
         place = _place_of(tree.root)
@@ -110,7 +110,7 @@ def _place_of(root: Node) -> tuple[str, ...]:
     return _PLACES.get(root.tag) or _TYPED_PLACES.get(root.tag, ())
 
 
-def _wrap(tree: Tree, place: tuple[str, ...], model: str, notes: Notes) -> None:
+def _wrap(tree: Tree, place: tuple[str, ...], model: str, notes: StepNotes) -> None:
     part = tree.root
     notes.converted(part, "part of a model as root of a file -> whole model", part.tag)
     if part.tag in _TYPED_PLACES:

@@ -8,12 +8,12 @@ from functools import partial
 from amalthea_uros.xmi.migrate.classes import local_name
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node
-from amalthea_uros.xmi.migrate.notes import BEYOND_ITEA, Kind, Notes, Postponed
+from amalthea_uros.xmi.migrate.notes import BEYOND_ITEA, NoteKind, Postponed, StepNotes
 from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.itea_tools import is_isr, sub_models
 
 
-def change(models: ModelSet, notes: Notes) -> None:
+def change(models: ModelSet, notes: StepNotes) -> None:
     """Change the content of the files of AMALTHEA ITEA 1.1.0."""
     for node in models.rename_classes({"os:DeadlineMonotinic": "os:DeadlineMonotonic"}):
         notes.renamed(node, "class DeadlineMonotinic is DeadlineMonotonic")
@@ -25,7 +25,7 @@ def change(models: ModelSet, notes: Notes) -> None:
     _Allocations(notes).split(models)
 
 
-def _move_schedulers(model: Node, notes: Notes) -> None:
+def _move_schedulers(model: Node, notes: StepNotes) -> None:
     schedulers = model.all("scheduler")
     if not schedulers:
         return
@@ -36,7 +36,7 @@ def _move_schedulers(model: Node, notes: Notes) -> None:
         notes.moved(scheduler, "scheduler of the OS model is a task scheduler of an operating system", scheduler.name)
 
 
-def _keep_fitting_statistics(access: Node, notes: Notes) -> None:
+def _keep_fitting_statistics(access: Node, notes: StepNotes) -> None:
     """One value in the place of those of reading and writing: the one that fits the kind of access."""
     kind = access.get("access", "read")
     for statistic in access.all("statistic"):
@@ -61,7 +61,7 @@ def _statistic_text(part: Node) -> str:
 class _Allocations:
     """`executableAllocation` -> `processAllocation` of tasks and ISRs, `runnableAllocation`."""
 
-    def __init__(self, notes: Notes) -> None:
+    def __init__(self, notes: StepNotes) -> None:
         self.notes = notes
         #: The interrupt controller for the ISRs of an operating system that had none.
         self.controllers: dict[Node, Node] = {}
@@ -81,7 +81,7 @@ class _Allocations:
         for controller, schedulers in self.replaced.items():
             message = "interrupt controller of ISRs: it has the cores of the schedulers whose place it takes"
             restore = partial(_allocate, controller, list(schedulers), models)
-            what = (Kind.CONVERTED, controller, message, controller.name)
+            what = (NoteKind.CONVERTED, controller, message, controller.name)
             models.postponed.append(Postponed(BEYOND_ITEA, restore, *what, is_kept=True))
 
     def split_process(self, allocation: Node) -> None:

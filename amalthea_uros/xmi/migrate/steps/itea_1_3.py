@@ -8,7 +8,7 @@ from functools import partial
 from amalthea_uros.xmi.migrate.classes import local_name
 from amalthea_uros.xmi.migrate.model_set import ModelSet, Tree
 from amalthea_uros.xmi.migrate.node import Node, remove_all
-from amalthea_uros.xmi.migrate.notes import BEYOND_ITEA, Kind, Notes, Postponed
+from amalthea_uros.xmi.migrate.notes import BEYOND_ITEA, NoteKind, Postponed, StepNotes
 from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.file_roots import wrap_objects
 from amalthea_uros.xmi.migrate.steps.itea_tools import SUB_MODELS, by_root, sub_model_or_new, trees_of
@@ -93,7 +93,7 @@ _COOPERATIVE = "preemption of a task: 'cooperative' was the default, and the fil
 _TIME_CLASSES = ("SignedTime", "Time", "SignedTimeObject", "TimeObject")
 
 
-def write_defaults(models: ModelSet, notes: Notes) -> None:
+def write_defaults(models: ModelSet, notes: StepNotes) -> None:
     """Write what the files do not state, but what they mean."""
     for tag, rules in _DEFAULTS.items():
         for node in models.nodes(tag):
@@ -110,14 +110,14 @@ def write_defaults(models: ModelSet, notes: Notes) -> None:
             _write(node, "unit", "ps", notes)
 
 
-def _write_preemption(models: ModelSet, notes: Notes) -> None:
+def _write_preemption(models: ModelSet, notes: StepNotes) -> None:
     for task in models.nodes("tasks"):
         if task.parent is not None and task.parent.tag == "swModel":
             _write(task, "preemption", "cooperative", notes)
         elif "preemption" not in task.attributes:
             # The published conversions leave it unstated in files that hold nothing but the software model.
             write = partial(task.attributes.setdefault, "preemption", "cooperative")
-            models.postponed.append(Postponed(BEYOND_ITEA, write, Kind.DEFAULTED, task, _COOPERATIVE, task.name))
+            models.postponed.append(Postponed(BEYOND_ITEA, write, NoteKind.DEFAULTED, task, _COOPERATIVE, task.name))
 
 
 def _is_in(node: Node, containers: dict[str, tuple[str, ...]]) -> bool:
@@ -137,7 +137,7 @@ def _times_by_class(models: ModelSet) -> list[Node]:
     return found
 
 
-def _write(node: Node, attribute: str, value: str, notes: Notes) -> None:
+def _write(node: Node, attribute: str, value: str, notes: StepNotes) -> None:
     if attribute not in node.attributes and attribute not in node.references:
         node.attributes[attribute] = value
         notes.defaulted(node, f"{attribute}={value!r} is written: it was the default", attribute=attribute)
@@ -152,15 +152,15 @@ _LISTS = {
 }
 
 
-def convert_label_values(models: ModelSet, notes: Notes) -> None:
+def convert_label_values(models: ModelSet, notes: StepNotes) -> None:
     """Make labels that select something mode labels, and their values literals of modes."""
-    converter = _Converter(models, notes)
+    converter = _LabelConverter(models, notes)
     converter.convert_stimuli()
     converter.convert_switches()
 
 
-class _Converter:
-    def __init__(self, models: ModelSet, notes: Notes) -> None:
+class _LabelConverter:
+    def __init__(self, models: ModelSet, notes: StepNotes) -> None:
         self.models, self.notes = models, notes
         #: The mode labels that take the place of labels.
         self.made: dict[Node, Node] = {}
@@ -287,7 +287,7 @@ _COMPONENT_PARTS = {
 _PROCESSES = ("isrs", "tasks", "processPrototypes")
 
 
-def change(models: ModelSet, notes: Notes) -> None:
+def change(models: ModelSet, notes: StepNotes) -> None:
     """Change the content of the files of AMALTHEA ITEA 1.2.0."""
     wrap_objects(models, notes)
     write_defaults(models, notes)
@@ -303,10 +303,10 @@ def change(models: ModelSet, notes: Notes) -> None:
         if value is not None:
             keep = partial(add_property, label, "initialValue", value)
             what = ("initial value of a label", f"{label.name}: {value}", "initialValue")
-            models.postponed.append(Postponed(BEYOND_ITEA, keep, Kind.KEPT, label, *what))
+            models.postponed.append(Postponed(BEYOND_ITEA, keep, NoteKind.KEPT, label, *what))
 
 
-def _rename_attributes(models: ModelSet, notes: Notes) -> None:
+def _rename_attributes(models: ModelSet, notes: StepNotes) -> None:
     for tag in models.nodes("tags"):
         if tag.rename("tagName", "name"):
             notes.renamed(tag, "tagName is name", attribute="tagName")
@@ -315,7 +315,7 @@ def _rename_attributes(models: ModelSet, notes: Notes) -> None:
             notes.renamed(age, "maximumCyle is maximumCycle", attribute="maximumCyle")
 
 
-def _remove_unspecified(models: ModelSet, notes: Notes) -> None:
+def _remove_unspecified(models: ModelSet, notes: StepNotes) -> None:
     for node in models.nodes("calls", "runnableItems", "runnableItem"):
         if node.attributes.get("waitingBehaviour") == "unspecified":
             del node.attributes["waitingBehaviour"]
@@ -324,7 +324,7 @@ def _remove_unspecified(models: ModelSet, notes: Notes) -> None:
             )
 
 
-def _split_components(models: ModelSet, notes: Notes) -> None:
+def _split_components(models: ModelSet, notes: StepNotes) -> None:
     for node in models.nodes("elements"):
         known = _COMPONENT_PARTS.get(local_name(node.type))
         if known is None:
@@ -335,7 +335,7 @@ def _split_components(models: ModelSet, notes: Notes) -> None:
         notes.renamed(node, f"elements of component models: {node.tag}", node.name)
 
 
-def _convert_deadlines(models: ModelSet, notes: Notes) -> None:
+def _convert_deadlines(models: ModelSet, notes: StepNotes) -> None:
     """Deadlines of tasks, ISRs and prototypes -> requirements."""
     trees = trees_of(models)
     holders = [node for node in models.nodes(*_PROCESSES) if node.children and node.child("deadline") is not None]
@@ -348,11 +348,11 @@ def _convert_deadlines(models: ModelSet, notes: Notes) -> None:
                 if "value" not in deadline.attributes:
                     message = "a deadline without value is no requirement"
                     drop = requirement.remove
-                    models.postponed.append(Postponed(BEYOND_ITEA, drop, Kind.CONVERTED, deadline, message, is_kept=True))
+                    models.postponed.append(Postponed(BEYOND_ITEA, drop, NoteKind.CONVERTED, deadline, message, is_kept=True))
             remove_all(deadlines)
 
 
-def _require(model: Node, process: Node, deadline: Node, notes: Notes) -> Node:
+def _require(model: Node, process: Node, deadline: Node, notes: StepNotes) -> Node:
     requirement = model.add("requirements", "constraints:ProcessRequirement", like=deadline)
     requirement.attributes |= {"name": process.name} if "name" in process.attributes else {}
     requirement.attributes["severity"] = "Cosmetic"

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node, remove_all
-from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.notes import StepNotes
 from amalthea_uros.xmi.migrate.steps.scheduling import QUANTUM, TASK_GROUP, USER_SPECIFIC
 from amalthea_uros.xmi.migrate.steps.tools import property_of, put_property, text_value
 
@@ -64,7 +64,7 @@ def targets_of(value: Node | None) -> list[Node]:
     return [target for target in found if target is not None]
 
 
-def refuse_stale(models: ModelSet, notes: Notes, version: str) -> None:
+def refuse_stale(models: ModelSet, notes: StepNotes, version: str) -> None:
     """Properties of an earlier migration back that were not restored would be taken for content of this model: they are an error."""
     start = prefix(version)
     for node in models.nodes("customProperties"):
@@ -186,7 +186,7 @@ _TAGS = {*("osModel", "osOverheads", "taskSchedulers", "interruptControllers", "
 _RESTORED = "restored from a custom property"
 
 
-def restore_3_0_0(models: ModelSet, notes: Notes) -> None:
+def restore_3_0_0(models: ModelSet, notes: StepNotes) -> None:
     """Restore what the step from 3.0.0 to 2.2.0 kept; call it at the end of the step from 2.2.0 to 3.0.0."""
     for node in models.nodes("semaphores"):
         found = property_of(node, OWNERSHIP)
@@ -195,7 +195,7 @@ def restore_3_0_0(models: ModelSet, notes: Notes) -> None:
             _finish(node, found, notes)
 
 
-def restore_2_0_0(models: ModelSet, notes: Notes) -> None:
+def restore_2_0_0(models: ModelSet, notes: StepNotes) -> None:
     """Restore what the step from 2.0.0 to 1.2.0 kept; call it at the end of the step from 1.2.0 to 2.0.0."""
     if not any(node.get("key").startswith(_START_2_0_0) for node in models.nodes("customProperties")):
         return
@@ -216,7 +216,7 @@ def restore_2_0_0(models: ModelSet, notes: Notes) -> None:
             notes.renamed(node, _RESTORED, key)
 
 
-def _finish(node: Node, found: Node, notes: Notes) -> None:
+def _finish(node: Node, found: Node, notes: StepNotes) -> None:
     notes.converted(node, _RESTORED, found.get("key"))
     found.remove()
 
@@ -224,7 +224,7 @@ def _finish(node: Node, found: Node, notes: Notes) -> None:
 class _Scheduling:
     """Definitions as they were, instead of those that the step up made of the algorithm classes."""
 
-    def __init__(self, by_tag: dict[str, list[Node]], notes: Notes) -> None:
+    def __init__(self, by_tag: dict[str, list[Node]], notes: StepNotes) -> None:
         self.by_tag, self.notes = by_tag, notes
         self.definitions: dict[str, Node] = {}
         self.parameters: dict[str, Node] = {}

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node
-from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.notes import StepNotes
 from amalthea_uros.xmi.migrate.steps.tools import (
     add_property,
     keep_comments,
@@ -56,7 +56,7 @@ _PARAMETERS = {
 _OTHER = _Kind("String", mandatory=False)
 
 
-class Definitions:
+class AddedDefinitions:
     """The definitions of a set of files: those that are there, and those that are needed."""
 
     def __init__(self, models: ModelSet) -> None:
@@ -93,7 +93,7 @@ class Definitions:
             found = self.parameters[name] = self._make("schedulingParameterDefinitions", name, like, attributes)
         return found
 
-    def insert(self, notes: Notes) -> None:
+    def insert(self, notes: StepNotes) -> None:
         """Put what was made into the model: one set of definitions for all files."""
         if not self.made:
             return
@@ -158,7 +158,7 @@ _TAG = "schedulingParameters"
 _QUANTUM_NS = "quantSizeNs"
 
 
-def convert_algorithms(models: ModelSet, definitions: Definitions, notes: Notes) -> None:
+def convert_algorithms(models: ModelSet, definitions: AddedDefinitions, notes: StepNotes) -> None:
     """Let schedulers refer to a definition of their algorithm."""
     for algorithm in models.nodes("schedulingAlgorithm"):
         scheduler = algorithm.parent
@@ -177,7 +177,7 @@ def convert_algorithms(models: ModelSet, definitions: Definitions, notes: Notes)
         _note_unknown(scheduler, algorithm, notes)
 
 
-def _set_definition(scheduler: Node, algorithm: Node, definitions: Definitions, notes: Notes) -> None:
+def _set_definition(scheduler: Node, algorithm: Node, definitions: AddedDefinitions, notes: StepNotes) -> None:
     if not algorithm.type:
         notes.lost(scheduler, "scheduling algorithm without a class")
         return
@@ -189,7 +189,7 @@ def _set_definition(scheduler: Node, algorithm: Node, definitions: Definitions, 
     notes.converted(scheduler, "scheduling algorithm is now a reference to a scheduler definition", algorithm.type)
 
 
-def _convert_quantum(scheduler: Node, algorithm: Node, definitions: Definitions, notes: Notes) -> None:
+def _convert_quantum(scheduler: Node, algorithm: Node, definitions: AddedDefinitions, notes: StepNotes) -> None:
     """The size of the quantum was an attribute; steps from older versions may have kept it as an extension."""
     texts = [algorithm.attributes.pop(_QUANTUM_NS)] if _QUANTUM_NS in algorithm.attributes else []
     if algorithm.type != USER_SPECIFIC:
@@ -207,7 +207,7 @@ def _convert_quantum(scheduler: Node, algorithm: Node, definitions: Definitions,
             notes.converted(scheduler, "size of the quantum is now a scheduling parameter", f"{text} ns")
 
 
-def convert_parameters(models: ModelSet, definitions: Definitions, notes: Notes) -> None:
+def convert_parameters(models: ModelSet, definitions: AddedDefinitions, notes: StepNotes) -> None:
     """Give allocations and associations their parameters by definitions."""
     for holder in models.nodes("taskAllocation", "parentAssociation"):
         for parameters in holder.all(_TAG):
@@ -219,7 +219,7 @@ def convert_parameters(models: ModelSet, definitions: Definitions, notes: Notes)
             _convert_extension(holder, extension, definitions, notes)
 
 
-def _convert_fixed(holder: Node, old: Node, definitions: Definitions, notes: Notes) -> None:
+def _convert_fixed(holder: Node, old: Node, definitions: AddedDefinitions, notes: StepNotes) -> None:
     """Convert the parameters that had features of their own."""
     priority = old.attributes.pop(PRIORITY, None)
     if priority is not None:
@@ -235,12 +235,12 @@ def _convert_fixed(holder: Node, old: Node, definitions: Definitions, notes: Not
     _note_unknown(holder, old, notes)
 
 
-def _note_unknown(holder: Node, old: Node, notes: Notes) -> None:
+def _note_unknown(holder: Node, old: Node, notes: StepNotes) -> None:
     for name in (*old.attributes, *old.references, *(part.tag for part in old.children)):
         notes.lost(holder, "unknown scheduling parameter", name)
 
 
-def _convert_extension(holder: Node, extension: Node, definitions: Definitions, notes: Notes) -> None:
+def _convert_extension(holder: Node, extension: Node, definitions: AddedDefinitions, notes: StepNotes) -> None:
     extension.remove()
     name = EXTENDED + extension.get("key")
     added = add_parameter(holder, name, definitions, "StringObject", value=extension.get("value"))
@@ -257,7 +257,7 @@ def parameter_of(holder: Node, name: str) -> Node | None:
     return None
 
 
-def add_parameter(holder: Node, name: str, definitions: Definitions, type_name: str = "", /, **value: str) -> Node:
+def add_parameter(holder: Node, name: str, definitions: AddedDefinitions, type_name: str = "", /, **value: str) -> Node:
     """State a parameter, by default without a value."""
     added = holder.add(_TAG)
     added.refer("key", definitions.parameter(name, added))
@@ -274,7 +274,7 @@ def add_parameter(holder: Node, name: str, definitions: Definitions, type_name: 
 _OSEK_GROUP = "osekTaskGroup"
 
 
-def convert_properties(models: ModelSet, definitions: Definitions, notes: Notes) -> None:
+def convert_properties(models: ModelSet, definitions: AddedDefinitions, notes: StepNotes) -> None:
     """Make parameters of allocations of the properties of tasks and ISRs."""
     by_task: dict[Node, list[Node]] = {}
     for allocation in models.nodes("taskAllocation"):
@@ -289,7 +289,7 @@ def convert_properties(models: ModelSet, definitions: Definitions, notes: Notes)
 
 
 def _convert_property(
-    task: Node, key: str, parameter: str, allocations: list[Node], definitions: Definitions, notes: Notes
+    task: Node, key: str, parameter: str, allocations: list[Node], definitions: AddedDefinitions, notes: StepNotes
 ) -> None:
     """State a property in every allocation that does not; it remains as long as one of them states something else."""
     found = property_of(task, key)
@@ -310,7 +310,7 @@ def _value(parameter: Node) -> int | None:
     return whole_number(value.get("value")) if value is not None else None
 
 
-def _convert_groups(by_task: dict[Node, list[Node]], definitions: Definitions, notes: Notes) -> None:
+def _convert_groups(by_task: dict[Node, list[Node]], definitions: AddedDefinitions, notes: StepNotes) -> None:
     """Task groups are a parameter of OSEK only."""
     # The converter to 0.8.1 wrote down every group but 0, so that a task without one is in group 0 if others have one.
     any_stated = any(property_of(task, _OSEK_GROUP) for task in by_task)
@@ -332,7 +332,7 @@ def _is_osek(allocation: Node) -> bool:
     return scheduler is not None and algorithm_of(scheduler) == "OSEK"
 
 
-def _convert_isr(allocation: Node, notes: Notes) -> None:
+def _convert_isr(allocation: Node, notes: StepNotes) -> None:
     isr = allocation.target("isr")
     found = property_of(isr, PRIORITY) if isr is not None else None
     number = whole_number(property_text(found) or "")

@@ -11,7 +11,7 @@ from amalthea_uros.xmi.header import XSI_NAMESPACE
 from amalthea_uros.xmi.migrate.classes import reference_text
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node, remove_all
-from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.notes import StepNotes
 
 # Custom properties: `<customProperties key="k"><value xsi:type="am:StringObject" value="v"/></customProperties>`
 
@@ -91,7 +91,7 @@ def whole_number(text: str) -> int | None:
     return int(text) if _INTEGER(text) else None
 
 
-def make_positive(node: Node, attribute: str, notes: Notes) -> None:
+def make_positive(node: Node, attribute: str, notes: StepNotes) -> None:
     """Replace a written 0 by the smallest number that is allowed now, which is also the new default; negative numbers never meant
     anything.
     """

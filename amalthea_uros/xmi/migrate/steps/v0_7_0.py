@@ -7,7 +7,7 @@ from functools import partial
 from amalthea_uros.xmi.migrate.classes import local_name
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node, remove_all
-from amalthea_uros.xmi.migrate.notes import BEYOND_ITEA, Kind, Notes, Postponed
+from amalthea_uros.xmi.migrate.notes import BEYOND_ITEA, NoteKind, Postponed, StepNotes
 from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.itea_tools import is_isr
 from amalthea_uros.xmi.migrate.steps.tools import add_property, add_value
@@ -29,7 +29,7 @@ _VALUES = {
 _PREFIXES = {"attribute": "attribute#", "features": "feature#"}
 
 
-def convert_values(models: ModelSet, notes: Notes) -> None:
+def convert_values(models: ModelSet, notes: StepNotes) -> None:
     """Make the attributes and features of all hardware nodes custom properties."""
     converted = []
     for tag, prefix in _PREFIXES.items():
@@ -63,7 +63,7 @@ def _key_of_value(value: Node, prefix: str) -> str:
     return prefix + name
 
 
-def _character(text: str, value: Node, notes: Notes) -> str:
+def _character(text: str, value: Node, notes: StepNotes) -> str:
     """The character that a code point stands for; the number itself if XML cannot hold it."""
     try:
         character = chr(int(text))
@@ -110,7 +110,7 @@ _ISR_ALLOCATION = ("isrAllocation", {"process": "isr", "scheduler": "controller"
 _ALLOCATIONS = {"TaskAllocation": _TASK_ALLOCATION, "ISRAllocation": _ISR_ALLOCATION}
 
 
-def change(models: ModelSet, notes: Notes) -> None:
+def change(models: ModelSet, notes: StepNotes) -> None:
     """Change the content of the files of AMALTHEA ITEA 1.3.0."""
     convert_values(models, notes)
     for port in models.nodes("ports"):
@@ -124,7 +124,7 @@ def change(models: ModelSet, notes: Notes) -> None:
     _rename(models, notes)
 
 
-def _rename(models: ModelSet, notes: Notes) -> None:
+def _rename(models: ModelSet, notes: StepNotes) -> None:
     """The names of classes and attributes, in one go."""
     for root in models.roots:
         if root.tag == "AMALTHEA":
@@ -152,7 +152,7 @@ def _rename(models: ModelSet, notes: Notes) -> None:
         node.target_class = _CLASSES.get(node.target_class, local_name(node.target_class))
 
 
-def _convert_interface(port: Node, notes: Notes) -> None:
+def _convert_interface(port: Node, notes: StepNotes) -> None:
     kind = port.get("kind")
     if kind in _KINDS:
         port.attributes["kind"] = _KINDS[kind]
@@ -163,7 +163,7 @@ def _convert_interface(port: Node, notes: Notes) -> None:
         notes.kept(port, "reference to a Franca interface: custom property 'Franca interface'", text)
 
 
-def _split_allocation(models: ModelSet, allocation: Node, notes: Notes) -> None:
+def _split_allocation(models: ModelSet, allocation: Node, notes: StepNotes) -> None:
     """`processAllocation` -> one of a task, or of an ISR."""
     known = _ALLOCATIONS.get(local_name(allocation.type))
     if known is None:
@@ -182,7 +182,7 @@ def _postpone_properties(models: ModelSet, allocation: Node) -> None:
     properties = allocation.all("customProperties")
     for part in properties:
         what = (part, f"{part.tag} of an allocation", part.get("key"))
-        models.postponed.append(Postponed(BEYOND_ITEA, partial(_put_back, part, allocation), Kind.MOVED, *what))
+        models.postponed.append(Postponed(BEYOND_ITEA, partial(_put_back, part, allocation), NoteKind.MOVED, *what))
     remove_all(properties)
 
 

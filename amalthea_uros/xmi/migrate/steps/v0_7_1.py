@@ -8,7 +8,7 @@ from math import isfinite
 
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node, remove_all
-from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.notes import StepNotes
 from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.file_roots import wrap_roots
 from amalthea_uros.xmi.migrate.steps.tools import content_of, free_key, names_of, remove_and_keep
@@ -19,7 +19,7 @@ from amalthea_uros.xmi.migrate.steps.tools import content_of, free_key, names_of
 _MEMBERS = {"labels": "labels", "runEntities": "runnables"}
 
 
-def change_sections(models: ModelSet, notes: Notes) -> None:
+def change_sections(models: ModelSet, notes: StepNotes) -> None:
     """Give labels and runnables their section, and map sections to memories in the new way."""
     for section in models.nodes("sections"):
         for reference, tag in _MEMBERS.items():
@@ -35,7 +35,7 @@ def change_sections(models: ModelSet, notes: Notes) -> None:
     _remove_constraints(models, notes)
 
 
-def _place(member: Node, tag: str, section: Node, notes: Notes) -> None:
+def _place(member: Node, tag: str, section: Node, notes: StepNotes) -> None:
     if member.tag != tag:
         why = "in no file of the set" if member.is_proxy else "of another kind"
         notes.lost(section, f"member of a section that is {why}", names_of([member]))
@@ -48,7 +48,7 @@ def _place(member: Node, tag: str, section: Node, notes: Notes) -> None:
         notes.lost(member, "another section of a label or runnable: only the first is kept", section.name)
 
 
-def _change_mappings(models: ModelSet, notes: Notes) -> None:
+def _change_mappings(models: ModelSet, notes: StepNotes) -> None:
     lost = []
     for mapping in models.nodes("mapping"):
         if mapping.type != "SectionMapping":
@@ -64,7 +64,7 @@ def _change_mappings(models: ModelSet, notes: Notes) -> None:
     remove_all(lost)
 
 
-def _remove_constraints(models: ModelSet, notes: Notes) -> None:
+def _remove_constraints(models: ModelSet, notes: StepNotes) -> None:
     constraints = [node for node in models.nodes("mappingConstraints") if node.type == "SectionMappingConstraint"]
     # Without a condition for the memory a constraint says nothing.
     kept = [node for node in constraints if node.child("hwConstraint") is not None]
@@ -77,7 +77,7 @@ def _remove_constraints(models: ModelSet, notes: Notes) -> None:
     remove_all(lost)
 
 
-def name_mappings(models: ModelSet, notes: Notes) -> None:
+def name_mappings(models: ModelSet, notes: StepNotes) -> None:
     """Name what was a SectionMapping, which had no name; what it is now needs one from 0.7.2 on."""
     labels = models.origins.labels
     mappings = models.parts("mappingModel", "physicalSectionMapping")
@@ -106,7 +106,7 @@ REMOVED_CONSTRAINTS = frozenset({"OrderConstraint", "SchedulerPairingConstraint"
 _LATENCY_TYPES = {"AgeConstraint": "Age", "ReactionConstraint": "Reaction"}
 
 
-def change_constraints(models: ModelSet, notes: Notes) -> None:
+def change_constraints(models: ModelSet, notes: StepNotes) -> None:
     """Change everything below constraintsModel."""
     _rename_constraints(models, notes)
     _remove_without_successor(models, notes)
@@ -114,7 +114,7 @@ def change_constraints(models: ModelSet, notes: Notes) -> None:
         _change_groups(constraint, notes)
 
 
-def _rename_constraints(models: ModelSet, notes: Notes) -> None:
+def _rename_constraints(models: ModelSet, notes: StepNotes) -> None:
     for constraint in models.nodes("timingConstraints"):
         if constraint.type in _LATENCY_TYPES:
             constraint.attributes["type"] = _LATENCY_TYPES[constraint.type]
@@ -128,7 +128,7 @@ def _rename_constraints(models: ModelSet, notes: Notes) -> None:
     models.rename_classes(RENAMED_CONSTRAINTS)
 
 
-def _remove_without_successor(models: ModelSet, notes: Notes) -> None:
+def _remove_without_successor(models: ModelSet, notes: StepNotes) -> None:
     removed = [node for node in models.nodes("timingConstraints", "affinityConstraints") if node.type in REMOVED_CONSTRAINTS]
     for constraint in removed:
         message = f"{constraint.type}: there is no successor"
@@ -136,7 +136,7 @@ def _remove_without_successor(models: ModelSet, notes: Notes) -> None:
     remove_and_keep(removed, "0.7.1")
 
 
-def _change_groups(constraint: Node, notes: Notes) -> None:
+def _change_groups(constraint: Node, notes: StepNotes) -> None:
     entries = []
     for group in constraint.all("runnableGroups"):
         grouping = group.attributes.pop("groupingType", "")
@@ -158,7 +158,7 @@ def _change_groups(constraint: Node, notes: Notes) -> None:
     _move_scope(constraint, entries, notes)
 
 
-def _move_scope(constraint: Node, entries: list[Node], notes: Notes) -> None:
+def _move_scope(constraint: Node, entries: list[Node], notes: StepNotes) -> None:
     """The scope of all entries can be that of the constraint; scopes that differ have no place any more."""
     scopes = {tuple(entry.references.pop("processScope", ())) for entry in entries}
     if len(scopes) == 1 and "processScope" not in constraint.references and (scope := next(iter(scopes))):
@@ -179,7 +179,7 @@ _SWITCHES = frozenset({"ModeSwitch", "ProbabiltitySwitch"})
 _TRUE = frozenset({"true", "1"})
 
 
-def change(models: ModelSet, notes: Notes) -> None:
+def change(models: ModelSet, notes: StepNotes) -> None:
     """Change the content of the files of AMALTHEA 0.7.0."""
     wrap_roots(models, notes)
     change_sections(models, notes)
@@ -194,7 +194,7 @@ def change(models: ModelSet, notes: Notes) -> None:
     change_constraints(models, notes)
 
 
-def _state_units(sizes: Iterable[Node], notes: Notes) -> None:
+def _state_units(sizes: Iterable[Node], notes: StepNotes) -> None:
     for size in sizes:
         bits = size.attributes.pop("numberBits", None)
         # Those of sections are not there any more.
@@ -203,7 +203,7 @@ def _state_units(sizes: Iterable[Node], notes: Notes) -> None:
             notes.converted(size, "number of bits -> value with unit", f"{bits} bit", "numberBits")
 
 
-def _make_element(holders: Iterable[Node], name: str, notes: Notes) -> None:
+def _make_element(holders: Iterable[Node], name: str, notes: StepNotes) -> None:
     """An attribute becomes an element with a value. Its unit stays unstated: 0.7.0 did not state it either."""
     for holder in holders:
         text = holder.attributes.pop(name, None)
@@ -231,7 +231,7 @@ def java_double(text: str) -> str:
     return f"{'-' * sign}{first}.{''.join(rest) or '0'}E{int(exponent) + len(rest)}"
 
 
-def _change_switches(models: ModelSet, notes: Notes) -> None:
+def _change_switches(models: ModelSet, notes: StepNotes) -> None:
     """Entries of switches in call graphs."""
     for switch in models.nodes("graphEntries", "items"):
         if switch.type not in _SWITCHES:
@@ -249,7 +249,7 @@ def _change_switches(models: ModelSet, notes: Notes) -> None:
             _find_default(switch, entries, notes)
 
 
-def _find_default(switch: Node, entries: Iterable[Node], notes: Notes) -> None:
+def _find_default(switch: Node, entries: Iterable[Node], notes: StepNotes) -> None:
     """The first default entry of a mode switch gets an element of its own."""
     found = switch.child("defaultEntry")
     for entry in entries:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node, remove_all
-from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.notes import StepNotes
 from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.file_roots import wrap_roots
 from amalthea_uros.xmi.migrate.steps.tools import content_of, relink
@@ -23,7 +23,7 @@ _MICROCONTROLLER = (_SYSTEM, ("ecus", "migration_gen_ecu"), ("microcontrollers",
 _PARTS = {"core": ("HwCoreProperty", "cores", _MICROCONTROLLER), "memory": ("HwMemoryProperty", "memories", (_SYSTEM,))}
 
 
-def move_hardware(models: ModelSet, notes: Notes) -> None:
+def move_hardware(models: ModelSet, notes: StepNotes) -> None:
     """Move what has a new name to the hardware model, and let the rest mean the hardware of the same name."""
     mover = _Mover(models, notes)
     for tag, new_tag in _DEFINITIONS.items():
@@ -51,7 +51,7 @@ class _Mover:
     replaced : what is meant instead of it
     """
 
-    def __init__(self, models: ModelSet, notes: Notes) -> None:
+    def __init__(self, models: ModelSet, notes: StepNotes) -> None:
         self.models, self.notes = models, notes
         self.known: dict[tuple[str, str], Node] = {}
         self.moved: dict[Node, list[Node]] = {}
@@ -128,7 +128,7 @@ _ITEMS = ("runnableItems", "runnableItem", "items")
 _INSTRUCTIONS = frozenset({"InstructionsConstant", "InstructionsDeviation"})
 
 
-def change_runnable_items(models: ModelSet, notes: Notes) -> None:
+def change_runnable_items(models: ModelSet, notes: StepNotes) -> None:
     """Change all items of runnables, however deep they are."""
     items = models.nodes(*_ITEMS)
     for item in items:
@@ -141,7 +141,7 @@ def change_runnable_items(models: ModelSet, notes: Notes) -> None:
             _unwrap_items(item, notes)
 
 
-def _wrap_instructions(item: Node, notes: Notes) -> None:
+def _wrap_instructions(item: Node, notes: StepNotes) -> None:
     """The item stays, and what it said becomes a part of it."""
     default = Node("default", item.type, item.attributes, item.origin)
     default.references = item.references
@@ -153,7 +153,7 @@ def _wrap_instructions(item: Node, notes: Notes) -> None:
     notes.converted(item, f"{default.type} -> RunnableInstructions with default")
 
 
-def _unwrap_items(group: Node, notes: Notes) -> None:
+def _unwrap_items(group: Node, notes: StepNotes) -> None:
     """Items of groups without the deviation around each of them."""
     children: list[Node] = []
     wrappers = []
@@ -168,7 +168,7 @@ def _unwrap_items(group: Node, notes: Notes) -> None:
         group.set_children(children)
 
 
-def _unwrapped(wrapper: Node, notes: Notes) -> list[Node]:
+def _unwrapped(wrapper: Node, notes: StepNotes) -> list[Node]:
     items = wrapper.all("runnableItem")
     properties = wrapper.all("customProperties") if items else []
     remove_all([*items, *properties])
@@ -182,7 +182,7 @@ def _unwrapped(wrapper: Node, notes: Notes) -> list[Node]:
     return items
 
 
-def _make_switch(group: Node, notes: Notes) -> None:
+def _make_switch(group: Node, notes: StepNotes) -> None:
     group.type = "RunnableProbabilitySwitch"
     notes.converted(group, "ProbabilityGroup -> RunnableProbabilitySwitch")
     for entry in group.all("items"):
@@ -216,7 +216,7 @@ _GROUPS = {"DataPairingConstraint": "labels", "ProcessPairingConstraint": "proce
 _LEVELS = {"processLevel": "process", "runnableLevel": "runnable", "scheduleSectionLevel": "scheduleSection"}
 
 
-def change(models: ModelSet, notes: Notes) -> None:
+def change(models: ModelSet, notes: StepNotes) -> None:
     """Change the content of the files of AMALTHEA 0.7.1."""
     wrap_roots(models, notes)
     _change_attributes(models, notes)
@@ -235,7 +235,7 @@ def change(models: ModelSet, notes: Notes) -> None:
     _change_traced_events(models, notes)
 
 
-def _change_attributes(models: ModelSet, notes: Notes) -> None:
+def _change_attributes(models: ModelSet, notes: StepNotes) -> None:
     """Attributes that several classes have."""
     for node in models.walk():
         attributes = node.attributes
@@ -253,7 +253,7 @@ def _change_attributes(models: ModelSet, notes: Notes) -> None:
             _move_sampling(node, attributes.pop("samplingType"), notes)
 
 
-def _move_sampling(deviation: Node, sampling: str, notes: Notes) -> None:
+def _move_sampling(deviation: Node, sampling: str, notes: StepNotes) -> None:
     """Only the distribution Boundaries has a sampling type now."""
     distribution = deviation.child("distribution")
     # Without a distribution, the bounds are all that there is to sample.
@@ -266,7 +266,7 @@ def _move_sampling(deviation: Node, sampling: str, notes: Notes) -> None:
         notes.lost(deviation, "samplingType of a deviation: only the distribution Boundaries has one", sampling, "samplingType")
 
 
-def _change_constraints(models: ModelSet, notes: Notes) -> None:
+def _change_constraints(models: ModelSet, notes: StepNotes) -> None:
     removed = [node for node in models.nodes("target") if node.type in _REMOVED_TARGETS]
     for target in removed:
         notes.lost(target, f"{target.type}: targets of runnable constraints are schedulers or cores", content_of(target))
@@ -278,7 +278,7 @@ def _change_constraints(models: ModelSet, notes: Notes) -> None:
             group.tag = "group"
 
 
-def _change_buffering(os_model: Node, notes: Notes) -> None:
+def _change_buffering(os_model: Node, notes: StepNotes) -> None:
     buffering, consistency = os_model.child("osBuffering"), os_model.child("osDataConsistency")
     if buffering is None:
         if consistency is None and not os_model.find("operatingSystems", "osDataConsistency"):
@@ -303,7 +303,7 @@ def _change_buffering(os_model: Node, notes: Notes) -> None:
         notes.lost(buffering, "level of osBuffering: data stability has only one", ", ".join(levels[1:]))
 
 
-def _move_tags(models: ModelSet, notes: Notes) -> None:
+def _move_tags(models: ModelSet, notes: StepNotes) -> None:
     """Tags of all models are common elements; those of the same name in a file become one."""
     replaced: dict[Node, Node] = {}
     for root in models.roots:
@@ -328,7 +328,7 @@ def _move_tags(models: ModelSet, notes: Notes) -> None:
     relink(models, replaced)
 
 
-def _change_traced_events(models: ModelSet, notes: Notes) -> None:
+def _change_traced_events(models: ModelSet, notes: StepNotes) -> None:
     """Configurations of traces refer to events; those that contain one move it to the event model."""
     moved: dict[Node, list[Node]] = {}
     for config in models.nodes("eventsToTrace"):

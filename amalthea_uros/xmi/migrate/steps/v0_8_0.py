@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node, remove_all
-from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.notes import StepNotes
 from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.file_roots import wrap_roots
 from amalthea_uros.xmi.migrate.steps.tools import (
@@ -23,7 +23,7 @@ _TIMES = {"SignedTime": "Time", "SignedTimeObject": "TimeObject"}
 _RENAMED_CLASSES = {"AllocationConstraint": "CoreAllocationConstraint", "MappingConstraint": "MemoryMappingConstraint"}
 
 
-def change(models: ModelSet, notes: Notes) -> None:
+def change(models: ModelSet, notes: StepNotes) -> None:
     """Change the content of the files of AMALTHEA 0.7.2."""
     wrap_roots(models, notes)
     for mapping in models.parts("mappingModel", "mapping"):
@@ -41,7 +41,7 @@ def change(models: ModelSet, notes: Notes) -> None:
         notes.renamed(found, f"abstract class -> {found.type}")
 
 
-def _change_values(models: ModelSet, notes: Notes) -> None:
+def _change_values(models: ModelSet, notes: StepNotes) -> None:
     """Classes and units that occur in many places."""
     for node in models.index.all():
         if "unit" in node.attributes and (unit := node.attributes["unit"]) in _UNITS:
@@ -55,7 +55,7 @@ def _change_values(models: ModelSet, notes: Notes) -> None:
         notes.renamed(node, "ProbabiltitySwitch -> ProbabilitySwitch")
 
 
-def _drop_mode(models: ModelSet, label: Node, notes: Notes) -> None:
+def _drop_mode(models: ModelSet, label: Node, notes: StepNotes) -> None:
     """The mode of a mode label follows from its initial value."""
     if text := label.attributes.pop("mode", ""):
         notes.lost(label, "mode of a mode label that is no reference", text, "mode")
@@ -71,7 +71,7 @@ def _drop_mode(models: ModelSet, label: Node, notes: Notes) -> None:
         models.set_aside[label, "mode"] = mode
 
 
-def _distribute_consistency(os_model: Node, notes: Notes) -> None:
+def _distribute_consistency(os_model: Node, notes: StepNotes) -> None:
     """Every operating system says on its own how it keeps data consistent."""
     systems = os_model.all("operatingSystems")
     for consistency in os_model.all("osDataConsistency"):
@@ -94,7 +94,7 @@ def _copied(node: Node) -> Node:
     return made
 
 
-def _keep_hardware_constraint(constraint: Node, notes: Notes) -> None:
+def _keep_hardware_constraint(constraint: Node, notes: StepNotes) -> None:
     """Keep the text of conditions for the hardware, which have no successor."""
     conditions = constraint.all("hwConstraint")
     if not conditions:

@@ -6,7 +6,7 @@ from amalthea_uros.metamodel.naming import TYPE_MARK
 from amalthea_uros.xmi.migrate.classes import class_of, reference_text
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node, remove_all
-from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.notes import StepNotes
 from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.kept import strings
 from amalthea_uros.xmi.migrate.steps.tools import (
@@ -27,7 +27,7 @@ from amalthea_uros.xmi.migrate.steps.tools import (
 _CONSTRAINTS = ("EventChainLatencyConstraint", "EventChainSynchronizationConstraint")
 
 
-def contain_event_chains(models: ModelSet, notes: Notes) -> None:
+def contain_event_chains(models: ModelSet, notes: StepNotes) -> None:
     """SubEventChain -> EventChainContainer; references to inner chains -> custom properties with the text of the reference."""
     chains = [chain for tree in models.trees for chain in tree.root.find("constraintsModel", "eventChains")]
     outer = {chain.name: chain for chain in chains if chain.name}
@@ -44,7 +44,7 @@ def contain_event_chains(models: ModelSet, notes: Notes) -> None:
             _keep_scope(constraint, outer, notes)
 
 
-def _keep_scope(constraint: Node, outer: dict[str, Node], notes: Notes) -> None:
+def _keep_scope(constraint: Node, outer: dict[str, Node], notes: StepNotes) -> None:
     texts = _take_inner(constraint, "scope", outer)
     if not texts:
         return
@@ -80,7 +80,7 @@ _PRIORITY = "priority"
 _GROUP = "osekTaskGroup"
 
 
-def move_priorities(models: ModelSet, notes: Notes) -> None:
+def move_priorities(models: ModelSet, notes: StepNotes) -> None:
     """Priority of an allocation -> scheduling parameters; priority and task group of a process -> custom properties."""
     allocated = _move_of_allocations(models, notes)
     allocated |= _replace_defaults_of_isr_allocations(models, notes)
@@ -91,7 +91,7 @@ def move_priorities(models: ModelSet, notes: Notes) -> None:
         _move_task_group(task, notes)
 
 
-def _move_of_allocations(models: ModelSet, notes: Notes) -> set[Node]:
+def _move_of_allocations(models: ModelSet, notes: StepNotes) -> set[Node]:
     """The tasks of which every allocation states a priority now."""
     allocated: set[Node] = set()
     unstated: set[Node | None] = set()
@@ -116,7 +116,7 @@ def _move_of_allocations(models: ModelSet, notes: Notes) -> set[Node]:
     return allocated - unstated
 
 
-def _replace_defaults_of_isr_allocations(models: ModelSet, notes: Notes) -> set[Node]:
+def _replace_defaults_of_isr_allocations(models: ModelSet, notes: StepNotes) -> set[Node]:
     """The ISRs of which every allocation states a priority; it stays an attribute there, also in the newest version."""
     allocated: set[Node] = set()
     unstated: set[Node | None] = set()
@@ -135,7 +135,7 @@ def _replace_defaults_of_isr_allocations(models: ModelSet, notes: Notes) -> set[
     return allocated - unstated
 
 
-def _move_of_process(process: Node, is_allocated: bool, notes: Notes) -> None:
+def _move_of_process(process: Node, is_allocated: bool, notes: StepNotes) -> None:
     text = process.attributes.pop(_PRIORITY, None)
     if text is None:
         return
@@ -150,7 +150,7 @@ def _move_of_process(process: Node, is_allocated: bool, notes: Notes) -> None:
         notes.lost(process, "priority 0 of a process", attribute=_PRIORITY)
 
 
-def _move_task_group(task: Node, notes: Notes) -> None:
+def _move_task_group(task: Node, notes: StepNotes) -> None:
     text = task.attributes.pop(_GROUP, None)
     if text == "0":
         # Nothing is lost: a task without group is in group 0.
@@ -160,7 +160,7 @@ def _move_task_group(task: Node, notes: Notes) -> None:
         notes.kept(task, "OSEK task group", text, _GROUP)
 
 
-def _state(process: Node, key: str, text: str, notes: Notes) -> None:
+def _state(process: Node, key: str, text: str, notes: StepNotes) -> None:
     """Add a custom property that the step to 2.0.0 finds by its key: of another one of that key it would take the value."""
     present = property_of(process, key)
     if property_text(present) == text:
@@ -185,7 +185,7 @@ def _own(process: Node | None) -> str:
 _HARDWARE, _SOFTWARE = "SchedulingHWUnit", "SchedulingSWUnit"
 
 
-def change_schedulers(models: ModelSet, notes: Notes) -> None:
+def change_schedulers(models: ModelSet, notes: StepNotes) -> None:
     """Dissolve the scheduling units; rename the parameters of user specific algorithms."""
     for tag in ("taskSchedulers", "interruptControllers"):
         for scheduler in models.parts("osModel", "operatingSystems", tag):
@@ -195,7 +195,7 @@ def change_schedulers(models: ModelSet, notes: Notes) -> None:
                 _dissolve(unit, scheduler, notes)
 
 
-def _rename_parameters(scheduler: Node, notes: Notes) -> None:
+def _rename_parameters(scheduler: Node, notes: StepNotes) -> None:
     for algorithm in scheduler.all("schedulingAlgorithm"):
         if algorithm.type != "UserSpecificSchedulingAlgorithm":
             continue
@@ -204,7 +204,7 @@ def _rename_parameters(scheduler: Node, notes: Notes) -> None:
             notes.renamed(parameter, "parameter -> parameterExtensions", parameter.get("key"))
 
 
-def _keep_priority(holder: Node, scheduler: Node, attribute: str, key: str, notes: Notes) -> None:
+def _keep_priority(holder: Node, scheduler: Node, attribute: str, key: str, notes: StepNotes) -> None:
     text = holder.attributes.pop(attribute, None)
     if text == "0":
         notes.converted(holder, f"{attribute} 0, the old default, left out", attribute=attribute)
@@ -213,7 +213,7 @@ def _keep_priority(holder: Node, scheduler: Node, attribute: str, key: str, note
         notes.kept(holder, f"{attribute} of a scheduling unit", text, attribute)
 
 
-def _dissolve(unit: Node, scheduler: Node, notes: Notes) -> None:
+def _dissolve(unit: Node, scheduler: Node, notes: StepNotes) -> None:
     kind = unit.type or (_HARDWARE if unit.child("delay") else _SOFTWARE)
     for entry in unit.all("customProperties"):
         key = entry.attributes["key"] = f"{kind}_CustomProperty__{entry.get('key')}"
@@ -269,7 +269,7 @@ _MODE_VALUE_LISTS = ("setModeValueList", "enablingModeValueList", "disablingMode
 _PARTS_OF_QUARTZ = ("components", "memories", "networks", "ports", "prescaler")
 
 
-def change(models: ModelSet, notes: Notes) -> None:
+def change(models: ModelSet, notes: StepNotes) -> None:
     """Change the content of the files of AMALTHEA 0.8.0."""
     for node in models.rename_classes(_CLASSES):
         notes.renamed(node, "class renamed", f"{_OLD_NAMES[node.type]} -> {node.type}")
@@ -285,7 +285,7 @@ def change(models: ModelSet, notes: Notes) -> None:
     _change_hardware(models, notes)
 
 
-def _rename_in_texts(models: ModelSet, notes: Notes) -> None:
+def _rename_in_texts(models: ModelSet, notes: StepNotes) -> None:
     """Rename the classes of stimuli in references that are texts of custom properties."""
     for node in models.nodes("value", "values"):
         before, mark, name = node.get("value").partition(TYPE_MARK)
@@ -295,7 +295,7 @@ def _rename_in_texts(models: ModelSet, notes: Notes) -> None:
         notes.renamed(node, "class renamed in the text of a custom property", f"{name} -> {_CLASSES[name]}", "value")
 
 
-def _change_triggers(models: ModelSet, notes: Notes) -> None:
+def _change_triggers(models: ModelSet, notes: StepNotes) -> None:
     """From 0.8.1 on, a process can trigger others by inter-process stimuli only."""
     for trigger in models.nodes("calls"):
         stimulus = trigger.target("stimulus")
@@ -305,7 +305,7 @@ def _change_triggers(models: ModelSet, notes: Notes) -> None:
             _take_other_stimulus(trigger, stimulus, notes)
 
 
-def _take_other_stimulus(trigger: Node, stimulus: Node, notes: Notes) -> None:
+def _take_other_stimulus(trigger: Node, stimulus: Node, notes: StepNotes) -> None:
     del trigger.references["stimulus"]
     value = Node("value", "ReferenceObject", origin=trigger.origin)
     value.refer("value", stimulus)
@@ -313,7 +313,7 @@ def _take_other_stimulus(trigger: Node, stimulus: Node, notes: Notes) -> None:
     notes.kept(trigger, "triggered stimulus that is not an inter-process stimulus", reference_text(stimulus), "stimulus")
 
 
-def _rename_features(models: ModelSet, notes: Notes) -> None:
+def _rename_features(models: ModelSet, notes: StepNotes) -> None:
     for model, tag, class_name, old, new in _RENAMED:
         for node in models.parts(model, tag):
             if class_name in (node.type, "") and node.rename(old, new):
@@ -323,7 +323,7 @@ def _rename_features(models: ModelSet, notes: Notes) -> None:
         notes.renamed(allocation, "coreAllocation -> schedulerAllocation")
 
 
-def _type_mode_values(models: ModelSet, notes: Notes) -> None:
+def _type_mode_values(models: ModelSet, notes: StepNotes) -> None:
     for name in _MODE_VALUE_LISTS:
         for entry in models.parts("stimuliModel", "stimuli", name, "entries"):
             if entry.type in ("", "ModeValueListEntry"):
@@ -331,7 +331,7 @@ def _type_mode_values(models: ModelSet, notes: Notes) -> None:
                 notes.renamed(entry, "class renamed", "ModeValueListEntry -> ModeValue")
 
 
-def _type_label_groups(models: ModelSet, notes: Notes) -> None:
+def _type_label_groups(models: ModelSet, notes: StepNotes) -> None:
     """State the class of the labels of a pairing constraint: there is a second kind of groups now."""
     for constraint in models.parts("constraintsModel", "affinityConstraints"):
         for group in constraint.all("group") if constraint.type == "DataPairingConstraint" else ():
@@ -340,7 +340,7 @@ def _type_label_groups(models: ModelSet, notes: Notes) -> None:
                 notes.renamed(group, "class of a group of labels is stated: LabelEntityGroup")
 
 
-def _keep_deadlines(models: ModelSet, notes: Notes) -> None:
+def _keep_deadlines(models: ModelSet, notes: StepNotes) -> None:
     for activation in models.parts("swModel", "activations"):
         deadline = activation.child("deadline")
         if activation.type == "PeriodicActivation" and deadline is not None:
@@ -349,7 +349,7 @@ def _keep_deadlines(models: ModelSet, notes: Notes) -> None:
             add_value(activation, "deadline", deadline)
 
 
-def _change_hardware(models: ModelSet, notes: Notes) -> None:
+def _change_hardware(models: ModelSet, notes: StepNotes) -> None:
     for memory in models.parts("hwModel", "memoryTypes"):
         pattern = memory.attributes.pop("xAccessPattern", None)
         if pattern is not None:
@@ -360,7 +360,7 @@ def _change_hardware(models: ModelSet, notes: Notes) -> None:
             _collect_quartzes(systems, notes)
 
 
-def _collect_quartzes(systems: list[Node], notes: Notes) -> None:
+def _collect_quartzes(systems: list[Node], notes: StepNotes) -> None:
     """All quartzes of a file become parts of the system, and have no parts of the hardware any more."""
     home = systems[0]
     quartzes = [node for system in systems for node in system.walk() if node.tag == "quartzes"]

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from amalthea_uros.xmi.migrate.classes import reference_text
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node
-from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.notes import StepNotes
 from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.tools import add_property, add_value
 
@@ -17,7 +17,7 @@ _PROVIDER = "valueProvider"
 _SWITCH, _RUNNABLE_SWITCH = "ModeSwitch", "RunnableModeSwitch"
 
 
-def state_conditions(models: ModelSet, notes: Notes) -> None:
+def state_conditions(models: ModelSet, notes: StepNotes) -> None:
     """Label of a switch, and literals of each entry -> condition of each entry: one of the literals."""
     for switch in models.nodes("graphEntries", "runnableItems", "items"):
         if switch.type not in (_SWITCH, _RUNNABLE_SWITCH):
@@ -25,7 +25,7 @@ def state_conditions(models: ModelSet, notes: Notes) -> None:
         _change_switch(switch, notes)
 
 
-def _change_switch(switch: Node, notes: Notes) -> None:
+def _change_switch(switch: Node, notes: StepNotes) -> None:
     labels = switch.references.pop(_PROVIDER, [])
     text = switch.attributes.pop(_PROVIDER, None)
     if text is not None:
@@ -38,7 +38,7 @@ def _change_switch(switch: Node, notes: Notes) -> None:
         _state_condition(entry, label, notes)
 
 
-def _state_condition(entry: Node, label: Node | None, notes: Notes) -> None:
+def _state_condition(entry: Node, label: Node | None, notes: StepNotes) -> None:
     literals = entry.references.pop("values", [])
     text = entry.attributes.pop("values", None)
     if text is not None:
@@ -66,7 +66,7 @@ _OLD_NAMES = {new: old for old, new in _CLASSES.items()}
 _DEVIATION = "stimulusDeviation"
 
 
-def change(models: ModelSet, notes: Notes) -> None:
+def change(models: ModelSet, notes: StepNotes) -> None:
     """Change the content of the files of AMALTHEA 0.8.2."""
     for node in models.rename_classes(_CLASSES):
         notes.renamed(node, "class renamed", f"{_OLD_NAMES[node.type]} -> {node.type}")
@@ -81,7 +81,7 @@ def change(models: ModelSet, notes: Notes) -> None:
     state_conditions(models, notes)
 
 
-def _keep_deviation(holder: Node, tag: str, what: str, notes: Notes) -> None:
+def _keep_deviation(holder: Node, tag: str, what: str, notes: StepNotes) -> None:
     for deviation in holder.all(tag):
         deviation.remove()
         text = _outline(deviation)
@@ -92,20 +92,20 @@ def _keep_deviation(holder: Node, tag: str, what: str, notes: Notes) -> None:
             notes.kept(holder, what, text)
 
 
-def _rename_part(holder: Node, old: str, new: str, notes: Notes) -> None:
+def _rename_part(holder: Node, old: str, new: str, notes: StepNotes) -> None:
     for part in holder.all(old):
         part.tag = new
         notes.renamed(part, f"{old} -> {new}")
 
 
-def _change_periodic(stimulus: Node, notes: Notes) -> None:
+def _change_periodic(stimulus: Node, notes: StepNotes) -> None:
     if "clock" in stimulus.references or "clock" in stimulus.attributes:
         _follow_clock(stimulus, notes)
     else:
         _rename_part(stimulus, _DEVIATION, "jitter", notes)
 
 
-def _follow_clock(stimulus: Node, notes: Notes) -> None:
+def _follow_clock(stimulus: Node, notes: StepNotes) -> None:
     """A periodic stimulus whose recurrence a clock stretches, becomes one of variable rate."""
     stimulus.type = "VariableRateStimulus"
     notes.converted(stimulus, "PeriodicStimulus with a clock -> VariableRateStimulus with a scenario; its step is not known")
@@ -124,14 +124,14 @@ def _follow_clock(stimulus: Node, notes: Notes) -> None:
         deviation.remove()
 
 
-def _change_sporadic(stimulus: Node, notes: Notes) -> None:
+def _change_sporadic(stimulus: Node, notes: StepNotes) -> None:
     _rename_part(stimulus, _DEVIATION, "nextOccurrence", notes)
     description = stimulus.attributes.pop("description", None)
     if description:
         notes.lost(stimulus, "description of a sporadic stimulus", repr(description), "description")
 
 
-def _change_synthetic(stimulus: Node, notes: Notes) -> None:
+def _change_synthetic(stimulus: Node, notes: StepNotes) -> None:
     _rename_part(stimulus, "period", "recurrence", notes)
     for times in stimulus.all("triggerTimes"):
         for time in times.all("timestamps"):
@@ -141,11 +141,11 @@ def _change_synthetic(stimulus: Node, notes: Notes) -> None:
         times.remove()
 
 
-def _change_single(stimulus: Node, notes: Notes) -> None:
+def _change_single(stimulus: Node, notes: StepNotes) -> None:
     _rename_part(stimulus, "activation", "occurrence", notes)
 
 
-def _change_arrival_curve(stimulus: Node, notes: Notes) -> None:
+def _change_arrival_curve(stimulus: Node, notes: StepNotes) -> None:
     for entry in stimulus.all("entries"):
         if entry.rename("numberOfEvents", "numberOfOccurrences"):
             notes.renamed(entry, "numberOfEvents -> numberOfOccurrences", attribute="numberOfEvents")
@@ -164,7 +164,7 @@ def _value(node: Node) -> str:
     return node.type + (f"({', '.join(stated)})" if stated else "")
 
 
-_KINDS: dict[str, Callable[[Node, Notes], None]] = {
+_KINDS: dict[str, Callable[[Node, StepNotes], None]] = {
     "ArrivalCurveStimulus": _change_arrival_curve,
     "PeriodicStimulus": _change_periodic,
     "PeriodicSyntheticStimulus": _change_synthetic,

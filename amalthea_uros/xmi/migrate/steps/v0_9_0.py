@@ -9,13 +9,13 @@ from math import ceil, floor
 from amalthea_uros.xmi.migrate.classes import class_of
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node, remove_all
-from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.notes import StepNotes
 from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.tools import whole_number
 from amalthea_uros.xmi.migrate.steps.v0_9_0_parts import (
     INSTRUCTIONS,
     Clocks,
-    Definitions,
+    HardwareDefinitions,
     Structures,
     copy_of,
     frequency_of,
@@ -61,7 +61,7 @@ _TO_MEMORIES = {
 class References:
     """The conversion of references, before that of the hardware."""
 
-    def __init__(self, models: ModelSet, notes: Notes) -> None:
+    def __init__(self, models: ModelSet, notes: StepNotes) -> None:
         self.models = models
         self.notes = notes
 
@@ -120,7 +120,7 @@ _MOST_INNER_PATHS = 50
 class AccessPaths:
     """The conversion of access paths, after that of structures and quartzes."""
 
-    def __init__(self, models: ModelSet, notes: Notes) -> None:
+    def __init__(self, models: ModelSet, notes: StepNotes) -> None:
         self.models = models
         self.notes = notes
         self.inner_paths = 0
@@ -265,7 +265,7 @@ def _scale(latency: Node, factor: Fraction) -> None:
 _NEEDS = {"InstructionsConstant": "NeedConstant", "InstructionsDeviation": "NeedDeviation"}
 
 
-def convert_instructions(models: ModelSet, notes: Notes) -> list[Node]:
+def convert_instructions(models: ModelSet, notes: StepNotes) -> list[Node]:
     """Convert the instructions of runnables and schedulers, and return them."""
     found = models.of_type("RunnableInstructions")
     for item in found:
@@ -279,7 +279,7 @@ def convert_instructions(models: ModelSet, notes: Notes) -> list[Node]:
     return found
 
 
-def _make_entry(instructions: Node, notes: Notes) -> None:
+def _make_entry(instructions: Node, notes: StepNotes) -> None:
     """Put instructions as a need into an entry of the same tag."""
     if instructions.type not in _NEEDS and instructions.type:
         return
@@ -296,14 +296,14 @@ def _make_entry(instructions: Node, notes: Notes) -> None:
         fetch.remove()
 
 
-def change_0_8_3(models: ModelSet, notes: Notes) -> None:
+def change_0_8_3(models: ModelSet, notes: StepNotes) -> None:
     """Change the content of the files of AMALTHEA 0.8.3."""
     references = References(models, notes)
     references.convert()
     references.convert_proxies()
     clocks = Clocks(notes)
     clocks.convert_quartzes(models)
-    definitions = Definitions(models, notes)
+    definitions = HardwareDefinitions(models, notes)
     Structures(clocks, notes).convert(models)
     AccessPaths(models, notes).convert()
     definitions.convert()
@@ -332,7 +332,7 @@ STEP_0_9_0 = Step(
 )
 
 
-def change_0_9_0(models: ModelSet, notes: Notes) -> None:
+def change_0_9_0(models: ModelSet, notes: StepNotes) -> None:
     """Change the content of the files of AMALTHEA 0.9.0."""
     for node in models.of_type("TimeObject"):
         node.type = "Time"
@@ -347,7 +347,7 @@ STEP_0_9_1 = Step("0.9.0", "0.9.1", change_0_9_0, frozenset({"TimeObject"}))
 _UNSTATED = ("", "_undefined_")
 
 
-def state_units(models: ModelSet, notes: Notes) -> None:
+def state_units(models: ModelSet, notes: StepNotes) -> None:
     """State that the frequencies of what was a quartz are in Hz, and the sizes of what was a memory type in bytes.
 
     APP4MC made both from plain numbers, without unit, and corrected its examples by hand in this sense. Its converters leave the unit

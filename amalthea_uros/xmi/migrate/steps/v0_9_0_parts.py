@@ -12,7 +12,7 @@ from amalthea_uros.units import FREQUENCY
 from amalthea_uros.xmi.data_types import format_double, parse_float
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node, remove_all
-from amalthea_uros.xmi.migrate.notes import BEYOND_CONVERTERS, Kind, Notes, Postponed
+from amalthea_uros.xmi.migrate.notes import BEYOND_CONVERTERS, NoteKind, Postponed, StepNotes
 from amalthea_uros.xmi.migrate.steps.tools import add_property, content_of, free_key, names_of
 
 #: Values by which EMF states that nothing is stated.
@@ -34,7 +34,7 @@ class Shape:
     references: frozenset[str] = frozenset()
     parts: frozenset[str] = frozenset()
 
-    def reduce(self, node: Node, notes: Notes) -> None:
+    def reduce(self, node: Node, notes: StepNotes) -> None:
         """Remove the rest, and report it."""
         shared = frozenset({"customProperties", "tags"})
         for key, text in list(node.attributes.items()):
@@ -110,7 +110,7 @@ _HERTZ = {"": 1, "_undefined_": 1, **FREQUENCY.units}
 class Clocks:
     """The frequency domains of a set of files."""
 
-    def __init__(self, notes: Notes) -> None:
+    def __init__(self, notes: StepNotes) -> None:
         self.notes = notes
         self.domains: dict[tuple[Node, str], Node] = {}
         self.names: set[str] = set()
@@ -234,10 +234,10 @@ _POLICY = {"RROBIN": "RoundRobin", "PRIORITY": "PriorityBased"}
 _WITHOUT_SUCCESSOR = {"systemTypes": "system type", "ecuTypes": "ECU type", "mcTypes": "microcontroller type"}
 
 
-class Definitions:
+class HardwareDefinitions:
     """The definitions of a set of files."""
 
-    def __init__(self, models: ModelSet, notes: Notes) -> None:
+    def __init__(self, models: ModelSet, notes: StepNotes) -> None:
         self.models = models
         self.notes = notes
         self.category: Node | None = None
@@ -284,7 +284,7 @@ class Definitions:
         add_property(node, "memoryType", kind)
         self.notes.kept(*what)
         state = partial(node.attributes.setdefault, "memoryType", "FLASH")
-        self.models.postponed.append(Postponed(BEYOND_CONVERTERS, state, Kind.CONVERTED, *what, is_kept=True))
+        self.models.postponed.append(Postponed(BEYOND_CONVERTERS, state, NoteKind.CONVERTED, *what, is_kept=True))
 
     def _convert_core_type(self, node: Node, hardware: Node) -> None:
         node.tag, node.type = "definitions", "ProcessingUnitDefinition"
@@ -344,7 +344,7 @@ _KEPT_OF_RESPONDERS = ("readCycles", "writeCycles", "baseAddress", "addressRange
 _SAYS_NOTHING = frozenset({"", "_undefined_", "0", "0x0"})
 
 
-def convert_ports(node: Node, notes: Notes) -> None:
+def convert_ports(node: Node, notes: StepNotes) -> None:
     """Convert the ports of a structure or module."""
     for port in node.all("ports"):
         port.type, port.target_class = "", "HwPort"
@@ -357,7 +357,7 @@ def convert_ports(node: Node, notes: Notes) -> None:
         (_INITIATOR if is_initiator else _PORT).reduce(port, notes)
 
 
-def _keep(port: Node, names: tuple[str, ...], notes: Notes) -> None:
+def _keep(port: Node, names: tuple[str, ...], notes: StepNotes) -> None:
     for name in names:
         text = port.attributes.pop(name, "")
         # An address of 0 means something if there is a range.
@@ -392,7 +392,7 @@ _NETWORK = Shape("networks", references=_REFERENCES, parts=frozenset({"ports", "
 class Structures:
     """The conversion of what the hardware consists of."""
 
-    def __init__(self, clocks: Clocks, notes: Notes) -> None:
+    def __init__(self, clocks: Clocks, notes: StepNotes) -> None:
         self.clocks = clocks
         self.notes = notes
         #: What is converted, and what of it remains once its parts are where they belong.

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node
-from amalthea_uros.xmi.migrate.notes import Kind, Notes
+from amalthea_uros.xmi.migrate.notes import NoteKind, StepNotes
 from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.tools import by_class, keep_comments
 from amalthea_uros.xmi.migrate.steps.v0_9_3_ticks import Ticks
@@ -40,7 +40,7 @@ _LATENCIES = ("LatencyConstant", "LatencyDeviation")
 _STEP_LIMITS = ("maxIncreasePerStep", "maxDecreasePerStep")
 
 
-def change(models: ModelSet, notes: Notes) -> None:
+def change(models: ModelSet, notes: StepNotes) -> None:
     """Change the content of the files of AMALTHEA 0.9.2."""
     found = by_class(models, (*_DEVIATIONS, *_LATENCIES, "ExecutionNeed"))
     values = Values(notes)
@@ -49,7 +49,7 @@ def change(models: ModelSet, notes: Notes) -> None:
     ticks.convert_overheads(models.nodes("osOverheads"))
     models.rename_classes({"OsInstructions": "OsOverhead"})
     # Their ticks are the same on all cores, so that there is no place for a quotient.
-    _rename_chunks(models, Kind.TO_CHECK if ticks.rates else Kind.RENAMED, notes)
+    _rename_chunks(models, NoteKind.TO_CHECK if ticks.rates else NoteKind.RENAMED, notes)
     for name in _LATENCIES:
         for node in found[name]:
             _convert_latency(node, values, notes)
@@ -60,14 +60,14 @@ def change(models: ModelSet, notes: Notes) -> None:
         _convert_step_limits(node, notes)
 
 
-def _rename_chunks(models: ModelSet, kind: Kind, notes: Notes) -> None:
+def _rename_chunks(models: ModelSet, kind: NoteKind, notes: StepNotes) -> None:
     for node in models.nodes("transmissionPolicy"):
         if node.rename("chunkProcessingInstructions", "chunkProcessingTicks"):
             message = "instructions per chunk are ticks now, not divided by the instructions per cycle"
             notes.add(kind, node, message, node.get("chunkProcessingTicks"), "chunkProcessingInstructions")
 
 
-def _convert_latency(node: Node, values: Values, notes: Notes) -> None:
+def _convert_latency(node: Node, values: Values, notes: StepNotes) -> None:
     if node.parent is None:
         # Only in damaged files.
         return
@@ -80,7 +80,7 @@ def _convert_latency(node: Node, values: Values, notes: Notes) -> None:
     notes.converted(node, "a latency has a class of its own for each distribution now", stated.type)
 
 
-def _convert_deviations(node: Node, place: _Place, values: Values, notes: Notes) -> None:
+def _convert_deviations(node: Node, place: _Place, values: Values, notes: StepNotes) -> None:
     for part in node.all(place.part):
         if part.type:
             # Already in the newer form, where a class is always stated.
@@ -92,7 +92,7 @@ def _convert_deviations(node: Node, place: _Place, values: Values, notes: Notes)
         notes.converted(part, "a deviation has a class of its own for each distribution now", part.type)
 
 
-def _convert_step_limits(node: Node, notes: Notes) -> None:
+def _convert_step_limits(node: Node, notes: StepNotes) -> None:
     for part in node.all(*_STEP_LIMITS):
         if "value" in part.attributes:
             node.attributes[part.tag] = part.attributes["value"]

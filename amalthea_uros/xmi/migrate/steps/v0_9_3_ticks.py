@@ -10,7 +10,7 @@ from functools import partial
 from amalthea_uros.xmi.data_types import parse_float
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node, remove_all
-from amalthea_uros.xmi.migrate.notes import BEYOND_CONVERTERS, Kind, Notes, Postponed
+from amalthea_uros.xmi.migrate.notes import BEYOND_CONVERTERS, NoteKind, Postponed, StepNotes
 from amalthea_uros.xmi.migrate.steps.tools import insert_after, keep_comments, whole_number
 from amalthea_uros.xmi.migrate.steps.v0_9_3_values import Values
 
@@ -33,7 +33,7 @@ _OVERHEADS = ("apiOverhead", "isrCategory1Overhead", "isrCategory2Overhead")
 class Ticks:
     """Converts what is stated in instructions; knows how many of them each kind of processing unit executes per cycle."""
 
-    def __init__(self, models: ModelSet, values: Values, notes: Notes) -> None:
+    def __init__(self, models: ModelSet, values: Values, notes: StepNotes) -> None:
         self.models, self.notes = models, notes
         self.values = values
         self.known: dict[Node, Fraction | None] = {}
@@ -228,7 +228,7 @@ class Ticks:
         state = partial(ticks.attributes.update, exact)
         detail = ", ".join(f"{name} {ticks.attributes[name]} -> {text}" for name, text in exact.items())
         self.models.postponed.append(
-            Postponed(BEYOND_CONVERTERS, state, Kind.CONVERTED, ticks, _DIVIDED_EXACTLY, detail, is_kept=True)
+            Postponed(BEYOND_CONVERTERS, state, NoteKind.CONVERTED, ticks, _DIVIDED_EXACTLY, detail, is_kept=True)
         )
 
     # Overheads of operating systems

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from amalthea_uros.xmi.migrate.node import Node
-from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.notes import StepNotes
 from amalthea_uros.xmi.migrate.steps.tools import add_property, keep_comments
 
 DISCRETE, CONTINUOUS, TIME = "DiscreteValue", "ContinuousValue", "Time"
@@ -21,7 +21,7 @@ _LOST = "a deviation without a distribution that has a successor is lost"
 _UNBOUNDED = "the upper bound is mandatory, but was not stated: it is left open"
 
 
-class _Form(NamedTuple):
+class _DistributionForm(NamedTuple):
     """The successor of a distribution: what its class ends with, its attributes, and its parameters (old name -> new name)."""
 
     suffix: str
@@ -29,14 +29,14 @@ class _Form(NamedTuple):
     parameters: dict[str, str] = {}  # noqa: RUF012 (never changed)
 
 
-_BOUNDARIES = _Form("Boundaries", ("samplingType",))
+_BOUNDARIES = _DistributionForm("Boundaries", ("samplingType",))
 
 _FORMS = {
-    "BetaDistribution": _Form("BetaDistribution", ("alpha", "beta")),
+    "BetaDistribution": _DistributionForm("BetaDistribution", ("alpha", "beta")),
     "Boundaries": _BOUNDARIES,
-    "GaussDistribution": _Form("GaussDistribution", (), {"mean": "mean", "sd": "sd"}),
-    "UniformDistribution": _Form("UniformDistribution"),
-    "WeibullEstimators": _Form("WeibullEstimatorsDistribution", ("pRemainPromille",), {"mean": "average"}),
+    "GaussDistribution": _DistributionForm("GaussDistribution", (), {"mean": "mean", "sd": "sd"}),
+    "UniformDistribution": _DistributionForm("UniformDistribution"),
+    "WeibullEstimators": _DistributionForm("WeibullEstimatorsDistribution", ("pRemainPromille",), {"mean": "average"}),
 }
 
 _UPPER = "upperBound"
@@ -48,7 +48,7 @@ _WEIBULL_PARAMETERS = ("kappa", "lambda")
 class Values:
     """Converts constants and deviations."""
 
-    def __init__(self, notes: Notes) -> None:
+    def __init__(self, notes: StepNotes) -> None:
         self.notes = notes
 
     def number(self, node: Node, tag: str, owner: Node) -> Node | None:
@@ -88,7 +88,7 @@ class Values:
         self.default_bounds(node, kind, form)
         return True
 
-    def default_bounds(self, node: Node, kind: str, form: _Form) -> None:
+    def default_bounds(self, node: Node, kind: str, form: _DistributionForm) -> None:
         """A missing lower bound of a number is 0: nothing of them is negative. A missing upper bound is left open.
 
         With 0, something that may take any time, or occur any number of times, would be taken for something that never does.
@@ -111,7 +111,7 @@ class Values:
             self.notes.defaulted(node, "a bound that is not stated is 0", name, name)
 
 
-def _drop_statistics(node: Node, notes: Notes) -> None:
+def _drop_statistics(node: Node, notes: StepNotes) -> None:
     for statistic in node.all("fetchStatistic"):
         notes.lost(statistic, "fetch statistics of instructions have no successor", _summary(statistic))
         statistic.remove()
@@ -126,7 +126,7 @@ def _summary(node: Node) -> str:
     return " ".join(texts)
 
 
-def _keep_bounds(node: Node, distribution: Node | None, kind: str, owner: Node, notes: Notes) -> bool:
+def _keep_bounds(node: Node, distribution: Node | None, kind: str, owner: Node, notes: StepNotes) -> bool:
     """Keep what a deviation states without a distribution that has a successor; whether there is something to keep."""
     if distribution is not None:
         stated = {name: text for name, text in distribution.attributes.items() if name in _WEIBULL_PARAMETERS}
@@ -146,20 +146,20 @@ def _keep_bounds(node: Node, distribution: Node | None, kind: str, owner: Node, 
     return False
 
 
-def _take_attributes(node: Node, distribution: Node, form: _Form, notes: Notes) -> None:
+def _take_attributes(node: Node, distribution: Node, form: _DistributionForm, notes: StepNotes) -> None:
     _report_unknown(distribution, set(form.attributes), notes)
     for name in form.attributes:
         if name in distribution.attributes:
             node.attributes[name] = distribution.attributes[name]
 
 
-def _report_unknown(node: Node, known: set[str], notes: Notes) -> None:
+def _report_unknown(node: Node, known: set[str], notes: StepNotes) -> None:
     for name, text in node.attributes.items():
         if name not in known:
             notes.lost(node, "not an attribute of this class", f"{name}={text!r}", name)
 
 
-def _take_parameters(node: Node, distribution: Node | None, kind: str, form: _Form, notes: Notes) -> None:
+def _take_parameters(node: Node, distribution: Node | None, kind: str, form: _DistributionForm, notes: StepNotes) -> None:
     """Bounds, mean and the like: elements of times, attributes of numbers."""
     parts = [(part, _BOUNDS) for part in node.children if part is not distribution]
     if distribution is not None:
@@ -180,7 +180,7 @@ def _take_parameters(node: Node, distribution: Node | None, kind: str, form: _Fo
     node.take(times)
 
 
-def _take_number(node: Node, part: Node, name: str, notes: Notes) -> None:
+def _take_number(node: Node, part: Node, name: str, notes: StepNotes) -> None:
     keep_comments(part, node)
     if "value" in part.attributes:
         node.attributes[name] = part.attributes["value"]

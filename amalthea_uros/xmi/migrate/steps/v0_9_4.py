@@ -6,7 +6,7 @@ from urllib.parse import unquote_plus
 
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node, proxy
-from amalthea_uros.xmi.migrate.notes import BEYOND_CONVERTERS, Kind, Notes, Postponed
+from amalthea_uros.xmi.migrate.notes import BEYOND_CONVERTERS, NoteKind, Postponed, StepNotes
 from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.tools import add_property, by_class, names_of
 
@@ -27,10 +27,10 @@ _CONJUNCTION = "ModeConditionConjunction"
 Comparison = tuple[Node, str]
 
 
-class Modes:
+class ModeConversion:
     """Converts modes, mode labels, and everything that sets or compares them."""
 
-    def __init__(self, models: ModelSet, notes: Notes) -> None:
+    def __init__(self, models: ModelSet, notes: StepNotes) -> None:
         self.models, self.notes = models, notes
         modes = [node for tree in models.trees for node in tree.root.find("swModel", "modes")]
         self.by_name = {node.name: node for node in reversed(modes)}
@@ -233,7 +233,7 @@ def _comparison_text(node: Node) -> str:
     return f"{name} == {node.get('value')}"
 
 
-def change(models: ModelSet, notes: Notes) -> None:
+def change(models: ModelSet, notes: StepNotes) -> None:
     """Change the content of the files of AMALTHEA 0.9.3."""
     for node in models.parts("swModel", "runnables"):
         _move_deadlines(node, models, notes)
@@ -243,12 +243,12 @@ def change(models: ModelSet, notes: Notes) -> None:
         if node.get("portInterface") == "ABH":
             node.attributes["portInterface"] = "AHB"
             notes.renamed(node, "the port interface ABH is spelt AHB now", attribute="portInterface")
-    modes = Modes(models, notes)
+    modes = ModeConversion(models, notes)
     modes.convert()
     modes.convert_stimuli()
 
 
-def _move_deadlines(runnable: Node, models: ModelSet, notes: Notes) -> None:
+def _move_deadlines(runnable: Node, models: ModelSet, notes: StepNotes) -> None:
     """Make requirements of the deadlines of a runnable."""
     for deadline in runnable.all("deadline"):
         constraints = runnable.root.child_or_new("constraintsModel")
@@ -261,10 +261,10 @@ def _move_deadlines(runnable: Node, models: ModelSet, notes: Notes) -> None:
         if "value" not in deadline.attributes:
             # It would be one for a response time of 0.
             drop, message = requirement.remove, "a deadline without value is no requirement"
-            models.postponed.append(Postponed(BEYOND_CONVERTERS, drop, Kind.CONVERTED, deadline, message, is_kept=True))
+            models.postponed.append(Postponed(BEYOND_CONVERTERS, drop, NoteKind.CONVERTED, deadline, message, is_kept=True))
 
 
-def _convert_mapping(node: Node, notes: Notes) -> None:
+def _convert_mapping(node: Node, notes: StepNotes) -> None:
     node.tag = "aliases"
     node.rename("platformName", "target")
     node.rename("platformType", "alias")

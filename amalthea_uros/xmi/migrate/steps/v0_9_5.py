@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node
-from amalthea_uros.xmi.migrate.notes import BEYOND_CONVERTERS, Kind, Notes, Postponed
+from amalthea_uros.xmi.migrate.notes import BEYOND_CONVERTERS, NoteKind, Postponed, StepNotes
 from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.tools import add_property, by_class, keep_comments, quantity_text
 
@@ -37,7 +37,7 @@ _LIST = "ClockMultiplierList"
 _CLASSES = {**dict.fromkeys(_FUNCTIONS, "ClockFunction"), _LIST: "ClockStepList"}
 
 
-def convert_clocks(models: ModelSet, notes: Notes) -> None:
+def convert_clocks(models: ModelSet, notes: StepNotes) -> None:
     """Convert scenarios and clocks; references to clocks follow."""
     for node in models.nodes("scenario"):
         _keep_recurrence(node, notes)
@@ -51,7 +51,7 @@ def convert_clocks(models: ModelSet, notes: Notes) -> None:
         _convert_list(node, notes)
 
 
-def _keep_recurrence(scenario: Node, notes: Notes) -> None:
+def _keep_recurrence(scenario: Node, notes: StepNotes) -> None:
     for recurrence in scenario.all("recurrence"):
         text = f"recurrence={quantity_text(recurrence)}"
         recurrence.remove()
@@ -60,7 +60,7 @@ def _keep_recurrence(scenario: Node, notes: Notes) -> None:
         notes.kept(recurrence, "the recurrence of a scenario has no successor", text)
 
 
-def _convert_functions(clocks: list[Node], function: _Function, notes: Notes) -> None:
+def _convert_functions(clocks: list[Node], function: _Function, notes: StepNotes) -> None:
     for clock in clocks:
         clock.type = "ClockFunction"
         clock.attributes["curveType"] = function.curve
@@ -82,7 +82,7 @@ def _postpone_curves(models: ModelSet, clocks: list[Node]) -> None:
         if parts:
             message = "curve of a clock: the unit of its frequencies was not stated"
             state = partial(clock.take, parts)
-            models.postponed.append(Postponed(BEYOND_CONVERTERS, state, Kind.TO_CHECK, clock, message, is_kept=True))
+            models.postponed.append(Postponed(BEYOND_CONVERTERS, state, NoteKind.TO_CHECK, clock, message, is_kept=True))
 
 
 def _time(tag: str, old: Node) -> Node:
@@ -108,7 +108,7 @@ def _number(clock: Node, name: str) -> Decimal | None:
     return number if number.is_finite() else None
 
 
-def _convert_list(clock: Node, notes: Notes) -> None:
+def _convert_list(clock: Node, notes: StepNotes) -> None:
     clock.type = "ClockStepList"
     for entry in clock.all("entries"):
         if "multiplier" in entry.attributes:
@@ -127,7 +127,7 @@ _RENAMED = {
 _WITHOUT_COUNTER = ("EnforcedMigration", "SchedulePoint")
 
 
-def change(models: ModelSet, notes: Notes) -> None:
+def change(models: ModelSet, notes: StepNotes) -> None:
     """Change the content of the files of AMALTHEA 0.9.4."""
     found = by_class(models, ("CallSequence", *_RENAMED, *_WITHOUT_COUNTER))
     for node in models.nodes("graphEntries"):
@@ -147,7 +147,7 @@ def change(models: ModelSet, notes: Notes) -> None:
     convert_clocks(models, notes)
 
 
-def _convert_sequence(node: Node, notes: Notes) -> None:
+def _convert_sequence(node: Node, notes: StepNotes) -> None:
     """Convert a sequence to an ordered group."""
     node.type = "Group"
     node.attributes["ordered"] = "true"
@@ -158,7 +158,7 @@ def _convert_sequence(node: Node, notes: Notes) -> None:
     notes.renamed(node, "CallSequence is an ordered Group now", node.name)
 
 
-def _keep_counter(node: Node, notes: Notes) -> None:
+def _keep_counter(node: Node, notes: StepNotes) -> None:
     for counter in node.all("counter"):
         text = " ".join(f"{name}={value}" for name, value in counter.attributes.items())
         counter.remove()
@@ -167,7 +167,7 @@ def _keep_counter(node: Node, notes: Notes) -> None:
         notes.kept(counter, f"{node.type} has no counter any more", text)
 
 
-def _make_graph(runnable: Node, notes: Notes) -> None:
+def _make_graph(runnable: Node, notes: StepNotes) -> None:
     """Every runnable has a call graph, as in APP4MC, if an empty one."""
     items = runnable.all("runnableItems")
     graph = runnable.child_or_new("callGraph")

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node
-from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.notes import StepNotes
 from amalthea_uros.xmi.migrate.step import Step
 
 # 0.9.5 -> 0.9.6
@@ -18,14 +18,14 @@ CONDITIONS = ("condition", "executionCondition")
 _ITEM_TYPES = {"segments": "sequence", "strands": "parallel"}
 
 
-def change_0_9_5(models: ModelSet, notes: Notes) -> None:
+def change_0_9_5(models: ModelSet, notes: StepNotes) -> None:
     """Change the content of the files of AMALTHEA 0.9.5."""
     _check_event_chains(models, notes)
     convert_event_chains(models, notes)
     convert_mode_conditions(models, notes)
 
 
-def convert_event_chains(models: ModelSet, notes: Notes) -> None:
+def convert_event_chains(models: ModelSet, notes: StepNotes) -> None:
     """Make one list of items of the segments and strands of every event chain."""
     constrained = _constrained_chains(models)
     for chain in models.nodes("eventChains", "eventChain"):
@@ -49,7 +49,7 @@ def convert_event_chains(models: ModelSet, notes: Notes) -> None:
             )
 
 
-def _check_event_chains(models: ModelSet, notes: Notes) -> None:
+def _check_event_chains(models: ModelSet, notes: StepNotes) -> None:
     for chain in models.nodes("eventChains", "eventChain"):
         for end in ("stimulus", "response"):
             if not (chain.references.get(end) or chain.get(end)):
@@ -98,7 +98,7 @@ def _nest_strands(chain: Node, strands: list[Node]) -> None:
     _name_items(inner, "strands")
 
 
-def convert_mode_conditions(models: ModelSet, notes: Notes) -> None:
+def convert_mode_conditions(models: ModelSet, notes: StepNotes) -> None:
     """State the class of every comparison of a mode label with a value: there is a second kind of comparisons now."""
     for holder in models.nodes(*CONDITIONS):
         for condition in conditions_below(holder):
@@ -137,7 +137,7 @@ _MANDATORY: dict[tuple[str, str], tuple[str, ...]] = {
 }
 
 
-def change_0_9_6(models: ModelSet, notes: Notes) -> None:
+def change_0_9_6(models: ModelSet, notes: StepNotes) -> None:
     """Change the content of the files of AMALTHEA 0.9.6."""
     # The known files of 0.9.6 have neither chains nor conditions: they may be written as in 0.9.5.
     convert_event_chains(models, notes)
@@ -148,7 +148,7 @@ def change_0_9_6(models: ModelSet, notes: Notes) -> None:
     _check_mandatory(models, notes)
 
 
-def _rename_call_graphs(models: ModelSet, notes: Notes) -> None:
+def _rename_call_graphs(models: ModelSet, notes: StepNotes) -> None:
     for graph in models.nodes("callGraph"):
         present = graph.parent.child("activityGraph") if graph.parent is not None else None
         if present is None:
@@ -159,7 +159,7 @@ def _rename_call_graphs(models: ModelSet, notes: Notes) -> None:
         notes.renamed(graph, "call graph is now the activity graph")
 
 
-def _rename_processes(models: ModelSet, notes: Notes) -> None:
+def _rename_processes(models: ModelSet, notes: StepNotes) -> None:
     for component in models.nodes("components"):
         tasks = component.references.pop("tasks", None)
         if tasks is not None:
@@ -167,7 +167,7 @@ def _rename_processes(models: ModelSet, notes: Notes) -> None:
             notes.renamed(component, "tasks of the component are now its processes", "", "tasks")
 
 
-def _convert_ports(models: ModelSet, notes: Notes) -> None:
+def _convert_ports(models: ModelSet, notes: StepNotes) -> None:
     """Make a port of every interface port, and an interface of what it names."""
     interfaces: dict[str, Node] = {}
     for tree in models.trees:
@@ -185,7 +185,7 @@ def _convert_ports(models: ModelSet, notes: Notes) -> None:
         notes.converted(port, "name of the interface is now a reference to an interface", name, "interfaceName")
 
 
-def _check_mandatory(models: ModelSet, notes: Notes) -> None:
+def _check_mandatory(models: ModelSet, notes: StepNotes) -> None:
     for tag in dict.fromkeys(tag for tag, _ in _MANDATORY):
         for node in models.nodes(tag):
             for name in _MANDATORY.get((tag, node.type), ()):

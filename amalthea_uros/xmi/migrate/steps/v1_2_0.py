@@ -6,7 +6,7 @@ from functools import partial
 
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node
-from amalthea_uros.xmi.migrate.notes import Kind, Notes, Postponed
+from amalthea_uros.xmi.migrate.notes import NoteKind, Postponed, StepNotes
 from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.tools import add_property, keep_comments, make_positive, move_properties
 
@@ -14,7 +14,7 @@ from amalthea_uros.xmi.migrate.steps.tools import add_property, keep_comments, m
 _MEASURED = ("runnable", "task", "eventChain")
 
 
-def change_0_9_9(models: ModelSet, notes: Notes) -> None:
+def change_0_9_9(models: ModelSet, notes: StepNotes) -> None:
     """Change the content of the files of AMALTHEA 0.9.9."""
     for model in models.nodes("measurementModel"):
         _remove_measurements(models, model, notes)
@@ -26,7 +26,7 @@ def change_0_9_9(models: ModelSet, notes: Notes) -> None:
             )
 
 
-def _remove_measurements(models: ModelSet, model: Node, notes: Notes) -> None:
+def _remove_measurements(models: ModelSet, model: Node, notes: StepNotes) -> None:
     for measurement in model.all("measurements"):
         measured = next((target for name in _MEASURED for target in measurement.references.get(name, ())), None)
         if measured is not None and not measured.is_proxy:
@@ -39,13 +39,13 @@ def _remove_measurements(models: ModelSet, model: Node, notes: Notes) -> None:
             continue
         # Up to 1.1.0, models of APP4MC are without it.
         keep = partial(add_property, measured, "measured runtimes", _described(measurement))
-        models.postponed.append(Postponed("1.2.0", keep, Kind.KEPT, measurement, *what))
+        models.postponed.append(Postponed("1.2.0", keep, NoteKind.KEPT, measurement, *what))
     if model.parent is not None:
         _move_properties(model, model.parent, notes)
     model.remove()
 
 
-def _move_properties(source: Node, target: Node, notes: Notes) -> None:
+def _move_properties(source: Node, target: Node, notes: StepNotes) -> None:
     """Keep what the user noted about a measurement with what was measured."""
     for each in move_properties(source, target):
         notes.moved(each, "custom property of a measurement is now one of what was measured", each.get("key"))
@@ -64,7 +64,7 @@ def _described(measurement: Node) -> str:
 STEP_1_0_0 = Step("0.9.9", "1.0.0", change_0_9_9, frozenset({"measurementModel"}))
 
 
-def change_1_1_0(models: ModelSet, notes: Notes) -> None:
+def change_1_1_0(models: ModelSet, notes: StepNotes) -> None:
     """Change the content of the files of AMALTHEA 1.1.0."""
     for stimulus in models.of_type("PeriodicBurstStimulus"):
         make_positive(stimulus, "occurrenceCount", notes)

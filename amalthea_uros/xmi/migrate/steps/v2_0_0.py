@@ -4,16 +4,21 @@ from __future__ import annotations
 
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node
-from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.notes import StepNotes
 from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.kept import restore_2_0_0
-from amalthea_uros.xmi.migrate.steps.scheduling import Definitions, convert_algorithms, convert_parameters, convert_properties
+from amalthea_uros.xmi.migrate.steps.scheduling import (
+    AddedDefinitions,
+    convert_algorithms,
+    convert_parameters,
+    convert_properties,
+)
 from amalthea_uros.xmi.migrate.steps.v0_9_7 import conditions_below
 
 
-def change(models: ModelSet, notes: Notes) -> None:
+def change(models: ModelSet, notes: StepNotes) -> None:
     """Change the content of the files of AMALTHEA 1.2.0."""
-    definitions = Definitions(models)
+    definitions = AddedDefinitions(models)
     convert_algorithms(models, definitions, notes)
     convert_parameters(models, definitions, notes)
     convert_properties(models, definitions, notes)
@@ -22,7 +27,7 @@ def change(models: ModelSet, notes: Notes) -> None:
     restore_2_0_0(models, notes)
 
 
-def _convert_conditions(models: ModelSet, notes: Notes) -> None:
+def _convert_conditions(models: ModelSet, notes: StepNotes) -> None:
     loops = [condition for loop in models.nodes("items") if loop.type == "WhileLoop" for condition in loop.all("condition")]
     # The conditions of mode switches keep their classes until 3.0.0.
     for holder in (*models.nodes("executionCondition"), *loops):
@@ -31,7 +36,7 @@ def _convert_conditions(models: ModelSet, notes: Notes) -> None:
             _rename(condition, "ModeConditionConjunction", "ConditionConjunction", notes)
 
 
-def _rename(node: Node, old: str, new: str, notes: Notes) -> None:
+def _rename(node: Node, old: str, new: str, notes: StepNotes) -> None:
     if node.type == old:
         node.type = new
         notes.renamed(node, f"class is now {new}")

@@ -8,14 +8,14 @@ from typing import TypeAlias
 
 from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node
-from amalthea_uros.xmi.migrate.notes import Notes
+from amalthea_uros.xmi.migrate.notes import StepNotes
 from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.kept import restore_3_0_0
 from amalthea_uros.xmi.migrate.steps.tools import keep_comments, make_positive, move_properties, whole_number
 from amalthea_uros.xmi.migrate.steps.v0_9_7 import CONDITIONS, conditions_below
 
 
-def change_2_0_0(models: ModelSet, notes: Notes) -> None:
+def change_2_0_0(models: ModelSet, notes: StepNotes) -> None:
     """Change the content of the files of AMALTHEA 2.0.0."""
     for semaphore in models.nodes("semaphores"):
         make_positive(semaphore, "maxValue", notes)
@@ -43,7 +43,7 @@ _Content: TypeAlias = tuple[object, ...]
 _FEATURES = {"labels": "dataType", "channels": "elementType"}
 
 
-def convert_data_types(models: ModelSet, notes: Notes) -> None:
+def convert_data_types(models: ModelSet, notes: StepNotes) -> None:
     """Let labels and channels refer to definitions; what they contained becomes a definition of its own."""
     _drop_empty(models, notes)
     definitions = _Definitions(models)
@@ -53,7 +53,7 @@ def convert_data_types(models: ModelSet, notes: Notes) -> None:
                 _convert(owner, feature, part, definitions, notes)
 
 
-def _drop_empty(models: ModelSet, notes: Notes) -> None:
+def _drop_empty(models: ModelSet, notes: StepNotes) -> None:
     """Remove references without a target, which are mandatory now."""
     for node in models.nodes("dataType", "elementType"):
         if node.type == "TypeRef" and not (node.references.get("typeDef") or node.get("typeDef")) and node.parent is not None:
@@ -63,7 +63,7 @@ def _drop_empty(models: ModelSet, notes: Notes) -> None:
             node.remove()
 
 
-def _convert(owner: Node, feature: str, part: Node, definitions: _Definitions, notes: Notes) -> None:
+def _convert(owner: Node, feature: str, part: Node, definitions: _Definitions, notes: StepNotes) -> None:
     part.remove()
     if feature in owner.references or feature in owner.attributes:
         move_properties(part, owner)
@@ -136,7 +136,7 @@ _RENAMED = {
 }
 
 
-def change_2_2_0(models: ModelSet, notes: Notes) -> None:
+def change_2_2_0(models: ModelSet, notes: StepNotes) -> None:
     """Change the content of the files of AMALTHEA 2.2.0."""
     for node in models.rename_classes(_RENAMED):
         notes.renamed(node, f"class is now {node.type}")
