@@ -3,7 +3,7 @@ import signal
 import sys
 from pathlib import Path
 
-from effort import PROFILE, THOROUGH, USUAL
+from effort import IS_THOROUGH, PROFILE, THOROUGH, USUAL, sample
 from hypothesis import HealthCheck, Phase, settings
 
 settings.register_profile(
@@ -34,3 +34,12 @@ os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 os.environ.setdefault("PYTHONPYCACHEPREFIX", str(COMPILED / "python"))
 os.environ.setdefault("NUMBA_CACHE_DIR", str(COMPILED / "numba"))
 sys.dont_write_bytecode, sys.pycache_prefix = False, os.environ["PYTHONPYCACHEPREFIX"]
+
+
+def pytest_collection_modifyitems(config, items):
+    """Leave out what a usual run does not try."""
+    if not IS_THOROUGH:
+        kept = list(sample(items))
+        known = set(kept)
+        config.hook.pytest_deselected(items=[item for item in items if item not in known])
+        items[:] = kept

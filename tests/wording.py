@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import ast
-import io
 import re
 import sys
-import tokenize
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -18,7 +16,6 @@ WORDS = Path(__file__).with_suffix(".yaml")
 
 FENCE = re.compile(r"^(`{3,})[^\n]*\n.*?^\1", re.MULTILINE | re.DOTALL)
 CODE = re.compile(r"`[^`\n]*`|<[^>\n]*>|\]\([^)\n]*\)|https?://\S+")
-QUOTED = re.compile(r"“[^”]*”|\"[^\"\n]*\", (?:[A-Z][\w-]+ ){2,}")
 
 
 @dataclass(frozen=True)
@@ -47,6 +44,7 @@ class Words:
             better = next(instead for word, instead in self.better if word.match(text, match.start()))
             yield match.start(), match.group(), better
 
+    @cache  # noqa: B019 - there are few of them
     def use_of(self, name):
         """What is better than a name; None if it may be used."""
         return next((instead for word, instead in self.better if word.fullmatch(name)), None)
@@ -77,47 +75,29 @@ def uses_in_page(path):
 
 def uses_in_module(path):
     """The uses in messages, docstrings, comments and names of a module."""
-    source = path.read_text()
-    tree = ast.parse(source)
-    uses = [use for line, text in _prose(tree, source) for use in _in_text(path, line, text)]
-    for node in ast.walk(tree):
+    source, uses = path.read_text(), set()
+    for line, text in enumerate(source.splitlines(), start=1):
+        if "#" in text:
+            uses |= _in_text(path, line, text.partition("#")[2])
+    for node in ast.walk(ast.parse(source)):
+        match node:
+            case ast.Constant(value=str(text)) if " " in text.strip():
+                uses |= _in_text(path, node.lineno, text)
+            case ast.ClassDef(name=name) | ast.FunctionDef(name=name) | ast.arg(arg=name) | ast.Name(id=name, ctx=ast.Store()):
+                if better := section("names").use_of(name):
+                    uses.add(_use(path, node.lineno, name, better))
         if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef) and (text := ast.get_docstring(node)):
-            line = node.body[0].lineno
-            uses += [_use(path, line, word, better) for at, word, better in section("openings").uses(text) if at == 0]
-    names = dict.fromkeys((name, line) for name, line in _defined(tree))
-    uses += [_use(path, line, name, better) for name, line in names if (better := section("names").use_of(name))]
+            uses |= {_use(path, node.body[0].lineno, *found) for at, *found in section("openings").uses(text) if at == 0}
     return sorted(uses, key=lambda use: use.line)
 
 
 def _in_text(path, line, text):
     plain = CODE.sub(blank, text)
-    return [_use(path, line + plain[:at].count("\n"), *found) for at, *found in section("prose").uses(plain)]
+    return {_use(path, line + plain[:at].count("\n"), *found) for at, *found in section("prose").uses(plain)}
 
 
 def _use(path, line, word, better):
     return Use(str(path.relative_to(ROOT)), line, word, better)
-
-
-def _prose(tree, source):
-    """Lines and texts of strings of several words, and of comments."""
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Constant) and isinstance(node.value, str) and " " in node.value.strip():
-            yield node.lineno, node.value
-    for token in tokenize.generate_tokens(io.StringIO(source).readline):
-        if token.type == tokenize.COMMENT:
-            yield token.start[0], token.string
-
-
-def _defined(tree):
-    """The names that a module defines, with their lines."""
-    for node in ast.walk(tree):
-        match node:
-            case ast.ClassDef() | ast.FunctionDef():
-                yield node.name, node.lineno
-            case ast.arg():
-                yield node.arg, node.lineno
-            case ast.Name(id=name, ctx=ast.Store()):
-                yield name, node.lineno
 
 
 def pages():
