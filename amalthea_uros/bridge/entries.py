@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import MISSING, dataclass, fields
+from dataclasses import MISSING, fields
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 from amalthea_uros.bridge.codecs import PLAIN, Codec
 from amalthea_uros.bridge.context import Building, Extracting
@@ -14,48 +14,50 @@ from amalthea_uros.metamodel.features import features_of
 from amalthea_uros.perf.named import Named
 
 
-@dataclass(frozen=True, slots=True)
-class Field:
-    """A field of perf and the corresponding feature of AMALTHEA.
+class Column(NamedTuple):
+    """The feature of AMALTHEA for a field of perf, where it has another name.
 
     Attributes
     ----------
     feature : its Python name
     """
 
-    name: str
     feature: str
     codec: Codec = PLAIN
 
 
+#: Columns that several classes share, by the fields of perf.
+Columns = dict[str, Codec | Column]
+
+
 class ClassEntry:
-    """A class of perf and the corresponding class of AMALTHEA.
+    """A class of perf and the corresponding class of AMALTHEA; each column is a field of perf and what it becomes.
 
     A value that is not given in AMALTHEA becomes the default of the field; if there is no default, the object is incomplete, which is
     a finding.
     """
 
-    def __init__(self, model_class: type[Any], amalthea_class: type[Element], *columns: Field) -> None:
+    def __init__(self, model_class: type[Any], amalthea_class: type[Element], /, **columns: Codec | Column) -> None:
         self.model_class = model_class
         self.amalthea_class = amalthea_class
-        self.columns = columns
+        self.columns = {name: each if isinstance(each, Column) else Column(name, each) for name, each in columns.items()}
         self.is_named = issubclass(model_class, Named)
         declared = {field.name: field for field in fields(model_class)}
         self.has_origin = "origin" in declared
         self.is_activity = "locate" in declared
-        self._defaults = {column.name: _default(declared[column.name]) for column in columns}
+        self._defaults = {name: _default(declared[name]) for name in columns}
         features = features_of(amalthea_class)
         self._extracted = tuple(
             (
-                column.name,
+                name,
                 column.feature,
                 () if features[column.feature].many else None,
                 None if column.codec is PLAIN else column.codec.extract,
-                self._defaults[column.name],
+                self._defaults[name],
             )
-            for column in columns
+            for name, column in self.columns.items()
         )
-        self._xml_names = {column.feature: features[column.feature].xml_name for column in columns}
+        self._xml_names = {column.feature: features[column.feature].xml_name for column in self.columns.values()}
 
     def create(self, item: Any, context: Building) -> Element:
         """The object of AMALTHEA with only its name, as a target of references."""
@@ -68,12 +70,12 @@ class ClassEntry:
         if self.is_named:
             context.at(item)
         known = context.known_features(self.amalthea_class)
-        for column in self.columns:
-            value = getattr(item, column.name)
+        for name, column in self.columns.items():
+            value = getattr(item, name)
             if value is None or value == () or value == "":
                 continue
             # A feature that the version does not have is omitted if it has the default value; other values are refused by the writer.
-            if self._xml_names[column.feature] in known or value != self._defaults[column.name]:
+            if self._xml_names[column.feature] in known or value != self._defaults[name]:
                 setattr(element, column.feature, column.codec.build(value, context))
         return element
 

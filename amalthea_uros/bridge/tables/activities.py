@@ -6,6 +6,7 @@ from functools import partial
 from typing import Any, cast
 
 from amalthea_uros.bridge.codecs import (
+    PLAIN,
     Codec,
     build_reason,
     enumeration,
@@ -15,7 +16,7 @@ from amalthea_uros.bridge.codecs import (
     same_names,
 )
 from amalthea_uros.bridge.context import Building, Extracting
-from amalthea_uros.bridge.entries import ClassEntry, ClassTable, Field
+from amalthea_uros.bridge.entries import ClassEntry, ClassTable, Column
 from amalthea_uros.bridge.kinds import ObjectKind
 from amalthea_uros.bridge.tables.conditions import CONDITION
 from amalthea_uros.bridge.tables.distributions import DISCRETE
@@ -321,12 +322,11 @@ PROTECTIONS = {
     "CUSTOM": "CUSTOM_PROTECTION",
     "BY_MODEL": "HANDLED_BY_MODEL_ELEMENTS",
 }
-_WAITING = Field("waiting", "waiting_behaviour", _WAITING_CODEC)
-_COUNTER = Field("counter", "counter", COUNTER)
-_MASK = Field("events", "event_mask", _EVENT_MASK)
-_ITEMS = Field("activities", "items", ITEMS)
-_CHANNEL = Field("channel", "data", reference(ObjectKind.DATA))
-_MODE_LABEL = Field("label", "data", reference(ObjectKind.MODE_LABEL))
+_WAITING = Column("waiting_behaviour", _WAITING_CODEC)
+_MASK = Column("event_mask", _EVENT_MASK)
+_ITEMS = Column("items", ITEMS)
+_CHANNEL = Column("data", reference(ObjectKind.DATA))
+_MODE_LABEL = Column("data", reference(ObjectKind.MODE_LABEL))
 _ALL_OF_THEM = Codec(
     lambda value, _: am.WaitEventType.AND if value else am.WaitEventType.OR,
     lambda value, _context, _element: value is not am.WaitEventType.OR,
@@ -334,19 +334,14 @@ _ALL_OF_THEM = Codec(
 
 ACTIVITIES: ClassTable = _Activities(
     ClassEntry(
-        perf.Call,
-        am.RunnableCall,
-        Field("runnable", "runnable", reference(ObjectKind.RUNNABLE)),
-        _COUNTER,
-        Field("times", "statistic", _CALLS),
+        perf.Call, am.RunnableCall, runnable=reference(ObjectKind.RUNNABLE), counter=COUNTER, times=Column("statistic", _CALLS)
     ),
     ClassEntry(
         perf.LabelAccess,
         am.LabelAccess,
-        Field("label", "data", reference(ObjectKind.DATA)),
-        Field("kind", "access", same_names(perf.AccessKind, am.LabelAccessEnum)),
-        Field(
-            "communication",
+        label=Column("data", reference(ObjectKind.DATA)),
+        kind=Column("access", same_names(perf.AccessKind, am.LabelAccessEnum)),
+        communication=Column(
             "implementation",
             enumeration(
                 {
@@ -356,50 +351,50 @@ ACTIVITIES: ClassTable = _Activities(
                 }
             ),
         ),
-        Field("protection", "data_stability", same_names(perf.Protection, am.LabelAccessDataStability, **PROTECTIONS)),
-        Field("times", "statistic", _ACCESSES),
+        protection=Column("data_stability", same_names(perf.Protection, am.LabelAccessDataStability, **PROTECTIONS)),
+        times=Column("statistic", _ACCESSES),
     ),
-    ClassEntry(
-        perf.Group,
-        am.Group,
-        Field("name", "name"),
-        _ITEMS,
-        Field("ordered", "ordered"),
-        Field("interruptible", "interruptible"),
-    ),
-    ClassEntry(perf.Loop, am.WhileLoop, _ITEMS, Field("condition", "condition", CONDITION)),
+    ClassEntry(perf.Group, am.Group, name=PLAIN, activities=_ITEMS, ordered=PLAIN, interruptible=PLAIN),
+    ClassEntry(perf.Loop, am.WhileLoop, activities=_ITEMS, condition=CONDITION),
     ClassEntry(
         perf.SemaphoreAccess,
         am.SemaphoreAccess,
-        Field("semaphore", "semaphore", reference(ObjectKind.SEMAPHORE)),
-        Field("operation", "access", same_names(perf.SemaphoreOperation, am.SemaphoreAccessEnum)),
-        _WAITING,
+        semaphore=reference(ObjectKind.SEMAPHORE),
+        operation=Column("access", same_names(perf.SemaphoreOperation, am.SemaphoreAccessEnum)),
+        waiting=_WAITING,
     ),
-    ClassEntry(perf.Trigger, am.InterProcessTrigger, Field("stimulus", "stimulus", reference(ObjectKind.STIMULUS)), _COUNTER),
-    ClassEntry(perf.RaiseEvent, am.CustomEventTrigger, Field("event", "event", reference(ObjectKind.EVENT))),
-    ClassEntry(perf.SetEvent, am.SetEvent, _MASK, Field("process", "process", reference(ObjectKind.PROCESS)), _COUNTER),
-    ClassEntry(perf.ClearEvent, am.ClearEvent, _MASK, _COUNTER),
-    ClassEntry(perf.WaitEvent, am.WaitEvent, _MASK, Field("all_of_them", "mask_type", _ALL_OF_THEM), _WAITING, _COUNTER),
-    ClassEntry(perf.Send, am.ChannelSend, _CHANNEL, Field("elements", "elements")),
+    ClassEntry(perf.Trigger, am.InterProcessTrigger, stimulus=reference(ObjectKind.STIMULUS), counter=COUNTER),
+    ClassEntry(perf.RaiseEvent, am.CustomEventTrigger, event=reference(ObjectKind.EVENT)),
+    ClassEntry(perf.SetEvent, am.SetEvent, events=_MASK, process=reference(ObjectKind.PROCESS), counter=COUNTER),
+    ClassEntry(perf.ClearEvent, am.ClearEvent, events=_MASK, counter=COUNTER),
+    ClassEntry(
+        perf.WaitEvent,
+        am.WaitEvent,
+        events=_MASK,
+        all_of_them=Column("mask_type", _ALL_OF_THEM),
+        waiting=_WAITING,
+        counter=COUNTER,
+    ),
+    ClassEntry(perf.Send, am.ChannelSend, channel=_CHANNEL, elements=PLAIN),
     ClassEntry(
         perf.Receive,
         am.ChannelReceive,
-        _CHANNEL,
-        Field("elements", "elements"),
-        Field("operation", "receive_operation", same_names(perf.ReceiveOperation, am.ReceiveOperation)),
-        Field("must_be_new", "data_must_be_new"),
-        Field("index", "element_index"),
-        Field("at_least", "lower_bound"),
+        channel=_CHANNEL,
+        elements=PLAIN,
+        operation=Column("receive_operation", same_names(perf.ReceiveOperation, am.ReceiveOperation)),
+        must_be_new=Column("data_must_be_new"),
+        index=Column("element_index"),
+        at_least=Column("lower_bound"),
     ),
     ClassEntry(
         perf.ModeAccess,
         am.ModeLabelAccess,
-        _MODE_LABEL,
-        Field("operation", "access", same_names(perf.ModeOperation, am.ModeLabelAccessEnum)),
-        Field("value", "value"),
-        Field("step", "step"),
+        label=_MODE_LABEL,
+        operation=Column("access", same_names(perf.ModeOperation, am.ModeLabelAccessEnum)),
+        value=PLAIN,
+        step=PLAIN,
     ),
     ClassEntry(perf.SchedulePoint, am.SchedulePoint),
-    ClassEntry(perf.Terminate, am.TerminateProcess, _COUNTER),
-    ClassEntry(perf.Migrate, am.EnforcedMigration, Field("scheduler", "resource_owner", reference(ObjectKind.SCHEDULER))),
+    ClassEntry(perf.Terminate, am.TerminateProcess, counter=COUNTER),
+    ClassEntry(perf.Migrate, am.EnforcedMigration, scheduler=Column("resource_owner", reference(ObjectKind.SCHEDULER))),
 )

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from amalthea_uros.bridge.codecs import Codec, build_reason, enumeration, extract_reason, reference
+from amalthea_uros.bridge.codecs import PLAIN, Codec, build_reason, enumeration, extract_reason, reference
 from amalthea_uros.bridge.context import Building, Extracting
-from amalthea_uros.bridge.entries import ClassEntry, ClassTable, Field, parts
+from amalthea_uros.bridge.entries import ClassEntry, ClassTable, Column, parts
 from amalthea_uros.bridge.kinds import ObjectKind
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.element import Element
@@ -43,26 +43,20 @@ class _Comparisons(ClassTable):
 
 
 _COMPARISONS: ClassTable = _Comparisons(
-    ClassEntry(
-        perf.ModeValueIs,
-        am.ModeValueCondition,
-        Field("label", "label", _MODE_LABEL),
-        Field("relation", "relation", _RELATION),
-        Field("value", "value"),
-    ),
+    ClassEntry(perf.ModeValueIs, am.ModeValueCondition, label=_MODE_LABEL, relation=_RELATION, value=PLAIN),
     ClassEntry(
         perf.ModeLabelsAre,
         am.ModeLabelCondition,
-        Field("first", "label1", _MODE_LABEL),
-        Field("relation", "relation", _RELATION),
-        Field("second", "label2", _MODE_LABEL),
+        first=Column("label1", _MODE_LABEL),
+        relation=_RELATION,
+        second=Column("label2", _MODE_LABEL),
     ),
     ClassEntry(
         perf.ChannelFillIs,
         am.ChannelFillCondition,
-        Field("channel", "channel", reference(ObjectKind.DATA)),
-        Field("relation", "relation", _RELATION),
-        Field("level", "fill_level"),
+        channel=reference(ObjectKind.DATA),
+        relation=_RELATION,
+        level=Column("fill_level"),
     ),
 )
 
@@ -87,9 +81,7 @@ def _extract(value: Element, context: Extracting, _element: Element) -> perf.Con
 
 CONDITION = Codec(_build, _extract)
 
-_ASSIGNMENTS = ClassTable(
-    ClassEntry(perf.ModeAssignment, am.ModeAssignment, Field("label", "label", _MODE_LABEL), Field("value", "value"))
-)
+_ASSIGNMENTS = ClassTable(ClassEntry(perf.ModeAssignment, am.ModeAssignment, label=_MODE_LABEL, value=PLAIN))
 _ENTRIES = parts(_ASSIGNMENTS)
 
 #: The list of assignments is an object of its own.

@@ -6,62 +6,61 @@ from typing import Any
 
 from amalthea_uros.bridge.codecs import FREQUENCY, TIME, Codec, reference, references, same_names, time_property
 from amalthea_uros.bridge.context import Building, Extracting
-from amalthea_uros.bridge.entries import ClassEntry, ClassTable, Field, part
+from amalthea_uros.bridge.entries import ClassEntry, ClassTable, Column, part
 from amalthea_uros.bridge.kinds import ObjectKind
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.perf import constraints as perf
 
 _EVENT = reference(ObjectKind.EVENT)
-_TOLERANCE = Field("tolerance", "tolerance", TIME)
 #: AMALTHEA limits no jitter of a latency or of a time of jobs.
 _JITTER = time_property("jitter")
-_EVERY = Field("every_occurrence", "multiple_occurrences_allowed")
+_EVERY = Column("multiple_occurrences_allowed")
 
 CONSTRAINTS = ClassTable(
     ClassEntry(
         perf.LatencyConstraint,
         am.EventChainLatencyConstraint,
-        Field("chain", "scope", reference(ObjectKind.CHAIN)),
-        Field("kind", "type", same_names(perf.LatencyKind, am.LatencyType)),
-        Field("minimum", "minimum", TIME),
-        Field("maximum", "maximum", TIME),
-        Field("jitter", "custom_properties", _JITTER),
+        chain=Column("scope", reference(ObjectKind.CHAIN)),
+        kind=Column("type", same_names(perf.LatencyKind, am.LatencyType)),
+        minimum=TIME,
+        maximum=TIME,
+        jitter=Column("custom_properties", _JITTER),
     ),
     ClassEntry(
         perf.DelayConstraint,
         am.DelayConstraint,
-        Field("source", "source", _EVENT),
-        Field("target", "target", _EVENT),
-        Field("matching", "mapping_type", same_names(perf.Matching, am.MappingType, ONE_TO_ONE="ONETOONE")),
-        Field("lower", "lower", TIME),
-        Field("upper", "upper", TIME),
+        source=_EVENT,
+        target=_EVENT,
+        matching=Column("mapping_type", same_names(perf.Matching, am.MappingType, ONE_TO_ONE="ONETOONE")),
+        lower=TIME,
+        upper=TIME,
     ),
     ClassEntry(
         perf.RepetitionConstraint,
         am.RepetitionConstraint,
-        Field("event", "event", _EVENT),
+        event=_EVENT,
         # 0 is what the metamodel gives where nothing is stated.
-        Field("span", "span", Codec(lambda value, _: value, lambda value, _context, _element: value or 1)),
-        Field("lower", "lower", TIME),
-        Field("upper", "upper", TIME),
-        Field("jitter", "jitter", TIME),
-        Field("period", "period", TIME),
+        span=Codec(lambda value, _: value, lambda value, _context, _element: value or 1),
+        lower=TIME,
+        upper=TIME,
+        jitter=TIME,
+        period=TIME,
     ),
     ClassEntry(
         perf.EventSynchronization,
         am.EventSynchronizationConstraint,
-        Field("events", "events", references(ObjectKind.EVENT)),
-        _TOLERANCE,
-        _EVERY,
+        events=references(ObjectKind.EVENT),
+        tolerance=TIME,
+        every_occurrence=_EVERY,
     ),
     ClassEntry(
         perf.ChainSynchronization,
         am.EventChainSynchronizationConstraint,
-        Field("chains", "scope", references(ObjectKind.CHAIN)),
-        Field("end", "type", same_names(perf.ChainEnd, am.SynchronizationType)),
-        _TOLERANCE,
-        _EVERY,
+        chains=Column("scope", references(ObjectKind.CHAIN)),
+        end=Column("type", same_names(perf.ChainEnd, am.SynchronizationType)),
+        tolerance=TIME,
+        every_occurrence=_EVERY,
     ),
 )
 
@@ -99,90 +98,71 @@ class _Ages(ClassEntry):
 
 DATA_AGES = ClassTable(
     _Ages(
-        perf.DataAgeConstraint,
-        am.DataAgeConstraint,
-        Field("runnable", "runnable", reference(ObjectKind.RUNNABLE)),
-        Field("label", "label", reference(ObjectKind.DATA)),
+        perf.DataAgeConstraint, am.DataAgeConstraint, runnable=reference(ObjectKind.RUNNABLE), label=reference(ObjectKind.DATA)
     )
 )
 
 # Requirements
 
-_BOUND = Field("bound", "limit_type", same_names(perf.Bound, am.LimitType, UPPER="UPPER_LIMIT", LOWER="LOWER_LIMIT"))
-_VALUE = Field("value", "limit_value")
-_FLOAT = Field("value", "limit_value", Codec(lambda value, _: float(value), lambda value, _context, _element: value))
+_BOUND = Column("limit_type", same_names(perf.Bound, am.LimitType, UPPER="UPPER_LIMIT", LOWER="LOWER_LIMIT"))
+_VALUE = Column("limit_value")
+_FLOAT = Column("limit_value", Codec(lambda value, _: float(value), lambda value, _context, _element: value))
 
 _LIMITS = ClassTable(
     ClassEntry(
         perf.TimeLimit,
         am.TimeRequirementLimit,
-        Field("metric", "metric", same_names(perf.TimeMetric, am.TimeMetric, END_TO_END="ENDTOEND")),
-        Field("value", "limit_value", TIME),
-        _BOUND,
+        metric=same_names(perf.TimeMetric, am.TimeMetric, END_TO_END="ENDTOEND"),
+        value=Column("limit_value", TIME),
+        bound=_BOUND,
     ),
     ClassEntry(
         perf.CountLimit,
         am.CountRequirementLimit,
-        Field(
-            "metric",
-            "metric",
-            same_names(
-                perf.CountMetric,
-                am.CountMetric,
-                LOST_ACTIVATIONS="MTA_LIMIT_EXCEEDING",
-                CACHE_HITS="CACHE_HIT",
-                CACHE_MISSES="CACHE_MISS",
-            ),
+        metric=same_names(
+            perf.CountMetric,
+            am.CountMetric,
+            LOST_ACTIVATIONS="MTA_LIMIT_EXCEEDING",
+            CACHE_HITS="CACHE_HIT",
+            CACHE_MISSES="CACHE_MISS",
         ),
-        _VALUE,
-        _BOUND,
+        value=_VALUE,
+        bound=_BOUND,
     ),
     ClassEntry(
         perf.LoadLimit,
         am.CPUPercentageRequirementLimit,
-        Field(
-            "metric",
-            "metric",
-            same_names(perf.LoadMetric, am.CPUPercentageMetric, **{m.name: f"CPU{m.name}" for m in perf.LoadMetric}),
-        ),
-        _FLOAT,
-        _BOUND,
-        Field("core", "hardware_context", reference(ObjectKind.MODULE)),
+        metric=same_names(perf.LoadMetric, am.CPUPercentageMetric, **{m.name: f"CPU{m.name}" for m in perf.LoadMetric}),
+        value=_FLOAT,
+        bound=_BOUND,
+        core=Column("hardware_context", reference(ObjectKind.MODULE)),
     ),
     ClassEntry(
         perf.RatioLimit,
         am.PercentageRequirementLimit,
-        Field(
-            "metric",
-            "metric",
-            same_names(
-                perf.RatioMetric,
-                am.PercentageMetric,
-                CORE_EXECUTION_TIME="CORE_EXECUTION_TIME_RELATIVE",
-                MEMORY_ACCESS_TIME="MEMORY_ACCESS_TIME_RELATIVE",
-                OS_OVERHEAD="OS_OVERHEAD_RELATIVE",
-                CACHE_HITS="CACHE_HIT_RATIO",
-                CACHE_MISSES="CACHE_MISS_RATIO",
-            ),
+        metric=same_names(
+            perf.RatioMetric,
+            am.PercentageMetric,
+            CORE_EXECUTION_TIME="CORE_EXECUTION_TIME_RELATIVE",
+            MEMORY_ACCESS_TIME="MEMORY_ACCESS_TIME_RELATIVE",
+            OS_OVERHEAD="OS_OVERHEAD_RELATIVE",
+            CACHE_HITS="CACHE_HIT_RATIO",
+            CACHE_MISSES="CACHE_MISS_RATIO",
         ),
-        _FLOAT,
-        _BOUND,
+        value=_FLOAT,
+        bound=_BOUND,
     ),
     ClassEntry(
         perf.FrequencyLimit,
         am.FrequencyRequirementLimit,
-        Field(
-            "metric",
-            "metric",
-            same_names(
-                perf.FrequencyMetric,
-                am.FrequencyMetric,
-                CACHE_HITS="CACHE_HIT_FREQUENCY",
-                CACHE_MISSES="CACHE_MISS_FREQUENCY",
-            ),
+        metric=same_names(
+            perf.FrequencyMetric,
+            am.FrequencyMetric,
+            CACHE_HITS="CACHE_HIT_FREQUENCY",
+            CACHE_MISSES="CACHE_MISS_FREQUENCY",
         ),
-        Field("value", "limit_value", FREQUENCY),
-        _BOUND,
+        value=Column("limit_value", FREQUENCY),
+        bound=_BOUND,
     ),
 )
 _LIMIT = part(_LIMITS)
@@ -280,9 +260,9 @@ ORDERS = ClassTable(
     ClassEntry(
         perf.OrderConstraint,
         am.RunnableSequencingConstraint,
-        Field("groups", "runnable_groups", _GROUPS),
-        Field("ordering", "order_type", _ORDERING),
-        Field("processes", "process_scope", references(ObjectKind.PROCESS)),
+        groups=Column("runnable_groups", _GROUPS),
+        ordering=Column("order_type", _ORDERING),
+        processes=Column("process_scope", references(ObjectKind.PROCESS)),
     )
 )
 

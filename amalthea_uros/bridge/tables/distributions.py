@@ -6,7 +6,7 @@ from typing import Any
 
 from amalthea_uros.bridge.codecs import PLAIN, TIME, Codec, same_names
 from amalthea_uros.bridge.context import Extracting
-from amalthea_uros.bridge.entries import ClassEntry, ClassTable, Field, all_parts, part
+from amalthea_uros.bridge.entries import ClassEntry, ClassTable, Column, all_parts, part
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.perf import distributions as perf
@@ -22,11 +22,11 @@ class _Distributions(ClassTable):
         if found is not None or entry is None or entry.model_class in (perf.Constant, perf.Histogram):
             return found if found is not None else super().extract(element, context)
         bounds = self.by_model_class[perf.Bounds]
-        values = {column.name: _given(column, element, context) for column in bounds.columns}
+        values = {name: _given(column, element, context) for name, column in bounds.columns.items()}
         return super().extract(element, context) if None in values.values() else perf.Bounds(**values)
 
 
-def _given(column: Field, element: Element, context: Extracting) -> Any:
+def _given(column: Column, element: Element, context: Extracting) -> Any:
     value = getattr(element, column.feature)
     return None if value is None else column.codec.extract(value, context, element)
 
@@ -44,37 +44,30 @@ def _table(prefix: str, number: Codec, mean: Codec) -> ClassTable:
         found: type[Element] = getattr(am, f"{prefix}{suffix}")
         return found
 
-    lower, upper = Field("lower", "lower_bound", number), Field("upper", "upper_bound", number)
-    average = Field("average", "average", mean)
-    sampling = Field("sampling", "sampling_type", same_names(perf.Sampling, am.SamplingType))
-    bucket = ClassTable(
-        ClassEntry(perf.Bucket, amalthea_class("HistogramEntry"), lower, upper, Field("occurrences", "occurrences"))
-    )
+    lower, upper = Column("lower_bound", number), Column("upper_bound", number)
+    average = mean
+    sampling = Column("sampling_type", same_names(perf.Sampling, am.SamplingType))
+    bucket = ClassTable(ClassEntry(perf.Bucket, amalthea_class("HistogramEntry"), lower=lower, upper=upper, occurrences=PLAIN))
     return _Distributions(
         # Before the class that it is written as, which has a parameter more.
-        ClassEntry(perf.Bounds, amalthea_class("GaussDistribution"), lower, upper),
-        ClassEntry(perf.Constant, amalthea_class("Constant"), Field("value", "value", number)),
-        ClassEntry(perf.Boundaries, amalthea_class("Boundaries"), lower, upper, sampling),
-        ClassEntry(perf.Statistics, amalthea_class("Statistics"), lower, average, upper),
-        ClassEntry(perf.Uniform, amalthea_class("UniformDistribution"), lower, upper),
+        ClassEntry(perf.Bounds, amalthea_class("GaussDistribution"), lower=lower, upper=upper),
+        ClassEntry(perf.Constant, amalthea_class("Constant"), value=number),
+        ClassEntry(perf.Boundaries, amalthea_class("Boundaries"), lower=lower, upper=upper, sampling=sampling),
+        ClassEntry(perf.Statistics, amalthea_class("Statistics"), lower=lower, average=average, upper=upper),
+        ClassEntry(perf.Uniform, amalthea_class("UniformDistribution"), lower=lower, upper=upper),
         ClassEntry(
-            perf.Gauss,
-            amalthea_class("GaussDistribution"),
-            Field("mean", "mean", mean),
-            Field("deviation", "sd", mean),
-            lower,
-            upper,
+            perf.Gauss, amalthea_class("GaussDistribution"), mean=mean, deviation=Column("sd", mean), lower=lower, upper=upper
         ),
         ClassEntry(
             perf.Weibull,
             amalthea_class("WeibullEstimatorsDistribution"),
-            lower,
-            average,
-            upper,
-            Field("exceeding", "p_remain_promille"),
+            lower=lower,
+            average=average,
+            upper=upper,
+            exceeding=Column("p_remain_promille"),
         ),
-        ClassEntry(perf.Beta, amalthea_class("BetaDistribution"), Field("alpha", "alpha"), Field("beta", "beta"), lower, upper),
-        ClassEntry(perf.Histogram, amalthea_class("Histogram"), Field("buckets", "entries", all_parts(bucket))),
+        ClassEntry(perf.Beta, amalthea_class("BetaDistribution"), alpha=PLAIN, beta=PLAIN, lower=lower, upper=upper),
+        ClassEntry(perf.Histogram, amalthea_class("Histogram"), buckets=Column("entries", all_parts(bucket))),
     )
 
 

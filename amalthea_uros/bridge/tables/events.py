@@ -6,68 +6,68 @@ from typing import Any
 
 from amalthea_uros.bridge.codecs import reference, references, same_names
 from amalthea_uros.bridge.context import Building, Extracting
-from amalthea_uros.bridge.entries import ClassEntry, ClassTable, Field
+from amalthea_uros.bridge.entries import ClassEntry, ClassTable, Column
 from amalthea_uros.bridge.kinds import ObjectKind
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.perf import events as perf
 
-_PROCESS = Field("process", "process", reference(ObjectKind.PROCESS))
-_RUNNABLE = Field("runnable", "runnable", reference(ObjectKind.RUNNABLE))
-_CORE = Field("core", "processing_unit", reference(ObjectKind.MODULE))
+_PROCESS = reference(ObjectKind.PROCESS)
+_RUNNABLE = reference(ObjectKind.RUNNABLE)
+_CORE = Column("processing_unit", reference(ObjectKind.MODULE))
 
 EVENTS = ClassTable(
     ClassEntry(
         perf.ProcessEvent,
         am.ProcessEvent,
-        Field("change", "event_type", same_names(perf.ProcessChange, am.ProcessEventType)),
-        Field("process", "entity", reference(ObjectKind.PROCESS)),
-        _CORE,
+        change=Column("event_type", same_names(perf.ProcessChange, am.ProcessEventType)),
+        process=Column("entity", reference(ObjectKind.PROCESS)),
+        core=_CORE,
     ),
     ClassEntry(
         perf.RunnableEvent,
         am.RunnableEvent,
-        Field("change", "event_type", same_names(perf.RunnableChange, am.RunnableEventType)),
-        Field("runnable", "entity", reference(ObjectKind.RUNNABLE)),
-        _PROCESS,
-        _CORE,
+        change=Column("event_type", same_names(perf.RunnableChange, am.RunnableEventType)),
+        runnable=Column("entity", reference(ObjectKind.RUNNABLE)),
+        process=_PROCESS,
+        core=_CORE,
     ),
     ClassEntry(
         perf.LabelEvent,
         am.LabelEvent,
-        Field("change", "event_type", same_names(perf.LabelChange, am.LabelEventType)),
-        Field("label", "entity", reference(ObjectKind.DATA)),
-        _RUNNABLE,
-        _PROCESS,
+        change=Column("event_type", same_names(perf.LabelChange, am.LabelEventType)),
+        label=Column("entity", reference(ObjectKind.DATA)),
+        runnable=_RUNNABLE,
+        process=_PROCESS,
     ),
     ClassEntry(
         perf.ModeLabelEvent,
         am.ModeLabelEvent,
-        Field("change", "event_type", same_names(perf.ModeChange, am.ModeLabelEventType)),
-        Field("label", "entity", reference(ObjectKind.MODE_LABEL)),
-        _RUNNABLE,
-        _PROCESS,
+        change=Column("event_type", same_names(perf.ModeChange, am.ModeLabelEventType)),
+        label=Column("entity", reference(ObjectKind.MODE_LABEL)),
+        runnable=_RUNNABLE,
+        process=_PROCESS,
     ),
     ClassEntry(
         perf.ChannelEvent,
         am.ChannelEvent,
-        Field("change", "event_type", same_names(perf.ChannelChange, am.ChannelEventType)),
-        Field("channel", "entity", reference(ObjectKind.DATA)),
-        _RUNNABLE,
-        _PROCESS,
+        change=Column("event_type", same_names(perf.ChannelChange, am.ChannelEventType)),
+        channel=Column("entity", reference(ObjectKind.DATA)),
+        runnable=_RUNNABLE,
+        process=_PROCESS,
     ),
     ClassEntry(
         perf.SemaphoreEvent,
         am.SemaphoreEvent,
-        Field("change", "event_type", same_names(perf.SemaphoreChange, am.SemaphoreEventType)),
-        Field("semaphore", "entity", reference(ObjectKind.SEMAPHORE)),
-        _RUNNABLE,
-        _PROCESS,
-        _CORE,
+        change=Column("event_type", same_names(perf.SemaphoreChange, am.SemaphoreEventType)),
+        semaphore=Column("entity", reference(ObjectKind.SEMAPHORE)),
+        runnable=_RUNNABLE,
+        process=_PROCESS,
+        core=_CORE,
     ),
-    ClassEntry(perf.StimulusEvent, am.StimulusEvent, Field("stimulus", "entity", reference(ObjectKind.STIMULUS))),
-    ClassEntry(perf.CustomEvent, am.CustomEvent, Field("kind", "event_type")),
-    ClassEntry(perf.EventSet, am.EventSet, Field("events", "events", references(ObjectKind.EVENT))),
+    ClassEntry(perf.StimulusEvent, am.StimulusEvent, stimulus=Column("entity", reference(ObjectKind.STIMULUS))),
+    ClassEntry(perf.CustomEvent, am.CustomEvent, kind=Column("event_type")),
+    ClassEntry(perf.EventSet, am.EventSet, events=references(ObjectKind.EVENT)),
 )
 
 # Chains. An item refers to a chain or contains one; the kind of the items is an attribute of the chain that has them.

@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 
 from amalthea_uros.bridge.codecs import FREQUENCY, RATE, SIZE, enumeration, reference, references, same_names
 from amalthea_uros.bridge.context import Building, Extracting
-from amalthea_uros.bridge.entries import ClassEntry, ClassTable, Field
+from amalthea_uros.bridge.entries import ClassEntry, ClassTable, Column
 from amalthea_uros.bridge.kinds import ObjectKind
 from amalthea_uros.bridge.tables.distributions import TICKS
 from amalthea_uros.metamodel import classes as am
@@ -32,7 +32,7 @@ _ARBITRATION = enumeration(
 _CLOCK, _CORE_TYPE, _MODULE = reference(ObjectKind.CLOCK), reference(ObjectKind.CORE_TYPE), reference(ObjectKind.MODULE)
 _MODULES = references(ObjectKind.MODULE)
 
-CLOCKS = ClassTable(ClassEntry(perf.Clock, am.FrequencyDomain, Field("frequency", "default_value", FREQUENCY)))
+CLOCKS = ClassTable(ClassEntry(perf.Clock, am.FrequencyDomain, frequency=Column("default_value", FREQUENCY)))
 
 
 def _set_latency(element: Any, latency: perf.Latency, context: Building) -> None:

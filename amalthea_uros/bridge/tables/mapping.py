@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from amalthea_uros.bridge.codecs import reference, references
+from amalthea_uros.bridge.codecs import PLAIN, reference, references
 from amalthea_uros.bridge.context import Building, Extracting
-from amalthea_uros.bridge.entries import ClassEntry, ClassTable, Field
+from amalthea_uros.bridge.entries import ClassEntry, ClassTable, Column
 from amalthea_uros.bridge.kinds import ObjectKind
 from amalthea_uros.bridge.tables.parameters import Given, SchedulingDefinitions, extract_parameters
 from amalthea_uros.metamodel import classes as am
@@ -19,21 +19,15 @@ _PROCESS, _SCHEDULER, _CORES = reference(ObjectKind.PROCESS), reference(ObjectKi
 _DATA, _MEMORY, _CORE = reference(ObjectKind.DATA), reference(ObjectKind.MODULE), reference(ObjectKind.MODULE)
 
 ISR_ALLOCATIONS = ClassTable(
-    ClassEntry(
-        perf.IsrAllocation,
-        am.ISRAllocation,
-        Field("isr", "isr", _PROCESS),
-        Field("controller", "controller", _SCHEDULER),
-        Field("priority", "priority"),
-    )
+    ClassEntry(perf.IsrAllocation, am.ISRAllocation, isr=_PROCESS, controller=_SCHEDULER, priority=PLAIN)
 )
 PLACEMENTS = ClassTable(
     ClassEntry(
         perf.Placement,
         am.MemoryMapping,
-        Field("element", "abstract_element", _DATA),
-        Field("memory", "memory", _MEMORY),
-        Field("address", "memory_position_address"),
+        element=Column("abstract_element", _DATA),
+        memory=_MEMORY,
+        address=Column("memory_position_address"),
     )
 )
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from amalthea_uros.bridge.codecs import enumeration, reference, same_names
+from amalthea_uros.bridge.codecs import PLAIN, enumeration, reference, same_names
 from amalthea_uros.bridge.context import Building, Extracting
-from amalthea_uros.bridge.entries import ClassEntry, ClassTable, Field
+from amalthea_uros.bridge.entries import ClassEntry, ClassTable, Column
 from amalthea_uros.bridge.kinds import ObjectKind
 from amalthea_uros.bridge.tables.activities import ACTIVITIES, DEMAND, ITEMS, PROTECTIONS
 from amalthea_uros.bridge.tables.parameters import Given, SchedulingDefinitions, extract_parameters, extract_policy
@@ -19,11 +19,11 @@ SEMAPHORES = ClassTable(
     ClassEntry(
         perf.Semaphore,
         am.Semaphore,
-        Field("kind", "semaphore_type", same_names(perf.SemaphoreKind, am.SemaphoreType, COUNTING="COUNTING_SEMAPHORE")),
-        Field("users", "max_value"),
-        Field("initial_users", "initial_value"),
-        Field("ceiling", "priority_ceiling_protocol"),
-        Field("ownership", "ownership"),
+        kind=Column("semaphore_type", same_names(perf.SemaphoreKind, am.SemaphoreType, COUNTING="COUNTING_SEMAPHORE")),
+        users=Column("max_value"),
+        initial_users=Column("initial_value"),
+        ceiling=Column("priority_ceiling_protocol"),
+        ownership=PLAIN,
     )
 )
 

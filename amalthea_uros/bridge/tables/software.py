@@ -15,7 +15,7 @@ from amalthea_uros.bridge.codecs import (
     same_names,
 )
 from amalthea_uros.bridge.context import Building, Extracting
-from amalthea_uros.bridge.entries import ClassEntry, ClassTable, Field
+from amalthea_uros.bridge.entries import ClassEntry, ClassTable, Column
 from amalthea_uros.bridge.kinds import ObjectKind
 from amalthea_uros.bridge.tables.activities import ITEMS, PROTECTIONS
 from amalthea_uros.bridge.tables.conditions import CONDITION
@@ -29,7 +29,7 @@ _GRAPH = Codec(
     lambda items, context: am.ActivityGraph(items=ITEMS.build(items, context)),
     lambda value, context, element: ITEMS.extract(value.items, context, element),
 )
-_ACTIVITIES = Field("activities", "activity_graph", _GRAPH)
+_ACTIVITIES = Column("activity_graph", _GRAPH)
 
 
 def _extract_stimuli(values: list[Any], context: Extracting, element: Element) -> tuple[str, ...]:
@@ -38,8 +38,7 @@ def _extract_stimuli(values: list[Any], context: Extracting, element: Element) -
 
 
 _STIMULUS = reference(ObjectKind.STIMULUS)
-_STIMULI = Field("stimuli", "stimuli", Codec(references(ObjectKind.STIMULUS).build, _extract_stimuli))
-_SIZE = Field("size", "size", SIZE)
+_STIMULI = Codec(references(ObjectKind.STIMULUS).build, _extract_stimuli)
 
 _LIMIT = Codec(
     # 0 is what the metamodel gives where nothing is stated; a task has at least one job.
@@ -52,35 +51,34 @@ PROCESSES = ClassTable(
     ClassEntry(
         perf.Task,
         am.Task,
-        _STIMULI,
-        _ACTIVITIES,
-        Field("preemption", "preemption", _PREEMPTION),
-        Field("activation_limit", "multiple_task_activation_limit", _LIMIT),
+        stimuli=_STIMULI,
+        activities=_ACTIVITIES,
+        preemption=_PREEMPTION,
+        activation_limit=Column("multiple_task_activation_limit", _LIMIT),
     ),
     ClassEntry(
-        perf.Isr, am.ISR, _STIMULI, _ACTIVITIES, Field("category", "category", same_names(perf.IsrCategory, am.ISRCategory))
+        perf.Isr, am.ISR, stimuli=_STIMULI, activities=_ACTIVITIES, category=same_names(perf.IsrCategory, am.ISRCategory)
     ),
 )
 RUNNABLES = ClassTable(
     ClassEntry(
         perf.Runnable,
         am.Runnable,
-        _ACTIVITIES,
-        Field("callback", "callback"),
-        Field("service", "service"),
-        Field("is_overhead", "custom_properties", marked("osOverhead", default=False)),
-        Field("condition", "execution_condition", CONDITION),
+        activities=_ACTIVITIES,
+        callback=PLAIN,
+        service=PLAIN,
+        is_overhead=Column("custom_properties", marked("osOverhead", default=False)),
+        condition=Column("execution_condition", CONDITION),
     )
 )
 LABELS = ClassTable(
     ClassEntry(
         perf.Label,
         am.Label,
-        _SIZE,
-        Field("constant", "constant"),
-        Field("volatile", "b_volatile"),
-        Field(
-            "protection",
+        size=SIZE,
+        constant=PLAIN,
+        volatile=Column("b_volatile"),
+        protection=Column(
             "data_stability",
             enumeration({Protection[name]: am.LabelDataStability[other] for name, other in PROTECTIONS.items()}),
         ),
@@ -105,20 +103,15 @@ CHANNELS = ClassTable(
     ClassEntry(
         perf.Channel,
         am.Channel,
-        Field("element_size", "element_type", Codec(_build_element_type, _extract_element_type)),
-        Field("default_elements", "default_elements"),
-        Field("capacity", "max_elements"),
-        Field("external", "custom_properties", marked("external", default=False)),
+        element_size=Column("element_type", Codec(_build_element_type, _extract_element_type)),
+        default_elements=PLAIN,
+        capacity=Column("max_elements"),
+        external=Column("custom_properties", marked("external", default=False)),
     )
 )
 OS_EVENTS = ClassTable(ClassEntry(perf.OsEvent, am.OsEvent))
 MODE_LABELS = ClassTable(
-    ClassEntry(
-        perf.ModeLabel,
-        am.ModeLabel,
-        Field("mode", "mode", reference(ObjectKind.MODE)),
-        Field("initial", "initial_value", PLAIN),
-    )
+    ClassEntry(perf.ModeLabel, am.ModeLabel, mode=reference(ObjectKind.MODE), initial=Column("initial_value"))
 )
 
 

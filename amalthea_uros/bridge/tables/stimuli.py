@@ -7,6 +7,7 @@ from typing import Any
 
 from amalthea_uros.bridge.codecs import (
     FREQUENCY,
+    PLAIN,
     TIME,
     TIMES,
     all_references,
@@ -16,7 +17,7 @@ from amalthea_uros.bridge.codecs import (
     same_names,
 )
 from amalthea_uros.bridge.context import Building, Extracting
-from amalthea_uros.bridge.entries import ClassEntry, ClassTable, Field, all_parts, part, parts
+from amalthea_uros.bridge.entries import ClassEntry, ClassTable, Column, Columns, all_parts, part, parts
 from amalthea_uros.bridge.kinds import ObjectKind
 from amalthea_uros.bridge.tables.conditions import ASSIGNMENTS, CONDITION
 from amalthea_uros.bridge.tables.distributions import NUMBER, TIME_SPAN
@@ -69,31 +70,30 @@ def _extract_arrivals(element: Any) -> perf.Arrivals | None:
 
 
 #: Numbers that are not given have these values in every version: prescaler 1, offset 0.
-COUNTER = part(_Counters(ClassEntry(perf.Counter, am.Counter, Field("prescaler", "prescaler"), Field("offset", "offset"))))
+COUNTER = part(_Counters(ClassEntry(perf.Counter, am.Counter, prescaler=PLAIN, offset=PLAIN)))
 
-_COMMON = (
-    Field("condition", "execution_condition", CONDITION),
-    Field("assignments", "set_mode_value_list", ASSIGNMENTS),
-)
-_PERIOD = (Field("period", "recurrence", TIME), Field("offset", "offset", TIME))
-_COUNTER = Field("counter", "counter", COUNTER)
+_COMMON: Columns = {
+    "condition": Column("execution_condition", CONDITION),
+    "assignments": Column("set_mode_value_list", ASSIGNMENTS),
+}
+_PERIOD: Columns = {"period": Column("recurrence", TIME), "offset": TIME}
 
 _SCENARIO = ClassTable(
     ClassEntry(
         perf.Scenario,
         am.Scenario,
-        Field("clock", "clock", reference(ObjectKind.STIMULUS_CLOCK)),
-        Field("offset", "sampling_offset"),
-        Field("recurrence", "sampling_recurrence"),
+        clock=reference(ObjectKind.STIMULUS_CLOCK),
+        offset=Column("sampling_offset"),
+        recurrence=Column("sampling_recurrence"),
     )
 )
 _POINTS = ClassTable(
     ClassEntry(
         perf.ArrivalCurvePoint,
         am.ArrivalCurveEntry,
-        Field("occurrences", "number_of_occurrences"),
-        Field("lower", "lower_time_border", TIME),
-        Field("upper", "upper_time_border", TIME),
+        occurrences=Column("number_of_occurrences"),
+        lower=Column("lower_time_border", TIME),
+        upper=Column("upper_time_border", TIME),
     )
 )
 
@@ -108,70 +108,61 @@ class _Stimuli(ClassTable):
 
 
 STIMULI: ClassTable = _Stimuli(
-    ClassEntry(
-        perf.Periodic,
-        am.PeriodicStimulus,
-        *_PERIOD,
-        Field("jitter", "jitter", TIME_SPAN),
-        Field("min_distance", "min_distance", TIME),
-        *_COMMON,
-    ),
+    ClassEntry(perf.Periodic, am.PeriodicStimulus, **_PERIOD, jitter=TIME_SPAN, min_distance=TIME, **_COMMON),
     ClassEntry(
         perf.RelativePeriodic,
         am.RelativePeriodicStimulus,
-        Field("offset", "offset", TIME),
-        Field("distance", "next_occurrence", TIME_SPAN),
-        Field("has_maximum", "custom_properties", marked("maximumKnown", default=True)),
-        *_COMMON,
+        offset=TIME,
+        distance=Column("next_occurrence", TIME_SPAN),
+        has_maximum=Column("custom_properties", marked("maximumKnown", default=True)),
+        **_COMMON,
     ),
-    ClassEntry(perf.Synthetic, am.PeriodicSyntheticStimulus, *_PERIOD, Field("times", "occurrence_times", TIMES), *_COMMON),
+    ClassEntry(perf.Synthetic, am.PeriodicSyntheticStimulus, **_PERIOD, times=Column("occurrence_times", TIMES), **_COMMON),
     ClassEntry(
         perf.Burst,
         am.PeriodicBurstStimulus,
-        *_PERIOD,
-        Field("length", "burst_length", TIME),
-        Field("distance", "occurrence_min_distance", TIME),
-        Field("count", "occurrence_count"),
-        *_COMMON,
+        **_PERIOD,
+        length=Column("burst_length", TIME),
+        distance=Column("occurrence_min_distance", TIME),
+        count=Column("occurrence_count"),
+        **_COMMON,
     ),
-    ClassEntry(perf.Single, am.SingleStimulus, Field("time", "occurrence", TIME), *_COMMON),
+    ClassEntry(perf.Single, am.SingleStimulus, time=Column("occurrence", TIME), **_COMMON),
     ClassEntry(
         perf.VariableRate,
         am.VariableRateStimulus,
-        Field("step", "step", TIME),
-        Field("rate", "occurrences_per_step", NUMBER),
-        Field("max_increase", "max_increase_per_step"),
-        Field("max_decrease", "max_decrease_per_step"),
-        Field("scenario", "scenario", part(_SCENARIO)),
-        *_COMMON,
+        step=TIME,
+        rate=Column("occurrences_per_step", NUMBER),
+        max_increase=Column("max_increase_per_step"),
+        max_decrease=Column("max_decrease_per_step"),
+        scenario=part(_SCENARIO),
+        **_COMMON,
     ),
-    ClassEntry(perf.ArrivalCurve, am.ArrivalCurveStimulus, Field("points", "entries", parts(_POINTS)), *_COMMON),
-    ClassEntry(perf.InterProcess, am.InterProcessStimulus, _COUNTER, *_COMMON),
+    ClassEntry(perf.ArrivalCurve, am.ArrivalCurveStimulus, points=Column("entries", parts(_POINTS)), **_COMMON),
+    ClassEntry(perf.InterProcess, am.InterProcessStimulus, counter=COUNTER, **_COMMON),
     ClassEntry(
         perf.EventTriggered,
         am.EventStimulus,
-        Field("events", "triggering_events", all_references(ObjectKind.EVENT)),
-        _COUNTER,
-        *_COMMON,
+        events=Column("triggering_events", all_references(ObjectKind.EVENT)),
+        counter=COUNTER,
+        **_COMMON,
     ),
-    ClassEntry(perf.Custom, am.CustomStimulus, Field("description", "description"), *_COMMON),
+    ClassEntry(perf.Custom, am.CustomStimulus, description=PLAIN, **_COMMON),
 )
 
 _STEPS = ClassTable(
-    ClassEntry(perf.ClockStep, am.ClockStep, Field("time", "time", TIME), Field("frequency", "frequency", FREQUENCY)),
+    ClassEntry(perf.ClockStep, am.ClockStep, time=TIME, frequency=FREQUENCY),
 )
 
 CLOCKS = ClassTable(
     ClassEntry(
         perf.ClockFunction,
         am.ClockFunction,
-        Field("curve", "curve_type", same_names(perf.Curve, am.CurveType)),
-        Field("period", "period", TIME),
-        Field("lowest", "y_offset", FREQUENCY),
-        Field("swing", "peak_to_peak", FREQUENCY),
-        Field("shift", "x_offset", TIME),
+        curve=Column("curve_type", same_names(perf.Curve, am.CurveType)),
+        period=TIME,
+        lowest=Column("y_offset", FREQUENCY),
+        swing=Column("peak_to_peak", FREQUENCY),
+        shift=Column("x_offset", TIME),
     ),
-    ClassEntry(
-        perf.ClockSteps, am.ClockStepList, Field("steps", "entries", all_parts(_STEPS)), Field("period", "period", TIME)
-    ),
+    ClassEntry(perf.ClockSteps, am.ClockStepList, steps=Column("entries", all_parts(_STEPS)), period=TIME),
 )
