@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from amalthea_uros.xmi.migrate.model_set import ModelSet, Tree, all_below
-from amalthea_uros.xmi.migrate.notes import StepNotes, bring_back, give_up
+from amalthea_uros.xmi.migrate.notes import StepNotes, report_postponed, restore_postponed
 from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps import DOWN, UP
 from amalthea_uros.xmi.migrate.versions import position
@@ -31,7 +31,7 @@ def migrate(models: ModelSet, target: str, notes: StepNotes) -> None:
     highest = max(models.trees, key=lambda tree: position(tree.version)).version
     while position(highest) > goal:
         highest = _take(models, _DOWN[highest], notes)
-    give_up(models.postponed, notes)
+    report_postponed(models.postponed, notes)
     for (node, name), targets in models.set_aside.items():
         lost = ", ".join(repr(target.name) for target in targets)
         notes.lost(node, f"reference {name!r}: this version has no place for it", lost, name)
@@ -42,7 +42,7 @@ def _take(models: ModelSet, step: Step, notes: StepNotes) -> str:
     if step.change is not None:
         models.begin_step(step.source)
         notes.version = step.target
-        bring_back(models.postponed, step.target, notes)
+        restore_postponed(models.postponed, step.target, notes)
         step.change(models, notes)
     for tree in models.trees:
         if tree.version == step.source:

@@ -232,6 +232,15 @@ class Node:
         """Remove an attribute or reference; whether there was one."""
         return self.attributes.pop(name, None) is not None or self.references.pop(name, None) is not None
 
+    def copy(self) -> Node:
+        """The same once more, without container; it refers to the same objects."""
+        made = Node(self.tag, self.type, dict(self.attributes), self.origin)
+        made.references = {name: list(targets) for name, targets in self.references.items()}
+        made.target_class = self.target_class
+        for part in self.children:
+            made.insert(part.copy())
+        return made
+
     def refer(self, name: str, *targets: Node) -> None:
         """Add targets to a reference."""
         self.references.setdefault(name, []).extend(targets)

@@ -113,7 +113,7 @@ class Postponed:
     is_kept: bool = False
 
 
-def bring_back(postponed: list[Postponed], version: str, notes: StepNotes) -> None:
+def restore_postponed(postponed: list[Postponed], version: str, notes: StepNotes) -> None:
     """Restore what was postponed until a version."""
     for one in postponed:
         if one.until == version:
@@ -122,7 +122,7 @@ def bring_back(postponed: list[Postponed], version: str, notes: StepNotes) -> No
     postponed[:] = [one for one in postponed if one.until != version]
 
 
-def give_up(postponed: list[Postponed], notes: StepNotes) -> None:
+def report_postponed(postponed: list[Postponed], notes: StepNotes) -> None:
     """Note what is not restored, because the migration ends before."""
     for one in postponed:
         if not one.is_kept:

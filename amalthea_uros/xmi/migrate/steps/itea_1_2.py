@@ -11,6 +11,7 @@ from amalthea_uros.xmi.migrate.node import Node
 from amalthea_uros.xmi.migrate.notes import BEYOND_ITEA, NoteKind, Postponed, StepNotes
 from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.itea_tools import is_isr, sub_models
+from amalthea_uros.xmi.migrate.steps.tools import attributes_text
 
 
 def change(models: ModelSet, notes: StepNotes) -> None:
@@ -50,12 +51,8 @@ def _keep_fitting_statistics(access: Node, notes: StepNotes) -> None:
                 notes.renamed(part, f"statistic {part.tag!r} of a label access is {tag!r}")
                 part.tag = tag
         for part in statistic.all("read", "write", "readCacheMisses", "writeCacheMisses"):
-            notes.lost(part, f"statistic {part.tag!r}: the label access is of the other kind", _statistic_text(part))
+            notes.lost(part, f"statistic {part.tag!r}: the label access is of the other kind", attributes_text(part))
             part.remove()
-
-
-def _statistic_text(part: Node) -> str:
-    return ", ".join(f"{name}={text}" for name, text in part.attributes.items())
 
 
 class _Allocations:

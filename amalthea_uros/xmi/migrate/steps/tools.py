@@ -207,6 +207,11 @@ def names_of(nodes: Iterable[Node]) -> str:
     return ", ".join(node.attributes.get("path", "") if node.is_proxy else node.name or node.type or node.tag for node in nodes)
 
 
+def attributes_text(node: Node, separator: str = ", ") -> str:
+    """The attributes of an object, as a list for people."""
+    return separator.join(f"{name}={text}" for name, text in node.attributes.items())
+
+
 def content_of(node: Node) -> str:
     """What an object that is removed states about itself, as a list for people."""
     stated = [f"{name}={text}" for name, text in node.attributes.items()]

@@ -78,20 +78,12 @@ def _distribute_consistency(os_model: Node, notes: StepNotes) -> None:
         consistency.remove()
         without = [system for system in systems if system.child("osDataConsistency") is None]
         for system in without:
-            system.insert(_copied(consistency))
+            system.insert(consistency.copy())
         if without:
             notes.moved(consistency, "osDataConsistency -> every operating system that has none")
         elif content := content_of(consistency):
             why = "every operating system has its own" if systems else "there is no operating system"
             notes.lost(consistency, f"osDataConsistency: {why}", content)
-
-
-def _copied(node: Node) -> Node:
-    made = Node(node.tag, node.type, dict(node.attributes), node.origin)
-    made.references = {name: list(targets) for name, targets in node.references.items()}
-    for child in node.children:
-        made.insert(_copied(child))
-    return made
 
 
 def _keep_hardware_constraint(constraint: Node, notes: StepNotes) -> None:

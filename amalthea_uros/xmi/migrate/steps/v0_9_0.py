@@ -11,13 +11,12 @@ from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node, remove_all
 from amalthea_uros.xmi.migrate.notes import StepNotes
 from amalthea_uros.xmi.migrate.step import Step
-from amalthea_uros.xmi.migrate.steps.tools import whole_number
+from amalthea_uros.xmi.migrate.steps.tools import attributes_text, whole_number
 from amalthea_uros.xmi.migrate.steps.v0_9_0_parts import (
     INSTRUCTIONS,
     Clocks,
     HardwareDefinitions,
     Structures,
-    copy_of,
     frequency_of,
     is_cache,
 )
@@ -195,7 +194,7 @@ class AccessPaths:
                     self.notes.lost(stated, "'transferSize' of latencies", stated.get("transferSize"), "transferSize")
                 latency = self.in_cycles_of(core, stated)
                 for tag in _LATENCIES.get(access, _LATENCIES["RW"]):
-                    costs[tag].append(copy_of(latency))
+                    costs[tag].append(latency.copy())
             else:
                 self.notes.lost(stated, "latency without value", path.name)
 
@@ -227,7 +226,7 @@ class AccessPaths:
 
     def in_cycles_of(self, core: Node, stated: Node) -> Node:
         """A copy of a latency in cycles of the core, which is what access elements state; it was in those of the quartz."""
-        latency = copy_of(stated)
+        latency = stated.copy()
         quartz, domain = stated.target("quartz"), core.target("frequencyDomain")
         if quartz is None:
             self.notes.defaulted(stated, "latency without quartz: taken as cycles of the core", stated.get("value"), "quartz")
@@ -290,9 +289,7 @@ def _make_entry(instructions: Node, notes: StepNotes) -> None:
     instructions.type = _NEEDS[instructions.type or kind]
     for fetch in instructions.all("fetchStatistic"):
         if fetch.attributes or fetch.children:
-            notes.lost(
-                fetch, "'fetchStatistic' of instructions", ", ".join(f"{key}={text}" for key, text in fetch.attributes.items())
-            )
+            notes.lost(fetch, "'fetchStatistic' of instructions", attributes_text(fetch))
         fetch.remove()
 
 

@@ -63,16 +63,6 @@ def _place_for_property(node: Node) -> int:
     return next((at for at, part in enumerate(node.children) if part.tag != "customProperties"), len(node.children))
 
 
-def copy_of(node: Node) -> Node:
-    """The same once more, without container; it refers to the same objects."""
-    made = Node(node.tag, node.type, dict(node.attributes), node.origin)
-    made.references = {name: list(targets) for name, targets in node.references.items()}
-    made.target_class = node.target_class
-    for part in node.children:
-        made.insert(copy_of(part))
-    return made
-
-
 def is_cache(memory: Node) -> bool:
     """Whether a memory, not yet converted, becomes a cache."""
     memory_type = memory.target("type")
@@ -180,7 +170,7 @@ class Clocks:
         known = self.domains.get((quartz, ratio))
         if known is not None:
             return known
-        made = self.domains[quartz, ratio] = copy_of(quartz)
+        made = self.domains[quartz, ratio] = quartz.copy()
         made.attributes["name"] = self._name(quartz, ratio)
         assert quartz.parent is not None
         quartz.parent.insert(made)

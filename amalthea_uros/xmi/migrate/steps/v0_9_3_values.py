@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from amalthea_uros.xmi.migrate.node import Node
 from amalthea_uros.xmi.migrate.notes import StepNotes
-from amalthea_uros.xmi.migrate.steps.tools import add_property, keep_comments
+from amalthea_uros.xmi.migrate.steps.tools import add_property, attributes_text, keep_comments
 
 DISCRETE, CONTINUOUS, TIME = "DiscreteValue", "ContinuousValue", "Time"
 
@@ -119,11 +119,7 @@ def _drop_statistics(node: Node, notes: StepNotes) -> None:
 
 def _summary(node: Node) -> str:
     """Everything that the parts state, on one line."""
-    texts = []
-    for part in node.children:
-        stated = " ".join(f"{name}={text}" for name, text in part.attributes.items())
-        texts.append(f"{part.tag}({stated})")
-    return " ".join(texts)
+    return " ".join(f"{part.tag}({attributes_text(part, ' ')})" for part in node.children)
 
 
 def _keep_bounds(node: Node, distribution: Node | None, kind: str, owner: Node, notes: StepNotes) -> bool:

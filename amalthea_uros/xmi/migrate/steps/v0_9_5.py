@@ -10,7 +10,7 @@ from amalthea_uros.xmi.migrate.model_set import ModelSet
 from amalthea_uros.xmi.migrate.node import Node
 from amalthea_uros.xmi.migrate.notes import BEYOND_CONVERTERS, NoteKind, Postponed, StepNotes
 from amalthea_uros.xmi.migrate.step import Step
-from amalthea_uros.xmi.migrate.steps.tools import add_property, by_class, keep_comments, quantity_text
+from amalthea_uros.xmi.migrate.steps.tools import add_property, attributes_text, by_class, keep_comments, quantity_text
 
 # Clocks: they are described by frequencies now, whose units the older version does not state
 
@@ -160,7 +160,7 @@ def _convert_sequence(node: Node, notes: StepNotes) -> None:
 
 def _keep_counter(node: Node, notes: StepNotes) -> None:
     for counter in node.all("counter"):
-        text = " ".join(f"{name}={value}" for name, value in counter.attributes.items())
+        text = attributes_text(counter, " ")
         counter.remove()
         keep_comments(counter, node)
         add_property(node, "counter", text)
