@@ -26,9 +26,9 @@ from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
 
 #: `delay(100); rclc_executor_spin_some(&executor, RCL_MS_TO_NS(100))`, the loop of the Arduino examples.
-ARDUINO = Loop(kind=LoopKind.SPIN_SOME, timeout=100 * MS, sleep=100 * MS)
+ARDUINO = Loop(kind=LoopKind.SLEEPING, timeout=100 * MS, sleep=100 * MS)
 #: `rclc_executor_spin`, whose timeout is 1 s by default.
-SPIN = Loop(kind=LoopKind.SPIN, timeout=1000 * MS)
+SPIN = Loop(kind=LoopKind.CONTINUOUS, timeout=1000 * MS)
 
 
 def message(name, interval, cost=0, **parts):
@@ -71,7 +71,7 @@ def _parts(name, handles, loop, spin, priority):
                 branches=(Chance(weight=1.0, activities=(Call(runnable=handle.runnable),)), Chance(weight=1.0, activities=()))
             )
         )
-    if loop.kind is LoopKind.SPIN_PERIOD:
+    if loop.kind is LoopKind.PERIODIC:
         stimulus = Periodic(name=f"{name}_loop", period=loop.period)
     else:
         distance = Constant(max(loop.sleep + spin * US, MS))

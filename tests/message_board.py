@@ -26,7 +26,7 @@ from amalthea_uros.units import MILLISECOND as MS
 CMD, ODOM, ACK = 5816, 1997, 1737
 SLEEP = 10 * MS
 AGENT = Span(least=MS, most=2 * MS)
-LOOP = Loop(kind=LoopKind.SPIN_SOME, timeout=100 * MS, sleep=SLEEP)
+LOOP = Loop(kind=LoopKind.SLEEPING, timeout=100 * MS, sleep=SLEEP)
 
 _EVENTS = (
     ProcessEvent(name="cmd_published", process="cmd_in", change=ProcessChange.ACTIVATE),

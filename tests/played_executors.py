@@ -150,14 +150,14 @@ class Played:
         while True:
             begin = kernel.now
             yield from self._spin_some(loop.timeout)
-            if loop.kind is LoopKind.SPIN_SOME and loop.sleep:
+            if loop.kind is LoopKind.SLEEPING and loop.sleep:
                 least = kernel.now + loop.sleep - loop.sleep_early
                 end = self.spans.draw(least, kernel.now + loop.sleep)
                 if woken is not None and loop.pace > loop.sleep - loop.sleep_early:
                     end = max(end, woken + loop.pace)
                 woken = end
                 yield Until(end)
-            elif loop.kind is LoopKind.SPIN_PERIOD:
+            elif loop.kind is LoopKind.PERIODIC:
                 left = invoked + loop.period - kernel.now
                 if left > 0:
                     yield Until(kernel.now + left // MS * MS)
@@ -204,9 +204,9 @@ class Played:
     def _skip(self, total):
         """Rounds of a bare loop that find nothing, at once."""
         loop, kernel = self.model.loop, self.kernel
-        if self.is_shared or not total or (loop.kind is LoopKind.SPIN_SOME and loop.sleep) or self.session.unread:
+        if self.is_shared or not total or (loop.kind is LoopKind.SLEEPING and loop.sleep) or self.session.unread:
             return
-        if loop.kind is LoopKind.SPIN_PERIOD or any(each.handle.always for each in self.entities):
+        if loop.kind is LoopKind.PERIODIC or any(each.handle.always for each in self.entities):
             return
         if any(each.flag is not None or (each.is_timer and each.due <= kernel.now) for each in self.entities):
             return

@@ -90,18 +90,18 @@ def _loop(random, with_sleep=False):
     sleep = random.choice((1, 5, 10, 50)) * MS
     match kind:
         case "sleep":
-            return Loop(kind=LoopKind.SPIN_SOME, timeout=timeout, sleep=sleep)
+            return Loop(kind=LoopKind.SLEEPING, timeout=timeout, sleep=sleep)
         case "early":
             tick = random.choice((1, 5, 10)) * MS
             ticks = -(-sleep // tick)
             exact = random.random() < 0.3
             sleep, early = (ticks + exact) * tick, tick
-            return Loop(kind=LoopKind.SPIN_SOME, timeout=timeout, sleep=sleep, sleep_early=early, pace=ticks * tick)
+            return Loop(kind=LoopKind.SLEEPING, timeout=timeout, sleep=sleep, sleep_early=early, pace=ticks * tick)
         case "bare":
-            return Loop(kind=LoopKind.SPIN_SOME, timeout=timeout)
+            return Loop(kind=LoopKind.SLEEPING, timeout=timeout)
         case "period":
-            return Loop(kind=LoopKind.SPIN_PERIOD, period=random.choice((2, 5, 20, 25)) * MS, timeout=max(timeout, MS))
-    return Loop(kind=LoopKind.SPIN, timeout=random.choice((1, 20, 100, 1000)) * MS)
+            return Loop(kind=LoopKind.PERIODIC, period=random.choice((2, 5, 20, 25)) * MS, timeout=max(timeout, MS))
+    return Loop(kind=LoopKind.CONTINUOUS, timeout=random.choice((1, 20, 100, 1000)) * MS)
 
 
 def _handles(random, prefix, varying, sending, delays, shape):
@@ -215,7 +215,7 @@ def application(random: Random, executors=None) -> Application:
         for handle, _ in handles:
             calls = tuple(Call(runnable=each) for each in (handle.take, handle.runnable) if each)
             body.append(ProbabilitySwitch(branches=(Chance(weight=1.0, activities=calls), Chance(weight=1.0, activities=()))))
-        if loop.kind is LoopKind.SPIN_PERIOD:
+        if loop.kind is LoopKind.PERIODIC:
             stimuli.append(Periodic(name=f"{name}_loop", period=loop.period))
         else:
             least = max(loop.sleep - loop.sleep_early, loop.pace if loop.sleep else 0) + spin[0] * US

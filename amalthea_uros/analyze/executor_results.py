@@ -1,4 +1,4 @@
-"""The callbacks of executors that spin in loops, as results of callbacks and of the processes that execute the rounds."""
+"""The callbacks of executors that spin in loops, as results of callbacks and of the processes that execute the iterations."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.units import Time
 
 #: Others are about activations by stimuli.
-METRICS_OF_ROUNDS = (JobMetric.RESPONSE_TIME, JobMetric.NET_EXECUTION_TIME)
+METRICS_OF_ITERATIONS = (JobMetric.RESPONSE_TIME, JobMetric.NET_EXECUTION_TIME)
 
 
 def callback_results(executor: ExecutorResult, limits: Mapping[str, Time | None]) -> Iterator[CallbackResult]:
@@ -53,17 +53,17 @@ def _worst_of(handles: Sequence[HandleResult]) -> Response:
     return replace(longest, best=min(response.best for response in responses))
 
 
-def of_rounds(
+def of_iterations(
     process: ProcessResult, model: Process, executor: ExecutorResult, deadline: Time | None, gap: str
 ) -> ProcessResult:
-    """The result of the process that executes the rounds of an executor: its response time is that of a round, after its wait.
+    """The result of the process that executes the iterations of an executor: its response time is that of an iteration, after its wait.
 
     Without a deadline, it is met if all callbacks have a bound, nothing is lost, and the core is left to others.
 
     Parameters
     ----------
-    deadline : that is stated for it; it has no implicit one, because its rounds follow each other
-    gap : why it is unknown how much its rounds execute, as when they follow each other without rest; "" if it is known
+    deadline : that is stated for it; it has no implicit one, because its iterations follow each other
+    gap : why it is unknown how much its iterations execute, as when they follow each other without rest; "" if it is known
     """
     response = Response(
         worst=executor.round.most,

@@ -14,7 +14,7 @@ from amalthea_uros.analyze.chains.messages.evaluate import evaluate_executors_an
 from amalthea_uros.analyze.constraints.evaluator import ConstraintEvaluator
 from amalthea_uros.analyze.constraints.process_evidence import evidence_of, judged
 from amalthea_uros.analyze.constraints.requirements import evaluate_requirements
-from amalthea_uros.analyze.executor_results import METRICS_OF_ROUNDS, of_rounds
+from amalthea_uros.analyze.executor_results import METRICS_OF_ITERATIONS, of_iterations
 from amalthea_uros.analyze.phases.merged import Phases, merged, merged_chain
 from amalthea_uros.analyze.response_times.core_schedule import CoreSchedules
 from amalthea_uros.analyze.response_times.metrics import MetricEvaluator
@@ -192,7 +192,7 @@ def _processes(solution: Solution, schedules: CoreSchedules, executors: Results[
             yield replace(found, metrics=metrics.of(found))
             continue
         known = metrics.of(found)
-        yield replace(found, metrics={kind: known[kind] for kind in METRICS_OF_ROUNDS if kind in known})
+        yield replace(found, metrics={kind: known[kind] for kind in METRICS_OF_ITERATIONS if kind in known})
 
 
 def _with_order(found: ProcessResult, solution: Solution) -> ProcessResult:
@@ -238,7 +238,7 @@ def _process(name: str, solution: Solution, executor: ExecutorResult | None) -> 
     )
     if executor is not None:
         gap = "" if name in context.demands else context.reasons.get(name, "")
-        return of_rounds(found, process, executor, found.deadline, gap)
+        return of_iterations(found, process, executor, found.deadline, gap)
     if response is None or name in context.with_uncertain_activations or not solution.depends_on_losses(name):
         return _judged(found, events, context)
     # Without the lost jobs, others can be earlier, but not later.

@@ -40,7 +40,7 @@ def _assume(executor: Executor, others: Sequence[Executor], notes: Notes) -> Non
     # The sleeps of `spin_some` are counted in ticks where the operating system states how; nothing else is.
     on_time = "waits" if executor.loop.sleep_early else "waits and sleeps"
     notes.assume(f"executors: {on_time} end on time, whatever the ticks of the operating system are")
-    if executor.loop.kind is LoopKind.SPIN_PERIOD:
+    if executor.loop.kind is LoopKind.PERIODIC:
         notes.assume("executors: the real-time clock, by which spin_period sleeps, is not set while it spins")
     if has_backlog(executor, others):
         notes.assume("executors: stored messages have different time stamps; with equal ones, they come out in reverse order")
@@ -74,7 +74,7 @@ def _note_loop(executor: Executor, executors: Sequence[Executor], result: Execut
 
 
 def _age_after(time: Time, executor: Executor, result: ExecutorResult) -> str:
-    """How old the messages are that are served after a time: the n-th arrives after n intervals, and is served after n rounds."""
+    """How old the messages are that are served after a time: the n-th arrives after n intervals, and is served after n iterations."""
     served = max(result.loop.least, 1)
     age = time - Fraction(time) / (served * certain_rate(executor))
     return f"; after {time_text(time)} they are at least {rounded_time_text(age, Rounding.DOWN)} old" if age > 0 else ""

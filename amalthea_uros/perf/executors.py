@@ -1,7 +1,7 @@
 """Executors: threads that wait for messages and timers in a loop, and call what is ready, one callback after the other.
 
-An executor stands for itself here, as its rounds cannot be told by a stimulus: when the next one begins depends on the one before, on
-what has arrived, and on what the thread waits for. In `software`, its task executes one round per job.
+Executors have a model of their own, as no stimulus activates their iterations: when the next one begins depends on the one before, on
+what has arrived, and on what the thread waits for. In `software`, its task executes one iteration per job.
 """
 
 from __future__ import annotations
@@ -14,11 +14,14 @@ from amalthea_uros.units import Time
 
 
 class LoopKind(StrEnum):
-    """What a thread calls in its endless loop."""
+    """What a thread does between two waits of its endless loop; the values are those of files."""
 
-    SPIN_SOME = "spin_some"
-    SPIN_PERIOD = "spin_period"
-    SPIN = "spin"
+    #: It sleeps after each iteration.
+    SLEEPING = "spin_some"
+    #: It sleeps until one period after the last invocation time.
+    PERIODIC = "spin_period"
+    #: The next wait follows at once.
+    CONTINUOUS = "spin"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -28,10 +31,10 @@ class Loop(Brief):
     Attributes
     ----------
     timeout : of each wait
-    sleep : maximum time that it sleeps after each round, for `spin_some`; 0 for a bare loop
+    sleep : maximum time that it sleeps after each iteration, if it is sleeping; 0 for a bare loop
     sleep_early : time by which a sleep can be shorter, as operating systems count in ticks
     pace : minimum time between the ends of two sleeps that follow each other, if that is more than the shortest sleep
-    period : of `spin_period`; None for the others
+    period : of a periodic loop; None for the others
     """
 
     kind: LoopKind
@@ -43,7 +46,7 @@ class Loop(Brief):
 
 
 class HandleKind(StrEnum):
-    """What a handle of an executor is."""
+    """The role of a handle of an executor."""
 
     SUBSCRIPTION = "subscription"
     TIMER = "timer"
@@ -65,7 +68,7 @@ class Publication(Brief):
     transmission : what it is on the wire; None if no wire is described
     acknowledgement : the transmission that acknowledges it; None if nothing does
     waits : whether the callback waits for the acknowledgement
-    timeout : after which it gives up; None if it does not wait
+    timeout : after which it no longer waits; None if it does not wait at all
     """
 
     topic: str
@@ -89,7 +92,7 @@ class Handle(Named):
     is_periodic : whether messages come regularly, every `interval`; timers always are
     phase : time of the first message or expiration; None if it is not known
     transmission : what brings its messages; None if no wire is described
-    always : whether it is called in every round in which the trigger is true
+    always : whether it is called in every iteration in which the trigger is true
     depth : most messages that are kept for it; None for timers and guard conditions
     overwrites : whether a message beyond `depth` overwrites the oldest one, or is dropped itself
     reliable : whether its messages are sent again until they are acknowledged
@@ -113,7 +116,7 @@ class Handle(Named):
 
 
 class TriggerKind(StrEnum):
-    """When the callbacks of a round are called."""
+    """When the callbacks of an iteration are called."""
 
     ANY = "any"
     ALL = "all"
@@ -165,10 +168,10 @@ class Executor(Named):
 
     Attributes
     ----------
-    task : that executes its rounds, one per job
-    spin : the runnable that every round begins with
+    task : that executes its iterations, one per job
+    spin : the runnable that every iteration begins with
     handles : in the order in which they were added, which is that in which callbacks are called
-    takes_first : whether all messages of a round are taken before the first callback (LET semantics)
+    takes_first : whether all messages of an iteration are taken before the first callback (LET semantics)
     session : executors with the same one, of a middleware for several threads, exclude each other while they wait or send
     """
 

@@ -74,6 +74,7 @@ class Transmission(Named):
     ----------
     topic : or service; None for acknowledgements, heartbeats and foreign frames
     callback : that receives or sends it
+    acknowledges : the transmission that it acknowledges; None for others
     length : in bytes, of the message of the middleware with its headers
     link : time besides that on the core of the wire: in switches, access points, and until a host polls
     driver : time in the driver of the controller after its receipt that is not execution time, such as waiting for ticks; while it is
@@ -89,6 +90,7 @@ class Transmission(Named):
     purpose: Purpose = Purpose.DATA
     topic: str | None = None
     callback: str | None = None
+    acknowledges: str | None = None
     length: int = 0
     link: Span = field(default_factory=lambda: Span(most=0))
     driver: Span = field(default_factory=lambda: Span(most=0))
@@ -104,7 +106,7 @@ class Wait(Brief):
 
     Attributes
     ----------
-    timeout : after which it gives up; None if it does not
+    timeout : after which it no longer waits; None if there is none
     """
 
     runnable: str

@@ -31,7 +31,7 @@ from amalthea_uros.uros.callback_tasks import add_callbacks, add_interrupt
 from amalthea_uros.uros.chain_elements import chain_elements
 from amalthea_uros.uros.chain_topics import Topics
 from amalthea_uros.uros.chains import Chains
-from amalthea_uros.uros.executors.activation import is_triggered, round_trigger_name, triggered_rounds
+from amalthea_uros.uros.executors.activation import is_triggered, iteration_trigger_name, with_triggered_iterations
 from amalthea_uros.uros.executors.handles import deadlines
 from amalthea_uros.uros.initialisation import Initialisation, initialisation
 from amalthea_uros.uros.labels import check_misspelled_labels, labels_of, placements
@@ -153,7 +153,7 @@ def _assembly(context: AssemblyContext, hardware: Hardware, database: Sequence[F
         context,
         callbacks,
         tick=context.description.os.tick,
-        wakes=[round_trigger_name(each.name) for each in context.executors if is_triggered(each)],
+        wakes=[iteration_trigger_name(each.name) for each in context.executors if is_triggered(each)],
         database=database,
     )
     if network is None:
@@ -195,7 +195,7 @@ def _system(context: AssemblyContext, callbacks: Sequence[Callback], network: Pl
     labels = labels_of(description, callbacks, context.runnables)
     check_unique_data(labels, context.channels.values(), notes)
     elements = chain_elements(context, callbacks)
-    system = triggered_rounds(with_network(_without_demands(context, labels), network, context))
+    system = with_triggered_iterations(with_network(_without_demands(context, labels), network, context))
     waits = waits_outside(callbacks, system, context.profile)
     system = replace(system, network=replace(system.network, waits=tuple(waits)))
     check_shared_priorities(system, context.tasks, notes, context.priority_scale)

@@ -26,7 +26,7 @@ EXECUTOR = Executor(
     name="Main loop",
     task="Main",
     spin="Spin",
-    loop=Loop(kind=LoopKind.SPIN_SOME, timeout=10**11, sleep=10**10),
+    loop=Loop(kind=LoopKind.SLEEPING, timeout=10**11, sleep=10**10),
     handles=(
         Handle(name='A "quoted"\tname', kind=HandleKind.SUBSCRIPTION, runnable="On_A", take="Take", interval=None, always=True),
         Handle(name="ü", kind=HandleKind.TIMER, runnable="On_A", interval=2**60 + 1, phase=0),
@@ -70,6 +70,16 @@ def test_executors_and_the_network_come_back(tmp_path):
     assert found.findings == ()
     assert found.system == SYSTEM
     assert found.system.executors[0].origin.path == tmp_path / "model.amxmi"
+
+
+def test_acknowledgements_in_files_of_the_first_builds_are_known_by_their_names(tmp_path):
+    name = "Sent_acknowledgement"
+    unnamed = Transmission(name=name, wire="W", direction=Direction.TO_CONTROLLER, purpose=Purpose.ACKNOWLEDGEMENT)
+    tasks = (*SYSTEM.software.tasks, Task(name=name))
+    network = replace(NETWORK, transmissions=(*NETWORK.transmissions, unnamed))
+    older = replace(SYSTEM, software=replace(SYSTEM.software, tasks=tasks), network=network)
+    found = extracted(older, tmp_path / "model.amxmi").system
+    assert [each.acknowledges for each in found.network.transmissions] == [None, None, "Sent"]
 
 
 @given(data=st.data())

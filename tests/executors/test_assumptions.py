@@ -77,7 +77,7 @@ def test_each_assumption_about_the_backlog_is_needed(arrivals, change):
 
 # Cycles and response times.
 
-LOOP = Loop(kind=LoopKind.SPIN_SOME, timeout=10 * MS, sleep=5 * MS)
+LOOP = Loop(kind=LoopKind.SLEEPING, timeout=10 * MS, sleep=5 * MS)
 SEEDS = range(20)
 
 
@@ -168,7 +168,7 @@ def test_a_timer_that_does_not_end_a_wait_is_late(monkeypatch):
                 yield first
                 yield from steps
 
-    analysed = base(loop=Loop(kind=LoopKind.SPIN, timeout=1000 * MS))
+    analysed = base(loop=Loop(kind=LoopKind.CONTINUOUS, timeout=1000 * MS))
     assert not exceeded(analysed)
     monkeypatch.setattr(played_executors, "Played", Deaf)
     assert exceeded(analysed)

@@ -110,7 +110,7 @@ def test_a_timer_is_late_by_the_sleep_and_the_round():
 @pytest.mark.parametrize(("timeout", "loop"), [(1000, 1000), (5, 6)])
 def test_a_wait_of_spin_period_uses_the_timeout_and_not_the_period(timeout, loop):
     # Without rclc_executor_set_timeout the timeout is 1 s; with 5 ms the period of 20 ms and the cut of the sleep count.
-    period = Loop(kind=LoopKind.SPIN_PERIOD, timeout=timeout * MS, period=20 * MS)
+    period = Loop(kind=LoopKind.PERIODIC, timeout=timeout * MS, period=20 * MS)
     model = looping(message("a", 100_000), loop=period)
     assert evaluate(model).loop.most == (timeout + 21) * MS
     assert ("EXE020" in rules(model)) is (timeout > 20)
@@ -325,7 +325,7 @@ def test_several_handles_of_a_callback_are_one_callback():
 def test_rounds_that_wait_for_acknowledgements_can_follow_each_other(sleep, is_known):
     # Without a sleep, what became due in the second of the publication is executed at once afterwards.
     publishing = timer("t", 500_000, 1000, publications=(waiting_publication(),))
-    loop = Loop(kind=LoopKind.SPIN_SOME, timeout=100 * MS, sleep=sleep * MS)
+    loop = Loop(kind=LoopKind.SLEEPING, timeout=100 * MS, sleep=sleep * MS)
     low = Proc("low", (ticks(1000),), period=100_000, priority=1)
     found = analyze_system(looping(publishing, message("a", 500_000), loop=loop, others=(low,)))
     assert (found.processes["low"].response is not None) is is_known

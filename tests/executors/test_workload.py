@@ -13,7 +13,7 @@ LONGEST = 3
 
 @pytest.mark.parametrize("sleep", [1, 2, 5])
 def test_no_rounds_demand_more_than_those_of_the_longest(sleep):
-    executor = Executor(name="e", task="t", spin="s", loop=Loop(kind=LoopKind.SPIN_SOME, timeout=0, sleep=sleep))
+    executor = Executor(name="e", task="t", spin="s", loop=Loop(kind=LoopKind.SLEEPING, timeout=0, sleep=sleep))
     model = workload(executor, Periodic(1), LONGEST)
     for lengths in product(range(LONGEST + 1), repeat=5):
         begin, demand = 0, 0
@@ -25,7 +25,7 @@ def test_no_rounds_demand_more_than_those_of_the_longest(sleep):
 
 
 def test_without_a_sleep_it_is_what_begins_rounds():
-    executor = Executor(name="e", task="t", spin="s", loop=Loop(kind=LoopKind.SPIN, timeout=5))
+    executor = Executor(name="e", task="t", spin="s", loop=Loop(kind=LoopKind.CONTINUOUS, timeout=5))
     assert workload(executor, Periodic(7), LONGEST) == Periodic(7)
 
 

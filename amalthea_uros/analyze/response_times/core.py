@@ -243,7 +243,7 @@ class _CoreAnalysis:
                     found[index] = busy_period.response_time(tasks[index], merged, waits[index], supply, found[index])
         # The methods are exact for independent activations; offsets can make the worst case impossible.
         bounds = [replace(response, claim=Claim.BOUND) for response in found[: len(usable)]]
-        return [self._without_rounds(item, response) for item, response in zip(usable, bounds, strict=True)]
+        return [self._without_iterations(item, response) for item, response in zip(usable, bounds, strict=True)]
 
     def _with_longest_paths(self, tasks: Sequence[Task]) -> list[Task]:
         """The tasks, and for those that exclude each other one that takes as long as the longest path of the job that triggers them."""
@@ -259,7 +259,7 @@ class _CoreAnalysis:
                 found[members[0].name] = replace(members[0], demand=demand)
         return list(found.values())
 
-    def _without_rounds(self, item: ScheduledProcess | Server, response: Response) -> Response:
+    def _without_iterations(self, item: ScheduledProcess | Server, response: Response) -> Response:
         """A response time; an overload is not certain if rounds of executors are counted that need not be as long and as dense."""
         uncertain, here = self.context.with_uncertain_activations, self.context.on_core(item.core)
         if response.is_overload and any(other.name in uncertain and other.rank >= item.rank for other in here):

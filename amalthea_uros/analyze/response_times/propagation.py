@@ -96,7 +96,7 @@ def _event_models(solution: Solution, diverging: set[str], responses: Mapping[st
         if name in diverging:
             continue
         try:
-            _require_known_rounds(name, context)
+            _require_known_iterations(name, context)
             events = _workload(scheduled, context.activations.of(scheduled.process, output), context)
             if isinstance(events, Periodic) and events.jitter * context.time_base(name) > MAX_INPUT:
                 raise UnknownActivationError("its jitter exceeds the supported range of times")
@@ -115,7 +115,7 @@ def _workload(item: ScheduledProcess, events: EventModel, context: TimingContext
     return workload(executor, events, -(-demand.worst // context.time_base(item.name)))
 
 
-def _require_known_rounds(name: str, context: TimingContext) -> None:
+def _require_known_iterations(name: str, context: TimingContext) -> None:
     """Refuse rounds of an executor that can be closer together than their stimulus says, if that matters to any other process."""
     executor, item = context.system.executor_of_task.get(name), context.scheduled[name]
     demand = context.demands.get(name)

@@ -17,7 +17,7 @@ from amalthea_uros.bridge.kinds import ObjectKind
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.perf.executors import Executor
-from amalthea_uros.perf.network import Network, Transmission
+from amalthea_uros.perf.network import Network, Purpose, Transmission
 from amalthea_uros.perf.stimuli import Custom
 from amalthea_uros.perf.system import System
 
@@ -77,7 +77,15 @@ def extract_network(models: Iterable[am.SWModel], tasks: Iterable[am.Task], syst
         lambda each: _flaw_of_transmission(each, network, system),
         context,
     )
-    return replace(network, transmissions=tuple(transmissions))
+    return replace(network, transmissions=tuple(map(_with_acknowledged, transmissions)))
+
+
+def _with_acknowledged(transmission: Transmission) -> Transmission:
+    """An acknowledgement that refers to what it acknowledges; in files of the first builds, only its name does."""
+    if transmission.purpose is not Purpose.ACKNOWLEDGEMENT or transmission.acknowledges is not None:
+        return transmission
+    acknowledged = transmission.name.removesuffix("_acknowledgement")
+    return transmission if acknowledged == transmission.name else replace(transmission, acknowledges=acknowledged)
 
 
 def _extracted(

@@ -34,9 +34,8 @@ from amalthea_uros.timing.event_models import EventModel
 from amalthea_uros.timing.event_models.derived import Delayed, Multiplied
 from amalthea_uros.units import Time
 
-#: More unread messages are considered unbounded: rounds are then hardly faster than messages.
+#: More unread messages are considered unbounded: iterations are then hardly faster than messages.
 MAX_BACKLOG = 10_000
-_ACKNOWLEDGEMENT = "_acknowledgement"
 #: Heartbeats that can be due besides those at intervals: when a timeout begins, and when its last reading does.
 DUE = 2
 
@@ -76,9 +75,9 @@ def acknowledged(solved: SolvedSystem) -> Mapping[str, Arriving | None]:
     """What the client acknowledges, by the names of the acknowledgements; None if its arrivals are unknown."""
     system = solved.context.system
     found: dict[str, Arriving | None] = {}
-    for answer in acknowledgements(system):
-        message = system.transmissions.get(answer.name.removesuffix(_ACKNOWLEDGEMENT))
-        found[answer.name] = None if message is None else arriving(message, solved, parts(answer, system))
+    for each in acknowledgements(system):
+        message = system.transmissions.get(each.acknowledges or "")
+        found[each.name] = None if message is None else arriving(message, solved, parts(each, system))
     return found
 
 
@@ -129,7 +128,7 @@ def publications(system: System) -> list[Publication]:
 
 
 def has_unacknowledged(sending: Mapping[str, Span], solved: SolvedSystem) -> bool:
-    """Whether something can be sent and not be acknowledged when a round or a publication begins."""
+    """Whether something can be sent and not be acknowledged when an iteration or a publication begins."""
     return any(each.reliable and times_out(each, sending) for each in publications(solved.context.system))
 
 
@@ -149,7 +148,7 @@ def _intervals(solved: SolvedSystem) -> list[Time | None]:
 
 
 def protocol_overhead(length: Time, sending: Mapping[str, Span], solved: SolvedSystem) -> list[Arriving | None]:
-    """The acknowledgements and heartbeats that waits of rounds can read; None for one whose arrivals are unknown.
+    """The acknowledgements and heartbeats that waits of iterations can read; None for one whose arrivals are unknown.
 
     Parameters
     ----------
@@ -163,18 +162,12 @@ def _read_in_iterations(
 ) -> Iterator[tuple[Transmission, Arriving | None]]:
     system = solved.context.system
     read_before = {each.acknowledgement for each in publications(system) if not times_out(each, sending)}
-    by_acknowledgement = acknowledged(solved)
+    by_message = {system.transmissions[name].acknowledges: each for name, each in acknowledged(solved).items()}
+    own_heartbeats = {each.name for each in heartbeats(system)}
     # Each publication ends in the cycle in which it begins: before the first heartbeat.
     is_silent = not has_unacknowledged(sending, solved) and all(each and each > length for each in _intervals(solved))
     for each in system.transmissions.values():
         if each.direction is Direction.TO_AGENT or each.purpose is Purpose.FOREIGN or each.name in read_before:
             continue
-        if is_silent and _acknowledges_heartbeat(each, system):
-            continue
-        name = f"{each.name}{_ACKNOWLEDGEMENT}"
-        yield each, by_acknowledgement[name] if name in by_acknowledgement else arriving(each, solved)
-
-
-def _acknowledges_heartbeat(answer: Transmission, system: System) -> bool:
-    """Whether an acknowledgement is that of a heartbeat of the client."""
-    return answer.name.removesuffix(_ACKNOWLEDGEMENT) in {each.name for each in heartbeats(system)}
+        if not is_silent or each.acknowledges not in own_heartbeats:
+            yield each, by_message[each.name] if each.name in by_message else arriving(each, solved)

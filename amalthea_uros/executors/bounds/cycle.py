@@ -1,14 +1,15 @@
-"""The cycle of an executor: from the moment when it has fixed what is ready, after a wait, to the same moment of the next round.
+"""The cycle of an executor: from the moment when it has fixed what is ready, after a wait, to the same moment of the next iteration.
 
-Without the wait, a cycle consists of the rest of the round, what the loop does between two waits, and the beginning of the next round:
+Without the wait, a cycle consists of the rest of the iteration, what the loop does between two waits, and the beginning of the next
+iteration:
 
-- `spin_some` with a sleep D: D + the time to execute a round
-- `spin`: the time to execute a round
-- `spin_period` with a period P: the invocation time is never later than the moment when the round began, and the thread sleeps until
-  one period after it, or not at all. So it is at most the greater of P and the time to execute a round. As sleeps are cut to whole
-  milliseconds, a round can begin up to 1 ms before its invocation time, which makes it 1 ms more.
+- `spin_some` with a sleep D: D + the time to execute an iteration
+- `spin`: the time to execute an iteration
+- `spin_period` with a period P: the invocation time is never later than the moment when the iteration began, and the thread sleeps
+  until one period after it, or not at all. So it is at most the greater of P and the time to execute an iteration. As sleeps are cut to
+  whole milliseconds, an iteration can begin up to 1 ms before its invocation time, which makes it 1 ms more.
 
-A round executes the overhead of the executor once. Which part of it comes before the wait is unknown, so that its part after the
+An iteration executes the overhead of the executor once. Which part of it comes before the wait is unknown, so that its part after the
 sleep can be all of it; the time of a cycle with a sleep is the lesser of two bounds: the sleep in the middle of one window, and two
 windows.
 
@@ -161,7 +162,7 @@ class Cycle:
 
     @property
     def sleep(self) -> Time:
-        """The sleep after each round."""
+        """The sleep after each iteration."""
         return sleep_of(self.executor).upper
 
     def suspension(self, handle: Handle) -> Suspension:
@@ -170,7 +171,7 @@ class Cycle:
 
     @cached_property
     def whole(self) -> Section:
-        """The longest round: its overhead, and all callbacks that one round can call."""
+        """The longest iteration: its overhead, and all callbacks that one iteration can call."""
         always = independent_handles(self.executor)
         excluded = [handle for handle in self.executor.handles if handle not in always]
         return self._part(always, excluded, self.demand.spin.upper)
@@ -185,7 +186,7 @@ class Cycle:
         return Section(demand=demand, suspension=in_sequence([*map(self.suspension, always), longest]))
 
     def before(self, handle: Handle) -> Section:
-        """What a round does before a callback, after it has fixed what is ready; the take of its message included."""
+        """What an iteration does before a callback, after it has fixed what is ready; the take of its message included."""
         at = self.executor.handles.index(handle)
         earlier, later = self.executor.handles[:at], self.executor.handles[at + 1 :]
         found = self._part(*self._possible_with(handle, earlier), self.demand.spin.upper + self.demand.takes[handle.name].upper)
@@ -218,7 +219,7 @@ class Cycle:
 
     @cached_property
     def busy(self) -> Time | None:
-        """The longest time to execute a round; None if it is not bounded."""
+        """The longest time to execute an iteration; None if it is not bounded."""
         return self.processor.time(self.whole.demand, self.whole.suspension.most, self.whole.resumed)
 
     @cached_property
@@ -243,11 +244,11 @@ class Cycle:
             return None
         together = part.suspension.most + suspended
         match self.executor.loop.kind:
-            case LoopKind.SPIN_PERIOD:
+            case LoopKind.PERIODIC:
                 unslept = self.processor.time(part.demand, together, part.resumed + resumed)
                 slept = (self.executor.loop.period or 0) + SLEEP_RESOLUTION + beginning
                 return None if unslept is None else max(unslept, slept)
-            case LoopKind.SPIN_SOME if self.sleep:
+            case LoopKind.SLEEPING if self.sleep:
                 found = [self.sleep + self.busy + beginning]
                 joint = self.processor.time(part.demand, together + self.sleep, part.resumed + 1 + resumed)
                 return min([*found, *([] if joint is None else [joint])])
@@ -265,13 +266,13 @@ class Cycle:
 
     @cached_property
     def shortest_with_message(self) -> Time:
-        """The shortest cycle of a round that calls a callback for a message."""
+        """The shortest cycle of an iteration that calls a callback for a message."""
         costs = [self.demand.of_handle(handle).lower for handle in self.executor.handles if is_message(handle)]
         return sleep_of(self.executor).lower + (self.demand.spin.lower + min(costs, default=0)) // self.time_base
 
     @property
     def most_served(self) -> int | None:
-        """The most messages that a round calls callbacks for; None if a wait takes all that are there, or the trigger keeps them.
+        """The most messages that an iteration calls callbacks for; None if a wait takes all that are there, or the trigger keeps them.
 
         A publication that waits reads all messages before its acknowledgement, and stores them: then each handle can have one.
         """

@@ -6,7 +6,7 @@ callback.
 - A timer: once it is due, waits end at once. In the worst case what is ready was fixed just before, so that it is called after one
   cycle: L + E. That a wait can end up to 1 ms before the timer is due, without a call, is no longer than that.
 - A guard condition: a trigger does not end the wait, so that it is seen after one cycle and the wait: L + W + E.
-- A message: after n cycles, see `queue`: n L + E, or n (L + W) + E if messages can be stored before the round that takes them.
+- A message: after n cycles, see `queue`: n L + E, or n (L + W) + E if messages can be stored before the iteration that takes them.
 """
 
 from __future__ import annotations
@@ -91,7 +91,7 @@ def _terms(handle: Handle, cycle: Cycle, delay: Delay, wait: Time, waited_for: s
 
     Parameters
     ----------
-    delay : before the round that serves it
+    delay : before the iteration that serves it
     wait : what each cycle waits
     waited_for : why it does
     """
@@ -99,7 +99,7 @@ def _terms(handle: Handle, cycle: Cycle, delay: Delay, wait: Time, waited_for: s
         *_of_cycle(cycle),
         Part(name="wait", least=0, most=wait, why=waited_for),
         _before(cycle, delay, wait),
-        *_of_round(handle, cycle),
+        *_of_iteration(handle, cycle),
     ]
     stated = [term for term in found if term.most]
     rest = worst - sum(term.most or 0 for term in stated)
@@ -115,7 +115,7 @@ def _of_cycle(cycle: Cycle) -> list[Part]:
     demand = _time(cycle.whole.demand, cycle)
     found = [Part(name="rest of the running round", least=0, most=demand, why="what is ready was fixed just before")]
     loop = cycle.executor.loop
-    if loop.kind is LoopKind.SPIN_PERIOD:
+    if loop.kind is LoopKind.PERIODIC:
         why = f"the next round begins when the period of {time_text(loop.period or 0)} has passed"
         return [*found, Part(name="sleep", least=0, most=max(0, (cycle.longest or 0) - demand), why=why)]
     suspension = cycle.whole.suspension
@@ -142,8 +142,8 @@ def _before(cycle: Cycle, delay: Delay, wait: Time) -> Part:
     return Part(name="messages before it", least=0, most=count * length - delay.earlier, why=why)
 
 
-def _of_round(handle: Handle, cycle: Cycle) -> list[Part]:
-    """The round that serves a handle, up to the end of its callback, which comes last."""
+def _of_iteration(handle: Handle, cycle: Cycle) -> list[Part]:
+    """The iteration that serves a handle, up to the end of its callback, which comes last."""
     costs, before, own = cycle.demand, cycle.before(handle), cycle.suspension(handle)
     spin, take, callback = costs.spin.upper, costs.takes[handle.name].upper, costs.callbacks[handle.name]
     others = before.demand - spin - take

@@ -1,11 +1,11 @@
 """How many cycles pass until a message is served.
 
-Messages wait first in first out in the buffer of the transport, and a wait takes one of them, so that a round serves one. Let a busy
-period begin when a message arrives and no other one waits. The running cycle ends at most one cycle L later, and each following one
-takes one message as long as any waits. So the n-th message of the busy period is ready at most n L after its beginning; it arrives no
-earlier than delta-(n) of all messages of the executor, and the busy period goes on as long as the next one arrives before.
+Messages wait first in first out in the buffer of the transport, and a wait takes one of them, so that an iteration serves one. Let a
+busy period begin when a message arrives and no other one waits. The running cycle ends at most one cycle L later, and each following
+one takes one message as long as any waits. So the n-th message of the busy period is ready at most n L after its beginning; it arrives
+no earlier than delta-(n) of all messages of the executor, and the busy period goes on as long as the next one arrives before.
 
-If messages can be stored before the round that takes them, they do not end the wait: each cycle can wait for W before it looks at
+If messages can be stored before the iteration that takes them, they do not end the wait: each cycle can wait for W before it looks at
 them. The count remains the same, because each cycle serves one message that came before, or the one in question: one of the handle of
 the message that the wait took, or, if it took none, the oldest of its handle. If a wait takes all messages that are there, only those
 of the same handle delay each other.
@@ -35,7 +35,7 @@ from amalthea_uros.timing.event_models import EventModel, aggregated
 from amalthea_uros.timing.event_models.derived import Multiplied
 from amalthea_uros.units import SECOND, Time
 
-#: A busy period with more messages is considered unbounded: rounds are then hardly faster than messages.
+#: A busy period with more messages is considered unbounded: iterations are then hardly faster than messages.
 MAX_MESSAGES = 10_000
 
 
@@ -47,7 +47,7 @@ class Delay:
     ----------
     cycles : None if there is no bound, for the `reason`
     earlier : by how much it arrives after the first message of the busy period
-    is_overload : whether messages arrive faster than rounds can serve them, for certain
+    is_overload : whether messages arrive faster than iterations can serve them, for certain
     """
 
     cycles: int | None
@@ -112,7 +112,7 @@ def delay_of(handle: Handle, cycle: Cycle, length: Time, extra_jitter: Mapping[s
 
 
 def certain_overload(cycle: Cycle) -> Delay | None:
-    """The overload by messages of which it is certain that they arrive faster than rounds serve them; None if there is none.
+    """The overload by messages of which it is certain that they arrive faster than iterations serve them; None if there is none.
 
     It depends on no jitter: that of periodic messages does not change their rate.
     """

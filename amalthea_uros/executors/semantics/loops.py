@@ -40,7 +40,7 @@ SLEEP_RESOLUTION = MILLISECOND
 
 def sleep_of(executor: Executor) -> Interval[Time]:
     """The sleep between two iterations, without that of a loop with a period."""
-    longest = executor.loop.sleep if executor.loop.kind is LoopKind.SPIN_SOME else 0
+    longest = executor.loop.sleep if executor.loop.kind is LoopKind.SLEEPING else 0
     return Interval(longest - executor.loop.sleep_early, longest)
 
 
@@ -79,7 +79,7 @@ def longest_wait(executor: Executor) -> Time:
 
 def busy_polls(executor: Executor) -> str:
     """Why the thread of an executor can occupy its core without end, although nothing is to be done; "" if it cannot."""
-    if min_pace(executor) or executor.loop.kind is LoopKind.SPIN_PERIOD:
+    if min_pace(executor) or executor.loop.kind is LoopKind.PERIODIC:
         return ""
     reason = waits_return_at_once(executor)
     return reason and f"its loop has no sleep, and {reason}"
@@ -162,7 +162,7 @@ def why_dense(executor: Executor, executors: Iterable[Executor], longest: Time) 
         )
     if shares_session(executor, executors):
         return "its loop has no sleep, so that rounds follow each other after one that waited for others of its session"
-    if executor.loop.kind is LoopKind.SPIN_PERIOD and longest_wait(executor) + longest > (executor.loop.period or 0):
+    if executor.loop.kind is LoopKind.PERIODIC and longest_wait(executor) + longest > (executor.loop.period or 0):
         return "a wait and a round can be longer than its period, so that rounds follow each other until it has caught up"
     return ""
 

@@ -1,1 +1,1 @@
-"""Executors that spin in loops: where callbacks run, their handles, and the rounds of their threads."""
+"""Executors that spin in loops: where callbacks run, their handles, and the iterations of their threads."""

@@ -1,7 +1,8 @@
-"""What activates the task of a round: how often rounds can begin at most.
+"""What activates the task of an iteration: how often iterations can begin at most.
 
-A thread that sleeps begins a round when the sleep after the one before has passed. One that only waits begins a round for each message
-that arrives, each timer that is due, and each timeout; if it does not wait either, whenever the round before has ended.
+A thread that sleeps begins an iteration when the sleep after the one before has passed. One that only waits begins an iteration for
+each message that arrives, each timer that is due, and each timeout; if it does not wait either, whenever the iteration before has
+ended.
 """
 
 from __future__ import annotations
@@ -27,12 +28,12 @@ from amalthea_uros.units import Time
 from amalthea_uros.uros.application.callbacks import Callback, CallbackKind
 from amalthea_uros.uros.assembly.activities import trigger_name
 
-#: Rounds whose distances are stated; of more, the distances follow from these, a little too short.
-_PACED_ROUNDS = 20
+#: Iterations whose distances are stated; of more, the distances follow from these, a little too short.
+_PACED_ITERATIONS = 20
 
 
-def round_trigger_name(executor: str) -> str:
-    """The name of the stimulus by which what receives messages begins a round of an executor that blocks."""
+def iteration_trigger_name(executor: str) -> str:
+    """The name of the stimulus by which what receives messages begins an iteration of an executor that blocks."""
     return trigger_name(executor)
 
 
@@ -42,29 +43,29 @@ def message_stimulus_name(callback: str) -> str:
 
 
 def is_triggered(executor: Executor) -> bool:
-    """Whether the arrival of a message begins a round."""
+    """Whether the arrival of a message begins an iteration."""
     return not is_paced(executor) and not iterations_follow_at_once(executor)
 
 
-def activation(executor: Executor, callbacks: Sequence[Callback], least_round: Time, offset: Time) -> Iterator[Stimulus]:
+def activation(executor: Executor, callbacks: Sequence[Callback], min_iteration: Time, offset: Time) -> Iterator[Stimulus]:
     """The stimuli of the task of an executor.
 
     Parameters
     ----------
     callbacks : that the executor has handles of
-    least_round : minimum execution time of a round
-    offset : time of the first round, for a period
+    min_iteration : minimum execution time of an iteration
+    offset : time of the first iteration, for a period
     """
     loop, name = executor.loop, f"rounds_of_{executor.name}"
     reason = iterations_follow_at_once(executor)
     if loop.sleep:
-        yield _after_sleeps(name, loop, least_round)
+        yield _after_sleeps(name, loop, min_iteration)
     elif loop.period is not None and is_paced(executor):
-        # A round executes when its wait ends.
+        # An iteration executes when its wait ends.
         yield Periodic(name=name, period=loop.period, offset=offset, jitter=Boundaries(lower=0, upper=loop.timeout))
     elif reason:
         unknown = Custom(name=name, description=f"{reason}, and the execution time of a round is not specified")
-        yield _at_least(name, least_round) if least_round else unknown
+        yield _at_least(name, min_iteration) if min_iteration else unknown
     else:
         yield _at_least(f"timeout_of_{executor.name}", loop.timeout)
         for callback in callbacks:
@@ -72,7 +73,7 @@ def activation(executor: Executor, callbacks: Sequence[Callback], least_round: T
 
 
 def _of_callback(executor: Executor, callback: Callback) -> Iterator[Stimulus]:
-    """What a callback adds to the rounds of an executor that blocks."""
+    """What a callback adds to the iterations of an executor that blocks."""
     if callback.kind is CallbackKind.TIMER:
         yield _at_least(f"due_{callback.name}", callback.min_interval)
     elif callback.kind is not CallbackKind.GUARD_CONDITION or executor.waiting.guard_conditions_end_wait:
@@ -81,12 +82,14 @@ def _of_callback(executor: Executor, callback: Callback) -> Iterator[Stimulus]:
         yield unknown if callback.interval is None else _at_least(name, callback.min_interval)
 
 
-def _after_sleeps(name: str, loop: Loop, least_round: Time) -> Stimulus:
-    """Rounds between sleeps; the first of several can wait for long, so that the second follows after the shortest sleep."""
-    shortest = loop.sleep - loop.sleep_early + least_round
+def _after_sleeps(name: str, loop: Loop, min_iteration: Time) -> Stimulus:
+    """Iterations between sleeps; the first of several can wait for long, so that the second follows after the shortest sleep."""
+    shortest = loop.sleep - loop.sleep_early + min_iteration
     if loop.pace <= shortest:
         return _at_least(name, shortest)
-    points = (ArrivalCurvePoint(occurrences=2 + more, lower=shortest + more * loop.pace) for more in range(_PACED_ROUNDS - 1))
+    points = (
+        ArrivalCurvePoint(occurrences=2 + more, lower=shortest + more * loop.pace) for more in range(_PACED_ITERATIONS - 1)
+    )
     return ArrivalCurve(name=name, points=(ArrivalCurvePoint(occurrences=1, lower=0), *points))
 
 
@@ -95,17 +98,17 @@ def _at_least(name: str, distance: Time) -> Stimulus:
     return RelativePeriodic(name=name, distance=Uniform(lower=distance, upper=distance), has_maximum=False)
 
 
-def triggered_rounds(system: System) -> System:
-    """The system, in which what receives messages triggers the rounds of executors that block, if it is described.
+def with_triggered_iterations(system: System) -> System:
+    """The system, in which what receives messages triggers the iterations of executors that block, if it is described.
 
-    Interrupts and tasks of the middleware may be added to a system with `Trigger(stimulus=round_trigger_name(...))` before; the
+    Interrupts and tasks of the middleware may be added to a system with `Trigger(stimulus=iteration_trigger_name(...))` before; the
     stimuli that stand for the arrival of messages otherwise are then replaced.
     """
     triggered = {
         activity.stimulus for body in system.software.bodies for activity in walk(body) if isinstance(activity, Trigger)
     }
     for executor in system.executors:
-        if round_trigger_name(executor.name) in triggered:
+        if iteration_trigger_name(executor.name) in triggered:
             system = _triggered(system, executor)
     return system
 
@@ -115,7 +118,7 @@ def _triggered(system: System, executor: Executor) -> System:
     guards = {handle.name for handle in executor.handles if handle.kind is HandleKind.GUARD_CONDITION}
     kept = set(map(message_stimulus_name, guards))
     replaced = {name for name in own if name.startswith(message_stimulus_name("")) and name not in kept}
-    trigger = InterProcess(name=round_trigger_name(executor.name), origin=executor.origin)
+    trigger = InterProcess(name=iteration_trigger_name(executor.name), origin=executor.origin)
     stimuli = [each for each in system.stimuli.stimuli if each.name not in replaced]
     tasks = [
         replace(task, stimuli=(*(name for name in own if name not in replaced), trigger.name))

@@ -1,4 +1,4 @@
-"""An executor that spins in a loop, added to an assembly: its handles, its runnables, and the task of its rounds."""
+"""An executor that spins in a loop, added to an assembly: its handles, its runnables, and the task of its iterations."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from amalthea_uros.uros.assembly.tasks import PlannedTask
 from amalthea_uros.uros.executors.activation import activation
 from amalthea_uros.uros.executors.checks import check_executor
 from amalthea_uros.uros.executors.handles import handle_names, handles_of
-from amalthea_uros.uros.executors.rounds import has_one_message_per_round, polls_before_timers, round_activities
+from amalthea_uros.uros.executors.iterations import has_one_message_per_iteration, iteration_activities, polls_before_timers
 from amalthea_uros.uros.executors.triggers import trigger_of
 
-#: Rounds are executed one after the other, however many are due.
+#: Iterations are executed one after the other, however many are due.
 _UNLIMITED = 1_000_000
 
 
@@ -34,7 +34,7 @@ def add_looping_executor(
     activates: Mapping[str, Sequence[str]],
     is_alone: bool,
 ) -> None:
-    """Add an executor with a loop, and the task of its rounds.
+    """Add an executor with a loop, and the task of its iterations.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ def add_looping_executor(
     executor = _executor(context, section, callbacks, bodies, activates, core)
     poll = _poll(context, executor, core) if polls_before_timers(executor) else None
     least = _least_time(context.runnables[executor.spin], core, context)
-    exclusive = has_one_message_per_round(executor, is_alone)
+    exclusive = has_one_message_per_iteration(executor, is_alone)
     check_executor(executor, section, context.notes)
     context.executors.append(executor)
     context.tasks.append(
@@ -55,7 +55,7 @@ def add_looping_executor(
             name=executor.task,
             core=core,
             stimuli=tuple(map(context.stimuli.add, activation(executor, callbacks, least, section.offset))),
-            activities=round_activities(executor, exclusive=exclusive, poll=poll),
+            activities=iteration_activities(executor, exclusive=exclusive, poll=poll),
             # Priorities follow the fastest callback.
             period=min((each.min_interval for each in callbacks if each.interval is not None), default=None),
             priority=section.priority,
@@ -114,7 +114,7 @@ def _loop(section: spec.Loop, waiting: Waiting, os: Os) -> Loop:
     if section.spin_some is not None:
         least, most, pace = slept(section.sleep, os)
         return Loop(
-            kind=LoopKind.SPIN_SOME,
+            kind=LoopKind.SLEEPING,
             timeout=section.spin_some,
             sleep=most,
             sleep_early=most - least,
@@ -122,13 +122,13 @@ def _loop(section: spec.Loop, waiting: Waiting, os: Os) -> Loop:
         )
     if section.spin_period is not None:
         timeout = section.timeout if section.timeout is not None else waiting.default_timeout
-        return Loop(kind=LoopKind.SPIN_PERIOD, timeout=timeout, period=section.spin_period)
+        return Loop(kind=LoopKind.PERIODIC, timeout=timeout, period=section.spin_period)
     assert section.spin is not None
-    return Loop(kind=LoopKind.SPIN, timeout=section.spin)
+    return Loop(kind=LoopKind.CONTINUOUS, timeout=section.spin)
 
 
 def _poll(context: AssemblyContext, executor: Executor, core: str) -> str:
-    """Add the runnable that stands for rounds without a callback, from the end of a wait until the timer for which it ended is due."""
+    """Add the runnable of iterations without a callback, from the end of a wait until the timer for which it ended is due."""
     most = up(ticks_of_time(executor.waiting.resolution, context.controller.frequencies[core]))
     name = f"{executor.name}_Poll"
     activities = (Execute(demand=Demand(ticks=Boundaries(lower=0, upper=most))),)

@@ -53,7 +53,7 @@ def _check_handle_limit(executor: Executor, section: spec.Executor, notes: Notes
 def _check_timeout(executor: Executor, section: spec.Executor, notes: Notes) -> None:
     """`rclc_executor_spin_one_period` waits for the timeout of the executor (1 s, though a comment in executor.h says 100 ms)."""
     loop = executor.loop
-    if loop.kind is LoopKind.SPIN_PERIOD and not is_paced(executor) and loop.period is not None and section.loop is not None:
+    if loop.kind is LoopKind.PERIODIC and not is_paced(executor) and loop.period is not None and section.loop is not None:
         message = (
             f"{executor.name!r} waits for up to {time_text(loop.timeout)} in each period of {time_text(loop.period)}: "
             "without a message or timer, a round takes as long as the timeout"

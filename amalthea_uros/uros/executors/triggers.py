@@ -1,4 +1,4 @@
-"""Trigger conditions: which handles have to be ready before the callbacks of a round are called.
+"""Trigger conditions: which handles have to be ready before the callbacks of an iteration are called.
 
 See `rclc_executor_trigger_*` in ros2/rclc `rclc/src/rclc/executor.c`.
 """

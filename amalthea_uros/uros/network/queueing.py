@@ -9,7 +9,7 @@ processed the part, those of the controller when it has read it.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from amalthea_uros.diagnostics import Location
@@ -185,9 +185,7 @@ class Queueing:
         name = acknowledgement_name(message.name)
         length = max(part.acknowledgement or 0 for part in message.parts)
         return Queued(
-            transmission=self._transmission(
-                name, opposite(message.direction), Purpose.ACKNOWLEDGEMENT, (length,), agent, message
-            ),
+            transmission=self._acknowledging(message.name, opposite(message.direction), length, agent, message),
             parts=(length,),
             stimulus=InterProcess(name=name, origin=message.message.origin),
             interval=message.interval,
@@ -214,13 +212,21 @@ class Queueing:
         by_agent = direction is Direction.TO_AGENT
         agent = self._answer_time if by_agent else _AT_ONCE
         return Queued(
-            transmission=self._transmission(name, opposite(direction), Purpose.ACKNOWLEDGEMENT, (heartbeat.length,), agent),
+            transmission=self._acknowledging(heartbeat_name(direction), opposite(direction), heartbeat.length, agent),
             parts=(heartbeat.length,),
             # The client answers when it reads: before it has to read the next one.
             stimulus=InterProcess(name=name) if by_agent else arrivals(name, heartbeat.interval, heartbeat.interval),
             interval=heartbeat.interval,
             times=0,
         )
+
+    def _acknowledging(
+        self, acknowledged: str, direction: Direction, length: int, agent: Span, message: WireMessage | None = None
+    ) -> Transmission:
+        """The acknowledgement of a transmission."""
+        name = acknowledgement_name(acknowledged)
+        found = self._transmission(name, direction, Purpose.ACKNOWLEDGEMENT, (length,), agent, message)
+        return replace(found, acknowledges=acknowledged)
 
     def _transmission(
         self,

@@ -281,7 +281,14 @@ def with_answers(found, interval, write):
     task = replace(found.processes["odom_out"], name=name, stimuli=("cmd_in_queued",), activities=(ticks(write),))
     allocated = replace(next(each for each in found.mapping.tasks if each.task == "odom_out"), task=name, scheduler="answers")
     core = replace(structure.cores[-1], name="c3")
-    answer = replace(found.transmissions["odom_out"], name=name, topic=None, purpose=Purpose.ACKNOWLEDGEMENT, callback="On_cmd")
+    answer = replace(
+        found.transmissions["odom_out"],
+        name=name,
+        topic=None,
+        purpose=Purpose.ACKNOWLEDGEMENT,
+        callback="On_cmd",
+        acknowledges="cmd_in",
+    )
     (operating,) = found.os.systems
     scheduler = Scheduler(name="answers", policy=Policy.OSEK, cores=("c3",))
     operating = replace(operating, schedulers=(*operating.schedulers, scheduler))

@@ -1,9 +1,9 @@
-"""What a round of an executor does, as activities of the task that executes one round per job.
+"""What an iteration of an executor does, as activities of the task that executes one iteration per job.
 
-First it spins, which costs the same in every round. Then it calls what is ready, in the order of the handles, each message taken just
-before its callback or (LET) all messages first. Nobody knows which handles are ready in a round, so each one is a branch by chance.
-If a wait takes one message at most, and nothing else stores messages meanwhile, a round has a message for one handle at most: then
-the message handles exclude each other.
+First it spins, which costs the same in every iteration. Then it calls what is ready, in the order of the handles, each message taken
+just before its callback or (LET) all messages first. Nobody knows which handles are ready in an iteration, so each one is a branch by
+chance. If a wait takes one message at most, and nothing else stores messages meanwhile, an iteration has a message for one handle at
+most: then the message handles exclude each other.
 """
 
 from __future__ import annotations
@@ -32,8 +32,8 @@ _BY_ONE_MESSAGE = frozenset(
 Activities = tuple[Activity, ...]
 
 
-def has_one_message_per_round(executor: Executor, is_alone: bool) -> bool:
-    """Whether at most one of its messages is taken in a round.
+def has_one_message_per_iteration(executor: Executor, is_alone: bool) -> bool:
+    """Whether at most one of its messages is taken in an iteration.
 
     A publication that waits for its acknowledgement stores what arrives meanwhile (micro-ROS/rmw_microxrcedds `rmw_publish.c`), and so
     does the wait of another executor of the same session; a trigger condition can keep messages back for later.
@@ -46,8 +46,8 @@ def has_one_message_per_round(executor: Executor, is_alone: bool) -> bool:
     return executor.waiting.messages_per_wait == 1 and is_alone and not can_store
 
 
-def round_activities(executor: Executor, *, exclusive: bool, poll: str | None) -> Activities:
-    """The activities of a round.
+def iteration_activities(executor: Executor, *, exclusive: bool, poll: str | None) -> Activities:
+    """The activities of an iteration.
 
     Parameters
     ----------
@@ -55,17 +55,17 @@ def round_activities(executor: Executor, *, exclusive: bool, poll: str | None) -
     poll : runnable that stands for polling until a timer is due, when the wait has ended too early; None if that does not happen
     """
     spin = Call(runnable=executor.spin)
-    body = _Round(executor, exclusive, poll).body()
+    body = _Iteration(executor, exclusive, poll).body()
     return (spin, *body)
 
 
 def polls_before_timers(executor: Executor) -> bool:
-    """Whether rounds follow each other at once before a timer is due: the wait is cut to whole multiples of its resolution."""
+    """Whether iterations follow each other at once before a timer is due: the wait is cut to whole multiples of its resolution."""
     return bool(timers(executor)) and executor.waiting.resolution > 0 and not is_paced(executor)
 
 
 @dataclass(frozen=True, slots=True)
-class _Round:
+class _Iteration:
     executor: Executor
     exclusive: bool
     poll: str | None
