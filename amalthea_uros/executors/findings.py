@@ -59,7 +59,7 @@ def _note_loop(executor: Executor, executors: Sequence[Executor], result: Execut
         most, arriving = Fraction(1, min_pace(executor)), certain_rate(executor)
         if arriving > most * NEAR_CAPACITY:
             message = (
-                f"{executor.name!r} takes at most one message per round, so at most {float(most * SECOND):.4g} messages/s "
+                f"{executor.name!r} takes at most one message per iteration, so at most {float(most * SECOND):.4g} messages/s "
                 f"of all topics; {float(arriving * SECOND):.4g} arrive"
             )
             notes.warning("EXE013", message, executor)
@@ -67,8 +67,8 @@ def _note_loop(executor: Executor, executors: Sequence[Executor], result: Execut
     if period is not None and (result.round.most is None or longest_wait(executor) + result.round.most > period):
         longest = "an unknown time" if result.loop.most is None else rounded_time_text(result.loop.most, Rounding.UP)
         message = (
-            f"a round of {executor.name!r} can take {longest} with its wait, more than the period of {time_text(period)}; "
-            "then rounds follow each other without a sleep until the loop has caught up"
+            f"an iteration of {executor.name!r} can take {longest} with its wait, more than the period of {time_text(period)}; "
+            "then iterations follow each other without a sleep until the loop has caught up"
         )
         notes.warning("EXE020", message, executor)
 

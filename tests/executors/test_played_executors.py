@@ -84,7 +84,7 @@ def test_triggers_that_come_at_an_unknown_rate_can_be_lost():
     lost = evaluate(looping(guard("g"))).handles["g"].lost
     assert lost is not None
     assert lost.most is None
-    assert "nobody states how often" in lost.sequence
+    assert "its rate is not specified" in lost.sequence
 
 
 def test_executors_share_the_slots_of_their_process():

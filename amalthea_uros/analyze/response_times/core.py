@@ -263,7 +263,7 @@ class _CoreAnalysis:
         """A response time; an overload is not certain if rounds of executors are counted that need not be as long and as dense."""
         uncertain, here = self.context.with_uncertain_activations, self.context.on_core(item.core)
         if response.is_overload and any(other.name in uncertain and other.rank >= item.rank for other in here):
-            reason = f"{response.reason}, if rounds of executors are as long and as frequent as they can be"
+            reason = f"{response.reason}, if iterations of executors are as long and as frequent as they can be"
             return replace(response, is_overload=False, reason=reason)
         return response
 

@@ -1,4 +1,4 @@
-"""How long a message can lie unread in the buffer of the transport, and so how many can.
+"""How long a message can wait unread in the buffer of the transport, and so how many can.
 
 The buffer is first in, first out, and each wait reads at least one message if any is there: data, a part of them, a heartbeat or an
 acknowledgement (`listen_message` in src/c/core/session/session.c of eProsima/Micro-XRCE-DDS-Client; with a timeout of less than 1 ms

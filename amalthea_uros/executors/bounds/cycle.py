@@ -76,7 +76,7 @@ class Cycle:
     takes_one : whether at most one handle that receives messages is ready in an iteration
     session_wait : how long others can keep the session when it is needed
     writing : how long a wait is extended by acknowledgements of what it reads, and heartbeats
-    backlog_age : how long a message can lie unread; None if that has no bound, or nothing is acknowledged
+    backlog_age : how long a message can wait unread; None if that has no bound, or nothing is acknowledged
     """
 
     executor: Executor
@@ -284,8 +284,8 @@ class Cycle:
     def unbounded(self) -> str:
         """Why the longest cycle is not bounded."""
         if self.session_wait is None or self.whole.suspension.most is None:
-            why = self.whole.suspension.why or "how long others of its session keep it is unknown"
-            return f"a round can be suspended without a bound: {why}"
+            why = self.whole.suspension.why or "the time for which other executors of its session keep it is unknown"
+            return f"an iteration can be suspended without a bound: {why}"
         if self.writing.most is None:
             return f"a wait has no bound: {self.writing.why}"
         return "the processes that preempt it need nearly all of the core"

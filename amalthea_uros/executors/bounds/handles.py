@@ -113,16 +113,16 @@ def _terms(handle: Handle, cycle: Cycle, delay: Delay, wait: Time, waited_for: s
 def _of_cycle(cycle: Cycle) -> list[Part]:
     """The cycle that is running when the handle is released."""
     demand = _time(cycle.whole.demand, cycle)
-    found = [Part(name="rest of the running round", least=0, most=demand, why="what is ready was fixed just before")]
+    found = [Part(name="rest of the running iteration", least=0, most=demand, why="what is ready was fixed just before")]
     loop = cycle.executor.loop
     if loop.kind is LoopKind.PERIODIC:
-        why = f"the next round begins when the period of {time_text(loop.period or 0)} has passed"
+        why = f"the next iteration begins when the period of {time_text(loop.period or 0)} has passed"
         return [*found, Part(name="sleep", least=0, most=max(0, (cycle.longest or 0) - demand), why=why)]
     suspension = cycle.whole.suspension
     return [
         *found,
-        Part(name="publications of the running round", least=0, most=suspension.most or 0, why=suspension.why),
-        Part(name="sleep", least=0, most=cycle.sleep, why="the loop sleeps after each round"),
+        Part(name="publications of the running iteration", least=0, most=suspension.most or 0, why=suspension.why),
+        Part(name="sleep", least=0, most=cycle.sleep, why="the loop sleeps after each iteration"),
         Part(name="acknowledgements", least=0, most=cycle.writing.most or 0, why=cycle.writing.why),
         Part(
             name="session",
@@ -136,7 +136,7 @@ def _of_cycle(cycle: Cycle) -> list[Part]:
 def _before(cycle: Cycle, delay: Delay, wait: Time) -> Part:
     """The further cycles, one for each message before it."""
     count, length = (delay.cycles or 1) - 1, cycle.longest_with(wait) or 0
-    why = f"{counted(count, 'message')}, each of which takes a round of at most {time_text(length)}"
+    why = f"{counted(count, 'message')}, each of which takes an iteration of at most {time_text(length)}"
     if delay.earlier:
         why += f", less {time_text(delay.earlier)} by which it arrives later"
     return Part(name="messages before it", least=0, most=count * length - delay.earlier, why=why)

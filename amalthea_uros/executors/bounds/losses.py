@@ -43,8 +43,8 @@ def loss_of_timer(handle: Handle, cycle: Cycle, lateness: Span) -> Loss | None:
     count = lost_periods(lateness.most, period)
     following = next_expiration(0, lateness.most, period)
     sequence = (
-        f"{handle.name} is due at 0 s, just after a round has checked its timers; the rest of the round"
-        f"{f' and the sleep of {time_text(cycle.sleep)}' if cycle.sleep else ''}, then the next round up to the callback, end at "
+        f"{handle.name} is due at 0 s, just after an iteration has checked its timers; the rest of the iteration"
+        f"{f' and the sleep of {time_text(cycle.sleep)}' if cycle.sleep else ''}, then the next iteration up to the callback, end at "
         f"{_text(lateness.most)}; what was due until then at {_multiples(count, period)} is lost, "
         f"the next call is due at {time_text(following)}"
     )
@@ -61,9 +61,7 @@ def loss_of_triggers(
 ) -> Loss | None:
     """The triggers of a guard condition that can be lost: it is a flag that is cleared when it is seen."""
     if can_defer(cycle.executor):
-        sequence = (
-            f"{handle.name} is triggered; the next round sees and clears it, but the trigger condition of the executor is false"
-        )
+        sequence = f"{handle.name} is triggered; the next iteration sees and clears it, but the trigger condition is false"
         return Loss(what="triggers", is_certain=False, most=None, sequence=sequence)
     if seen_after is None:
         return _lost_triggers(
@@ -75,7 +73,7 @@ def loss_of_triggers(
     except UnknownError:
         sequence = (
             f"{handle.name} is triggered twice within {_text(seen_after)}, until the executor sees it, and it calls it once; "
-            "nobody states how often it is triggered"
+            "its rate is not specified"
         )
         return _lost_triggers(None, sequence)
     if not lost:
@@ -177,7 +175,7 @@ def _while_nothing_is_taken(cycle: Cycle) -> str:
         return "while the trigger condition is false, "
     if cycle.whole.suspension.why:
         return f"while {cycle.whole.suspension.why}, "
-    return "while a round executes, "
+    return "while an iteration executes, "
 
 
 def _text(value: Time) -> str:

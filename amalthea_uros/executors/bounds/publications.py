@@ -17,7 +17,7 @@ the end of the wait. So the wait is at most the least w with
 with one answer for each part of a message. The first heartbeat follows an interval after the message, if all was acknowledged before
 it; the wait lies in one cycle L, so that w + L has room for (w + L) / interval of them.
 
-It gives up when the timeout has passed, which begins when the message is written and is looked at between two readings. The last one
+It times out when the timeout has passed, which begins when the message is written and is looked at between two readings. The last one
 can write an answer, and heartbeats as long as the timeout lasts. If one of these writes has no bound, the publication has none.
 """
 
@@ -94,12 +94,12 @@ def _times(
 
 def _session(executor: Executor, sending: Mapping[str, Span], solved: SolvedSystem) -> _Session:
     """What the publications of an executor can meet, if they take such times."""
-    behind = has_unacknowledged(sending, solved)
+    unacknowledged = has_unacknowledged(sending, solved)
     try:
         cycle = Cycle.of(executor, solved, sending)
     except UnknownError:
-        return _Session(backlog_age=None, cycle=None, has_unacknowledged=behind)
-    return _Session(backlog_age=cycle.backlog_age, cycle=cycle.longest, has_unacknowledged=behind)
+        return _Session(backlog_age=None, cycle=None, has_unacknowledged=unacknowledged)
+    return _Session(backlog_age=cycle.backlog_age, cycle=cycle.longest, has_unacknowledged=unacknowledged)
 
 
 def _until_written(message: Transmission | None, solved: SolvedSystem) -> Span:
@@ -124,13 +124,13 @@ def _with_writes(time: Time, session: _Session, arrivals: Mapping[str, Arriving 
     """The time of a round trip with what is written meanwhile; None if it has no bound."""
     whole = time
     for _ in range(_STEPS):
-        answering = _time_to_acknowledge(whole, session, arrivals, solved)
-        beating = _time_for_heartbeats(whole, session, solved)
-        if answering is None or beating is None:
+        acknowledging = _time_to_acknowledge(whole, session, arrivals, solved)
+        heartbeat_time = _time_for_heartbeats(whole, session, solved)
+        if acknowledging is None or heartbeat_time is None:
             return None
-        if time + answering + beating == whole:
+        if time + acknowledging + heartbeat_time == whole:
             return whole
-        whole = time + answering + beating
+        whole = time + acknowledging + heartbeat_time
     return None
 
 
@@ -169,14 +169,14 @@ def _heartbeat_time(time: Time, first: int, solved: SolvedSystem) -> Time | None
 
 
 def _until_timeout(publication: Publication, solved: SolvedSystem) -> Time | None:
-    """When a publication gives up; None if it does not, or what it writes has no bound."""
+    """When a publication times out; None if it does not, or what it writes has no bound."""
     transmissions = solved.context.system.transmissions
     written = _until_written(transmissions.get(publication.transmission or ""), solved).most
-    answering = [_until_written(each, solved).most for each in acknowledgements(solved.context.system)]
-    if publication.timeout is None or written is None or None in answering:
+    writes = [_until_written(each, solved).most for each in acknowledgements(solved.context.system)]
+    if publication.timeout is None or written is None or None in writes:
         return None
-    beating = _heartbeat_time(publication.timeout, DUE, solved)
-    return None if beating is None else written + publication.timeout + max(filter(None, answering), default=0) + beating
+    beats = _heartbeat_time(publication.timeout, DUE, solved)
+    return None if beats is None else written + publication.timeout + max(filter(None, writes), default=0) + beats
 
 
 def _round_trip(publication: Publication, solved: SolvedSystem) -> Iterator[Hop]:

@@ -99,7 +99,7 @@ def delay_of(handle: Handle, cycle: Cycle, length: Time, extra_jitter: Mapping[s
         return Delay(cycles=None, reason=str(error))
     if events.rate * length >= 1:
         rate, served = _per_second(events.rate), _per_second(Fraction(1, length))
-        return Delay(cycles=None, reason=f"{rate} messages/s arrive, and rounds may serve only {served} per second")
+        return Delay(cycles=None, reason=f"{rate} messages/s arrive, and iterations may serve only {served} per second")
     worst, found, count = Time(-1), Delay(cycles=1), 0
     while count < MAX_MESSAGES:
         count += 1
@@ -108,7 +108,9 @@ def delay_of(handle: Handle, cycle: Cycle, length: Time, extra_jitter: Mapping[s
             worst, found = count * length - arrival, Delay(cycles=count, earlier=arrival)
         if events.delta_min(count + 1) > count * length:
             return found
-    return Delay(cycles=None, reason=f"more than {MAX_MESSAGES:,} messages can wait: rounds are hardly faster than messages")
+    return Delay(
+        cycles=None, reason=f"more than {MAX_MESSAGES:,} messages can wait: iterations are hardly faster than messages"
+    )
 
 
 def certain_overload(cycle: Cycle) -> Delay | None:
@@ -121,7 +123,7 @@ def certain_overload(cycle: Cycle) -> Delay | None:
         return None
     served = _per_second(Fraction(most, cycle.shortest_with_message))
     reason = (
-        f"overload: {_per_second(rate)} messages/s arrive, and rounds serve at most {served} per second, "
+        f"overload: {_per_second(rate)} messages/s arrive, and iterations serve at most {served} per second, "
         "so that messages wait longer and longer"
     )
     return Delay(cycles=None, reason=reason, is_overload=True)

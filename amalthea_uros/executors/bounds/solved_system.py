@@ -11,7 +11,7 @@ from amalthea_uros.timing.response import Response
 from amalthea_uros.units import Time
 
 #: The method of the bounds of response times.
-METHOD = "busy window of the rounds of an executor"
+METHOD = "busy window of the iterations of an executor"
 
 
 class ThreadProcessor(Protocol):

@@ -157,13 +157,13 @@ def why_dense(executor: Executor, executors: Iterable[Executor], longest: Time) 
         return ""
     waiting = [publication.topic for handle in executor.handles for publication in handle.publications if publication.waits]
     if waiting:
-        return (
-            f"its loop has no sleep, so that rounds follow each other after one in which a publication of {waiting[0]!r} waited"
-        )
+        return f"its loop has no sleep, so that iterations follow each other after one in which a publication of {waiting[0]!r} waited"
     if shares_session(executor, executors):
-        return "its loop has no sleep, so that rounds follow each other after one that waited for others of its session"
+        return "its loop has no sleep, so that iterations follow each other after one that waited for others of its session"
     if executor.loop.kind is LoopKind.PERIODIC and longest_wait(executor) + longest > (executor.loop.period or 0):
-        return "a wait and a round can be longer than its period, so that rounds follow each other until it has caught up"
+        return (
+            "a wait and an iteration can be longer than its period, so that iterations follow each other until it has caught up"
+        )
     return ""
 
 

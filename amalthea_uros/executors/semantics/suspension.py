@@ -119,5 +119,5 @@ def _until_timeout(publication: Publication, span: Span, system: System) -> tupl
     transmission = system.transmissions.get(publication.transmission or "")
     driver = 0 if transmission is None else transmission.driver.most
     most = None if driver is None else driver + publication.timeout
-    why = f"publish of {publication.topic} waits for its acknowledgement, and gives up after {time_text(publication.timeout)}"
+    why = f"publish of {publication.topic} waits for its acknowledgement, and times out after {time_text(publication.timeout)}"
     return Span(least=span.least, most=most), why

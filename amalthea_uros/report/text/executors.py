@@ -20,7 +20,7 @@ def write_executors(terminal: Terminal, executors: Sequence[ExecutorResult]) -> 
             terminal.line(f"  {executor.reason}")
         else:
             terminal.line(
-                f"  a round takes {_span(executor.round.least, executor.round.most)}, "
+                f"  an iteration takes {_span(executor.round.least, executor.round.most)}, "
                 f"from one wait to the next {_span(executor.loop.least, executor.loop.most)}"
             )
         headings = ("handle", "kind", "interval", "best", "worst", "late by", "can lose", "")

@@ -64,7 +64,7 @@ def activation(executor: Executor, callbacks: Sequence[Callback], min_iteration:
         # An iteration executes when its wait ends.
         yield Periodic(name=name, period=loop.period, offset=offset, jitter=Boundaries(lower=0, upper=loop.timeout))
     elif reason:
-        unknown = Custom(name=name, description=f"{reason}, and the execution time of a round is not specified")
+        unknown = Custom(name=name, description=f"{reason}, and the execution time of an iteration is not specified")
         yield _at_least(name, min_iteration) if min_iteration else unknown
     else:
         yield _at_least(f"timeout_of_{executor.name}", loop.timeout)

@@ -56,7 +56,7 @@ def _check_timeout(executor: Executor, section: spec.Executor, notes: Notes) -> 
     if loop.kind is LoopKind.PERIODIC and not is_paced(executor) and loop.period is not None and section.loop is not None:
         message = (
             f"{executor.name!r} waits for up to {time_text(loop.timeout)} in each period of {time_text(loop.period)}: "
-            "without a message or timer, a round takes as long as the timeout"
+            "without a message or timer, an iteration takes as long as the timeout"
         )
         advice = f"Call rclc_executor_set_timeout and set 'timeout' to less than {time_text(loop.period)}."
         notes.warning("EXE002", message, section.loop.location("timeout"), advice)
@@ -113,7 +113,7 @@ def _check_guard_conditions(executor: Executor, section: spec.Executor, notes: N
         if _can_be_lost(guard, executor):
             message = (
                 f"the guard condition of {guard.name!r} is cleared when it is seen: it is lost if the trigger condition of "
-                f"{executor.name!r} is false in that round"
+                f"{executor.name!r} is false in that iteration"
             )
             advice = f"Let {guard.name!r} alone make the trigger condition true."
             notes.warning("EXE005", message, section.trigger.location() or section.location(), advice)

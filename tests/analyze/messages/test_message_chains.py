@@ -1,7 +1,7 @@
 """Chains over wires and executors, hop by hop, on a board that is described in `message_board`.
 
 On the wire to the board, /cmd can be blocked by one acknowledgement that is being sent (non-preemptive, Davis and others 2007), and
-the other chain round: CMD + ACK. On the other wire /odom is alone: ODOM.
+the other way round: CMD + ACK. On the other wire /odom is alone: ODOM.
 """
 
 from dataclasses import replace
@@ -172,7 +172,7 @@ def test_a_round_as_a_whole_is_no_member_of_a_chain():
     whole = replace(events[0], name="round_start", process="Executor")
     chain = board(("round", "round_start", "on_cmd_end")).events.chains
     found = replace(found, events=replace(found.events, events=(*events, whole), chains=chain))
-    assert "whole round" in message_chains(found)["round"].reason
+    assert "whole iteration" in message_chains(found)["round"].reason
 
 
 @pytest.mark.parametrize("waits", [False, True])

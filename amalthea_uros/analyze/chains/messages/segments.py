@@ -120,7 +120,7 @@ class Segments:
         handle = None if occurrence.position is None else self._handle_around(occurrence.position, executor)
         if handle is None:
             raise UnknownError(
-                f"the event {event.name!r} is one of a whole round of {executor.name!r}; name a callback or a topic"
+                f"the event {event.name!r} is one of a whole iteration of {executor.name!r}; name a callback or a topic"
             )
         return CallbackSegment(executor, handle)
 
