@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from amalthea_uros._internal.arrays import Flags, Numbers
 from amalthea_uros.measure.markers import (
     Decoder,
     Marker,
@@ -24,11 +24,6 @@ from amalthea_uros.measure.pairing import Pairs, paired_by_number, paired_in_ord
 from amalthea_uros.measure.reactions import reactions
 from amalthea_uros.measure.series import Counts, Series, TimeStatistics, merged, statistics_or_none
 from amalthea_uros.timing.basics.quantities import JobMetric
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Numbers = NDArray[np.int64]
 
 
 def markers_of(item: Measurable) -> tuple[Marker, ...]:
@@ -152,7 +147,7 @@ def _reported_values(item: ReportedValue, found: MarkerOccurrences, duplicated: 
     return MeasuredObject((series,), int(np.count_nonzero(~is_known)))
 
 
-def _decoded(decode: Decoder, found: MarkerOccurrences) -> tuple[Numbers, NDArray[np.bool_]]:
+def _decoded(decode: Decoder, found: MarkerOccurrences) -> tuple[Numbers, Flags]:
     values = [decode(data) for data in found.data]
     is_known = np.array([value is not None for value in values], bool)
     return np.array([round(value) for value in values if value is not None], np.int64), is_known

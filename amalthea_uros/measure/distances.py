@@ -12,12 +12,12 @@ from fractions import Fraction
 from math import ceil, log, sqrt
 from typing import TYPE_CHECKING
 
+from amalthea_uros._internal.arrays import Numbers
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
+    pass
 
 #: How often a greater distance than the critical one occurs by chance, for independent samples of one distribution.
 SIGNIFICANCE = 0.05
@@ -48,7 +48,7 @@ class Distance:
         return self.value > self.critical
 
 
-def distance(one: NDArray[np.int64], other: NDArray[np.int64]) -> Distance:
+def distance(one: Numbers, other: Numbers) -> Distance:
     """The distance of two samples of times.
 
     Raises
@@ -73,5 +73,5 @@ def distance(one: NDArray[np.int64], other: NDArray[np.int64]) -> Distance:
     )
 
 
-def _quantile(ordered: NDArray[np.int64], share: Fraction) -> Time:
+def _quantile(ordered: Numbers, share: Fraction) -> Time:
     return int(ordered[ceil(share * len(ordered)) - 1])

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from amalthea_uros._internal.arrays import Flags, Numbers
 from amalthea_uros.measure.reactions import BY_NUMBER, LatencyLists, is_after_loss
 from amalthea_uros.measure.series import Counts, Series
 from amalthea_uros.timing.observed.chain_latencies import RouteLatencies
@@ -21,7 +22,6 @@ from amalthea_uros.trace.table import NO_NOTE, EventKind, EventTable
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Numbers = NDArray[np.int64]
 
 #: Numbers of jobs have fewer bits.
 _BITS = 40
@@ -36,7 +36,7 @@ class _Steps:
     time: Numbers
     stimulus: Numbers
     segment: Numbers
-    is_response: NDArray[np.bool_]
+    is_response: Flags
 
     @property
     def has_several_routes(self) -> bool:
@@ -107,7 +107,7 @@ class ChainSteps:
             times[order], stimuli, segments + np.cumsum(is_after_loss(stimuli, is_response[order])), is_response[order]
         )
 
-    def _begun(self, kind: EventKind, jobs: Numbers) -> tuple[Numbers, NDArray[np.bool_]]:
+    def _begun(self, kind: EventKind, jobs: Numbers) -> tuple[Numbers, Flags]:
         """When jobs were activated or started, and whether the trace says it."""
         known, times = np.concatenate(self._begins[kind], axis=1)
         if not len(known):
@@ -129,7 +129,7 @@ def _latencies(name: str, steps: _Steps, begin: EventKind) -> Iterator[Series]:
     yield from found.series(name, Counts(incomplete=unanswered), method, BY_NUMBER)
 
 
-def _in_order(is_response: NDArray[np.bool_], stimulus: Numbers) -> Numbers:
+def _in_order(is_response: Flags, stimulus: Numbers) -> Numbers:
     """Of each event the place of its stimulus among those of this part of the trace; -1 if that is not in it."""
     known = np.sort(stimulus[~is_response])
     if not len(known):

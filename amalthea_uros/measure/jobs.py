@@ -8,20 +8,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from amalthea_uros._internal.arrays import Flags, Numbers
 from amalthea_uros.measure.series import Counts, MeasuredKind, Series, statistics_of
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.timing.observed.job_times import BETWEEN, OWN, Job, own_times, times_between
 from amalthea_uros.trace.btf.vocabulary import PROCESS
 from amalthea_uros.trace.table import EventKind, EventTable
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Numbers = NDArray[np.int64]
 
 #: What the states of a job count as; in READY no time is counted.
 _COLUMNS = {"running": Job.RUNNING, "waiting": Job.WAITING, "polling": Job.POLLING, "parking": Job.PARKING}
@@ -269,7 +264,7 @@ def _series(kind: MeasuredKind, name: str, ended: _EndedJobs) -> Iterator[Series
         yield from _of_metric(kind, name, metric, row[is_known], jobs[Job.END, 1:][is_known], both[is_known], counts)
 
 
-def _table(ended: _EndedJobs) -> tuple[Numbers, NDArray[np.bool_]]:
+def _table(ended: _EndedJobs) -> tuple[Numbers, Flags]:
     """A column for each job, a row for each of `Job`; and whether each follows the one before."""
     rows = np.array(ended.rows, np.int64).T
     jobs = np.zeros((len(Job), rows.shape[1]), np.int64)
@@ -283,7 +278,7 @@ def _of_metric(
     metric: JobMetric,
     values: Numbers,
     ends: Numbers,
-    is_activated: NDArray[np.bool_],
+    is_activated: Flags,
     counts: Counts,
 ) -> Iterator[Series]:
     if metric in _FROM_ACTIVATION:

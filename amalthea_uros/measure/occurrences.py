@@ -4,18 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from amalthea_uros._internal.arrays import Flags, Numbers
 from amalthea_uros.measure.markers import Marker
 from amalthea_uros.measure.window import MeasurementWindow
 from amalthea_uros.trace.can.frames import FrameKind, FrameTable
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Numbers = NDArray[np.int64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +35,7 @@ class MarkerOccurrences:
     def __len__(self) -> int:
         return len(self.time)
 
-    def where(self, is_kept: NDArray[np.bool_]) -> MarkerOccurrences:
+    def where(self, is_kept: Flags) -> MarkerOccurrences:
         """Those for which a value is true."""
         if is_kept.all():
             return self
@@ -116,13 +111,13 @@ class MarkerCollector:
         data = [table.data[row] for row in rows.tolist()]
         self._parts.append(MarkerOccurrences(time[rows], which, table.channel[rows].astype(np.int64), segment[rows], data))
 
-    def _count(self, table: FrameTable, is_frame: NDArray[np.bool_]) -> None:
+    def _count(self, table: FrameTable, is_frame: Flags) -> None:
         keys, numbers = np.unique(table.identifier[is_frame] << 16 | table.channel[is_frame], return_counts=True)
         for key, number in zip(keys.tolist(), numbers.tolist(), strict=True):
             place = key & 0xFFFF, key >> 16
             self.seen[place] = self.seen.get(place, 0) + number
 
-    def _found(self, table: FrameTable, is_frame: NDArray[np.bool_], marker: Marker) -> Numbers:
+    def _found(self, table: FrameTable, is_frame: Flags, marker: Marker) -> Numbers:
         """The rows of a marker."""
         is_found = is_frame & (table.identifier == marker.identifier)
         if marker.channel is not None:
@@ -145,7 +140,7 @@ class MarkerCollector:
         return MarkerOccurrences(time, marker, channel, segment, [data for part in parts for data in part.data])
 
 
-def _at_steps_back(table: FrameTable) -> NDArray[np.bool_]:
+def _at_steps_back(table: FrameTable) -> Flags:
     """Which frames are directly before or after a gap over which the time of their bus steps back."""
     found = np.zeros(len(table), bool)
     is_gap = table.kind == FrameKind.GAP

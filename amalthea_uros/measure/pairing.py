@@ -7,17 +7,11 @@ open, and an event that stands before an earlier one ends what is open.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from amalthea_uros._internal.arrays import Flags, Numbers
 from amalthea_uros.measure.series import Counts
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Numbers = NDArray[np.int64]
-    Flags = NDArray[np.bool_]
 
 #: By so many numbers events may overtake each other; a counter that goes back further has started again.
 _OVERTAKEN = 8

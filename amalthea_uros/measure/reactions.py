@@ -9,20 +9,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from amalthea_uros._internal.arrays import Flags, Numbers
 from amalthea_uros.measure.pairing import counted_on, lost_numbers
 from amalthea_uros.measure.series import Counts, MeasuredKind, Series, statistics_of
 from amalthea_uros.timing.basics.quantities import ChainQuantity
 from amalthea_uros.timing.observed.chain_latencies import SAME, RouteLatencies
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Numbers = NDArray[np.int64]
-    Flags = NDArray[np.bool_]
 
 #: What can be said where it is not known which stimulus a response shows.
 _BY_TIME = (ChainQuantity.REDUCED_REACTION_TIME, ChainQuantity.REDUCED_DATA_AGE)

@@ -9,14 +9,14 @@ from fractions import Fraction
 from math import ceil, sqrt
 from typing import TYPE_CHECKING
 
+from amalthea_uros._internal.arrays import Numbers
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
+    pass
 
 #: The percentiles that are computed where all values are known.
 PERCENTILES = (Fraction(1, 2), Fraction(9, 10), Fraction(95, 100), Fraction(99, 100), Fraction(999, 1000))
@@ -55,7 +55,7 @@ class TimeStatistics:
 Statistics = TimeStatistics
 
 
-def statistics_of(values: NDArray[np.int64]) -> TimeStatistics:
+def statistics_of(values: Numbers) -> TimeStatistics:
     """The statistics of values in picoseconds.
 
     Raises
@@ -87,7 +87,7 @@ def statistics_of(values: NDArray[np.int64]) -> TimeStatistics:
     )
 
 
-def statistics_or_none(values: NDArray[np.int64]) -> TimeStatistics | None:
+def statistics_or_none(values: Numbers) -> TimeStatistics | None:
     """The statistics of values in picoseconds, None if there are none."""
     return statistics_of(values) if len(values) else None
 
@@ -176,8 +176,8 @@ class Series:
     name: str
     quantity: str
     statistics: TimeStatistics | None
-    values: NDArray[np.int64] | None = field(default=None, repr=False, compare=False)
-    times: NDArray[np.int64] | None = field(default=None, repr=False, compare=False)
+    values: Numbers | None = field(default=None, repr=False, compare=False)
+    times: Numbers | None = field(default=None, repr=False, compare=False)
     counts: Counts = Counts()
     method: str = ""
     baseline: TimeStatistics | None = None

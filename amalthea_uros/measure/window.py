@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from amalthea_uros._internal.arrays import Flags, Numbers
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.units import Time, time_text
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
+    pass
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +36,7 @@ class MeasurementWindow:
         """Whether it is the whole trace."""
         return self.start == 0 and self.end is None
 
-    def holds(self, times: NDArray[np.int64]) -> NDArray[np.bool_]:
+    def holds(self, times: Numbers) -> Flags:
         """Which times are in it; before the first event, after a step back of the clock, none is unless all are."""
         import numpy as np
 
@@ -51,7 +51,7 @@ class MeasurementWindow:
 _ENOUGH = 20
 
 
-def resolution_of(times: NDArray[np.int64], stated: Time | None = None) -> Time | None:
+def resolution_of(times: Numbers, stated: Time | None = None) -> Time | None:
     """The step of which all times are multiples, at least the stated one; None if it is not known.
 
     Parameters

@@ -7,47 +7,15 @@ from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
 from time import perf_counter
-from typing import TYPE_CHECKING, TypeAlias, cast
+from typing import TypeAlias, cast
 
 import numpy as np
 
-from amalthea_uros.simulate.kernel import machine_code
-from amalthea_uros.simulate.kernel.layout import (
-    ARRIVAL,
-    ARRIVAL_SIZE,
-    ARRIVALS_END,
-    CAPTURES,
-    CAPTURES_END,
-    CAUSE,
-    EVENT_SIZE,
-    EVENTS,
-    EVENTS_END,
-    FIRST_PLACE,
-    IS_TRACED,
-    JOB_SIZE,
-    JOBS,
-    JOBS_END,
-    OBSERVATION_SIZE,
-    OBSERVATIONS,
-    OBSERVATIONS_END,
-    PENDING,
-    PLACES,
-    QUEUE,
-    QUEUE_CAPTURES,
-    STREAM_AT,
-    STREAM_END,
-    STREAM_NUMBER,
-    UNTIL,
-    Memory,
-)
-from amalthea_uros.simulate.kernel.loop import play
-from amalthea_uros.simulate.kernel.operations import ENDLESS, QUEUE_FULL, ROWS_FULL, STREAM_EMPTY, WINDOW
+from amalthea_uros._internal.arrays import Numbers
+from amalthea_uros.simulate.kernel import layout, machine_code, operations
+from amalthea_uros.simulate.kernel.layout import Memory
+from amalthea_uros.simulate.kernel.loop import run_kernel
 from amalthea_uros.simulate.program.build import KernelProgram
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Numbers = NDArray[np.int64]
 
 #: Takes rows.
 RowConsumer: TypeAlias = "Callable[[Numbers], None]"
@@ -68,7 +36,7 @@ class EndlessJobError(Exception):
 
 @dataclass(slots=True)
 class KernelDriver:
-    """Plays a program.
+    """Runs a program.
 
     Attributes
     ----------
@@ -99,22 +67,22 @@ class KernelDriver:
         streams = len(self.program.streams)
         self._values = min(max(_VALUES // max(1, streams), _LEAST_VALUES), _MOST_VALUES)
         for record in self.program.stream_records:
-            self._pools[record] = words[record + STREAM_AT] = words[record + STREAM_END] = len(words)
+            self._pools[record] = words[record + layout.STREAM_AT] = words[record + layout.STREAM_END] = len(words)
             words += [0] * self._values
         self._arrivals = len(words)
-        words += [0] * (self._places_for_arrivals * ARRIVAL_SIZE)
+        words += [0] * (self._places_for_arrivals * layout.ARRIVAL_SIZE)
 
     def _place_rows(self, count: int) -> None:
         """Have places for a number of rows of each kind."""
         for first, end, size in _ROW_KINDS:
             # Without a trace there are no events; one place, so that the kernel does not find that there is none left.
-            places = size * count if first != EVENTS or self.traced[1] > 0 else 1
+            places = size * count if first != layout.EVENTS or self.traced[1] > 0 else 1
             self._regions[first] = self._append(places + size * _MARGIN)
             self.memory[first] = self._regions[first]
             self.memory[end] = self._regions[first] + places
 
     def run(self) -> None:
-        """Play to the end.
+        """Run to the end.
 
         Raises
         ------
@@ -122,7 +90,7 @@ class KernelDriver:
         """
         began = perf_counter()
         try:
-            self._play_to_the_end(began)
+            self._run_to_end(began)
         finally:
             self._await_taker()
             if not self.is_compiled:
@@ -130,16 +98,16 @@ class KernelDriver:
                 effort.spent += perf_counter() - began
                 effort.report(is_used=False)
 
-    def _play_to_the_end(self, began: float) -> None:
+    def _run_to_end(self, began: float) -> None:
         time, window = 0, max(1, self.until // 1024)
         self._consider_machine_code(0, 0)
         edges = sorted({edge for edge in (*self.traced, self.until) if 0 < edge <= self.until})
         for edge in edges:
             while time < edge:
-                self.memory[IS_TRACED] = int(self.traced[0] <= time < self.traced[1])
+                self.memory[layout.IS_TRACED] = int(self.traced[0] <= time < self.traced[1])
                 time = min(edge, time + window)
                 count = self._prepare(time)
-                self._play_window(time)
+                self._run_window(time)
                 if not self.is_compiled:
                     self._consider_machine_code(perf_counter() - began, (self.until - time) / time)
                 if 2 * count < _OCCURRENCES:
@@ -148,20 +116,20 @@ class KernelDriver:
                     window = max(1, window // 2)
         self._take_rows()
 
-    def _play_window(self, until: int) -> None:
-        kernel = machine_code.compiled() if self.is_compiled else play
-        self.memory[UNTIL] = until
-        while (code := kernel(self.memory)) != WINDOW:
-            if code == STREAM_EMPTY:
-                self._refill(int(self.memory[CAUSE]))
-            elif code == ROWS_FULL:
+    def _run_window(self, until: int) -> None:
+        kernel = machine_code.compiled() if self.is_compiled else run_kernel
+        self.memory[layout.UNTIL] = until
+        while (code := kernel(self.memory)) != operations.WINDOW:
+            if code == operations.STREAM_EMPTY:
+                self._refill(int(self.memory[layout.CAUSE]))
+            elif code == operations.ROWS_FULL:
                 self._take_rows()
-            elif code == QUEUE_FULL:
+            elif code == operations.QUEUE_FULL:
                 self._grow_queues()
-            elif code == ENDLESS:
+            elif code == operations.ENDLESS:
                 # What was observed up to here counts.
                 self._take_rows()
-                raise EndlessJobError(int(self.memory[CAUSE]))
+                raise EndlessJobError(int(self.memory[layout.CAUSE]))
 
     def _consider_machine_code(self, seconds: float, times_left: float) -> None:
         """Go on with machine code, which gives the same results, if what is left takes long enough.
@@ -188,19 +156,19 @@ class KernelDriver:
         order = np.argsort(times, kind="stable")
         if len(times) > self._places_for_arrivals:
             self._places_for_arrivals = 2 * len(times)
-            self._arrivals = self._append(self._places_for_arrivals * ARRIVAL_SIZE)
+            self._arrivals = self._append(self._places_for_arrivals * layout.ARRIVAL_SIZE)
         rows = np.column_stack((times[order], stimuli[order])).ravel()
         self._write(self._arrivals, rows)
-        self.memory[ARRIVAL] = self._arrivals
-        self.memory[ARRIVALS_END] = self._arrivals + len(rows)
+        self.memory[layout.ARRIVAL] = self._arrivals
+        self.memory[layout.ARRIVALS_END] = self._arrivals + len(rows)
         return len(times)
 
     def _refill(self, stream: int) -> None:
         """Put new values into a stream that has none left."""
-        values = self.program.streams[self.memory[stream + STREAM_NUMBER]].take(self._values)
+        values = self.program.streams[self.memory[stream + layout.STREAM_NUMBER]].take(self._values)
         self._write(self._pools[stream], values)
-        self.memory[stream + STREAM_AT] = self._pools[stream]
-        self.memory[stream + STREAM_END] = self._pools[stream] + len(values)
+        self.memory[stream + layout.STREAM_AT] = self._pools[stream]
+        self.memory[stream + layout.STREAM_END] = self._pools[stream] + len(values)
 
     def _write(self, place: int, values: Numbers) -> None:
         if self.is_compiled:
@@ -219,18 +187,18 @@ class KernelDriver:
 
     def _grow_queues(self) -> None:
         """Give all processes twice as many places for activations."""
-        places = int(self.memory[PLACES])
+        places = int(self.memory[layout.PLACES])
         for record in self.program.queues:
             memory = self.memory
-            size = QUEUE_CAPTURES + int(memory[record + CAPTURES_END] - memory[record + CAPTURES])
-            first, queue = int(memory[record + FIRST_PLACE]), int(memory[record + QUEUE])
+            size = layout.QUEUE_CAPTURES + int(memory[record + layout.CAPTURES_END] - memory[record + layout.CAPTURES])
+            first, queue = int(memory[record + layout.FIRST_PLACE]), int(memory[record + layout.QUEUE])
             end = queue + places * size
             # The first pending activation comes first in the new queue.
             rows = np.array([*memory[first:end], *memory[queue:first]], np.int64)
             place = self._append(2 * places * size)
             self._write(place, rows)
-            self.memory[record + QUEUE] = self.memory[record + FIRST_PLACE] = place
-        self.memory[PLACES] = 2 * places
+            self.memory[record + layout.QUEUE] = self.memory[record + layout.FIRST_PLACE] = place
+        self.memory[layout.PLACES] = 2 * places
 
     # What the kernel gives.
 
@@ -259,11 +227,11 @@ class KernelDriver:
 
     def pending(self, process: str) -> int:
         """The number of activations of a process whose jobs have not ended."""
-        return int(self.memory[self.program.records[process] + PENDING])
+        return int(self.memory[self.program.records[process] + layout.PENDING])
 
 
 _ROW_KINDS = (
-    (JOBS, JOBS_END, JOB_SIZE),
-    (OBSERVATIONS, OBSERVATIONS_END, OBSERVATION_SIZE),
-    (EVENTS, EVENTS_END, EVENT_SIZE),
+    (layout.JOBS, layout.JOBS_END, layout.JOB_SIZE),
+    (layout.OBSERVATIONS, layout.OBSERVATIONS_END, layout.OBSERVATION_SIZE),
+    (layout.EVENTS, layout.EVENTS_END, layout.EVENT_SIZE),
 )

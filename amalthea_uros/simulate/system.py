@@ -6,32 +6,19 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 
+from amalthea_uros._internal.arrays import Numbers
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.judge.limits import Deadline, deadline_of
 from amalthea_uros.perf.software import Isr
 from amalthea_uros.perf.system import System
 from amalthea_uros.simulate.driver import EndlessJobError, KernelDriver
-from amalthea_uros.simulate.kernel.layout import (
-    ACTIVATION,
-    BEGIN,
-    BUSY,
-    LOST,
-    LOST_MESSAGES,
-    NOW,
-    OCCURRENCE,
-    OVERFLOWS,
-    RUNS,
-    SINCE,
-    STATE,
-    TIME_POLLING,
-    TIME_RUNNING,
-    Observation,
-)
+from amalthea_uros.simulate.kernel import layout
+from amalthea_uros.simulate.kernel.layout import Observation
 from amalthea_uros.simulate.kernel.operations import POLLING, RUNNING
 from amalthea_uros.simulate.metrics import chains, jobs
 from amalthea_uros.simulate.metrics.chains import RouteMetrics, chain_observation
@@ -59,9 +46,6 @@ from amalthea_uros.trace.sinks import TraceSink
 from amalthea_uros.trace.table import Entity, EntityKind, EventTable
 from amalthea_uros.units import time_text
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
 #: Opens what the events of a run are written to, when the entities are known.
 OpenSink: TypeAlias = "Callable[[Sequence[Entity]], TraceSink]"
 
@@ -79,7 +63,7 @@ def simulate_system(system: System, options: Options, sinks: Sequence[OpenSink] 
     program = build_program(context, options)
     run = _SimulationRun(context, options, program)
     with ExitStack() as stack:
-        run.play([stack.enter_context(open_sink(program.entities)) for open_sink in sinks])
+        run.execute([stack.enter_context(open_sink(program.entities)) for open_sink in sinks])
     return run.result()
 
 
@@ -123,26 +107,26 @@ class _SimulationRun:
             traced=(traced[0] * program.units, traced[1] * program.units),
         )
 
-    def play(self, sinks: Sequence[TraceSink]) -> None:
-        """Play to the end, and write the events."""
+    def execute(self, sinks: Sequence[TraceSink]) -> None:
+        """Run to the end, and write the events."""
         self.sinks = sinks
         try:
             self.player.run()
         except EndlessJobError as error:
             name = next(name for name, record in self.program.records.items() if record == error.args[0])
-            now = int(self.player.memory[NOW])
+            now = int(self.player.memory[layout.NOW])
             self.end = max(1, now)
             at = time_text(Fraction(now, self.program.units))
             message = f"at {at}, {name!r} executes activities forever without taking time; the run ends there"
             self.context.notes.error("SIM003", message, self.context.system.processes[name])
 
-    def _observe(self, rows: NDArray[np.int64]) -> None:
+    def _observe(self, rows: Numbers) -> None:
         """Give rows about chains and about other occurrences to those that they are for."""
-        is_occurrence = rows[:, Observation.KIND] == OCCURRENCE
+        is_occurrence = rows[:, Observation.KIND] == layout.OCCURRENCE
         chains.add_rows(rows[~is_occurrence], self.routes)
         self.observers.add(rows[is_occurrence])
 
-    def _write(self, rows: NDArray[np.int64]) -> None:
+    def _write(self, rows: Numbers) -> None:
         """Hand events on to all sinks."""
         table = self.suspensions.insert(self.semaphores.complete(_event_table(rows, self.program)))
         for sink in self.sinks:
@@ -190,19 +174,19 @@ class _SimulationRun:
             notes.error("SIM001", f"{name!r} is not simulated: {reason}", system.processes[name])
         for executor in system.executors:
             message = (
-                f"the loop of {executor.name!r} is not played: its task executes rounds that call by chance what may be ready, so that "
-                "the times of its callbacks, and of what they send or activate, are not those of the executor"
+                f"the loop of {executor.name!r} is not simulated: its task executes iterations that call by chance what may be ready, "
+                "so that the times of its callbacks, and of what they send or activate, are not those of the executor"
             )
             notes.warning("SIM006", message, executor)
         for name, reason in self.program.chains_left_out.items():
             notes.warning("SIM002", f"the chain {name!r} is not followed: {reason}", system.chains[name])
         for name, record in self.program.channels.items():
-            lost = int(self.player.memory[record + OVERFLOWS])
+            lost = int(self.player.memory[record + layout.OVERFLOWS])
             if lost:
                 message = f"the channel {name!r} was full: {counted(lost, 'element')} lost"
                 notes.warning("SIM004", message, system.channels[name])
         for (process, source), queue in self.program.messages.items():
-            lost = int(self.player.memory[queue + LOST_MESSAGES])
+            lost = int(self.player.memory[queue + layout.LOST_MESSAGES])
             if lost:
                 message = (
                     f"the queue of {source!r} was full: {counted(lost, 'message')} lost, because {process!r} takes one in a job"
@@ -246,7 +230,7 @@ class _SimulationRun:
         pending = self.player.pending(name)
         used = found.total(JobMetric.RUNNING_TIME) + found.total(JobMetric.POLLING_TIME) + self._used_by_last_job(record)
         placement = self.context.placement(name)
-        waited = self.end - int(memory[record + ACTIVATION]) if pending else 0
+        waited = self.end - int(memory[record + layout.ACTIVATION]) if pending else 0
         return ProcessObservation(
             name=name,
             is_isr=isinstance(self.context.system.processes[name], Isr),
@@ -257,7 +241,7 @@ class _SimulationRun:
             metrics=found.observations(None if deadline is None else deadline.value),
             preemptions=found.preemptions,
             migrations=found.migrations,
-            lost_activations=int(memory[record + LOST]),
+            lost_activations=int(memory[record + layout.LOST]),
             unfinished=pending,
             longest_unfinished=Fraction(waited, self.program.units),
             deadline=None if deadline is None else deadline.value,
@@ -267,9 +251,9 @@ class _SimulationRun:
     def _used_by_last_job(self, record: int) -> int:
         """The time in which the job that has not ended has had a core."""
         memory = self.player.memory
-        used = int(memory[record + TIME_RUNNING]) + int(memory[record + TIME_POLLING])
-        is_on_core = memory[record + STATE] in (RUNNING, POLLING)
-        return used + (self.end - int(memory[record + SINCE]) if is_on_core else 0)
+        used = int(memory[record + layout.TIME_RUNNING]) + int(memory[record + layout.TIME_POLLING])
+        is_on_core = memory[record + layout.STATE] in (RUNNING, POLLING)
+        return used + (self.end - int(memory[record + layout.SINCE]) if is_on_core else 0)
 
     def _runnable(self, name: str, found: JobMetrics) -> RunnableObservation:
         return RunnableObservation(
@@ -282,8 +266,8 @@ class _SimulationRun:
 
     def _core(self, name: str, record: int) -> CoreObservation:
         memory = self.player.memory
-        last = self.end - int(memory[record + BEGIN]) if memory[record + RUNS] else 0
-        return CoreObservation(name=name, load=Fraction(int(memory[record + BUSY]) + last, self.end))
+        last = self.end - int(memory[record + layout.BEGIN]) if memory[record + layout.RUNS] else 0
+        return CoreObservation(name=name, load=Fraction(int(memory[record + layout.BUSY]) + last, self.end))
 
     def _chain(self, name: str) -> ChainObservation:
         routes = [(route.text, self.routes[number]) for number, route in enumerate(self.program.routes) if route.chain == name]
@@ -301,7 +285,7 @@ def _semaphore_states(system: System, program: KernelProgram) -> SemaphoreStates
     return SemaphoreStates(users, spinlocks=[numbers[name] for name in spinlocks_of(system)])
 
 
-def _event_table(rows: NDArray[np.int64], program: KernelProgram) -> EventTable:
+def _event_table(rows: Numbers, program: KernelProgram) -> EventTable:
     """Events in picoseconds, as the table of a trace."""
     time, kind, source, source_instance, target, target_instance, note = rows.T
     return EventTable(

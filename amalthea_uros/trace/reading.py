@@ -5,17 +5,15 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 
+from amalthea_uros._internal.arrays import Numbers
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.trace.btf.vocabulary import OS_EVENTS, PROCESSES
 from amalthea_uros.trace.problems import TracePlace, TraceProblems
 from amalthea_uros.trace.table import NO_NOTE, Entity, EntityKind, EventKind, EventTable
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 
 class EntityIndex:
@@ -78,7 +76,7 @@ BLOCK = 1 << 13
 Pattern: TypeAlias = tuple[EventKind, int, int]
 #: Time, number of the pattern, source instance, target instance, note, line.
 Row: TypeAlias = tuple[int, int, int, int, int, int]
-NumberedTable: TypeAlias = "tuple[EventTable, NDArray[np.int64]]"
+NumberedTable: TypeAlias = "tuple[EventTable, Numbers]"
 
 
 def numbered_table(rows: Sequence[Row], patterns: Sequence[Pattern], index: EntityIndex, scale: int) -> NumberedTable:

@@ -9,8 +9,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
+from amalthea_uros._internal.arrays import Numbers
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.trace.btf.vocabulary import (
     ACCESS,
@@ -27,10 +28,6 @@ from amalthea_uros.trace.btf.vocabulary import (
 from amalthea_uros.trace.problems import TracePlace, TraceProblems
 from amalthea_uros.trace.readers import open_trace
 from amalthea_uros.trace.table import Entity, EntityKind, EventKind, EventTable
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
 
 #: What creates an instance, of which the numbers have no gaps.
 _COUNTED = frozenset({EventKind.ACTIVATE, EventKind.ACTIVATION_LOST, EventKind.RUNNABLE_START, EventKind.TRIGGER})
@@ -116,7 +113,7 @@ class StateCharts:
         """The problems so far."""
         return self._problems.findings
 
-    def check(self, table: EventTable, lines: NDArray[np.int64] | None = None) -> None:
+    def check(self, table: EventTable, lines: Numbers | None = None) -> None:
         """Check some events, of which the lines in the file may be known."""
         self._entities = table.entities
         places = [TracePlace()] * len(table) if lines is None else list(map(TracePlace, lines.tolist()))

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from amalthea_uros._internal.arrays import Flags, Numbers
 from amalthea_uros.errors import InvalidArgumentError
 
 if TYPE_CHECKING:
@@ -117,13 +118,13 @@ class EventTable:
     """
 
     entities: Sequence[Entity]
-    time: NDArray[np.int64]
+    time: Numbers
     kind: NDArray[np.int16]
     source: NDArray[np.int32]
-    source_instance: NDArray[np.int64]
+    source_instance: Numbers
     target: NDArray[np.int32]
-    target_instance: NDArray[np.int64]
-    note: NDArray[np.int64] = field(repr=False)
+    target_instance: Numbers
+    note: Numbers = field(repr=False)
 
     @classmethod
     def empty(cls, entities: Sequence[Entity]) -> EventTable:
@@ -182,7 +183,7 @@ class EventTable:
         """The events with these numbers, the last one excluded; its columns share the memory of this table."""
         return self.map_columns(lambda column: column[first:last])
 
-    def where(self, is_kept: NDArray[np.bool_]) -> EventTable:
+    def where(self, is_kept: Flags) -> EventTable:
         """The events for which a value is true."""
         return self.map_columns(lambda column: column[is_kept])
 

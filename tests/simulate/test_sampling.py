@@ -1,6 +1,5 @@
 """Sampled values: within the bounds, with the stated mean and the shape of the distribution."""
 
-from dataclasses import replace
 from fractions import Fraction
 from math import asin, erf, exp, gamma, log, pi, sqrt
 
@@ -241,8 +240,7 @@ def test_a_demand_without_minimum_is_not_negative():
 
 
 def test_branches_are_taken_in_proportion_to_their_weights():
-    stream = choices([1, 0, 0.5, Fraction(5, 2), 0], Mode.SAMPLED, source())
-    stream = replace(stream, source=Equidistant())
+    stream = choices([1, 0, 0.5, Fraction(5, 2), 0], Mode.SAMPLED, Equidistant())
     assert np.bincount(stream.take(20_000)).tolist() == [5000, 0, 2500, 12_500]
 
 

@@ -5,21 +5,16 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from amalthea_uros._internal.arrays import Numbers
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.stimuli import ArrivalCurve
 from amalthea_uros.simulate.arrivals.occurrences import LONGEST, OccurrenceBlock, OccurrenceBlocks, block_size
 from amalthea_uros.simulate.options import SimulationMode
 from amalthea_uros.simulate.sampling.words import RandomSource
 from amalthea_uros.units import Time
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Times = NDArray[np.int64]
 
 #: CurveLimits of more occurrences are not simulated.
 _MOST = 1000
@@ -120,7 +115,7 @@ def _chosen(limits: CurveLimits, mode: SimulationMode, source: RandomSource, tim
 _SHARES = {SimulationMode.WORST: 0, SimulationMode.AVERAGE: 2**63, SimulationMode.BEST: 2**64 - 1}
 
 
-def _shortest_paths(edges: Sequence[tuple[int, Time]], reach: int) -> Times:
+def _shortest_paths(edges: Sequence[tuple[int, Time]], reach: int) -> Numbers:
     """The lengths of the shortest paths from the middle to each of 2 * reach + 1 nodes in a row, by Bellman and Ford.
 
     As each node has the same edges, those of a path can be in any order. If neither an edge nor the distance of two nodes is longer

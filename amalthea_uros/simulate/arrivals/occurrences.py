@@ -6,18 +6,14 @@ A stimulus is a generator of blocks whose sizes do not depend on the limits. So 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
+from amalthea_uros._internal.arrays import Numbers
 from amalthea_uros.errors import UnknownError
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Times = NDArray[np.int64]
-
-#: Times up to this, and sums of two of them, fit into 64 bits.
+#: Numbers up to this, and sums of two of them, fit into 64 bits.
 LONGEST = 2**61
 #: StimulusOccurrences in a block, at most.
 _BLOCK = 4096
@@ -32,7 +28,7 @@ class OccurrenceBlock(NamedTuple):
     """
 
     end: int
-    times: Times
+    times: Numbers
 
 
 OccurrenceBlocks: TypeAlias = Iterator[OccurrenceBlock]
@@ -52,7 +48,7 @@ class StimulusOccurrences:
         self._end = 0
         self._pending = np.empty(0, np.int64)
 
-    def until(self, limit: int) -> Times:
+    def until(self, limit: int) -> Numbers:
         """The occurrences from the last limit on, before this one."""
         found = [self._pending]
         while self._end < limit:

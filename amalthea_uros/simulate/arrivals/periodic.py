@@ -4,24 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import count
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from amalthea_uros._internal.arrays import Numbers
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.distributions import lowest
 from amalthea_uros.perf.stimuli import Burst, Periodic, RelativePeriodic, Synthetic
 from amalthea_uros.simulate.arrivals.occurrences import OccurrenceBlock, OccurrenceBlocks, block_size
 from amalthea_uros.simulate.options import SimulationMode
-from amalthea_uros.simulate.sampling.streams import Same, ValueStream, values
+from amalthea_uros.simulate.sampling.streams import ValueStream, constant, values
 from amalthea_uros.simulate.sampling.variates import variate
 from amalthea_uros.simulate.sampling.words import RandomSource
 from amalthea_uros.timing.event_models.stimuli import MAX_OCCURRENCES
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Times = NDArray[np.int64]
 
 
 def synthetic(stimulus: Synthetic, time_base: int) -> OccurrenceBlocks:
@@ -45,7 +40,7 @@ def burst(stimulus: Burst, time_base: int) -> OccurrenceBlocks:
 
 
 def repeated(offset: int, period: int, times: Sequence[int], time_base: int) -> OccurrenceBlocks:
-    """Times that are repeated with a period; arguments in picoseconds.
+    """Numbers that are repeated with a period; arguments in picoseconds.
 
     Raises
     ------
@@ -83,10 +78,10 @@ def periodic(stimulus: Periodic, mode: SimulationMode, source: RandomSource, tim
 
     If values are not sampled, the jitter is constant: its greatest value in the worst case, its least in the best.
     """
-    jitter = Same(0) if stimulus.jitter is None else values(stimulus.jitter, mode, source)
+    jitter = constant(0) if stimulus.jitter is None else values(stimulus.jitter, mode, source)
     distance = max(0, stimulus.min_distance or 0)
-    if isinstance(jitter, Same) and distance <= stimulus.period:
-        return repeated(stimulus.offset + jitter.value, stimulus.period, (0,), time_base)
+    if jitter.constant is not None and distance <= stimulus.period:
+        return repeated(stimulus.offset + jitter.constant, stimulus.period, (0,), time_base)
     if stimulus.period <= 0:
         raise UnknownError("its period is not greater than zero")
     longest = max(abs(stimulus.offset), distance, stimulus.period, abs(jitter.lowest), abs(jitter.highest))
@@ -128,8 +123,8 @@ def _jittered(stimulus: Periodic, jitter: ValueStream, distance: int, time_base:
         yield OccurrenceBlock(end, times)
 
 
-def _at_distance(times: Times, last: int, distance: int) -> Times:
-    """Times that are moved to later so that they have a distance, also from the last one before."""
+def _at_distance(times: Numbers, last: int, distance: int) -> Numbers:
+    """Numbers that are moved to later so that they have a distance, also from the last one before."""
     steps = np.arange(1, len(times) + 1) * distance
     return np.maximum(np.maximum.accumulate(times - steps), last) + steps
 

@@ -6,10 +6,10 @@ from dataclasses import replace
 from fractions import Fraction
 from itertools import count
 from math import ceil, floor, isfinite
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from amalthea_uros._internal.arrays import Numbers
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.distributions import (
     Bucket,
@@ -29,11 +29,6 @@ from amalthea_uros.simulate.options import SimulationMode
 from amalthea_uros.simulate.sampling.streams import ValueStream, values
 from amalthea_uros.simulate.sampling.words import RandomSource
 from amalthea_uros.timing.event_models.clock_areas import ClockArea, UnknownClockError, clock_area
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Integers = NDArray[np.int64]
 
 #: Rates are whole numbers of fractions of an occurrence; products of two of them fit into 64 bits.
 _RATE_BITS = 31
@@ -89,7 +84,7 @@ def _at_rates(rates: ValueStream, changes: tuple[int, int] | None, step: int, un
         start, carry = start + size * step, int(sums[-1] % unit)
 
 
-def _limited(drawn: Integers, last: int | None, decrease: int, increase: int) -> Integers:
+def _limited(drawn: Numbers, last: int | None, decrease: int, increase: int) -> Numbers:
     """Rates of which none differs from the one before by more than the limits."""
     found = drawn.tolist()
     for index, rate in enumerate(found):

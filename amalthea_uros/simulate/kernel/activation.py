@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from amalthea_uros.simulate.kernel.budgets import rest, wake
+from amalthea_uros.simulate.kernel.budgets import activate_server, deactivate_server
 from amalthea_uros.simulate.kernel.conditions import counts, holds, set_mode
 from amalthea_uros.simulate.kernel.cores import leave_core, restore_level
 from amalthea_uros.simulate.kernel.layout import (
@@ -74,8 +74,8 @@ from amalthea_uros.simulate.kernel.layout import (
     WATCHED,
     Memory,
 )
-from amalthea_uros.simulate.kernel.operations import ACTIVATED, GO_ON, QUEUE_FULL, TERMINATED
-from amalthea_uros.simulate.kernel.reports import NO_NOTE, emit, enter_state, observe, tell, watch
+from amalthea_uros.simulate.kernel.operations import ACTIVATED, CONTINUE, QUEUE_FULL, TERMINATED
+from amalthea_uros.simulate.kernel.reports import NO_NOTE, emit, enter_state, observe, report, watch
 from amalthea_uros.simulate.kernel.stages import publish
 
 #: The kinds of events, as in `trace.table.EventKind`.
@@ -90,9 +90,9 @@ def fire(m: Memory, stimulus: int, origin: int) -> int:
         if pending >= m[PLACES] and pending < m[m[place] + LIMIT]:
             return QUEUE_FULL
     if m[stimulus + CONDITION] and not holds(m, m[stimulus + CONDITION]):
-        return GO_ON
+        return CONTINUE
     if not counts(m, m[stimulus + COUNTER]):
-        return GO_ON
+        return CONTINUE
     for place in range(m[stimulus + ASSIGNMENTS], m[stimulus + ASSIGNMENTS_END], 2):
         set_mode(m, m[place], m[place + 1])
     number, entity = m[stimulus + OCCURRENCES], m[stimulus + STIMULUS_ENTITY]
@@ -107,7 +107,7 @@ def fire(m: Memory, stimulus: int, origin: int) -> int:
         _arrive(m, m[stimulus + MESSAGES])
     for place in range(first, last):
         activate(m, m[place], entity, number)
-    return GO_ON
+    return CONTINUE
 
 
 def _arrive(m: Memory, queue: int) -> None:
@@ -176,7 +176,7 @@ def _begin_job(m: Memory, process: int) -> None:
         m[process + OWN_DEADLINE] = m[process + ACTIVATION] + m[process + RELATIVE_DEADLINE]
         m[process + DEADLINE] = m[process + OWN_DEADLINE]
     if m[process + SERVER]:
-        wake(m, m[process + SERVER])
+        activate_server(m, m[process + SERVER])
     m[m[process + DOMAIN] + PRESENT] += 1
     m[m[process + DOMAIN] + IS_DUE] = 1
 
@@ -185,7 +185,7 @@ def end_job(m: Memory, core: int) -> None:
     """The job of a core ends."""
     process = m[core + RUNS]
     enter_state(m, process, TERMINATED)
-    tell(m, _TERMINATE, core, process)
+    report(m, _TERMINATE, core, process)
     if m[process + IS_REPORTED]:
         _report(m, process)
     m[process + TIME_RUNNING] = 0
@@ -208,7 +208,7 @@ def end_job(m: Memory, core: int) -> None:
     if m[process + PENDING]:
         _begin_job(m, process)
     elif m[process + SERVER]:
-        rest(m, m[process + SERVER])
+        deactivate_server(m, m[process + SERVER])
 
 
 def _report(m: Memory, process: int) -> None:

@@ -58,7 +58,7 @@ def has_budget(m: Memory, process: int) -> bool:
     return True
 
 
-def wake(m: Memory, server: int) -> None:
+def activate_server(m: Memory, server: int) -> None:
     """A server has something to serve, and so have those above it."""
     now = m[NOW]
     while server:
@@ -74,11 +74,11 @@ def wake(m: Memory, server: int) -> None:
                 m[server + ACTIVE_SINCE] = now
                 m[server + BUDGET_BEFORE] = m[server + BUDGET]
         if m[server + SERVER_KIND] == CONSTANT_BANDWIDTH:
-            hand_on_deadline(m, server)
+            pass_deadline_on(m, server)
         server = m[server + PARENT]
 
 
-def hand_on_deadline(m: Memory, server: int) -> None:
+def pass_deadline_on(m: Memory, server: int) -> None:
     """The processes of a server have its deadline."""
     for place in range(m[server + SERVED], m[server + SERVED_END]):
         process = m[place]
@@ -88,7 +88,7 @@ def hand_on_deadline(m: Memory, server: int) -> None:
             m[m[process + DOMAIN] + IS_DUE] = 1
 
 
-def rest(m: Memory, server: int) -> None:
+def deactivate_server(m: Memory, server: int) -> None:
     """A server may have nothing to serve any more, and so may those above it."""
     while server:
         for place in range(m[server + SERVED], m[server + SERVED_END]):
@@ -108,7 +108,7 @@ def exhaust(m: Memory, server: int) -> None:
     if m[server + SERVER_KIND] == CONSTANT_BANDWIDTH:
         m[server + BUDGET] = m[server + FULL_BUDGET]
         m[server + SERVER_DEADLINE] += m[server + SERVER_PERIOD]
-        hand_on_deadline(m, server)
+        pass_deadline_on(m, server)
     elif m[server + SERVER_KIND] == SPORADIC:
         plan(m, server)
         m[server + ACTIVE_SINCE] = m[NOW]

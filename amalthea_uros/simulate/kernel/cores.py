@@ -61,7 +61,7 @@ from amalthea_uros.simulate.kernel.layout import (
     Memory,
 )
 from amalthea_uros.simulate.kernel.operations import ACTIVATED, PARKING, POLLING, READY, RUNNING, TERMINATED, WAITING
-from amalthea_uros.simulate.kernel.reports import enter_state, tell
+from amalthea_uros.simulate.kernel.reports import enter_state, report
 
 #: The kinds of events, as in `trace.table.EventKind`.
 _START, _PREEMPT, _RESUME, _PARK, _POLL_PARKING = 1, 2, 3, 7, 8
@@ -110,11 +110,11 @@ def stop(m: Memory, core: int) -> None:
         m[core + NEEDS_STEP] = 1
         m[core + STOP] = NEVER
     else:
-        queue_again(m, process)
+        requeue(m, process)
         run(m, core, process)
 
 
-def queue_again(m: Memory, process: int) -> None:
+def requeue(m: Memory, process: int) -> None:
     """Who has used up its time slice, and executes more, lets its equals go first."""
     if m[process + SLICE] and m[process + SLICE_LEFT] <= 0:
         m[process + SLICE_LEFT] = m[process + SLICE]
@@ -134,7 +134,7 @@ def is_before(m: Memory, first: int, then: int) -> bool:
     return m[first + SEQUENCE] < m[then + SEQUENCE]
 
 
-def _is_kept_off(m: Memory, process: int) -> bool:
+def _is_held_back(m: Memory, process: int) -> bool:
     """Whether a cooperative task between two points keeps off another cooperative one."""
     domain = m[process + DOMAIN]
     if not m[domain + HAS_COOPERATIVE] or not m[process + IS_COOPERATIVE]:
@@ -148,7 +148,7 @@ def _is_kept_off(m: Memory, process: int) -> bool:
 
 def dispatch(m: Memory, domain: int) -> None:
     """Give the core of a domain that has only one to the most urgent process."""
-    give(m, m[m[domain + ITS_CORES]], _most_urgent(m, domain))
+    assign(m, m[m[domain + ITS_CORES]], _most_urgent(m, domain))
 
 
 def stays(m: Memory, core: int, process: int) -> bool:
@@ -172,7 +172,7 @@ def _most_urgent(m: Memory, domain: int) -> int:
         if best and is_static and m[process + LEVEL] < m[best + LEVEL]:
             # Members are in the order of their levels.
             break
-        if (m[process + SERVER] and not has_budget(m, process)) or _is_kept_off(m, process):
+        if (m[process + SERVER] and not has_budget(m, process)) or _is_held_back(m, process):
             continue
         if best == 0 or is_before(m, process, best):
             best = process
@@ -193,7 +193,7 @@ def dispatch_all(m: Memory, domain: int) -> None:
             process = m[place]
             if m[process + STATE] == TERMINATED or m[process + STATE] == WAITING or m[process + IS_CHOSEN]:
                 continue
-            if not has_budget(m, process) or _is_kept_off(m, process):
+            if not has_budget(m, process) or _is_held_back(m, process):
                 continue
             if best == 0 or is_before(m, process, best):
                 core = _free_core(m, domain, process)
@@ -210,9 +210,9 @@ def dispatch_all(m: Memory, domain: int) -> None:
         if m[core + CHOSEN]:
             m[m[core + CHOSEN] + IS_CHOSEN] = 0
         if m[core + RUNS] and m[core + RUNS] != m[core + CHOSEN]:
-            _take_off(m, core)
+            _preempt(m, core)
     for place in range(first, last):
-        give(m, m[place], m[m[place] + CHOSEN])
+        assign(m, m[place], m[m[place] + CHOSEN])
 
 
 def _free_core(m: Memory, domain: int, process: int) -> int:
@@ -243,14 +243,14 @@ def _keep_on_core(m: Memory, domain: int, core: int) -> None:
             m[other + CHOSEN] = guest
 
 
-def give(m: Memory, core: int, process: int) -> None:
+def assign(m: Memory, core: int, process: int) -> None:
     """Give a core to a process, or to none (0)."""
     running = m[core + RUNS]
     if process != running:
         if running:
-            _take_off(m, core)
+            _preempt(m, core)
         if process:
-            _put_on(m, core, process)
+            _dispatch(m, core, process)
     elif process:
         if m[process + YIELDS]:
             m[process + YIELDS] = 0
@@ -260,26 +260,26 @@ def give(m: Memory, core: int, process: int) -> None:
             run(m, core, process)
 
 
-def _take_off(m: Memory, core: int) -> None:
+def _preempt(m: Memory, core: int) -> None:
     """Preempt the process of a core."""
     process = m[core + RUNS]
     pause(m, core, process)
-    queue_again(m, process)
+    requeue(m, process)
     if m[core + NEEDS_STEP]:
         m[process + LEFT] = 0
         m[core + NEEDS_STEP] = 0
     if m[process + STATE] == POLLING:
         enter_state(m, process, PARKING)
-        tell(m, _PARK, core, process)
+        report(m, _PARK, core, process)
     else:
         enter_state(m, process, READY)
-        tell(m, _PREEMPT, core, process)
+        report(m, _PREEMPT, core, process)
         m[process + PREEMPTIONS] += 1
     m[core + RUNS] = 0
     m[core + STOP] = NEVER
 
 
-def _put_on(m: Memory, core: int, process: int) -> None:
+def _dispatch(m: Memory, core: int, process: int) -> None:
     """Start or resume a process."""
     before = m[process + STATE]
     m[core + RUNS] = process
@@ -291,16 +291,16 @@ def _put_on(m: Memory, core: int, process: int) -> None:
         m[process + IS_STARTED] = 1
         m[process + LEFT] = 0
         m[process + SLICE_LEFT] = m[process + SLICE]
-        tell(m, _START, core, process)
+        report(m, _START, core, process)
     else:
         if m[process + CORE] != core:
             m[process + MIGRATIONS] += 1
         if before == PARKING:
             enter_state(m, process, POLLING)
-            tell(m, _POLL_PARKING, core, process)
+            report(m, _POLL_PARKING, core, process)
         else:
             enter_state(m, process, RUNNING)
-            tell(m, _RESUME, core, process)
+            report(m, _RESUME, core, process)
     m[process + CORE] = core
     if m[process + YIELDS] or m[process + RUNNING_LEVEL] != m[process + OWN_LEVEL]:
         m[process + YIELDS] = 0

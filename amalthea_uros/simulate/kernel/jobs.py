@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from amalthea_uros.simulate.kernel.activation import end_job, fire
 from amalthea_uros.simulate.kernel.conditions import counts, holds, set_mode, step_mode
-from amalthea_uros.simulate.kernel.cores import change_level, queue_again, run, stays
+from amalthea_uros.simulate.kernel.cores import change_level, requeue, run, stays
 from amalthea_uros.simulate.kernel.layout import (
     ARRIVAL,
     ARRIVALS_END,
@@ -50,6 +50,7 @@ from amalthea_uros.simulate.kernel.operations import (
     BEGIN_RUNNABLE,
     CHOOSE,
     CLEAR_EVENT,
+    CONTINUE,
     COUNT,
     DRAW,
     END,
@@ -59,7 +60,6 @@ from amalthea_uros.simulate.kernel.operations import (
     ENTER,
     EXECUTE,
     FIRE,
-    GO_ON,
     JUMP,
     MASK,
     NEXT,
@@ -86,7 +86,7 @@ from amalthea_uros.simulate.kernel.operations import (
     UNMASK,
     WAIT_EVENT,
 )
-from amalthea_uros.simulate.kernel.reports import begin_execution, end_execution, observe, tell_execution, tell_of
+from amalthea_uros.simulate.kernel.reports import begin_execution, end_execution, observe, report_access, report_execution
 from amalthea_uros.simulate.kernel.stages import follow
 from amalthea_uros.simulate.kernel.waiting import await_events, change_events, request, serve, unlock
 
@@ -94,7 +94,7 @@ from amalthea_uros.simulate.kernel.waiting import await_events, change_events, r
 MOST_STEPS = 10_000_000
 
 
-def go_on(m: Memory, core: int) -> int:
+def resume_job(m: Memory, core: int) -> int:
     """Have the job of a core go on to its next execution, or until somebody else may be more urgent."""
     process = m[core + RUNS]
     due = m[core + CORE_DOMAIN] + IS_DUE
@@ -104,12 +104,12 @@ def go_on(m: Memory, core: int) -> int:
         if operation == EXECUTE:
             m[process + AT] = at + OPERATION_SIZE
             _execute(m, core, process, m[at + 1])
-            return GO_ON
+            return CONTINUE
         if m[JOBS] >= m[JOBS_END] or m[OBSERVATIONS] >= m[OBSERVATIONS_END] or m[EVENTS] >= m[EVENTS_END]:
             return ROWS_FULL
         if operation == END:
             end_job(m, core)
-            return GO_ON
+            return CONTINUE
         m[STEPS] += 1
         if m[STEPS] > MOST_STEPS:
             m[CAUSE] = process
@@ -123,18 +123,18 @@ def go_on(m: Memory, core: int) -> int:
             duration = _draw(m, stream)
             if duration > 0:
                 _execute(m, core, process, duration)
-                return GO_ON
+                return CONTINUE
             continue
-        if operation == MASK and _lets_others_in(m, core, process):
-            return GO_ON
-        code = _carry_out(m, core, process, at)
+        if operation == MASK and _yields(m, core, process):
+            return CONTINUE
+        code = _execute_operation(m, core, process, at)
         if code:
             return code - 1
-        if REQUEST <= operation <= SERVED and m[due] and not stays(m, core, process) and not _is_done(m, m[process + AT]):
-            return GO_ON
+        if REQUEST <= operation <= SERVED and m[due] and not stays(m, core, process) and not _is_complete(m, m[process + AT]):
+            return CONTINUE
 
 
-def write_first(m: Memory, core: int) -> int:
+def execute_writes(m: Memory, core: int) -> int:
     """Carry out the writes that directly follow an execution: a read on another core at the same instant sees them."""
     process = m[core + RUNS]
     while True:
@@ -143,23 +143,23 @@ def write_first(m: Memory, core: int) -> int:
         at = m[process + AT]
         operation = m[at]
         if not (NOTE <= operation <= END_EXECUTION or operation == REACH or operation == PUT):
-            return GO_ON
-        code = _carry_out(m, core, process, at)
+            return CONTINUE
+        code = _execute_operation(m, core, process, at)
         if code:
             return code - 1
 
 
-def _lets_others_in(m: Memory, core: int, process: int) -> bool:
+def _yields(m: Memory, core: int, process: int) -> bool:
     """Whether somebody comes first at the instant at which a non-interruptible group would begin, which would keep it off."""
     due = m[core + CORE_DOMAIN] + IS_DUE
-    queue_again(m, process)
+    requeue(m, process)
     if m[ARRIVAL] < m[ARRIVALS_END] and m[m[ARRIVAL]] == m[NOW]:
         m[due] = 1
         return True
     return m[due] != 0 and not stays(m, core, process)
 
 
-def _is_done(m: Memory, at: int) -> bool:
+def _is_complete(m: Memory, at: int) -> bool:
     """Whether a job has nothing left to do: it ends at once, as it needs the core no more."""
     while m[at] != END:
         operation = m[at]
@@ -175,7 +175,7 @@ def _is_done(m: Memory, at: int) -> bool:
 def _execute(m: Memory, core: int, process: int, duration: int) -> None:
     m[process + LEFT] = duration
     m[core + NEEDS_STEP] = 0
-    queue_again(m, process)
+    requeue(m, process)
     run(m, core, process)
 
 
@@ -185,7 +185,7 @@ def _draw(m: Memory, stream: int) -> int:
     return value
 
 
-def _carry_out(m: Memory, core: int, process: int, at: int) -> int:
+def _execute_operation(m: Memory, core: int, process: int, at: int) -> int:
     """Carry out an operation that takes no time; 0 if the job goes on, otherwise a reason to stop plus 1."""
     operation, first, second = m[at], m[at + 1], m[at + 2]
     following = at + OPERATION_SIZE
@@ -215,9 +215,9 @@ def _carry_out(m: Memory, core: int, process: int, at: int) -> int:
         following = following if m[first + PASSES] > 0 else second
         m[first + PASSES] -= 1
     elif operation == NOTE:
-        tell_of(m, first, process, second)
+        report_access(m, first, process, second)
     elif operation == BEGIN_RUNNABLE or operation == END_RUNNABLE:
-        tell_execution(m, process, first, operation == BEGIN_RUNNABLE)
+        report_execution(m, process, first, operation == BEGIN_RUNNABLE)
     elif operation == OBSERVE:
         observe(m, first, core)
     elif operation == BEGIN_EXECUTION:
@@ -249,7 +249,7 @@ def _carry_out(m: Memory, core: int, process: int, at: int) -> int:
     else:
         # Who waits goes on after this operation.
         m[process + AT] = following
-        return 0 if _cooperate(m, core, process, operation, first, second) else GO_ON + 1
+        return 0 if _cooperate(m, core, process, operation, first, second) else CONTINUE + 1
     m[process + AT] = following
     return 0
 

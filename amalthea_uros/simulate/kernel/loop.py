@@ -5,7 +5,7 @@ from __future__ import annotations
 from amalthea_uros.simulate.kernel.activation import fire, publish_all
 from amalthea_uros.simulate.kernel.budgets import replenish
 from amalthea_uros.simulate.kernel.cores import dispatch, dispatch_all, pause, stop
-from amalthea_uros.simulate.kernel.jobs import go_on, write_first
+from amalthea_uros.simulate.kernel.jobs import execute_writes, resume_job
 from amalthea_uros.simulate.kernel.layout import (
     ARRIVAL,
     ARRIVAL_SIZE,
@@ -36,7 +36,7 @@ from amalthea_uros.simulate.kernel.layout import (
 from amalthea_uros.simulate.kernel.operations import ROWS_FULL, WINDOW
 
 
-def play(m: Memory) -> int:
+def run_kernel(m: Memory) -> int:
     """Play until something needs the driver; the result says what."""
     first_core, last_core, has_servers = m[CORES], m[CORES_END], m[SERVERS] != m[SERVERS_END]
     first_domain, last_domain = m[DOMAINS], m[DOMAINS_END]
@@ -47,13 +47,13 @@ def play(m: Memory) -> int:
             if m[HAS_WRITES]:
                 for place in range(first_core, last_core):
                     if m[m[place] + NEEDS_STEP]:
-                        code = write_first(m, m[place])
+                        code = execute_writes(m, m[place])
                         if code:
                             return code
             for place in range(first_core, last_core):
                 core = m[place]
                 if m[core + NEEDS_STEP]:
-                    code = go_on(m, core)
+                    code = resume_job(m, core)
                     if code:
                         return code
             if m[ARRIVAL] < m[ARRIVALS_END] and m[m[ARRIVAL]] == m[NOW]:
@@ -96,7 +96,7 @@ def _settle(m: Memory, domain: int) -> int:
         dispatch_all(m, domain)
     for place in range(first, last):
         if m[m[place] + NEEDS_STEP]:
-            code = go_on(m, m[place])
+            code = resume_job(m, m[place])
             if code:
                 return code
     return 0

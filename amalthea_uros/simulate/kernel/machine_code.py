@@ -27,8 +27,8 @@ from amalthea_uros.simulate.kernel import (
 )
 from amalthea_uros.simulate.kernel.layout import Memory
 
-#: Plays until something needs the driver, as `kernel.loop.play` does.
-Play: TypeAlias = Callable[[Memory], int]
+#: Runs until something needs the driver, as `kernel.loop.run_kernel` does.
+CompiledKernel: TypeAlias = Callable[[Memory], int]
 
 _MODULES = (activation, budgets, conditions, cores, jobs, loop, reports, stages, waiting)
 
@@ -37,7 +37,7 @@ _MODULES = (activation, budgets, conditions, cores, jobs, loop, reports, stages,
 _KNOWN, _COMPILING = 0.2, 25.0
 
 #: With what the name of the compiled function begins.
-_PREFIX = "play_"
+_PREFIX = "kernel_"
 
 
 @cache
@@ -55,7 +55,7 @@ def is_worth_it(seconds: float, seconds_left: float) -> bool:
 
 
 @cache
-def compiled() -> Play:
+def compiled() -> CompiledKernel:
     """The kernel as machine code, which numba keeps for the next time; its memory must be an array of int64."""
     from numba import njit
 
@@ -64,18 +64,18 @@ def compiled() -> Play:
         function: njit(FunctionType(function.__code__, namespaces[module], function.__name__))
         for module in _MODULES
         for function in _functions(module)
-        if function is not loop.play
+        if function is not loop.run_kernel
     }
     for namespace in namespaces.values():
         namespace.update({name: machine[value] for name, value in namespace.items() if _is_in(value, machine)})
-    play = FunctionType(loop.play.__code__, namespaces[loop], "play")
+    kernel = FunctionType(loop.run_kernel.__code__, namespaces[loop], "run_kernel")
     # numba looks at the file of this function only, to see whether its machine code is out of date.
-    play.__qualname__ = _name()
+    kernel.__qualname__ = _name()
     signature = "int64(int64[::1])"
     try:
-        return _as_play(njit(signature, cache=True, nogil=True)(play))
+        return _as_kernel(njit(signature, cache=True, nogil=True)(kernel))
     except RuntimeError:  # there is no folder in which numba could keep the machine code
-        return _as_play(njit(signature, nogil=True)(play))
+        return _as_kernel(njit(signature, nogil=True)(kernel))
 
 
 def _functions(module: ModuleType) -> list[FunctionType]:
@@ -95,5 +95,5 @@ def _name() -> str:
     return f"{_PREFIX}{blake2b(sources.encode(), digest_size=8).hexdigest()}"
 
 
-def _as_play(function: Play) -> Play:
+def _as_kernel(function: CompiledKernel) -> CompiledKernel:
     return function

@@ -61,4 +61,4 @@ TERMINATED, ACTIVATED, RUNNING, READY, POLLING, PARKING, WAITING = range(7)
 
 #: Why the kernel stops: the occurrences are used up, there is no place for rows, a stream or a queue has to be filled or grown, or a
 #: job goes on forever without taking time.
-GO_ON, WINDOW, ROWS_FULL, STREAM_EMPTY, QUEUE_FULL, ENDLESS = range(6)
+CONTINUE, WINDOW, ROWS_FULL, STREAM_EMPTY, QUEUE_FULL, ENDLESS = range(6)

@@ -76,7 +76,7 @@ def emit(m: Memory, kind: int, source: int, source_instance: int, target: int, t
     m[EVENTS] = row + EVENT_SIZE
 
 
-def tell(m: Memory, kind: int, core: int, process: int) -> None:
+def report(m: Memory, kind: int, core: int, process: int) -> None:
     """Record a transition of a process on a core, if there is a trace or it is watched."""
     if m[process + WATCHED]:
         watch(m, process, kind, core)
@@ -84,7 +84,7 @@ def tell(m: Memory, kind: int, core: int, process: int) -> None:
         emit(m, kind, m[core + CORE_ENTITY], 0, m[process + ENTITY], m[process + INSTANCE], NO_NOTE)
 
 
-def tell_execution(m: Memory, process: int, site: int, is_begin: bool) -> None:
+def report_execution(m: Memory, process: int, site: int, is_begin: bool) -> None:
     """Record that an execution of a runnable begins or ends, with its number."""
     runnable = m[site + EXECUTED]
     if is_begin:
@@ -96,7 +96,7 @@ def tell_execution(m: Memory, process: int, site: int, is_begin: bool) -> None:
         emit(m, kind, m[process + ENTITY], m[process + INSTANCE], entity, m[site + EXECUTION], NO_NOTE)
 
 
-def tell_of(m: Memory, kind: int, process: int, entity: int) -> None:
+def report_access(m: Memory, kind: int, process: int, entity: int) -> None:
     """Record what a process does with something, if there is a trace."""
     if m[IS_TRACED]:
         emit(m, kind, m[process + ENTITY], m[process + INSTANCE], entity, 0, NO_NOTE)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from amalthea_uros.simulate.kernel.budgets import rest, wake
-from amalthea_uros.simulate.kernel.cores import change_level, is_before, leave_core, pause, queue_again, run
+from amalthea_uros.simulate.kernel.budgets import activate_server, deactivate_server
+from amalthea_uros.simulate.kernel.cores import change_level, is_before, leave_core, pause, requeue, run
 from amalthea_uros.simulate.kernel.layout import (
     ANSWERED,
     ASKED,
@@ -61,7 +61,7 @@ from amalthea_uros.simulate.kernel.operations import (
     SERVED,
     WAITING,
 )
-from amalthea_uros.simulate.kernel.reports import NO_NOTE, emit, enter_state, tell, tell_of
+from amalthea_uros.simulate.kernel.reports import NO_NOTE, emit, enter_state, report, report_access
 
 #: The kinds of events, as in `trace.table.EventKind`.
 _POLL, _RUN, _RELEASE_PARKING, _WAIT, _RELEASE = 5, 6, 9, 10, 11
@@ -73,10 +73,10 @@ _CHANGE = -1
 
 def wait(m: Memory, core: int, process: int, is_active: bool) -> None:
     """Have the process of a core wait."""
-    queue_again(m, process)
+    requeue(m, process)
     if is_active:
         enter_state(m, process, POLLING)
-        tell(m, _POLL, core, process)
+        report(m, _POLL, core, process)
         m[process + LEFT] = NEVER - m[NOW]
         m[core + NEEDS_STEP] = 0
         run(m, core, process)
@@ -84,12 +84,12 @@ def wait(m: Memory, core: int, process: int, is_active: bool) -> None:
     # Back from waiting, it keeps off nobody until it has its core again.
     m[process + YIELDS] = 1
     enter_state(m, process, WAITING)
-    tell(m, _WAIT, core, process)
+    report(m, _WAIT, core, process)
     m[process + LEFT] = 0
     change_level(m, process)
     leave_core(m, core)
     if m[process + SERVER]:
-        rest(m, m[process + SERVER])
+        deactivate_server(m, m[process + SERVER])
 
 
 def release(m: Memory, process: int) -> None:
@@ -98,19 +98,19 @@ def release(m: Memory, process: int) -> None:
     if m[process + STATE] == POLLING:
         pause(m, core, process)
         enter_state(m, process, RUNNING)
-        tell(m, _RUN, core, process)
+        report(m, _RUN, core, process)
         m[core + NEEDS_STEP] = 1
         m[core + STOP] = NEVER
     elif m[process + STATE] == PARKING:
         enter_state(m, process, READY)
-        tell(m, _RELEASE_PARKING, core, process)
+        report(m, _RELEASE_PARKING, core, process)
     else:
         enter_state(m, process, READY)
-        tell(m, _RELEASE, core, process)
+        report(m, _RELEASE, core, process)
         m[ORDER] += 1
         m[process + SEQUENCE] = m[ORDER]
         if m[process + SERVER]:
-            wake(m, m[process + SERVER])
+            activate_server(m, m[process + SERVER])
     m[process + LEFT] = 0
     change_level(m, process)
 
@@ -121,18 +121,18 @@ def release(m: Memory, process: int) -> None:
 def request(m: Memory, core: int, process: int, semaphore: int, flags: int) -> bool:
     """Request a semaphore; the result says whether the job goes on."""
     amount = m[semaphore + USERS] if flags & EXCLUSIVE else 1
-    tell_of(m, _REQUEST, process, m[semaphore + SEMAPHORE_ENTITY])
+    report_access(m, _REQUEST, process, m[semaphore + SEMAPHORE_ENTITY])
     if m[semaphore + USED] + amount <= m[semaphore + USERS]:
         _grant(m, process, semaphore, amount)
         is_wanted = _is_wanted(m, semaphore)
-        _tell_change(m, semaphore, m[semaphore + USED] - amount, is_wanted, is_wanted)
-        tell_of(m, _ASSIGNED, process, m[semaphore + SEMAPHORE_ENTITY])
+        _report_change(m, semaphore, m[semaphore + USED] - amount, is_wanted, is_wanted)
+        report_access(m, _ASSIGNED, process, m[semaphore + SEMAPHORE_ENTITY])
         return True
     if m[semaphore + USED] == m[semaphore + USERS]:
-        _tell_change(m, semaphore, m[semaphore + USED], _is_wanted(m, semaphore), 1)
+        _report_change(m, semaphore, m[semaphore + USED], _is_wanted(m, semaphore), 1)
     m[process + WAITS_FOR] = semaphore
     m[process + WANTED] = amount
-    tell_of(m, _WAITING, process, m[semaphore + SEMAPHORE_ENTITY])
+    report_access(m, _WAITING, process, m[semaphore + SEMAPHORE_ENTITY])
     wait(m, core, process, flags & ACTIVE != 0)
     return False
 
@@ -163,16 +163,16 @@ def unlock(m: Memory, process: int, semaphore: int) -> None:
     elif m[semaphore + HAS_OWNER] or m[semaphore + USED] == 0:
         return
     m[semaphore + USED] -= amount
-    tell_of(m, _RELEASED, process, entity)
+    report_access(m, _RELEASED, process, entity)
     change, was_wanted = m[EVENTS], _is_wanted(m, semaphore)
-    _tell_change(m, semaphore, m[semaphore + USED] + amount, was_wanted, was_wanted)
+    _report_change(m, semaphore, m[semaphore + USED] + amount, was_wanted, was_wanted)
     if holder and m[semaphore + CEILING] >= 0:
         change_level(m, holder)
     best = _first_waiting(m, semaphore)
     while best:
         m[best + WAITS_FOR] = 0
         _grant(m, best, semaphore, m[best + WANTED])
-        tell_of(m, _ASSIGNED, best, entity)
+        report_access(m, _ASSIGNED, best, entity)
         release(m, best)
         best = _first_waiting(m, semaphore)
     if m[IS_TRACED]:
@@ -212,7 +212,7 @@ def _is_wanted(m: Memory, semaphore: int) -> int:
     return 0
 
 
-def _tell_change(m: Memory, semaphore: int, used_before: int, was_wanted: int, is_wanted: int) -> None:
+def _report_change(m: Memory, semaphore: int, used_before: int, was_wanted: int, is_wanted: int) -> None:
     """Record how much of a semaphore was and is in use, and whether somebody waited and waits for it, if there is a trace."""
     if m[IS_TRACED]:
         entity = m[semaphore + SEMAPHORE_ENTITY]
@@ -251,7 +251,7 @@ def _are_set(m: Memory, process: int, row: int) -> bool:
 def await_events(m: Memory, core: int, process: int, row: int) -> bool:
     """Wait for events; the result says whether the job goes on."""
     for entry in range(m[row + EVENT_LIST], m[row + EVENT_LIST_END], 2):
-        tell_of(m, _WAIT_EVENT, process, m[entry + 1])
+        report_access(m, _WAIT_EVENT, process, m[entry + 1])
     if _are_set(m, process, row):
         return True
     m[process + WAITS_EVENTS] = row

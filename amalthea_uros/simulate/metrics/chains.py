@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from amalthea_uros._internal.arrays import Numbers
 from amalthea_uros.simulate.kernel.layout import RESPONSE, Observation
 from amalthea_uros.simulate.metrics.distributions import Distributions
 from amalthea_uros.simulate.results import ChainObservation, MetricObservation, RouteObservation
@@ -16,10 +17,6 @@ from amalthea_uros.timing.observed.chain_latencies import MEASURED, SAME, RouteL
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
-
-    from numpy.typing import NDArray
-
-    Numbers = NDArray[np.int64]
 
 
 @dataclass(slots=True)

@@ -12,20 +12,15 @@ from collections import deque
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from amalthea_uros._internal.arrays import Numbers
 from amalthea_uros.judge.evidence import ObservedValues
 from amalthea_uros.judge.limits import limits_of
 from amalthea_uros.perf.constraints import DelayConstraint, Matching
 from amalthea_uros.simulate.metrics.extremes import WINDOW, Extremes
 from amalthea_uros.simulate.observed_limits import LimitedQuantity
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Numbers = NDArray[np.int64]
 
 _TOO_FAR = "sources and targets are too far apart to be observed"
 

@@ -9,17 +9,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from math import sqrt
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from amalthea_uros._internal.arrays import Numbers
 from amalthea_uros._internal.exact_sums import sums, sums_of_squares
 from amalthea_uros.simulate.results import MetricObservation, ObservedOccurrence, TimeHistogram
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Numbers = NDArray[np.int64]
 
 #: There are never more bins.
 MAX_BINS = 1024
@@ -44,14 +39,14 @@ class BinCounts:
     unit: int = 1
     step: int = 0
     first: int = 0
-    counts: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, np.int64))
+    counts: Numbers = field(default_factory=lambda: np.zeros(0, np.int64))
 
     @property
     def width(self) -> int:
         """The width of a bin."""
         return self._width(self.step)
 
-    def add(self, values: NDArray[np.int64], low: int, high: int) -> None:
+    def add(self, values: Numbers, low: int, high: int) -> None:
         """Count values.
 
         Parameters

@@ -4,15 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
+from amalthea_uros._internal.arrays import Numbers
 from amalthea_uros.judge.evidence import ObservedValues
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    Numbers = NDArray[np.int64]
 
 #: So many occurrences are kept that wait for a corresponding one; what corresponds to older ones is not evaluated.
 WINDOW = 2**16

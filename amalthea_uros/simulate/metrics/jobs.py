@@ -4,20 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from amalthea_uros._internal.arrays import Numbers
 from amalthea_uros.simulate.metrics.distributions import Distributions
 from amalthea_uros.simulate.results import WITH_HISTOGRAM, CountObservation, MetricObservation
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.timing.observed.job_times import BETWEEN, OWN, Job, own_times, times_between
 from amalthea_uros.units import Time
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Numbers = NDArray[np.int64]
 
 _COUNTS = (Job.PREEMPTIONS, Job.MIGRATIONS)
 #: So many jobs at a time stay in the cache of a processor.

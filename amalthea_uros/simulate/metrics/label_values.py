@@ -10,10 +10,10 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from amalthea_uros._internal.arrays import Numbers
 from amalthea_uros.judge.evidence import ObservedValues
 from amalthea_uros.judge.limits import limits_of
 from amalthea_uros.perf.activities import Communication
@@ -24,11 +24,6 @@ from amalthea_uros.simulate.metrics.extremes import Extremes
 from amalthea_uros.simulate.observed_limits import LimitedQuantity
 from amalthea_uros.simulate.program.watches import EventSource
 from amalthea_uros.simulate.results import LabelObservation
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Numbers = NDArray[np.int64]
 
 
 @dataclass(slots=True, eq=False)

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 import numpy as np
 
+from amalthea_uros._internal.arrays import Flags, Numbers
 from amalthea_uros.judge.limits import EventConstraint
 from amalthea_uros.perf.constraints import (
     ChainSynchronization,
@@ -39,12 +40,6 @@ from amalthea_uros.simulate.program.watches import (
 from amalthea_uros.simulate.results import LabelObservation
 from amalthea_uros.timing.dataflow.events import EventLocator
 from amalthea_uros.timing.dataflow.runnable_order import order_scope
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Numbers = NDArray[np.int64]
-    Flags = NDArray[np.bool_]
 
 
 @dataclass(slots=True)

@@ -7,10 +7,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import takewhile
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from amalthea_uros._internal.arrays import Numbers
 from amalthea_uros.judge.evidence import ObservedValues
 from amalthea_uros.judge.limits import without_number
 from amalthea_uros.perf.constraints import OrderConstraint, Ordering
@@ -18,11 +18,6 @@ from amalthea_uros.perf.events import ProcessChange, ProcessEvent, RunnableChang
 from amalthea_uros.simulate.observed_limits import LimitedQuantity
 from amalthea_uros.simulate.program.watches import EventSource
 from amalthea_uros.timing.dataflow.runnable_order import satisfies_order
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Numbers = NDArray[np.int64]
 
 
 @dataclass(slots=True)

@@ -11,21 +11,16 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from amalthea_uros._internal.arrays import Numbers
 from amalthea_uros.judge.evidence import ObservedValues
 from amalthea_uros.judge.limits import limits_of
 from amalthea_uros.perf.constraints import ChainSynchronization, EventSynchronization
 from amalthea_uros.simulate.kernel.layout import NEVER
 from amalthea_uros.simulate.metrics.extremes import WINDOW, Extremes
 from amalthea_uros.simulate.observed_limits import LimitedQuantity
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Numbers = NDArray[np.int64]
 
 
 @dataclass(slots=True, kw_only=True)

@@ -1,1 +1,1 @@
-"""From a system to what the kernel plays: records in its memory, and programs of operations for its processes."""
+"""From a system to what the kernel executes: records in its memory, and programs of operations for its processes."""

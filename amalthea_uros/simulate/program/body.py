@@ -15,10 +15,10 @@ from amalthea_uros.perf.events import Event
 from amalthea_uros.perf.os import Scheduler
 from amalthea_uros.perf.software import Isr, Preemption, Process
 from amalthea_uros.perf.stimuli import Counter
-from amalthea_uros.simulate.kernel.operations import COUNT, DRAW, END, EXECUTE, NOTE, OBSERVE, POINT, TEST, TEST_MESSAGE
+from amalthea_uros.simulate.kernel import operations
 from amalthea_uros.simulate.program.activities import compile_activity
 from amalthea_uros.simulate.program.image import Code, JumpLabel, Operation, ProgramHooks
-from amalthea_uros.simulate.program.resources import Parts, Resources, constant
+from amalthea_uros.simulate.program.resources import Parts, Resources
 from amalthea_uros.simulate.program.watches import EventSource
 from amalthea_uros.simulate.sampling.streams import ValueStream
 from amalthea_uros.timing.basics.notes import UnknownDemandError
@@ -122,7 +122,7 @@ class Body:
     def _return(self) -> None:
         """After a call, other cooperative tasks can go first."""
         if getattr(self.process, "preemption", None) is Preemption.COOPERATIVE and not self.in_group:
-            self.code.add(POINT)
+            self.code.add(operations.POINT)
 
     def _skips(self, activity: Activity) -> list[JumpLabel | None]:
         """Labels to which a job goes if an activity does not take effect: then it is no event of a chain, either."""
@@ -142,18 +142,18 @@ class Body:
         if not place:
             return None
         label = JumpLabel()
-        self.code.add(TEST_MESSAGE if queue else COUNT, place, label)
+        self.code.add(operations.TEST_MESSAGE if queue else operations.COUNT, place, label)
         return label
 
     # Time.
 
     def execute(self, stream: ValueStream) -> None:
         """Hold the core for times of a stream."""
-        only = constant(stream)
+        only = stream.constant
         if only is None:
-            self.code.add(DRAW, self.resources.stream(stream))
+            self.code.add(operations.DRAW, self.resources.stream(stream))
         elif only > 0:
-            self.code.add(EXECUTE, only)
+            self.code.add(operations.EXECUTE, only)
 
     def demand(self, demand: Demand | None) -> None:
         """Hold the core for a demand."""
@@ -188,7 +188,7 @@ class Body:
         if condition is None:
             return None
         label = JumpLabel()
-        self.code.add(TEST, self.parts.modes.condition(condition), label)
+        self.code.add(operations.TEST, self.parts.modes.condition(condition), label)
         return label
 
     def observe(
@@ -199,7 +199,7 @@ class Body:
             source = EventSource(kind, name, change, self.above[-1] if self.above else None, self.process.name, communication)
             number = self.parts.watches.number(source)
             if number is not None:
-                self.code.add(OBSERVE, number)
+                self.code.add(operations.OBSERVE, number)
 
 
 def _too_many_activities() -> UnknownError:
@@ -250,7 +250,7 @@ def _process_code(body: Body, process: Process, scheduler: Scheduler | None) -> 
         for activity in scheduler.overhead:
             compile_activity(body, activity)
     body.add_all(body.hooks.end)
-    body.code.add(END)
+    body.code.add(operations.END)
     return body.code
 
 
@@ -262,6 +262,8 @@ def decision_code(parts: Parts, scheduler: Scheduler, core: str) -> Code:
     except UnknownDemandError as error:
         raise UnknownError(str(error)) from None
     if parts.is_noted:
-        body.code.add(NOTE, int(EventKind.SCHEDULE), parts.resources.entities.number(EntityKind.SCHEDULER, scheduler.name))
-    body.code.add(END)
+        body.code.add(
+            operations.NOTE, int(EventKind.SCHEDULE), parts.resources.entities.number(EntityKind.SCHEDULER, scheduler.name)
+        )
+    body.code.add(operations.END)
     return body.code

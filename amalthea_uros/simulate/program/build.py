@@ -8,22 +8,7 @@ from math import lcm
 
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.simulate.arrivals import StimulusOccurrences
-from amalthea_uros.simulate.kernel.layout import (
-    CORES,
-    CORES_END,
-    DOMAINS,
-    DOMAINS_END,
-    HAS_WRITES,
-    PLACES,
-    PROCESS_SIZE,
-    PROCESSES,
-    PROCESSES_END,
-    SEMAPHORES,
-    SEMAPHORES_END,
-    SERVERS,
-    SERVERS_END,
-    STIMULUS_SIZE,
-)
+from amalthea_uros.simulate.kernel import layout
 from amalthea_uros.simulate.kernel.operations import PUT
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.program.chains import ChainCompiler, FollowedRoute
@@ -85,8 +70,8 @@ class _ProgramBuilder:
         """The program; None if one more process has turned out to be impossible."""
         system, before = self.context.system, len(self.left_out)
         modes = ModeRecords(system, self.image, self.context.settings.modes)
-        processes = {name: self.image.record(PROCESS_SIZE) for name in self.dispatching.processes}
-        stimuli = {name: self.image.record(STIMULUS_SIZE) for name in system.stimuli_by_name}
+        processes = {name: self.image.record(layout.PROCESS_SIZE) for name in self.dispatching.processes}
+        stimuli = {name: self.image.record(layout.STIMULUS_SIZE) for name in system.stimuli_by_name}
         runnables = self.watches.watched.runnables
         self.watches.measured = {name: len(processes) + number for number, name in enumerate(runnables)}
         chains = ChainCompiler(self.resources, processes)
@@ -135,11 +120,11 @@ class _ProgramBuilder:
 
     def _head(self, hardware: HardwareRecords, processes: dict[str, int], chains: ChainCompiler) -> None:
         lists = {
-            (CORES, CORES_END): hardware.cores.values(),
-            (DOMAINS, DOMAINS_END): dict.fromkeys(hardware.domains.values()),
-            (SERVERS, SERVERS_END): hardware.servers.values(),
-            (PROCESSES, PROCESSES_END): processes.values(),
-            (SEMAPHORES, SEMAPHORES_END): self.resources.semaphores.values(),
+            (layout.CORES, layout.CORES_END): hardware.cores.values(),
+            (layout.DOMAINS, layout.DOMAINS_END): dict.fromkeys(hardware.domains.values()),
+            (layout.SERVERS, layout.SERVERS_END): hardware.servers.values(),
+            (layout.PROCESSES, layout.PROCESSES_END): processes.values(),
+            (layout.SEMAPHORES, layout.SEMAPHORES_END): self.resources.semaphores.values(),
         }
         for (first, end), records in lists.items():
             places = self.image.items(records)
@@ -147,15 +132,15 @@ class _ProgramBuilder:
         has_writes = len(hardware.cores) > 1 and any(
             operation == PUT for hooks in chains.hooks.values() for operation, *_ in hooks.all()
         )
-        self.image.put(0, {PLACES: PLACES_AT_FIRST, HAS_WRITES: int(has_writes)})
+        self.image.put(0, {layout.PLACES: PLACES_AT_FIRST, layout.HAS_WRITES: int(has_writes)})
 
 
-# A system as the kernel plays it.
+# A system as the kernel executes it.
 
 
 @dataclass(frozen=True, slots=True)
 class KernelProgram:
-    """A system as the kernel plays it.
+    """A system as the kernel executes it.
 
     Attributes
     ----------

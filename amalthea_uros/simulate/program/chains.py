@@ -9,25 +9,7 @@ from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import Communication, Trigger
 from amalthea_uros.perf.events import EventChain
 from amalthea_uros.perf.software import Process
-from amalthea_uros.simulate.kernel.layout import (
-    ACTIVATION,
-    BEFORE_STAGE,
-    CAPTURE,
-    CHAIN_ENTITY,
-    IS_LAST,
-    LINK,
-    NEEDED,
-    OUT,
-    ROUTE,
-    ROUTE_NUMBER,
-    ROUTE_SIZE,
-    STAGE_SIZE,
-    START,
-    STEP,
-    TAKEN,
-    VALUE,
-)
-from amalthea_uros.simulate.kernel.operations import ENTER, LEAVE, MARK, PUBLISH, PUT, REACH, RESPOND, TAKE
+from amalthea_uros.simulate.kernel import layout, operations
 from amalthea_uros.simulate.program.image import Operation, ProgramHooks
 from amalthea_uros.simulate.program.resources import Resources
 from amalthea_uros.timing.dataflow.chains import UnfoldError, unfold
@@ -42,7 +24,7 @@ from amalthea_uros.trace.table import EntityKind
 _NOT_FOLLOWED = (LinkKind.OS_EVENT, LinkKind.SERVER_CALL, LinkKind.MESSAGE)
 
 #: When a response at no activity of a job occurs: where the record of the process has the time; 0: now.
-_RESPONSE_TIMES = {JobPhase.ACTIVATION: ACTIVATION, JobPhase.START: START, JobPhase.END: 0}
+_RESPONSE_TIMES = {JobPhase.ACTIVATION: layout.ACTIVATION, JobPhase.START: layout.START, JobPhase.END: 0}
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,7 +92,7 @@ class ChainCompiler:
 
     def _route(self, chain: EventChain, text: str, found: Route) -> None:
         image = self.resources.image
-        route = image.record(ROUTE_SIZE, {ROUTE_NUMBER: len(self.routes)})
+        route = image.record(layout.ROUTE_SIZE, {layout.ROUTE_NUMBER: len(self.routes)})
         self.routes.append(FollowedRoute(chain.name, text))
         entity = self.resources.entities.number(EntityKind.CHAIN, chain.name)
         parts = stages(found, self.resources.context.settings.communication)
@@ -118,11 +100,18 @@ class ChainCompiler:
         for number, stage in enumerate(parts):
             is_last = number == len(parts) - 1
             needed = (1 << len(self._positions(stage))) - 1
-            fields = {ROUTE: route, CHAIN_ENTITY: entity, STEP: number, NEEDED: needed, IS_LAST: int(is_last), CAPTURE: -1}
-            fields |= dict.fromkeys((VALUE, TAKEN, LINK, OUT), -1)
+            fields = {
+                layout.ROUTE: route,
+                layout.CHAIN_ENTITY: entity,
+                layout.STEP: number,
+                layout.NEEDED: needed,
+                layout.IS_LAST: int(is_last),
+                layout.CAPTURE: -1,
+            }
+            fields |= dict.fromkeys((layout.VALUE, layout.TAKEN, layout.LINK, layout.OUT), -1)
             if records:
-                fields[BEFORE_STAGE] = records[-1]
-            records.append(image.record(STAGE_SIZE, fields))
+                fields[layout.BEFORE_STAGE] = records[-1]
+            records.append(image.record(layout.STAGE_SIZE, fields))
         for stage, record in zip(parts, records, strict=True):
             self._stage(stage, record)
 
@@ -136,7 +125,7 @@ class ChainCompiler:
         hooks = self.hooks.setdefault(stage.process.name, ProgramHooks())
         self._enter(stage, record, hooks)
         for index, position in enumerate(self._positions(stage)):
-            hooks.before.setdefault(position.number, []).append((REACH, record, 1 << index))
+            hooks.before.setdefault(position.number, []).append((operations.REACH, record, 1 << index))
         if isinstance(stage.enter, At):
             self._begin(stage.enter, record, hooks)
         self._leave(stage, record, hooks)
@@ -152,26 +141,26 @@ class ChainCompiler:
             case Pass():
                 position = stage.positions[0] if stage.positions else None
         is_first = isinstance(stage.enter, At)
-        hooks.start.append((ENTER, record, int(position is None and not is_first)))
+        hooks.start.append((operations.ENTER, record, int(position is None and not is_first)))
         if is_captured:
             captures = self.captures.setdefault(stage.process.name, [])
             words = self.resources.image.words
-            words[record + CAPTURE] = len(captures)
-            captures.append(words[record + BEFORE_STAGE] + LINK)
+            words[record + layout.CAPTURE] = len(captures)
+            captures.append(words[record + layout.BEFORE_STAGE] + layout.LINK)
         if position is not None:
-            hooks.before.setdefault(position.number, []).append((TAKE, record, int(has_snapshot)))
+            hooks.before.setdefault(position.number, []).append((operations.TAKE, record, int(has_snapshot)))
 
     def _begin(self, at: At, record: int, hooks: ProgramHooks) -> None:
         """Where the stimulus of the chain occurs."""
         when, position = at.occurrence.when, at.occurrence.position
         if at.communication is Communication.LET or when is JobPhase.ACTIVATION:
-            hooks.start.append((MARK, record, 1))
+            hooks.start.append((operations.MARK, record, 1))
         elif when is JobPhase.START:
-            hooks.start.append((MARK, record, 0))
+            hooks.start.append((operations.MARK, record, 0))
         elif position is None:
-            hooks.end.append((MARK, record, 0))
+            hooks.end.append((operations.MARK, record, 0))
         else:
-            self._at(when, position, hooks).append((MARK, record, 0))
+            self._at(when, position, hooks).append((operations.MARK, record, 0))
 
     def _leave(self, stage: Stage, record: int, hooks: ProgramHooks) -> None:
         """Where a stage passes on what it has, or responds."""
@@ -179,28 +168,28 @@ class ChainCompiler:
             case Write(communication=Communication.LET):
                 self._publish(stage.process, record, hooks)
             case Write(communication=Communication.EXPLICIT, position=ActivityPosition() as position):
-                hooks.after.setdefault(position.number, []).append((PUT, record, 0))
+                hooks.after.setdefault(position.number, []).append((operations.PUT, record, 0))
             case Pass() if stage.positions:
-                hooks.after.setdefault(stage.positions[-1].number, []).append((PUT, record, 0))
+                hooks.after.setdefault(stage.positions[-1].number, []).append((operations.PUT, record, 0))
             case Write() | Fire(position=None) | Pass():
-                hooks.end.append((LEAVE, record, 0))
+                hooks.end.append((operations.LEAVE, record, 0))
             case Fire(position=ActivityPosition() as position, is_before=is_before):
                 # Before the operation that fires: a trigger fires at its own operation, an event when its activity ends.
                 side = hooks.before if is_before or not _raises_event(position) else hooks.after
-                side.setdefault(position.number, []).append((PUT, record, 0))
+                side.setdefault(position.number, []).append((operations.PUT, record, 0))
             case At(communication=Communication.LET):
                 self._publish(stage.process, record, hooks)
             case At(occurrence=occurrence):
                 if occurrence.position is not None:
-                    self._at(occurrence.when, occurrence.position, hooks).append((RESPOND, record, 0))
+                    self._at(occurrence.when, occurrence.position, hooks).append((operations.RESPOND, record, 0))
                 else:
                     # Only at its end is it known which job has taken part.
-                    hooks.end.append((RESPOND, record, _RESPONSE_TIMES[occurrence.when]))
+                    hooks.end.append((operations.RESPOND, record, _RESPONSE_TIMES[occurrence.when]))
             case boundary:
                 raise UnknownError(f"it leaves a process in a way that is not followed: {type(boundary).__name__}")
 
     def _publish(self, process: Process, record: int, hooks: ProgramHooks) -> None:
-        hooks.end.append((PUBLISH, record, 0))
+        hooks.end.append((operations.PUBLISH, record, 0))
         self.let_stages.setdefault(process.name, []).append(record)
 
     def _at(self, when: JobPhase, position: ActivityPosition, hooks: ProgramHooks) -> list[Operation]:

@@ -7,36 +7,7 @@ from dataclasses import dataclass, field
 from math import gcd
 
 from amalthea_uros.perf.os import Policy
-from amalthea_uros.simulate.kernel.layout import (
-    BUDGET,
-    BUDGET_RATIO,
-    CONSTANT_BANDWIDTH,
-    CORE_DOMAIN,
-    CORE_ENTITY,
-    CORE_NUMBER,
-    CORE_SIZE,
-    DEFERRABLE,
-    DOMAIN_SIZE,
-    FULL_BUDGET,
-    ITS_CORES,
-    ITS_CORES_END,
-    NEVER,
-    PARENT,
-    PERIOD_RATIO,
-    PLAN_SIZE,
-    PLANS,
-    PLANS_END,
-    POLLING_SERVER,
-    SERVED,
-    SERVED_END,
-    SERVER_AT,
-    SERVER_DOMAIN,
-    SERVER_KIND,
-    SERVER_PERIOD,
-    SERVER_SIZE,
-    SPORADIC,
-    STOP,
-)
+from amalthea_uros.simulate.kernel import layout
 from amalthea_uros.simulate.program.resources import Resources
 from amalthea_uros.simulate.program.scheduling import Dispatching
 from amalthea_uros.timing.scheduling.ranks import standard_policy
@@ -45,11 +16,11 @@ from amalthea_uros.trace.table import EntityKind
 #: Places for what a sporadic server gets back.
 _PLANS = 64
 _KINDS = {
-    Policy.DEFERRABLE_SERVER: DEFERRABLE,
-    Policy.POLLING_SERVER: POLLING_SERVER,
-    Policy.SPORADIC_SERVER: SPORADIC,
-    Policy.CONSTANT_BANDWIDTH_SERVER: CONSTANT_BANDWIDTH,
-    Policy.CONSTANT_BANDWIDTH_SERVER_WITH_CASH: CONSTANT_BANDWIDTH,
+    Policy.DEFERRABLE_SERVER: layout.DEFERRABLE,
+    Policy.POLLING_SERVER: layout.POLLING_SERVER,
+    Policy.SPORADIC_SERVER: layout.SPORADIC,
+    Policy.CONSTANT_BANDWIDTH_SERVER: layout.CONSTANT_BANDWIDTH,
+    Policy.CONSTANT_BANDWIDTH_SERVER_WITH_CASH: layout.CONSTANT_BANDWIDTH,
 }
 
 
@@ -73,22 +44,22 @@ class HardwareRecords:
         """Cores, and domains of those that share processes."""
         for number, core in enumerate(self.resources.context.system.cores):
             entity = self.resources.entities.number(EntityKind.CORE, core)
-            fields = {STOP: NEVER, CORE_NUMBER: number, CORE_ENTITY: entity}
-            self.cores[core] = self.resources.image.record(CORE_SIZE, fields)
+            fields = {layout.STOP: layout.NEVER, layout.CORE_NUMBER: number, layout.CORE_ENTITY: entity}
+            self.cores[core] = self.resources.image.record(layout.CORE_SIZE, fields)
         for cores in self.dispatching.domains():
-            domain = self.resources.image.record(DOMAIN_SIZE)
+            domain = self.resources.image.record(layout.DOMAIN_SIZE)
             first, end = self.resources.image.items(self.cores[core] for core in cores)
-            self.resources.image.put(domain, {ITS_CORES: first, ITS_CORES_END: end})
+            self.resources.image.put(domain, {layout.ITS_CORES: first, layout.ITS_CORES_END: end})
             for core in cores:
                 self.domains[core] = domain
-                self.resources.image.put(self.cores[core], {CORE_DOMAIN: domain})
+                self.resources.image.put(self.cores[core], {layout.CORE_DOMAIN: domain})
 
     def place_servers(self, processes: Mapping[str, int]) -> None:
         """Servers that serve any of some processes, which have records by their names."""
         here = [self.dispatching.processes[name].scheduled for name in processes]
         for name in self.dispatching.servers:
             if any(self._is_within(item.server, name) for item in here):
-                self.servers[name] = self.resources.image.record(SERVER_SIZE)
+                self.servers[name] = self.resources.image.record(layout.SERVER_SIZE)
         for name, record in self.servers.items():
             server = self.dispatching.servers[name]
             policy = standard_policy(server.scheduler.policy)
@@ -99,22 +70,22 @@ class HardwareRecords:
             common = gcd(budget, period)
             served = [processes[item.name] for item in here if self._is_within(item.server, name)]
             first, end = self.resources.image.items(served)
-            plans, plans_end = self.resources.image.items([0] * (_PLANS * PLAN_SIZE if kind == SPORADIC else 0))
+            plans, plans_end = self.resources.image.items([0] * (_PLANS * layout.PLAN_SIZE if kind == layout.SPORADIC else 0))
             fields = {
                 # The first period begins at 0: then a polling server loses its budget if it has nothing to serve.
-                SERVER_AT: 0 if kind in (DEFERRABLE, POLLING_SERVER) else NEVER,
-                BUDGET: budget,
-                FULL_BUDGET: budget,
-                SERVER_PERIOD: period,
-                SERVER_KIND: kind,
-                PARENT: self.servers.get(server.server or "", 0),
-                SERVER_DOMAIN: self.domains[server.core],
-                SERVED: first,
-                SERVED_END: end,
-                BUDGET_RATIO: budget // common,
-                PERIOD_RATIO: period // common,
-                PLANS: plans,
-                PLANS_END: plans_end,
+                layout.SERVER_AT: 0 if kind in (layout.DEFERRABLE, layout.POLLING_SERVER) else layout.NEVER,
+                layout.BUDGET: budget,
+                layout.FULL_BUDGET: budget,
+                layout.SERVER_PERIOD: period,
+                layout.SERVER_KIND: kind,
+                layout.PARENT: self.servers.get(server.server or "", 0),
+                layout.SERVER_DOMAIN: self.domains[server.core],
+                layout.SERVED: first,
+                layout.SERVED_END: end,
+                layout.BUDGET_RATIO: budget // common,
+                layout.PERIOD_RATIO: period // common,
+                layout.PLANS: plans,
+                layout.PLANS_END: plans_end,
             }
             self.resources.image.put(record, fields)
 

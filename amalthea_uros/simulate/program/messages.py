@@ -9,15 +9,7 @@ from amalthea_uros.perf.distributions import Uniform
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Arrivals, Counter, Periodic
 from amalthea_uros.simulate.arrivals import StimulusOccurrences, occurrences
-from amalthea_uros.simulate.kernel.layout import (
-    ARRIVED,
-    MESSAGE_CAPTURE,
-    MESSAGE_LIMIT,
-    MESSAGE_SIZE,
-    MESSAGES,
-    STIMULUS_ENTITY,
-    STIMULUS_SIZE,
-)
+from amalthea_uros.simulate.kernel import layout
 from amalthea_uros.simulate.kernel.operations import TAKE_MESSAGE
 from amalthea_uros.simulate.options import SimulationMode
 from amalthea_uros.simulate.program.chains import ChainCompiler
@@ -60,16 +52,17 @@ class Messages:
         for source, counter in found.items():
             queue = self._queue(process, source)
             stimulus = self.resources.image.record(
-                STIMULUS_SIZE,
-                {MESSAGES: queue, STIMULUS_ENTITY: self.resources.entities.number(EntityKind.STIMULUS, source)},
+                layout.STIMULUS_SIZE,
+                {layout.MESSAGES: queue, layout.STIMULUS_ENTITY: self.resources.entities.number(EntityKind.STIMULUS, source)},
             )
             self.queues[process.name, source] = queue
             self.arrivals.append((stimulus, self._occurrences(process, counter)))
 
     def _queue(self, process: Process, source: str) -> int:
         captures = self.chains.captures.setdefault(process.name, [])
-        queue = self.resources.image.record(MESSAGE_SIZE, {MESSAGE_LIMIT: QUEUE_LENGTH, MESSAGE_CAPTURE: len(captures)})
-        captures.append(queue + ARRIVED)
+        fields = {layout.MESSAGE_LIMIT: QUEUE_LENGTH, layout.MESSAGE_CAPTURE: len(captures)}
+        queue = self.resources.image.record(layout.MESSAGE_SIZE, fields)
+        captures.append(queue + layout.ARRIVED)
         self.chains.hooks.setdefault(process.name, ProgramHooks()).start.append((TAKE_MESSAGE, queue, 0))
         return queue
 

@@ -10,28 +10,7 @@ from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.conditions import ChannelFillIs, Comparison, Condition, ModeLabelsAre, ModeValueIs, Relation, Undecided
 from amalthea_uros.perf.software import ModeLabel
 from amalthea_uros.perf.system import System
-from amalthea_uros.simulate.kernel import conditions
-from amalthea_uros.simulate.kernel.layout import (
-    ALTERNATIVE_SIZE,
-    ALTERNATIVES,
-    ALTERNATIVES_END,
-    CAPACITY,
-    CHANNEL_SIZE,
-    COMPARISON_SIZE,
-    COMPARISONS,
-    COMPARISONS_END,
-    CONDITION_SIZE,
-    FILL,
-    IS_CONSTANT,
-    LEFT_VALUE,
-    LITERALS,
-    MODE_SIZE,
-    MODE_VALUE,
-    NEVER,
-    RELATION,
-    RIGHT_CONSTANT,
-    RIGHT_VALUE,
-)
+from amalthea_uros.simulate.kernel import conditions, layout
 from amalthea_uros.simulate.program.image import Image
 
 _RELATIONS = {
@@ -72,20 +51,20 @@ class ModeRecords:
             self._literals[label.name] = literals.get(label.mode or "", ())
             self.labels[label.name] = self._label(label)
         for channel in self.system.software.channels:
-            fields = {FILL: channel.default_elements, CAPACITY: channel.capacity}
-            self.channels[channel.name] = self.image.record(CHANNEL_SIZE, fields)
+            fields = {layout.FILL: channel.default_elements, layout.CAPACITY: channel.capacity}
+            self.channels[channel.name] = self.image.record(layout.CHANNEL_SIZE, fields)
 
     def _label(self, label: ModeLabel) -> int:
         value = self.known.get(label.name, label.initial)
-        fields = {LITERALS: len(self._literals[label.name]), IS_CONSTANT: int(label.name in self.known)}
+        fields = {layout.LITERALS: len(self._literals[label.name]), layout.IS_CONSTANT: int(label.name in self.known)}
         if value is None:
             self._unset[label.name] = "no initial value"
         else:
             try:
-                fields[MODE_VALUE] = self.value(label.name, value)
+                fields[layout.MODE_VALUE] = self.value(label.name, value)
             except UnknownError:
                 self._unset[label.name] = f"the initial value {value!r}, which is no whole number, or too large"
-        return self.image.record(MODE_SIZE, fields)
+        return self.image.record(layout.MODE_SIZE, fields)
 
     def label(self, name: str) -> int:
         """The place of a mode label."""
@@ -104,7 +83,7 @@ class ModeRecords:
         literals = self._literals.get(label, ())
         if literals:
             return literals.index(text) if text in literals else _NO_LITERAL
-        if _WHOLE_NUMBER.fullmatch(text) is None or abs(int(text)) >= NEVER:
+        if _WHOLE_NUMBER.fullmatch(text) is None or abs(int(text)) >= layout.NEVER:
             raise UnknownError(f"the value {text!r} of the mode label {label!r} is no whole number, or too large")
         return int(text)
 
@@ -118,27 +97,35 @@ class ModeRecords:
             for comparisons in compared:
                 first = len(self.image.words)
                 for fields in comparisons:
-                    self.image.record(COMPARISON_SIZE, fields)
-                alternatives.append({COMPARISONS: first, COMPARISONS_END: len(self.image.words)})
+                    self.image.record(layout.COMPARISON_SIZE, fields)
+                alternatives.append({layout.COMPARISONS: first, layout.COMPARISONS_END: len(self.image.words)})
             first = len(self.image.words)
             for fields in alternatives:
-                self.image.record(ALTERNATIVE_SIZE, fields)
-            ends = {ALTERNATIVES: first, ALTERNATIVES_END: len(self.image.words)}
-            self._conditions[condition] = self.image.record(CONDITION_SIZE, ends)
+                self.image.record(layout.ALTERNATIVE_SIZE, fields)
+            ends = {layout.ALTERNATIVES: first, layout.ALTERNATIVES_END: len(self.image.words)}
+            self._conditions[condition] = self.image.record(layout.CONDITION_SIZE, ends)
         return self._conditions[condition]
 
     def _comparison(self, comparison: Comparison) -> dict[int, int]:
         match comparison:
             case ModeValueIs(label=label, relation=relation, value=value):
                 left = self._compared(label, relation)
-                return {LEFT_VALUE: left, RIGHT_CONSTANT: self.value(label, value), RELATION: _RELATIONS[relation]}
+                return {
+                    layout.LEFT_VALUE: left,
+                    layout.RIGHT_CONSTANT: self.value(label, value),
+                    layout.RELATION: _RELATIONS[relation],
+                }
             case ModeLabelsAre(first=first, relation=relation, second=second):
                 if self._literals.get(first) != self._literals.get(second):
                     raise UnknownError(f"the mode labels {first!r} and {second!r} are compared, but have different modes")
                 left, right = self._compared(first, relation), self._compared(second, relation)
-                return {LEFT_VALUE: left, RIGHT_VALUE: right, RELATION: _RELATIONS[relation]}
+                return {layout.LEFT_VALUE: left, layout.RIGHT_VALUE: right, layout.RELATION: _RELATIONS[relation]}
             case ChannelFillIs(channel=channel, relation=relation, level=level):
-                return {LEFT_VALUE: self.channel(channel) + FILL, RIGHT_CONSTANT: level, RELATION: _RELATIONS[relation]}
+                return {
+                    layout.LEFT_VALUE: self.channel(channel) + layout.FILL,
+                    layout.RIGHT_CONSTANT: level,
+                    layout.RELATION: _RELATIONS[relation],
+                }
             case Undecided(reason=reason):
                 raise UnknownError(f"a condition cannot be decided: {reason}")
 
@@ -148,4 +135,4 @@ class ModeRecords:
             raise UnknownError(f"the mode label {label!r}, on which a condition depends, has {self._unset[label]}")
         if self._literals[label] and relation not in (Relation.EQUAL, Relation.NOT_EQUAL):
             raise UnknownError(f"the literals of the mode label {label!r} have no order, but are compared by {relation}")
-        return place + MODE_VALUE
+        return place + layout.MODE_VALUE

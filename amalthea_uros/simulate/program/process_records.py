@@ -7,45 +7,7 @@ from dataclasses import dataclass, field
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.os import Scheduler
 from amalthea_uros.perf.software import Preemption, Task
-from amalthea_uros.simulate.kernel.layout import (
-    ALLOWED,
-    CAPTURES,
-    CAPTURES_END,
-    CEILING,
-    DEADLINE_CEILING,
-    DECISION,
-    DOMAIN,
-    ENTITY,
-    ENTRY,
-    EVENTS_SET,
-    FIRST_PLACE,
-    HAS_COOPERATIVE,
-    HAS_SERVER_DEADLINE,
-    HOLD_SIZE,
-    HOLDS,
-    INNER,
-    IS_BY_DEADLINE,
-    IS_COOPERATIVE,
-    IS_REPORTED,
-    LET_STAGES,
-    LET_STAGES_END,
-    LEVEL,
-    LIMIT,
-    MEMBERS,
-    MEMBERS_END,
-    NEVER,
-    NUMBER,
-    OWN_LEVEL,
-    PROCESS_SIZE,
-    QUEUE,
-    QUEUE_CAPTURES,
-    RELATIVE_DEADLINE,
-    RUNNING_LEVEL,
-    SERVER,
-    SLICE,
-    TICKETS,
-    WATCHED,
-)
+from amalthea_uros.simulate.kernel import layout
 from amalthea_uros.simulate.program.body import decision_code, process_code
 from amalthea_uros.simulate.program.chains import ChainCompiler
 from amalthea_uros.simulate.program.hardware import HardwareRecords
@@ -107,41 +69,41 @@ class ProcessRecords:
         captures, captures_end = self.image.items(chains.captures.get(item.name, ()))
         lets, lets_end = self.image.items(chains.let_stages.get(item.name, ()))
         semaphores, events = len(self.resources.semaphores), len(self.resources.os_events)
-        queue, _ = self.image.items([0] * (PLACES_AT_FIRST * (QUEUE_CAPTURES + captures_end - captures)))
+        queue, _ = self.image.items([0] * (PLACES_AT_FIRST * (layout.QUEUE_CAPTURES + captures_end - captures)))
         transitions = self.parts.watches.transitions(item.name)
         allowed, _ = self.image.items(int(name in item.cores) for name in self.hardware.cores)
         is_edf = scheduled.equal_priority is EqualPriority.EDF
         has_server_deadline = self.hardware.dispatching.has_server_deadline(scheduled)
         level = self.hardware.dispatching.level(scheduled)
         fields = {
-            LEVEL: level,
-            OWN_LEVEL: level,
-            RUNNING_LEVEL: self.hardware.dispatching.running_level(item),
-            INNER: _inner(item) if has_server_deadline else 0,
-            LIMIT: process.activation_limit if isinstance(process, Task) else NEVER,
-            QUEUE: queue,
-            FIRST_PLACE: queue,
-            ENTRY: code.write(self.image),
-            NUMBER: number,
-            IS_REPORTED: 1,
-            ENTITY: self.resources.entities.process(item.name),
-            DOMAIN: self.hardware.domains[core],
-            ALLOWED: allowed,
-            IS_COOPERATIVE: int(not scheduled.is_isr and preemption(scheduled) is Preemption.COOPERATIVE),
-            IS_BY_DEADLINE: int(is_edf),
-            HAS_SERVER_DEADLINE: int(has_server_deadline),
-            RELATIVE_DEADLINE: self.resources.time(scheduled.deadline or 0) if is_edf else 0,
-            SLICE: self.resources.time(scheduled.slice) if scheduled.equal_priority is EqualPriority.ROUND_ROBIN else 0,
-            SERVER: self.hardware.servers.get(scheduled.server or "", 0),
-            DECISION: self._decision(scheduler, core) if scheduler is not None else 0,
-            CAPTURES: captures,
-            CAPTURES_END: captures_end,
-            LET_STAGES: lets,
-            LET_STAGES_END: lets_end,
-            HOLDS: self.image.items([0] * (semaphores * HOLD_SIZE))[0],
-            EVENTS_SET: self.image.items([0] * events)[0],
-            TICKETS: self.image.items([0] * len(self.resources.services))[0],
-            WATCHED: self.image.items(transitions)[0] if transitions else 0,
+            layout.LEVEL: level,
+            layout.OWN_LEVEL: level,
+            layout.RUNNING_LEVEL: self.hardware.dispatching.running_level(item),
+            layout.INNER: _inner(item) if has_server_deadline else 0,
+            layout.LIMIT: process.activation_limit if isinstance(process, Task) else layout.NEVER,
+            layout.QUEUE: queue,
+            layout.FIRST_PLACE: queue,
+            layout.ENTRY: code.write(self.image),
+            layout.NUMBER: number,
+            layout.IS_REPORTED: 1,
+            layout.ENTITY: self.resources.entities.process(item.name),
+            layout.DOMAIN: self.hardware.domains[core],
+            layout.ALLOWED: allowed,
+            layout.IS_COOPERATIVE: int(not scheduled.is_isr and preemption(scheduled) is Preemption.COOPERATIVE),
+            layout.IS_BY_DEADLINE: int(is_edf),
+            layout.HAS_SERVER_DEADLINE: int(has_server_deadline),
+            layout.RELATIVE_DEADLINE: self.resources.time(scheduled.deadline or 0) if is_edf else 0,
+            layout.SLICE: self.resources.time(scheduled.slice) if scheduled.equal_priority is EqualPriority.ROUND_ROBIN else 0,
+            layout.SERVER: self.hardware.servers.get(scheduled.server or "", 0),
+            layout.DECISION: self._decision(scheduler, core) if scheduler is not None else 0,
+            layout.CAPTURES: captures,
+            layout.CAPTURES_END: captures_end,
+            layout.LET_STAGES: lets,
+            layout.LET_STAGES_END: lets_end,
+            layout.HOLDS: self.image.items([0] * (semaphores * layout.HOLD_SIZE))[0],
+            layout.EVENTS_SET: self.image.items([0] * events)[0],
+            layout.TICKETS: self.image.items([0] * len(self.resources.services))[0],
+            layout.WATCHED: self.image.items(transitions)[0] if transitions else 0,
         }
         self.image.put(self.parts.processes[item.name], fields)
 
@@ -150,22 +112,22 @@ class ProcessRecords:
         key = (scheduler.name, core)
         if key not in self.decisions:
             level = self.hardware.dispatching.highest_level + 2
-            queue, _ = self.image.items([0] * (PLACES_AT_FIRST * QUEUE_CAPTURES))
+            queue, _ = self.image.items([0] * (PLACES_AT_FIRST * layout.QUEUE_CAPTURES))
             allowed, _ = self.image.items(int(name == core) for name in self.hardware.cores)
             fields = {
-                LEVEL: level,
-                OWN_LEVEL: level,
-                RUNNING_LEVEL: level,
-                LIMIT: NEVER,
-                QUEUE: queue,
-                FIRST_PLACE: queue,
-                ENTRY: decision_code(self.parts, scheduler, core).write(self.image),
-                ENTITY: self.resources.entities.number(EntityKind.SCHEDULER, scheduler.name),
-                DOMAIN: self.hardware.domains[core],
-                ALLOWED: allowed,
-                HOLDS: self.image.items([0] * (len(self.resources.semaphores) * HOLD_SIZE))[0],
+                layout.LEVEL: level,
+                layout.OWN_LEVEL: level,
+                layout.RUNNING_LEVEL: level,
+                layout.LIMIT: layout.NEVER,
+                layout.QUEUE: queue,
+                layout.FIRST_PLACE: queue,
+                layout.ENTRY: decision_code(self.parts, scheduler, core).write(self.image),
+                layout.ENTITY: self.resources.entities.number(EntityKind.SCHEDULER, scheduler.name),
+                layout.DOMAIN: self.hardware.domains[core],
+                layout.ALLOWED: allowed,
+                layout.HOLDS: self.image.items([0] * (len(self.resources.semaphores) * layout.HOLD_SIZE))[0],
             }
-            self.decisions[key] = self.image.record(PROCESS_SIZE, fields)
+            self.decisions[key] = self.image.record(layout.PROCESS_SIZE, fields)
         return self.decisions[key]
 
     def place_members(self) -> None:
@@ -173,13 +135,13 @@ class ProcessRecords:
         words = self.image.words
         everything = [*self.parts.processes.values(), *self.decisions.values()]
         for domain in set(self.hardware.domains.values()):
-            members = [record for record in everything if words[record + DOMAIN] == domain]
-            members.sort(key=lambda record: -words[record + OWN_LEVEL])
+            members = [record for record in everything if words[record + layout.DOMAIN] == domain]
+            members.sort(key=lambda record: -words[record + layout.OWN_LEVEL])
             first, end = self.image.items(members)
             fields = {
-                MEMBERS: first,
-                MEMBERS_END: end,
-                HAS_COOPERATIVE: int(any(words[record + IS_COOPERATIVE] for record in members)),
+                layout.MEMBERS: first,
+                layout.MEMBERS_END: end,
+                layout.HAS_COOPERATIVE: int(any(words[record + layout.IS_COOPERATIVE] for record in members)),
             }
             self.image.put(domain, fields)
 
@@ -191,10 +153,10 @@ class ProcessRecords:
             if not semaphore.ceiling:
                 continue
             users = [self.parts.processes[name] for name in uses if semaphore.name in uses[name].semaphores]
-            deadlines = [words[user + RELATIVE_DEADLINE] for user in users if words[user + IS_BY_DEADLINE]]
+            deadlines = [words[user + layout.RELATIVE_DEADLINE] for user in users if words[user + layout.IS_BY_DEADLINE]]
             fields = {
-                CEILING: max((words[user + OWN_LEVEL] for user in users), default=0) + 1,
-                DEADLINE_CEILING: min(deadlines, default=NEVER),
+                layout.CEILING: max((words[user + layout.OWN_LEVEL] for user in users), default=0) + 1,
+                layout.DEADLINE_CEILING: min(deadlines, default=layout.NEVER),
             }
             self.image.put(self.resources.semaphores[semaphore.name], fields)
 

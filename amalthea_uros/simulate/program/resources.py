@@ -10,40 +10,13 @@ from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import ClearEvent, ServerCall, SetEvent, WaitEvent, Waiting, walk
 from amalthea_uros.perf.distributions import Distribution, Statistics
 from amalthea_uros.perf.stimuli import Counter
-from amalthea_uros.simulate.kernel.layout import (
-    CEILING,
-    COUNTER_SIZE,
-    DEADLINE_CEILING,
-    EVENT_LIST,
-    EVENT_LIST_END,
-    EVENT_ROW_SIZE,
-    EVERY,
-    EXECUTED,
-    FIRST_EFFECT,
-    HAS_OWNER,
-    IS_ACTIVE_WAIT,
-    NEEDS_ALL,
-    NEVER,
-    OF_PROCESS,
-    RUNNABLE_ENTITY,
-    RUNNABLE_SIZE,
-    SEMAPHORE_ENTITY,
-    SEMAPHORE_NUMBER,
-    SEMAPHORE_SIZE,
-    SERVICE_NUMBER,
-    SERVICE_SIZE,
-    SITE_SIZE,
-    STREAM_NUMBER,
-    STREAM_SIZE,
-    USED,
-    USERS,
-)
+from amalthea_uros.simulate.kernel import layout
 from amalthea_uros.simulate.options import Options, SimulationMode
 from amalthea_uros.simulate.program.entities import EntityNumbers
 from amalthea_uros.simulate.program.image import Image
 from amalthea_uros.simulate.program.modes import ModeRecords
 from amalthea_uros.simulate.program.watches import Watches
-from amalthea_uros.simulate.sampling.streams import Same, ValueStream, choices, durations, permutations, values
+from amalthea_uros.simulate.sampling.streams import ValueStream, choices, durations, permutations, values
 from amalthea_uros.simulate.sampling.variates import sampling_assumption
 from amalthea_uros.simulate.sampling.words import RandomSource
 from amalthea_uros.timing.context import TimingContext
@@ -84,27 +57,27 @@ class Resources:
         system = self.context.system
         for number, semaphore in enumerate(system.os.semaphores):
             fields = {
-                USED: semaphore.initial_users,
-                USERS: semaphore.users,
-                CEILING: -1,
-                DEADLINE_CEILING: NEVER,
-                HAS_OWNER: int(semaphore.ownership),
-                SEMAPHORE_NUMBER: number,
-                SEMAPHORE_ENTITY: self.entities.number(EntityKind.SEMAPHORE, semaphore.name),
+                layout.USED: semaphore.initial_users,
+                layout.USERS: semaphore.users,
+                layout.CEILING: -1,
+                layout.DEADLINE_CEILING: layout.NEVER,
+                layout.HAS_OWNER: int(semaphore.ownership),
+                layout.SEMAPHORE_NUMBER: number,
+                layout.SEMAPHORE_ENTITY: self.entities.number(EntityKind.SEMAPHORE, semaphore.name),
             }
-            self.semaphores[semaphore.name] = self.image.record(SEMAPHORE_SIZE, fields)
+            self.semaphores[semaphore.name] = self.image.record(layout.SEMAPHORE_SIZE, fields)
         self.os_events = {event.name: number for number, event in enumerate(system.software.os_events)}
         everything = (activity for body in system.software.bodies for activity in walk(body))
         asked = {activity.runnable: None for activity in everything if isinstance(activity, ServerCall) and activity.waits}
         self.executing = servers(system)
         for number, name in enumerate(asked):
-            self.services[name] = self.image.record(SERVICE_SIZE, {SERVICE_NUMBER: number})
+            self.services[name] = self.image.record(layout.SERVICE_SIZE, {layout.SERVICE_NUMBER: number})
 
     # Times.
 
     def time(self, time: Time) -> int:
         """A time in time units; one that is too long never comes."""
-        return min(time * self.units, NEVER)
+        return min(time * self.units, layout.NEVER)
 
     def ticks(self, ticks: Distribution[int], core: str, factor: Fraction, place: str) -> ValueStream:
         """The times that ticks, or units that take `factor` ticks each, take on a core."""
@@ -140,7 +113,7 @@ class Resources:
 
     def stream(self, stream: ValueStream) -> int:
         """The record of a stream."""
-        self.stream_records.append(self.image.record(STREAM_SIZE, {STREAM_NUMBER: len(self.streams)}))
+        self.stream_records.append(self.image.record(layout.STREAM_SIZE, {layout.STREAM_NUMBER: len(self.streams)}))
         self.streams.append(stream)
         return self.stream_records[-1]
 
@@ -151,8 +124,8 @@ class Resources:
         """The record of a place that executes a runnable, for the numbers of its executions."""
         if runnable not in self._runnables:
             entity = self.entities.number(EntityKind.RUNNABLE, runnable)
-            self._runnables[runnable] = self.image.record(RUNNABLE_SIZE, {RUNNABLE_ENTITY: entity})
-        return self.image.record(SITE_SIZE, {EXECUTED: self._runnables[runnable]})
+            self._runnables[runnable] = self.image.record(layout.RUNNABLE_SIZE, {layout.RUNNABLE_ENTITY: entity})
+        return self.image.record(layout.SITE_SIZE, {layout.EXECUTED: self._runnables[runnable]})
 
     # Counters.
 
@@ -162,8 +135,8 @@ class Resources:
             return 0
         if id(owner) not in self._counters:
             first = first_effect(counter) if counter.is_phase_known else self._phase(counter)
-            fields = {EVERY: counter.prescaler, FIRST_EFFECT: first}
-            self._counters[id(owner)] = self.image.record(COUNTER_SIZE, fields)
+            fields = {layout.EVERY: counter.prescaler, layout.FIRST_EFFECT: first}
+            self._counters[id(owner)] = self.image.record(layout.COUNTER_SIZE, fields)
         return self._counters[id(owner)]
 
     def _phase(self, counter: Counter) -> int:
@@ -199,20 +172,15 @@ class Resources:
                 raise UnknownError(f"the OS event {name!r} is not defined in the model")
             pairs += (self.os_events[name], self.entities.number(EntityKind.OS_EVENT, name))
         first, end = self.image.items(pairs)
-        fields = {EVENT_LIST: first, EVENT_LIST_END: end}
+        fields = {layout.EVENT_LIST: first, layout.EVENT_LIST_END: end}
         match activity:
             case SetEvent(process=process) if process is not None:
                 if process not in processes:
                     raise UnknownError(f"it sets events of {process!r}, which is not simulated")
-                fields[OF_PROCESS] = processes[process]
+                fields[layout.OF_PROCESS] = processes[process]
             case WaitEvent(all_of_them=all_of_them, waiting=waiting):
-                fields |= {NEEDS_ALL: int(all_of_them), IS_ACTIVE_WAIT: int(waiting is Waiting.ACTIVE)}
-        return self.image.record(EVENT_ROW_SIZE, fields)
-
-
-def constant(stream: ValueStream) -> int | None:
-    """The only value of a stream; None if it has several."""
-    return stream.value if isinstance(stream, Same) else None
+                fields |= {layout.NEEDS_ALL: int(all_of_them), layout.IS_ACTIVE_WAIT: int(waiting is Waiting.ACTIVE)}
+        return self.image.record(layout.EVENT_ROW_SIZE, fields)
 
 
 # What the programs of all processes share.

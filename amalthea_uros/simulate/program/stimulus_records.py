@@ -10,16 +10,7 @@ from amalthea_uros.perf.activities import Trigger
 from amalthea_uros.perf.events import StimulusEvent
 from amalthea_uros.perf.stimuli import EventTriggered, InterProcess, Stimulus
 from amalthea_uros.simulate.arrivals import StimulusOccurrences, occurrences
-from amalthea_uros.simulate.kernel.layout import (
-    ASSIGNMENTS,
-    ASSIGNMENTS_END,
-    CONDITION,
-    COUNTER,
-    STIMULUS_ENTITY,
-    STIMULUS_SOURCE,
-    TARGETS,
-    TARGETS_END,
-)
+from amalthea_uros.simulate.kernel import layout
 from amalthea_uros.simulate.kernel.operations import FIRE
 from amalthea_uros.simulate.program.chains import ChainCompiler
 from amalthea_uros.simulate.program.image import ProgramHooks
@@ -61,13 +52,13 @@ class StimulusRecords:
             try:
                 if flaw := self.resources.context.activations.flaws.of_stimulus(name):
                     number = self.resources.entities.number(EntityKind.STIMULUS, name)
-                    self.resources.image.put(record, {STIMULUS_ENTITY: number})
+                    self.resources.image.put(record, {layout.STIMULUS_ENTITY: number})
                     raise UnknownError(flaw)
                 self._stimulus(stimulus, record, targets)
                 if isinstance(stimulus, EventTriggered) and not self.resources.context.activations.causes(stimulus):
                     raise UnknownError(f"no activity in the model raises an event of the stimulus {name!r}")
                 is_internal = isinstance(stimulus, InterProcess | EventTriggered)
-                is_watched = self.resources.image.words[record + STIMULUS_SOURCE] > 0
+                is_watched = self.resources.image.words[record + layout.STIMULUS_SOURCE] > 0
                 if not is_internal and (targets or stimulus.assignments or is_watched):
                     first = min((order[target] for target in targets), default=len(order))
                     external.append((first, record, self._occurrences(stimulus)))
@@ -95,14 +86,14 @@ class StimulusRecords:
         counter = stimulus.counter if isinstance(stimulus, InterProcess | EventTriggered) else None
         source = self.parts.watches.number(EventSource(StimulusEvent, stimulus.name))
         fields = {
-            TARGETS: first,
-            TARGETS_END: end,
-            CONDITION: self.parts.modes.condition(stimulus.condition) if stimulus.condition is not None else 0,
-            COUNTER: self.resources.counter(stimulus, counter),
-            ASSIGNMENTS: assignments,
-            ASSIGNMENTS_END: assignments_end,
-            STIMULUS_ENTITY: self.resources.entities.number(EntityKind.STIMULUS, stimulus.name),
-            STIMULUS_SOURCE: 0 if source is None else source + 1,
+            layout.TARGETS: first,
+            layout.TARGETS_END: end,
+            layout.CONDITION: self.parts.modes.condition(stimulus.condition) if stimulus.condition is not None else 0,
+            layout.COUNTER: self.resources.counter(stimulus, counter),
+            layout.ASSIGNMENTS: assignments,
+            layout.ASSIGNMENTS_END: assignments_end,
+            layout.STIMULUS_ENTITY: self.resources.entities.number(EntityKind.STIMULUS, stimulus.name),
+            layout.STIMULUS_SOURCE: 0 if source is None else source + 1,
         }
         self.resources.image.put(record, fields)
 

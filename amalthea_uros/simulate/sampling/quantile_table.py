@@ -8,15 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
-    Words = NDArray[np.uint64]
+from amalthea_uros._internal.arrays import Floats, Words
 
 #: Gives the quantiles of probabilities, as fractions of the range of the values.
 Quantiles: TypeAlias = "Callable[[Floats], Floats]"

@@ -5,14 +5,14 @@ How many values are taken at a time does not change them. In the modes that do n
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import ceil, floor, isfinite
-from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
+from amalthea_uros._internal.arrays import Numbers
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.distributions import Bounds, Distribution, Gauss, highest, lowest
 from amalthea_uros.simulate.options import SimulationMode
@@ -20,146 +20,51 @@ from amalthea_uros.simulate.sampling.variates import GREATEST, NO_PARAMETERS, Va
 from amalthea_uros.simulate.sampling.words import RandomSource, scaled
 from amalthea_uros.timing.demand.means import mean
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Words = NDArray[np.uint64]
-    Integers = NDArray[np.int64]
-
-
-class ValueStream(Protocol):
-    """Whole numbers one after another."""
-
-    @property
-    def lowest(self) -> int:
-        """No value is less."""
-
-    @property
-    def highest(self) -> int:
-        """No value is greater."""
-
-    def take(self, count: int) -> Integers:
-        """The next values."""
-
 
 @dataclass(frozen=True, slots=True)
-class Same:
-    """Always the same value."""
-
-    value: int
-
-    @property
-    def lowest(self) -> int:
-        """See `ValueStream`."""
-        return self.value
-
-    @property
-    def highest(self) -> int:
-        """See `ValueStream`."""
-        return self.value
-
-    def take(self, count: int) -> Integers:
-        """See `ValueStream`."""
-        return np.full(count, self.value, np.int64)
-
-
-@dataclass(frozen=True, slots=True)
-class Sampled:
-    """Values of a distribution."""
-
-    variate: Variate
-    source: RandomSource
-
-    @property
-    def lowest(self) -> int:
-        """See `ValueStream`."""
-        return self.variate.lowest
-
-    @property
-    def highest(self) -> int:
-        """See `ValueStream`."""
-        return self.variate.highest
-
-    def take(self, count: int) -> Integers:
-        """See `ValueStream`."""
-        return self.variate.of(self.source.words(count))
-
-
-@dataclass(frozen=True, slots=True)
-class Converted:
-    """Values of another stream that are not negative, multiplied by a factor and rounded to the nearest whole number."""
-
-    stream: ValueStream
-    factor: Fraction
-
-    @property
-    def lowest(self) -> int:
-        """See `ValueStream`."""
-        return floor(self.stream.lowest * self.factor)
-
-    @property
-    def highest(self) -> int:
-        """See `ValueStream`."""
-        return ceil(self.stream.highest * self.factor)
-
-    def take(self, count: int) -> Integers:
-        """See `ValueStream`."""
-        values = self.stream.take(count)
-        whole, rest = divmod(self.factor, 1)
-        found = values * np.int64(whole)
-        if rest:
-            # Twice the product plus 1, halved.
-            twice = scaled(values.view(np.uint64) << np.uint64(1), floor(rest * 2**64))
-            found += ((twice + np.uint64(1)) >> np.uint64(1)).view(np.int64)
-        return found
-
-
-@dataclass(frozen=True, slots=True)
-class Chosen:
-    """Indices with given probabilities.
+class ValueStream:
+    """Whole numbers one after another.
 
     Attributes
     ----------
-    ends : the sum of the probabilities up to each index but the last, as a binary fraction
+    lowest, highest : between which all values are
+    take : gives the next values, as many as it is asked for
     """
 
-    ends: Words
-    source: RandomSource
+    lowest: int
+    highest: int
+    take: Callable[[int], Numbers]
 
     @property
-    def lowest(self) -> int:
-        """See `ValueStream`."""
-        return 0
-
-    @property
-    def highest(self) -> int:
-        """See `ValueStream`."""
-        return len(self.ends)
-
-    def take(self, count: int) -> Integers:
-        """See `ValueStream`."""
-        return np.searchsorted(self.ends, self.source.words(count), side="right").astype(np.int64)
+    def constant(self) -> int | None:
+        """The only value; None if there are several."""
+        return self.lowest if self.lowest == self.highest else None
 
 
-@dataclass(frozen=True, slots=True)
-class RandomNumbers:
-    """Whole numbers from 0 to 2**63 - 1, e.g. to shuffle with."""
+def constant(value: int) -> ValueStream:
+    """Always the same value."""
+    return ValueStream(value, value, lambda count: np.full(count, value, np.int64))
 
-    source: RandomSource
 
-    @property
-    def lowest(self) -> int:
-        """See `ValueStream`."""
-        return 0
+def sampled(variate: Variate, source: RandomSource) -> ValueStream:
+    """Values of a distribution."""
+    return ValueStream(variate.lowest, variate.highest, lambda count: variate.of(source.words(count)))
 
-    @property
-    def highest(self) -> int:
-        """See `ValueStream`."""
-        return 2**63 - 1
 
-    def take(self, count: int) -> Integers:
-        """See `ValueStream`."""
-        return (self.source.words(count) >> np.uint64(1)).view(np.int64)
+def converted(stream: ValueStream, factor: Fraction) -> ValueStream:
+    """Values of another stream that are not negative, multiplied by a factor and rounded to the nearest whole number."""
+    whole, rest = divmod(factor, 1)
+
+    def take(count: int) -> Numbers:
+        values = stream.take(count)
+        products = values * np.int64(whole)
+        if rest:
+            # Twice the product plus 1, halved.
+            twice = scaled(values.view(np.uint64) << np.uint64(1), floor(rest * 2**64))
+            products += ((twice + np.uint64(1)) >> np.uint64(1)).view(np.int64)
+        return products
+
+    return ValueStream(floor(stream.lowest * factor), ceil(stream.highest * factor), take)
 
 
 def values(distribution: Distribution[int], mode: SimulationMode, source: RandomSource) -> ValueStream:
@@ -171,9 +76,9 @@ def values(distribution: Distribution[int], mode: SimulationMode, source: Random
     """
     if mode is not SimulationMode.SAMPLED:
         check(distribution)
-        return Same(round(_value(distribution, mode)))
-    sampled = variate(distribution)
-    return Same(sampled.lowest) if sampled.lowest == sampled.highest else Sampled(sampled, source)
+        return constant(round(_value(distribution, mode)))
+    drawn = variate(distribution)
+    return constant(drawn.lowest) if drawn.lowest == drawn.highest else sampled(drawn, source)
 
 
 def durations(distribution: Distribution[int], per_unit: Fraction, mode: SimulationMode, source: RandomSource) -> ValueStream:
@@ -196,10 +101,10 @@ def durations(distribution: Distribution[int], per_unit: Fraction, mode: Simulat
         raise UnknownError("a number of ticks is negative")
     if stream.highest * per_unit > GREATEST:
         raise UnknownError("an execution time exceeds the supported range")
-    if isinstance(stream, Same):
-        exact = (stream.value if mode is SimulationMode.SAMPLED else _value(ticks, mode)) * per_unit
-        return Same({SimulationMode.WORST: ceil, SimulationMode.BEST: floor}.get(mode, round)(exact))
-    return stream if per_unit == 1 else Converted(stream, per_unit)
+    if stream.constant is not None:
+        exact = (stream.constant if mode is SimulationMode.SAMPLED else _value(ticks, mode)) * per_unit
+        return constant({SimulationMode.WORST: ceil, SimulationMode.BEST: floor}.get(mode, round)(exact))
+    return stream if per_unit == 1 else converted(stream, per_unit)
 
 
 def choices(weights: Sequence[float | Fraction], mode: SimulationMode, source: RandomSource) -> ValueStream:
@@ -217,14 +122,16 @@ def choices(weights: Sequence[float | Fraction], mode: SimulationMode, source: R
         raise UnknownError("all branches have the probability 0")
     possible = [index for index, weight in enumerate(exact) if weight]
     if mode is not SimulationMode.SAMPLED or len(possible) == 1:
-        return Same(exact.index(max(exact)))
-    ends = [sum(exact[: index + 1], Fraction(0)) / total for index in range(possible[-1])]
-    return Chosen(np.array([floor(end * 2**64) for end in ends], np.uint64), source)
+        return constant(exact.index(max(exact)))
+    # The sum of the probabilities up to each index but the last, as a binary fraction.
+    sums = [sum(exact[: index + 1], Fraction(0)) / total for index in range(possible[-1])]
+    ends = np.array([floor(end * 2**64) for end in sums], np.uint64)
+    return ValueStream(0, len(ends), lambda count: np.searchsorted(ends, source.words(count), side="right").astype(np.int64))
 
 
 def permutations(source: RandomSource) -> ValueStream:
-    """Random numbers that decide an order, in all modes."""
-    return RandomNumbers(source)
+    """Random numbers from 0 to 2**63 - 1 that decide an order, in all modes."""
+    return ValueStream(0, 2**63 - 1, lambda count: (source.words(count) >> np.uint64(1)).view(np.int64))
 
 
 def _value(distribution: Distribution[int], mode: SimulationMode) -> int | Fraction:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil, floor, inf, isfinite, sqrt
-from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
+from amalthea_uros._internal.arrays import Numbers, Words
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.distributions import (
     Beta,
@@ -30,88 +31,38 @@ from amalthea_uros.simulate.sampling.shapes import beta_table, root, weibull_tab
 from amalthea_uros.simulate.sampling.words import LOWER_HALF, scaled
 from amalthea_uros.timing.demand.means import mean
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Words = NDArray[np.uint64]
-    Integers = NDArray[np.int64]
-
-
-class Variate(Protocol):
-    """Whole numbers with a distribution; each takes one random word."""
-
-    @property
-    def lowest(self) -> int:
-        """No value is less."""
-
-    @property
-    def highest(self) -> int:
-        """No value is greater."""
-
-    def of(self, words: Words) -> Integers:
-        """The values for random words."""
-
 
 @dataclass(frozen=True, slots=True)
-class Equal:
-    """All whole numbers between two with the same probability, apart from 2**-64."""
+class Variate:
+    """Whole numbers with a distribution; each takes one random word.
+
+    Attributes
+    ----------
+    lowest, highest : between which all values are
+    of : gives the values for random words
+    """
 
     lowest: int
     highest: int
-
-    def of(self, words: Words) -> Integers:
-        """See `Variate`."""
-        return scaled(words, self.highest - self.lowest + 1).view(np.int64) + np.int64(self.lowest)
+    of: Callable[[Words], Numbers]
 
 
-@dataclass(frozen=True, slots=True)
-class Shaped:
+def equally_probable(lowest: int, highest: int) -> Variate:
+    """All whole numbers between two with the same probability, apart from 2**-64."""
+    return Variate(lowest, highest, lambda words: scaled(words, highest - lowest + 1).view(np.int64) + np.int64(lowest))
+
+
+def shaped(lowest: int, highest: int, table: QuantileTable) -> Variate:
     """Between two numbers with a quantile function.
 
     A value is rounded up or down at random, so that its mean is that of the exact one, also for small numbers.
     """
 
-    lowest: int
-    highest: int
-    table: QuantileTable
+    def of(words: Words) -> Numbers:
+        fractions = scaled(table.fractions(words), highest - lowest, dither=words & LOWER_HALF)
+        return fractions.view(np.int64) + np.int64(lowest)
 
-    def of(self, words: Words) -> Integers:
-        """See `Variate`."""
-        found = scaled(self.table.fractions(words), self.highest - self.lowest, dither=words & LOWER_HALF)
-        return found.view(np.int64) + np.int64(self.lowest)
-
-
-@dataclass(frozen=True, slots=True)
-class Measured:
-    """In one of some intervals, each with a weight; all whole numbers in an interval have the same probability.
-
-    Attributes
-    ----------
-    starts, spans : the least value of each interval, and how many there are
-    ends : the sum of the weights up to each interval
-    """
-
-    starts: Integers
-    spans: Words
-    ends: Words
-
-    @property
-    def lowest(self) -> int:
-        """See `Variate`."""
-        return int(self.starts.min())
-
-    @property
-    def highest(self) -> int:
-        """See `Variate`."""
-        return int((self.starts + self.spans.view(np.int64) - 1).max())
-
-    def of(self, words: Words) -> Integers:
-        """See `Variate`."""
-        total = int(self.ends[-1])
-        interval = np.searchsorted(self.ends, scaled(words, total), side="right")
-        # The product modulo 2**64 is the fraction that remains within a unit of weight.
-        within = words * np.uint64(total)
-        return self.starts[interval] + scaled(within, self.spans[interval]).view(np.int64)
+    return Variate(lowest, highest, of)
 
 
 # Distributions as they are sampled.
@@ -142,7 +93,7 @@ def variate(distribution: Distribution[int]) -> Variate:
     check(distribution)
     match distribution:
         case Constant(value):
-            return Equal(value, value)
+            return equally_probable(value, value)
         case Bounds():
             raise UnknownError(NO_PARAMETERS)
         case Histogram():
@@ -150,19 +101,19 @@ def variate(distribution: Distribution[int]) -> Variate:
         case Gauss(mean=mean, deviation=deviation, lower=lower, upper=upper):
             return truncated_normal(Fraction(mean), deviation, lower, upper)
         case Uniform(lower=lower, upper=upper):
-            return Equal(lower, upper)
+            return equally_probable(lower, upper)
         case _ if distribution.lower == distribution.upper:
-            return Equal(distribution.lower, distribution.upper)
+            return equally_probable(distribution.lower, distribution.upper)
         case Boundaries(lower=lower, upper=upper, sampling=sampling):
             parameters = _PARAMETERS.get(sampling)
-            return Shaped(lower, upper, beta_table(*parameters)) if parameters else Equal(lower, upper)
+            return shaped(lower, upper, beta_table(*parameters)) if parameters else equally_probable(lower, upper)
         case Beta(alpha=alpha, beta=beta, lower=lower, upper=upper):
-            return Shaped(lower, upper, beta_table(alpha, beta))
+            return shaped(lower, upper, beta_table(alpha, beta))
         case Statistics(lower=lower, average=average, upper=upper):
             return normal_with_mean(Fraction(average), lower, upper)
         case Weibull(lower=lower, average=average, upper=upper, exceeding=exceeding):
             relative = float((Fraction(average) - lower) / (upper - lower))
-            return Shaped(lower, upper, weibull_table(relative, exceeding / 1000))
+            return shaped(lower, upper, weibull_table(relative, exceeding / 1000))
 
 
 def sampling_assumption(distribution: Distribution[int] | Distribution[float]) -> str | None:
@@ -214,6 +165,7 @@ def check(distribution: Distribution[int]) -> None:
 
 
 def _measured(histogram: Histogram[int]) -> Variate:
+    """In one of some intervals, each with a weight; all whole numbers in an interval have the same probability."""
     buckets = [bucket for bucket in histogram.buckets if bucket.occurrences]
     if not buckets:
         raise UnknownError("a histogram has no occurrences")
@@ -221,11 +173,18 @@ def _measured(histogram: Histogram[int]) -> Variate:
         raise UnknownError("an interval of a histogram has a negative number of occurrences or a minimum above its maximum")
     if sum(bucket.occurrences for bucket in buckets) >= GREATEST:
         raise UnknownError("the number of occurrences in a histogram is out of range")
-    return Measured(
-        np.array([bucket.lower for bucket in buckets], np.int64),
-        np.array([bucket.upper - bucket.lower + 1 for bucket in buckets], np.uint64),
-        np.cumsum(np.array([bucket.occurrences for bucket in buckets], np.uint64)),
-    )
+    starts = np.array([bucket.lower for bucket in buckets], np.int64)
+    spans = np.array([bucket.upper - bucket.lower + 1 for bucket in buckets], np.uint64)
+    ends = np.cumsum(np.array([bucket.occurrences for bucket in buckets], np.uint64))
+    total = int(ends[-1])
+
+    def of(words: Words) -> Numbers:
+        interval = np.searchsorted(ends, scaled(words, total), side="right")
+        # The product modulo 2**64 is the fraction that remains within a unit of weight.
+        within = words * np.uint64(total)
+        return starts[interval] + scaled(within, spans[interval]).view(np.int64)
+
+    return Variate(min(bucket.lower for bucket in buckets), max(bucket.upper for bucket in buckets), of)
 
 
 # Normal distributions between bounds.
@@ -246,7 +205,7 @@ def truncated_normal(location: Fraction, deviation: float, lower: int | None, up
         peak = min(peak, Fraction(upper))
     if deviation < _NO_DEVIATION:
         value = min(max(round(peak), -inf if lower is None else lower), inf if upper is None else upper)
-        return Equal(int(value), int(value))
+        return equally_probable(int(value), int(value))
     # In standard deviations: from the mean to the peak, from the peak to where the density is negligible or the bound.
     distance = float(abs(location - peak)) / deviation
     reach = 2 * NEGLIGIBLE / (sqrt(distance * distance + 2 * NEGLIGIBLE) + distance)
@@ -258,9 +217,9 @@ def truncated_normal(location: Fraction, deviation: float, lower: int | None, up
     least = least if lower is None else max(lower, least)
     most = most if upper is None else min(upper, most)
     if least == most:
-        return Equal(least, most)
+        return equally_probable(least, most)
     values = (float(peak - least) + points * deviation) / (most - least)
-    return Shaped(least, most, tabulated(quantiles_of_density(points, logarithms, values)))
+    return shaped(least, most, tabulated(quantiles_of_density(points, logarithms, values)))
 
 
 def normal_with_mean(average: Fraction, lower: int, upper: int) -> Variate:
@@ -269,7 +228,7 @@ def normal_with_mean(average: Fraction, lower: int, upper: int) -> Variate:
     As INCHRON does, the deviation before truncation is a third of the distance to the farther bound.
     """
     if average in (lower, upper):
-        return Equal(int(average), int(average))
+        return equally_probable(int(average), int(average))
     below, above = float(average - lower), float(upper - average)
     deviation = max(below, above) / 3
 

@@ -11,6 +11,7 @@ from typing import IO, TYPE_CHECKING
 
 import numpy as np
 
+from amalthea_uros._internal.arrays import Flags, Numbers
 from amalthea_uros._internal.limits import TRACE_LINE
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.trace.can.candump_blocks import CandumpLines, read_lines
@@ -99,10 +100,10 @@ class CandumpLog(LogReader):
         table = table if is_row.all() else table.take(np.flatnonzero(is_row))
         return replace(table, time=self._completed(table.time, table.kind))
 
-    def _is_usual(self, block: bytes, lines: CandumpLines) -> NDArray[np.bool_]:
+    def _is_usual(self, block: bytes, lines: CandumpLines) -> Flags:
         """Whether the times of plain lines are like those of the other lines; others are reported."""
-        is_near: NDArray[np.bool_] = abs(lines.seconds - self.origin // _SECOND) < _RANGE // _SECOND
-        has_digits: NDArray[np.bool_] = np.where(lines.has_nanoseconds, _NANOSECOND, _MICROSECOND) == self._resolution
+        is_near: Flags = abs(lines.seconds - self.origin // _SECOND) < _RANGE // _SECOND
+        has_digits: Flags = np.where(lines.has_nanoseconds, _NANOSECOND, _MICROSECOND) == self._resolution
         for number in np.flatnonzero(lines.is_plain & ~(is_near & has_digits)).tolist():
             place = self._place(_line(block, lines, number), number)
             self._report_time(_DIGITS if is_near[number] else _FAR, place)
@@ -122,7 +123,7 @@ class CandumpLog(LogReader):
             return channel
         return UNKNOWN
 
-    def _completed(self, time: NDArray[np.int64], kind: NDArray[np.int8]) -> NDArray[np.int64]:
+    def _completed(self, time: Numbers, kind: NDArray[np.int8]) -> Numbers:
         """The times in which differences are added up, and gaps have the time of the frame before them."""
         is_gap = kind == FrameKind.GAP
         if self._has_differences:

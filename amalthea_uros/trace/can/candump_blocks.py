@@ -7,17 +7,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
+from amalthea_uros._internal.arrays import Flags, Numbers
 from amalthea_uros.trace.can.frames import EXTENDED
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Ints: TypeAlias = NDArray[np.int64]
-    Bools: TypeAlias = NDArray[np.bool_]
 
 #: An element of an array.
 Number = TypeVar("Number", bound="np.integer[Any]")
@@ -48,15 +47,15 @@ class CandumpLines:
     data : of each line, with zeros up to the largest length
     """
 
-    start: Ints
-    end: Ints
-    is_plain: Bools
-    seconds: Ints
-    fraction: Ints
-    has_nanoseconds: Bools
+    start: Numbers
+    end: Numbers
+    is_plain: Flags
+    seconds: Numbers
+    fraction: Numbers
+    has_nanoseconds: Flags
     channel: NDArray[np.int16]
-    identifier: Ints
-    length: Ints
+    identifier: Numbers
+    length: Numbers
     data: NDArray[np.uint8]
 
     def payloads(self) -> list[bytes]:
@@ -95,18 +94,18 @@ def read_lines(block: bytes, channel_index: Callable[[str], int]) -> CandumpLine
     return CandumpLines(start, end, is_plain & is_known, seconds, fraction, has_nanoseconds, channel, identifier, length, data)
 
 
-def _at(values: NDArray[Number], places: Ints) -> NDArray[Number]:
+def _at(values: NDArray[Number], places: Numbers) -> NDArray[Number]:
     """The values at some places; those outside are moved to the edge, and must not be used."""
     return np.take(values, places, mode="clip") if len(values) else np.zeros(len(places), values.dtype)
 
 
-def _next(text: NDArray[np.uint8], character: str, places: Ints) -> Ints:
+def _next(text: NDArray[np.uint8], character: str, places: Numbers) -> Numbers:
     """Where a character is, from each place on; the end of the text if it does not come again."""
     found = np.append(np.flatnonzero(text == ord(character)), len(text))
     return found[np.searchsorted(found, places)]
 
 
-def _times(text: NDArray[np.uint8], start: Ints, close: Ints) -> tuple[Ints, Ints, Bools, Bools]:
+def _times(text: NDArray[np.uint8], start: Numbers, close: Numbers) -> tuple[Numbers, Numbers, Flags, Flags]:
     """Whole seconds, nanoseconds, whether there are nine digits of them, and whether it is a time at all."""
     has_micros = _at(text, close - 7) == ord(".")
     dot = np.where(has_micros, close - 7, close - 10)
@@ -125,7 +124,7 @@ def _times(text: NDArray[np.uint8], start: Ints, close: Ints) -> tuple[Ints, Int
     return seconds, fraction, ~has_micros, is_time
 
 
-def _identifiers(text: NDArray[np.uint8], start: Ints, end: Ints) -> tuple[Ints, Bools]:
+def _identifiers(text: NDArray[np.uint8], start: Numbers, end: Numbers) -> tuple[Numbers, Flags]:
     digits = end - start
     is_short = digits == 3
     number, is_valid = np.zeros(len(start), np.int64), is_short | (digits == 8)
@@ -137,7 +136,7 @@ def _identifiers(text: NDArray[np.uint8], start: Ints, end: Ints) -> tuple[Ints,
     return np.where(is_short, number, number | EXTENDED), is_valid
 
 
-def _data(text: NDArray[np.uint8], start: Ints, end: Ints, is_plain: Bools) -> tuple[NDArray[np.uint8], Ints, Bools]:
+def _data(text: NDArray[np.uint8], start: Numbers, end: Numbers, is_plain: Flags) -> tuple[NDArray[np.uint8], Numbers, Flags]:
     digits = end - start
     is_valid = (digits >= 0) & (digits % 2 == 0) & (digits <= _MAX_DATA_DIGITS)
     width = max(int(digits[is_valid & is_plain].max(initial=0)) // 2, 1)
@@ -151,8 +150,8 @@ def _data(text: NDArray[np.uint8], start: Ints, end: Ints, is_plain: Bools) -> t
 
 
 def _channels(
-    text: NDArray[np.uint8], block: bytes, name: tuple[Ints, Ints], is_plain: Bools, channel_index: Callable[[str], int]
-) -> tuple[NDArray[np.int16], Bools]:
+    text: NDArray[np.uint8], block: bytes, name: tuple[Numbers, Numbers], is_plain: Flags, channel_index: Callable[[str], int]
+) -> tuple[NDArray[np.int16], Flags]:
     """The channel of each line, and whether it is known; a block with a great many names is not worth columns."""
     start, end = name
     channel, is_open = np.zeros(len(start), np.int16), is_plain & (end > start)

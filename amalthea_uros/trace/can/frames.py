@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import TYPE_CHECKING, Protocol
 
+from amalthea_uros._internal.arrays import Numbers
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.trace.problems import TracePlace, TraceProblems
 
@@ -49,17 +50,17 @@ class FrameTable:
     """
 
     channels: Sequence[str]
-    time: NDArray[np.int64]
+    time: Numbers
     channel: NDArray[np.int16]
-    identifier: NDArray[np.int64]
+    identifier: Numbers
     kind: NDArray[np.int8]
-    line: NDArray[np.int64]
+    line: Numbers
     data: Sequence[bytes]
 
     def __len__(self) -> int:
         return len(self.time)
 
-    def take(self, places: NDArray[np.int64]) -> FrameTable:
+    def take(self, places: Numbers) -> FrameTable:
         """The rows at some places, in that order."""
         return FrameTable(
             self.channels,

@@ -5,17 +5,14 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from amalthea_uros._internal.arrays import Numbers
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.trace.can.frames import UNKNOWN, FrameTable
 from amalthea_uros.trace.can.plausibility import BusWatch, ClockWatch
 from amalthea_uros.trace.problems import TracePlace, TraceProblems
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 #: A computer has a few buses.
 _MOST_CHANNELS = 256
@@ -86,7 +83,7 @@ class LogReader(ABC):
         if self._wanted is None:
             return table
         wanted = [UNKNOWN, self._indices.get(self._wanted, UNKNOWN)]
-        places: NDArray[np.int64] = np.flatnonzero(np.isin(table.channel, wanted))
+        places: Numbers = np.flatnonzero(np.isin(table.channel, wanted))
         return table if len(places) == len(table) else table.take(places)
 
     def _report_missing_channel(self, channel: str) -> None:

@@ -4,17 +4,14 @@ from __future__ import annotations
 
 from collections import Counter
 from itertools import combinations
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from amalthea_uros._internal.arrays import Numbers
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.trace.can.frames import FrameKind, FrameTable
 from amalthea_uros.trace.problems import TracePlace, TraceProblems
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 #: A pause is worth a word if it is so many times as long as the second longest, and at least so long.
 _FACTOR, _SHORTEST = 10, 10**12
@@ -73,7 +70,7 @@ class ClockWatch:
         self._end = int(table.time[-1])
 
 
-def _with_gaps(table: FrameTable, places: NDArray[np.int64]) -> FrameTable:
+def _with_gaps(table: FrameTable, places: Numbers) -> FrameTable:
     """The table with a gap before the frames at some places, at their times."""
     rows = np.sort(np.concatenate((np.arange(len(table)), places)))
     taken = table.take(rows)
@@ -85,7 +82,7 @@ def _with_gaps(table: FrameTable, places: NDArray[np.int64]) -> FrameTable:
     return FrameTable(table.channels, taken.time, taken.channel, taken.identifier, taken.kind, taken.line, data)
 
 
-def unwrap(ticks: NDArray[np.int64], bits: int, *, epoch: NDArray[np.int64] | None = None) -> NDArray[np.int64]:
+def unwrap(ticks: Numbers, bits: int, *, epoch: Numbers | None = None) -> Numbers:
     """The values of a counter as if it had more bits, in ticks from 0 of its first round.
 
     Parameters
@@ -108,7 +105,7 @@ def unwrap(ticks: NDArray[np.int64], bits: int, *, epoch: NDArray[np.int64] | No
     size = 1 << bits
     if not 1 <= bits <= 62 or ((ticks < 0) | (ticks >= size)).any():
         raise InvalidArgumentError(f"a counter of {bits} bits has values from 0 to {size - 1}, and others were given")
-    rounds: NDArray[np.int64]
+    rounds: Numbers
     if epoch is None:
         rounds = np.concatenate(([0], np.cumsum(np.diff(ticks) < 0)))[: len(ticks)]
     else:

@@ -9,21 +9,8 @@ from amalthea_uros.perf.activities import Call, SenderReceiverAccess, ServerCall
 from amalthea_uros.perf.distributions import Statistics
 from amalthea_uros.perf.events import RunnableChange, RunnableEvent
 from amalthea_uros.perf.software import Runnable
+from amalthea_uros.simulate.kernel import operations
 from amalthea_uros.simulate.kernel.layout import EXECUTION_NUMBER, EXECUTION_SIZE, LOOP_SIZE
-from amalthea_uros.simulate.kernel.operations import (
-    ACTIVE,
-    AGAIN,
-    ASK,
-    AWAIT,
-    BEGIN_EXECUTION,
-    BEGIN_RUNNABLE,
-    END_EXECUTION,
-    END_RUNNABLE,
-    JUMP,
-    REPEAT,
-    SERVE,
-    SERVED,
-)
 from amalthea_uros.simulate.program.image import JumpLabel
 from amalthea_uros.timing.jobs.counts import count_of
 from amalthea_uros.timing.jobs.executed import MAX_CALL_DEPTH
@@ -44,7 +31,7 @@ def call(body: Body, activity: Call) -> None:
     body.add_all(body.hooks.after.get(number, ()))
     body.mark(skip)
     if again is not None:
-        body.code.add(JUMP, again)
+        body.code.add(operations.JUMP, again)
     body.mark(done)
 
 
@@ -66,9 +53,9 @@ def _repeated(body: Body, activity: Call) -> tuple[JumpLabel | None, JumpLabel |
     least, mean, most = count_of(activity.times)
     record, done = body.resources.image.record(LOOP_SIZE), JumpLabel()
     passes = Statistics(lower=least, average=float(mean), upper=most)
-    body.code.add(REPEAT, record, body.resources.count(passes, f"{body.place()} passes"))
+    body.code.add(operations.REPEAT, record, body.resources.count(passes, f"{body.place()} passes"))
     again = body.code.here()
-    body.code.add(AGAIN, record, done)
+    body.code.add(operations.AGAIN, record, done)
     return again, done
 
 
@@ -78,22 +65,22 @@ def _execution(body: Body, runnable: Runnable) -> None:
     site = body.resources.site(runnable.name) if body.parts.is_noted else 0
     measured = _measured(body, runnable.name)
     if site:
-        body.code.add(BEGIN_RUNNABLE, site)
+        body.code.add(operations.BEGIN_RUNNABLE, site)
     if measured:
-        body.code.add(BEGIN_EXECUTION, measured)
+        body.code.add(operations.BEGIN_EXECUTION, measured)
     body.observe(RunnableEvent, runnable.name, RunnableChange.START)
     if service:
-        body.code.add(SERVE, service)
+        body.code.add(operations.SERVE, service)
     outer, body.above = body.above, (*body.above, runnable.name)
     body.activities(runnable.activities)
     body.above = outer
     if service:
-        body.code.add(SERVED, service)
+        body.code.add(operations.SERVED, service)
     body.observe(RunnableEvent, runnable.name, RunnableChange.TERMINATE)
     if measured:
-        body.code.add(END_EXECUTION, measured)
+        body.code.add(operations.END_EXECUTION, measured)
     if site:
-        body.code.add(END_RUNNABLE, site)
+        body.code.add(operations.END_RUNNABLE, site)
 
 
 def _measured(body: Body, runnable: str) -> int:
@@ -114,12 +101,12 @@ def server_call(body: Body, activity: ServerCall) -> None:
     elif activity.runnable not in body.resources.executing:
         raise UnknownError(f"it waits for the server runnable {activity.runnable!r}, which no process executes")
     # Where a model does not state it, a client waits actively, as for INCHRON's importer.
-    flags = 0 if activity.waiting is Waiting.PASSIVE else ACTIVE
+    flags = 0 if activity.waiting is Waiting.PASSIVE else operations.ACTIVE
     service = body.resources.services.get(activity.runnable, 0)
     if activity.kind is not ServerCallKind.GET_RESULT and service:
-        body.code.add(ASK, service)
+        body.code.add(operations.ASK, service)
     if waits:
-        body.code.add(AWAIT, service, flags)
+        body.code.add(operations.AWAIT, service, flags)
 
 
 # What is refused.

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import Activity, Group, Loop, ProbabilitySwitch, Switch, Terminate
-from amalthea_uros.simulate.kernel.layout import GROUP_SIZE, ORDERED_PARTS, PARTS, PARTS_TOTAL
-from amalthea_uros.simulate.kernel.operations import CHOOSE, JUMP, MASK, NEXT, SHUFFLE, UNMASK
+from amalthea_uros.simulate.kernel import layout, operations
 from amalthea_uros.simulate.options import SimulationMode
 from amalthea_uros.simulate.program.image import JumpLabel, JumpTable
 
@@ -19,14 +18,14 @@ if TYPE_CHECKING:
 def group(body: Body, activity: Group) -> None:
     """Activities one after the other, or in any order; perhaps without interruption."""
     if not activity.interruptible:
-        body.code.add(MASK)
+        body.code.add(operations.MASK)
         body.masks += 1
     if activity.ordered or len(activity.activities) < 2 or body.resources.options.mode is not SimulationMode.SAMPLED:
         body.activities(activity.activities)
     else:
         _in_any_order(body, activity.activities)
     if not activity.interruptible:
-        body.code.add(UNMASK)
+        body.code.add(operations.UNMASK)
         body.masks -= 1
 
 
@@ -34,15 +33,15 @@ def _in_any_order(body: Body, activities: Sequence[Activity]) -> None:
     image, total, done = body.resources.image, len(activities), JumpLabel()
     ordered, _ = image.items([0] * total)
     parts, _ = image.items([0] * total)
-    record = image.record(GROUP_SIZE, {ORDERED_PARTS: ordered, PARTS: parts, PARTS_TOTAL: total})
-    body.code.add(SHUFFLE, record, body.resources.order(f"{body.place()} order"))
+    record = image.record(layout.GROUP_SIZE, {layout.ORDERED_PARTS: ordered, layout.PARTS: parts, layout.PARTS_TOTAL: total})
+    body.code.add(operations.SHUFFLE, record, body.resources.order(f"{body.place()} order"))
     following = body.code.here()
-    body.code.add(NEXT, record, done)
+    body.code.add(operations.NEXT, record, done)
     labels = []
     for activity in activities:
         labels.append(body.code.here())
         body.activities([activity])
-        body.code.add(JUMP, following)
+        body.code.add(operations.JUMP, following)
     body.code.tables.append(JumpTable(labels, ordered))
     body.code.mark(done)
 
@@ -55,16 +54,16 @@ def choose(body: Body, activity: ProbabilitySwitch) -> None:
     labels, done, jump = [], JumpLabel(), JumpLabel()
     only = _extreme_branch(body, activity)
     if only is not None:
-        body.code.add(JUMP, jump)
+        body.code.add(operations.JUMP, jump)
     else:
         weights = [branch.weight for branch in activity.branches]
-        body.code.add(CHOOSE, body.resources.choice(weights, f"{body.place()} branch"), table)
+        body.code.add(operations.CHOOSE, body.resources.choice(weights, f"{body.place()} branch"), table)
     for index, branch in enumerate(activity.branches):
         labels.append(body.code.here())
         if index == only:
             body.code.mark(jump)
         body.activities(branch.activities)
-        body.code.add(JUMP, done)
+        body.code.add(operations.JUMP, done)
     body.code.tables.append(JumpTable(labels, table))
     body.code.mark(done)
 
@@ -91,7 +90,7 @@ def switch(body: Body, activity: Switch) -> None:
             raise UnknownError("a branch of a switch has no condition")
         following = body.tested(case.condition)
         body.activities(case.activities)
-        body.code.add(JUMP, done)
+        body.code.add(operations.JUMP, done)
         body.mark(following)
     body.activities(activity.default or ())
     body.code.mark(done)
@@ -104,12 +103,12 @@ def loop(body: Body, activity: Loop) -> None:
     start = body.code.here()
     done = body.tested(activity.condition)
     body.activities(activity.activities)
-    body.code.add(JUMP, start)
+    body.code.add(operations.JUMP, start)
     body.mark(done)
 
 
 def terminate(body: Body, activity: Terminate) -> None:
     """The end of the job, also within groups that cannot be interrupted."""
     for _ in range(body.masks):
-        body.code.add(UNMASK)
-    body.code.add(JUMP, body.end)
+        body.code.add(operations.UNMASK)
+    body.code.add(operations.JUMP, body.end)

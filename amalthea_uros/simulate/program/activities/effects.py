@@ -38,22 +38,7 @@ from amalthea_uros.perf.events import (
     SemaphoreChange,
     SemaphoreEvent,
 )
-from amalthea_uros.simulate.kernel.operations import (
-    ACTIVE,
-    CLEAR_EVENT,
-    EXCLUSIVE,
-    FIRE,
-    NOTE,
-    POINT,
-    RECEIVE,
-    REQUEST,
-    SEND,
-    SET_EVENT,
-    SET_MODE,
-    STEP_MODE,
-    UNLOCK,
-    WAIT_EVENT,
-)
+from amalthea_uros.simulate.kernel import operations
 from amalthea_uros.simulate.program.activities.calls import check_executing
 from amalthea_uros.timing.basics.settings import Memory
 from amalthea_uros.timing.blocking.critical_sections import spinlocks_of, waits_actively
@@ -87,14 +72,14 @@ def _label_accessed(body: Body, label: str, kind: AccessKind, communication: Com
     # In traces, schedulers do not access labels.
     if body.parts.is_noted and body.process is not None and label in body.context.system.labels:
         event = EventKind.READ if kind is AccessKind.READ else EventKind.WRITE
-        body.code.add(NOTE, int(event), body.resources.entities.number(EntityKind.LABEL, label))
+        body.code.add(operations.NOTE, int(event), body.resources.entities.number(EntityKind.LABEL, label))
     body.observe(LabelEvent, label, LabelChange(kind), communication)
 
 
 def send(body: Body, activity: Send) -> None:
     """Elements to a channel."""
     body.access(activity.channel, AccessKind.WRITE, max(1, activity.elements))
-    body.code.add(SEND, body.parts.modes.channel(activity.channel), activity.elements)
+    body.code.add(operations.SEND, body.parts.modes.channel(activity.channel), activity.elements)
     body.observe(ChannelEvent, activity.channel, ChannelChange.SEND)
 
 
@@ -104,7 +89,7 @@ def receive(body: Body, activity: Receive) -> None:
     least = min(activity.at_least, most)
     body.access(activity.channel, AccessKind.READ, Count(least=least, mean=most, most=most))
     takes = activity.operation is not None and "take" in activity.operation
-    body.code.add(RECEIVE, body.parts.modes.channel(activity.channel), activity.elements if takes else 0)
+    body.code.add(operations.RECEIVE, body.parts.modes.channel(activity.channel), activity.elements if takes else 0)
     body.observe(ChannelEvent, activity.channel, ChannelChange.RECEIVE)
 
 
@@ -120,14 +105,14 @@ def _change_mode(body: Body, access: ModeAccess) -> None:
     if access.operation is ModeOperation.SET:
         if access.value is None:
             raise UnknownError(f"it sets the mode label {access.label!r} to nothing")
-        body.code.add(SET_MODE, label, body.parts.modes.value(access.label, access.value))
+        body.code.add(operations.SET_MODE, label, body.parts.modes.value(access.label, access.value))
     else:
-        body.code.add(STEP_MODE, label, access.step if access.operation is ModeOperation.INCREMENT else -access.step)
+        body.code.add(operations.STEP_MODE, label, access.step if access.operation is ModeOperation.INCREMENT else -access.step)
 
 
 # Semaphores, events of the operating system, and what activates others.
 
-_OPERATIONS = {SetEvent: SET_EVENT, ClearEvent: CLEAR_EVENT, WaitEvent: WAIT_EVENT}
+_OPERATIONS = {SetEvent: operations.SET_EVENT, ClearEvent: operations.CLEAR_EVENT, WaitEvent: operations.WAIT_EVENT}
 
 
 def semaphore(body: Body, access: SemaphoreAccess) -> None:
@@ -136,13 +121,13 @@ def semaphore(body: Body, access: SemaphoreAccess) -> None:
     if record is None:
         raise UnknownError(f"the semaphore {access.semaphore!r} is not defined in the model")
     if access.operation is SemaphoreOperation.RELEASE:
-        body.code.add(UNLOCK, record)
+        body.code.add(operations.UNLOCK, record)
         body.observe(SemaphoreEvent, access.semaphore, SemaphoreChange.UNLOCK)
         return
-    flags = EXCLUSIVE if access.operation is SemaphoreOperation.EXCLUSIVE else 0
+    flags = operations.EXCLUSIVE if access.operation is SemaphoreOperation.EXCLUSIVE else 0
     if waits_actively(access, spinlocks_of(body.context.system)):
-        flags |= ACTIVE
-    body.code.add(REQUEST, record, flags)
+        flags |= operations.ACTIVE
+    body.code.add(operations.REQUEST, record, flags)
     body.observe(SemaphoreEvent, access.semaphore, SemaphoreChange.LOCK)
 
 
@@ -155,7 +140,7 @@ def trigger(body: Body, activity: Trigger) -> None:
     """An occurrence of a stimulus."""
     if activity.stimulus not in body.parts.stimuli:
         raise UnknownError(f"the stimulus {activity.stimulus!r} is not defined in the model")
-    body.code.add(FIRE, body.parts.stimuli[activity.stimulus])
+    body.code.add(operations.FIRE, body.parts.stimuli[activity.stimulus])
 
 
 def raise_event(body: Body, activity: RaiseEvent) -> None:
@@ -165,7 +150,7 @@ def raise_event(body: Body, activity: RaiseEvent) -> None:
 
 def schedule_point(body: Body, activity: SchedulePoint) -> None:
     """Where other tasks can go first."""
-    body.code.add(POINT)
+    body.code.add(operations.POINT)
 
 
 # What takes time on the core.
