@@ -3,19 +3,18 @@
 from fractions import Fraction
 
 from amalthea_uros._internal.by_name import Results
-from amalthea_uros.simulate.options import Mode
-from amalthea_uros.simulate.results import (
+from amalthea_uros.simulate.observations import (
     ChainObservation,
     CoreObservation,
     CountObservation,
     MetricObservation,
     ObservedOccurrence,
-    ObservedVerdict,
     ProcessObservation,
     RouteObservation,
-    Simulation,
     TimeHistogram,
 )
+from amalthea_uros.simulate.options import Mode
+from amalthea_uros.simulate.results import ObservedVerdict, Simulation
 from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS

@@ -19,7 +19,8 @@ from amalthea_uros.compare.agreement import Prediction, measured_values
 from amalthea_uros.compare.results import PredictionClaim, Statistic
 from amalthea_uros.compare.simulated import Run
 from amalthea_uros.measure.series import MeasuredKind, TimeStatistics
-from amalthea_uros.simulate.results import MetricObservation, Simulation
+from amalthea_uros.simulate.observations import MetricObservation
+from amalthea_uros.simulate.results import Simulation
 from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
 from amalthea_uros.timing.response import Claim
 from amalthea_uros.units import Time, time_text

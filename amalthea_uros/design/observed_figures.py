@@ -12,7 +12,8 @@ from amalthea_uros.timing.basics.quantities import ChainQuantity
 from amalthea_uros.timing.response import Claim
 
 if TYPE_CHECKING:
-    from amalthea_uros.simulate.results import ChainObservation, ProcessObservation, RequirementObservation, Simulation
+    from amalthea_uros.simulate.observations import ChainObservation, ProcessObservation, RequirementObservation
+    from amalthea_uros.simulate.results import Simulation
 
 
 def observed_impact(before: Simulation, after: Simulation) -> Impact:

@@ -9,7 +9,7 @@ from math import floor
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.measure.series import Counts, Measurement, Series
 from amalthea_uros.report.simulated import duration_text
-from amalthea_uros.simulate.results import TimeHistogram
+from amalthea_uros.simulate.observations import TimeHistogram
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.units import Rounding, Time, rounded_time_text, time_text
 

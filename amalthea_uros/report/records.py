@@ -47,7 +47,7 @@ from amalthea_uros.services.optimize import DesignProposal, Optimization
 from amalthea_uros.services.simulate import CampaignResult, SimulationResult
 from amalthea_uros.services.sweep import SweepResult
 from amalthea_uros.services.what_if import WhatIf
-from amalthea_uros.simulate.results import (
+from amalthea_uros.simulate.observations import (
     ChainObservation,
     CoreObservation,
     LabelObservation,

@@ -13,7 +13,8 @@ from amalthea_uros.diagnostics import Finding
 from amalthea_uros.judge.causes import distinct
 from amalthea_uros.report.closing_line import left_text
 from amalthea_uros.simulate.not_simulated import LIMITED_PROCESS_LEFT_OUT, consequence_of
-from amalthea_uros.simulate.results import IDLE, Judged, RequirementObservation, Simulation
+from amalthea_uros.simulate.observations import RequirementObservation
+from amalthea_uros.simulate.results import IDLE, Judged, Simulation
 from amalthea_uros.units import SECOND, Time, number_text, time_text
 
 _MINUTE = 60 * SECOND

@@ -23,14 +23,14 @@ from amalthea_uros.report.pictures.state_timeline import StateTimeline, state_ti
 from amalthea_uros.report.pictures.windows import default_window
 from amalthea_uros.services.recording import record_events
 from amalthea_uros.services.simulate import SimulationResult
-from amalthea_uros.simulate.options import Options
-from amalthea_uros.simulate.results import (
+from amalthea_uros.simulate.observations import (
     WITH_HISTOGRAM,
     ChainObservation,
     MetricObservation,
     ObservedOccurrence,
     ProcessObservation,
 )
+from amalthea_uros.simulate.options import Options
 from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
 from amalthea_uros.trace.table import Entity, EntityKind, EventKind
 from amalthea_uros.units import Time, time_text

@@ -30,10 +30,6 @@ _VALUES, _LEAST_VALUES, _MOST_VALUES = 2**20, 32, 4096
 _OCCURRENCES = 8192
 
 
-class EndlessJobError(Exception):
-    """A job does not end, and takes no time; the argument is the record of its process."""
-
-
 @dataclass(slots=True)
 class KernelDriver:
     """Runs a program.
@@ -43,6 +39,7 @@ class KernelDriver:
     until : end of the run, in time units
     traced : the part of the run of which events are recorded
     is_compiled : whether the kernel is machine code by now
+    endless : the record of the process of which a job goes on forever without taking time, at which the run has ended; 0: none
     """
 
     program: KernelProgram
@@ -53,6 +50,7 @@ class KernelDriver:
     traced: tuple[int, int] = (0, 0)
     memory: Memory = field(init=False)
     is_compiled: bool = field(init=False, default=False)
+    endless: int = field(init=False, default=0)
     _thread: ThreadPoolExecutor | None = None
     _handed: deque[Future[None]] = field(default_factory=deque)
     _regions: dict[int, int] = field(default_factory=dict)
@@ -82,12 +80,7 @@ class KernelDriver:
             self.memory[end] = self._regions[first] + places
 
     def run(self) -> None:
-        """Run to the end.
-
-        Raises
-        ------
-        EndlessJobError : a job goes on forever without taking time.
-        """
+        """Run to the end, or until a job goes on forever without taking time."""
         began = perf_counter()
         try:
             self._run_to_end(began)
@@ -103,12 +96,12 @@ class KernelDriver:
         self._consider_machine_code(0, 0)
         edges = sorted({edge for edge in (*self.traced, self.until) if 0 < edge <= self.until})
         for edge in edges:
-            while time < edge:
+            while time < edge and not self.endless:
                 self.memory[layout.IS_TRACED] = int(self.traced[0] <= time < self.traced[1])
                 time = min(edge, time + window)
                 count = self._prepare(time)
                 self._run_window(time)
-                if not self.is_compiled:
+                if not self.is_compiled and not self.endless:
                     self._consider_machine_code(perf_counter() - began, (self.until - time) / time)
                 if 2 * count < _OCCURRENCES:
                     window *= 2
@@ -128,8 +121,8 @@ class KernelDriver:
                 self._grow_queues()
             elif code == operations.ENDLESS:
                 # What was observed up to here counts.
-                self._take_rows()
-                raise EndlessJobError(int(self.memory[layout.CAUSE]))
+                self.endless = int(self.memory[layout.CAUSE])
+                return
 
     def _consider_machine_code(self, seconds: float, times_left: float) -> None:
         """Go on with machine code, which gives the same results, if what is left takes long enough.

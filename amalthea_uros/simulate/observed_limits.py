@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from types import MappingProxyType
-from typing import NamedTuple, Protocol
+from typing import Protocol
 
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros.judge.evidence import ObservedProcess, ObservedValues
@@ -31,8 +31,9 @@ from amalthea_uros.perf.constraints import (
 from amalthea_uros.perf.events import EventChain
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.system import System
+from amalthea_uros.simulate.metrics.extremes import LimitedQuantity
 from amalthea_uros.simulate.not_simulated import LIMITED_PROCESS_LEFT_OUT
-from amalthea_uros.simulate.results import (
+from amalthea_uros.simulate.observations import (
     ChainObservation,
     MetricObservation,
     ProcessObservation,
@@ -55,13 +56,6 @@ _RATIOS = {
     RatioMetric.NORMALIZED_RESPONSE_TIME: JobMetric.RESPONSE_TIME,
     RatioMetric.NORMALIZED_LATENESS: JobMetric.LATENESS,
 }
-
-
-class LimitedQuantity(NamedTuple):
-    """A limit, and what was observed of the quantity."""
-
-    limit: SystemLimit
-    values: ObservedValues
 
 
 def observed_values(found: MetricObservation | None, reason: str) -> ObservedValues:

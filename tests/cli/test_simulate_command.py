@@ -19,16 +19,15 @@ from support import ROOT
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros.cli.main import main
 from amalthea_uros.services.simulate import simulate
-from amalthea_uros.simulate.results import (
+from amalthea_uros.simulate.observations import (
     CoreObservation,
     CountObservation,
     MetricObservation,
     ObservedOccurrence,
-    ObservedVerdict,
     ProcessObservation,
-    Simulation,
     TimeHistogram,
 )
+from amalthea_uros.simulate.results import ObservedVerdict, Simulation
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.trace.table import NO_NOTE, Entity, EntityKind, EventKind, EventTable
 

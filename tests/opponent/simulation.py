@@ -19,9 +19,9 @@ from amalthea_uros.simulate.driver import KernelDriver
 from amalthea_uros.simulate.kernel import machine_code
 from amalthea_uros.simulate.kernel.layout import STIMULUS, Observation
 from amalthea_uros.simulate.metrics.chains import RouteMetrics, chain_observation
+from amalthea_uros.simulate.observations import MetricObservation
 from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.simulate.program.build import KernelProgram, build_program
-from amalthea_uros.simulate.results import MetricObservation
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.observed.job_times import Job as Column
 

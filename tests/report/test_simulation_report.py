@@ -13,14 +13,8 @@ from amalthea_uros._internal.by_name import Results
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.report import formats
 from amalthea_uros.report.simulated import closing_line, duration_text
-from amalthea_uros.simulate.results import (
-    CountObservation,
-    LabelObservation,
-    ObservedVerdict,
-    RequirementObservation,
-    RunnableObservation,
-    Simulation,
-)
+from amalthea_uros.simulate.observations import CountObservation, LabelObservation, RequirementObservation, RunnableObservation
+from amalthea_uros.simulate.results import ObservedVerdict, Simulation
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS

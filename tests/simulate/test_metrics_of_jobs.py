@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from amalthea_uros.simulate.metrics.distributions import MAX_BINS, BinCounts, Distributions
 from amalthea_uros.simulate.metrics.jobs import JobMetrics, add_rows
-from amalthea_uros.simulate.results import CountObservation
+from amalthea_uros.simulate.observations import CountObservation
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.timing.observed.job_times import BETWEEN, OWN, Job
 from amalthea_uros.units import MICROSECOND as US

@@ -9,7 +9,8 @@ from amalthea_uros.analyze.results.chains import ChainResult
 from amalthea_uros.analyze.results.processes import ProcessResult
 from amalthea_uros.analyze.results.requirements import RequirementResult
 from amalthea_uros.judge.verdict import ObservedVerdict, Verdict
-from amalthea_uros.simulate.results import ChainObservation, ProcessObservation, RequirementObservation, Simulation
+from amalthea_uros.simulate.observations import ChainObservation, ProcessObservation, RequirementObservation
+from amalthea_uros.simulate.results import Simulation
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.timing.dataflow.chains import UnfoldError, forks, unfold
 

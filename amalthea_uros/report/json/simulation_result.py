@@ -10,7 +10,7 @@ from amalthea_uros.judge.causes import distinct
 from amalthea_uros.report.findings import finding_json, joined
 from amalthea_uros.report.json import changes, impact
 from amalthea_uros.report.simulated import SimulationShown, closing_line
-from amalthea_uros.simulate.results import (
+from amalthea_uros.simulate.observations import (
     ChainObservation,
     CoreObservation,
     LabelObservation,
@@ -20,9 +20,9 @@ from amalthea_uros.simulate.results import (
     RequirementObservation,
     RouteObservation,
     RunnableObservation,
-    Simulation,
     TimeHistogram,
 )
+from amalthea_uros.simulate.results import Simulation
 
 
 def content(result: SimulationShown) -> dict[str, Any]:

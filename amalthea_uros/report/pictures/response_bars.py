@@ -16,7 +16,8 @@ from amalthea_uros.report.pictures.style import SMALL_SIZE, TEXT_SIZE, UNKNOWN
 from amalthea_uros.report.pictures.svg import Markup, element, joined, number, text, tooltip
 from amalthea_uros.report.pictures.text_widths import elided
 from amalthea_uros.report.pictures.verdict_marks import MARK, draw_verdict, verdict_entries
-from amalthea_uros.simulate.results import MetricObservation, Simulation
+from amalthea_uros.simulate.observations import MetricObservation
+from amalthea_uros.simulate.results import Simulation
 from amalthea_uros.units import Rounding, Time, rounded_time_text, time_text
 
 #: More processes are not drawn, those farthest from their deadlines.

@@ -12,13 +12,8 @@ from amalthea_uros.report.process_order import by_core_and_priority
 from amalthea_uros.report.simulated import SimulationShown, closing_line, duration_text, limit_text, value_text
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.report.text import impact
-from amalthea_uros.simulate.results import (
-    ChainObservation,
-    MetricObservation,
-    ProcessObservation,
-    RequirementObservation,
-    Simulation,
-)
+from amalthea_uros.simulate.observations import ChainObservation, MetricObservation, ProcessObservation, RequirementObservation
+from amalthea_uros.simulate.results import Simulation
 from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
 from amalthea_uros.units import NANOSECOND, Rounding, Time, percent_text, rounded_time_text, time_text
 

@@ -13,217 +13,100 @@ from typing import TypeAlias
 NEVER = 2**62
 
 # The head of the memory. JOBS and the like are the places of the next row, JOBS_END where there is no place left.
-(
-    NONE,
-    NOW,
-    UNTIL,
-    ARRIVAL,
-    ARRIVALS_END,
-    JOBS,
-    JOBS_END,
-    OBSERVATIONS,
-    OBSERVATIONS_END,
-    EVENTS,
-    EVENTS_END,
-    ORDER,
-    STEPS,
-    IS_TRACED,
-    CAUSE,
-    PLACES,
-    CORES,
-    CORES_END,
-    DOMAINS,
-    DOMAINS_END,
-    SERVERS,
-    SERVERS_END,
-    PROCESSES,
-    PROCESSES_END,
-    SEMAPHORES,
-    SEMAPHORES_END,
-    HAS_WRITES,
-    HEAD,
-) = range(28)
+NONE, NOW, UNTIL, ARRIVAL, ARRIVALS_END = range(5)
+JOBS, JOBS_END, OBSERVATIONS, OBSERVATIONS_END, EVENTS, EVENTS_END = range(5, 11)
+ORDER, STEPS, IS_TRACED, CAUSE, PLACES = range(11, 16)
+CORES, CORES_END, DOMAINS, DOMAINS_END, SERVERS, SERVERS_END = range(16, 22)
+PROCESSES, PROCESSES_END, SEMAPHORES, SEMAPHORES_END, HAS_WRITES, HEAD = range(22, 28)
 
-#: Rows: an arrival is (time, stimulus); a job and an observation are as in `simulate.kernel.layout`; an event is as in `trace.table`.
+#: Rows: an arrival is (time, stimulus); a job is as in `timing.observed.job_times`, an observation as in
+#: `Observation`, an event as in `trace.table`.
 ARRIVAL_SIZE, JOB_SIZE, OBSERVATION_SIZE, EVENT_SIZE = 2, 11, 4, 7
 
-# A process. From TIME_RUNNING to MIGRATIONS it is the account of its job.
-(
-    STATE,
-    SINCE,
-    AT,
-    LEFT,
-    LEVEL,
-    OWN_LEVEL,
-    RUNNING_LEVEL,
-    DEADLINE,
-    OWN_DEADLINE,
-    INNER,
-    SEQUENCE,
-    ACTIVATION,
-    INSTANCE,
-    START,
-    IS_STARTED,
-    YIELDS,
-    MASKS,
-    TIME_RUNNING,
-    TIME_WAITING,
-    TIME_POLLING,
-    TIME_PARKING,
-    PREEMPTIONS,
-    MIGRATIONS,
-    PENDING,
-    FIRST_PLACE,
-    NEXT_INSTANCE,
-    ACTIVATIONS,
-    LOST,
-    LIMIT,
-    QUEUE,
-    ENTRY,
-    NUMBER,
-    IS_REPORTED,
-    ENTITY,
-    DOMAIN,
-    CORE,
-    ALLOWED,
-    IS_COOPERATIVE,
-    IS_BY_DEADLINE,
-    HAS_SERVER_DEADLINE,
-    RELATIVE_DEADLINE,
-    SLICE,
-    SLICE_LEFT,
-    SERVER,
-    DECISION,
-    CAPTURES,
-    CAPTURES_END,
-    LET_STAGES,
-    LET_STAGES_END,
-    HOLDS,
-    WAITS_FOR,
-    WANTED,
-    WAITS_EVENTS,
-    EVENTS_SET,
-    WAITS_ANSWER,
-    TICKETS,
-    IS_CHOSEN,
-    WATCHED,
-    PROCESS_SIZE,
-) = range(59)
+# A process. Its state, the next operation, and what is left of its execution.
+STATE, SINCE, AT, LEFT = range(4)
+# Its urgency.
+LEVEL, OWN_LEVEL, RUNNING_LEVEL, DEADLINE, OWN_DEADLINE, INNER, SEQUENCE = range(4, 11)
+# Its job.
+ACTIVATION, INSTANCE, START, IS_STARTED, YIELDS, MASKS = range(11, 17)
+# The account of its job.
+TIME_RUNNING, TIME_WAITING, TIME_POLLING, TIME_PARKING, PREEMPTIONS, MIGRATIONS = range(17, 23)
+# Its activations.
+PENDING, FIRST_PLACE, NEXT_INSTANCE, ACTIVATIONS, LOST, LIMIT, QUEUE = range(23, 30)
+# What it executes, and what is reported of it.
+ENTRY, NUMBER, IS_REPORTED, ENTITY = range(30, 34)
+# Where and how it is scheduled.
+DOMAIN, CORE, ALLOWED, IS_COOPERATIVE, IS_BY_DEADLINE, HAS_SERVER_DEADLINE, RELATIVE_DEADLINE = range(34, 41)
+SLICE, SLICE_LEFT, SERVER, DECISION = range(41, 45)
+# Chains that pass it.
+CAPTURES, CAPTURES_END, LET_STAGES, LET_STAGES_END = range(45, 49)
+# What it holds and waits for.
+HOLDS, WAITS_FOR, WANTED, WAITS_EVENTS, EVENTS_SET, WAITS_ANSWER, TICKETS = range(49, 56)
+IS_CHOSEN, WATCHED, PROCESS_SIZE = range(56, 59)
 
 #: A place in the queue of activations of a process: time, number, place in the order of all activations, and a value for each capture.
 QUEUE_TIME, QUEUE_INSTANCE, QUEUE_SEQUENCE, QUEUE_CAPTURES = range(4)
 
 # A core.
-(STOP, BEGIN, RUNS, NEEDS_STEP, BUSY, CHOSEN, CORE_NUMBER, CORE_ENTITY, CORE_DOMAIN, CORE_SIZE) = range(10)
+STOP, BEGIN, RUNS, NEEDS_STEP, BUSY, CHOSEN, CORE_NUMBER, CORE_ENTITY, CORE_DOMAIN, CORE_SIZE = range(10)
 
 # A domain: cores that share processes; RAISED of them have another level than their own, PRESENT have a job.
-(IS_DUE, RAISED, PRESENT, HAS_COOPERATIVE, MEMBERS, MEMBERS_END, ITS_CORES, ITS_CORES_END, DOMAIN_SIZE) = range(9)
+IS_DUE, RAISED, PRESENT, HAS_COOPERATIVE, MEMBERS, MEMBERS_END, ITS_CORES, ITS_CORES_END, DOMAIN_SIZE = range(9)
 
 # A stimulus; an assignment is (mode label, value). What is watched is the number of a source of events plus 1, or 0.
-(
-    TARGETS,
-    TARGETS_END,
-    CONDITION,
-    COUNTER,
-    ASSIGNMENTS,
-    ASSIGNMENTS_END,
-    OCCURRENCES,
-    STIMULUS_ENTITY,
-    MESSAGES,
-    STIMULUS_SOURCE,
-    STIMULUS_SIZE,
-) = range(11)
+TARGETS, TARGETS_END, CONDITION, COUNTER, ASSIGNMENTS, ASSIGNMENTS_END = range(6)
+OCCURRENCES, STIMULUS_ENTITY, MESSAGES, STIMULUS_SOURCE, STIMULUS_SIZE = range(6, 11)
 
 # Places of the model that keep a state.
-(COUNTED, EVERY, FIRST_EFFECT, COUNTER_SIZE) = range(4)
-(WORD, PARTS_LEFT, PARTS, PARTS_TOTAL, ORDERED_PARTS, GROUP_SIZE) = range(6)
-(PASSES, LOOP_SIZE) = range(2)
-(MODE_VALUE, LITERALS, IS_CONSTANT, MODE_SIZE) = range(4)
-(FILL, CAPACITY, OVERFLOWS, CHANNEL_SIZE) = range(4)
-(STREAM_AT, STREAM_END, STREAM_NUMBER, STREAM_SIZE) = range(4)
+COUNTED, EVERY, FIRST_EFFECT, COUNTER_SIZE = range(4)
+WORD, PARTS_LEFT, PARTS, PARTS_TOTAL, ORDERED_PARTS, GROUP_SIZE = range(6)
+PASSES, LOOP_SIZE = range(2)
+MODE_VALUE, LITERALS, IS_CONSTANT, MODE_SIZE = range(4)
+FILL, CAPACITY, OVERFLOWS, CHANNEL_SIZE = range(4)
+STREAM_AT, STREAM_END, STREAM_NUMBER, STREAM_SIZE = range(4)
 
 # A place that executes a runnable, and the executions of the runnable by all.
-(EXECUTED, EXECUTION, SITE_SIZE) = range(3)
-(EXECUTIONS, RUNNABLE_ENTITY, RUNNABLE_SIZE) = range(3)
+EXECUTED, EXECUTION, SITE_SIZE = range(3)
+EXECUTIONS, RUNNABLE_ENTITY, RUNNABLE_SIZE = range(3)
 
 # A queue of messages of a process: numbers of those that have arrived, were taken and did not fit, and whether the job has taken one.
-(ARRIVED, TAKEN_MESSAGES, LOST_MESSAGES, HAS_TAKEN, MESSAGE_LIMIT, MESSAGE_CAPTURE, MESSAGE_SIZE) = range(7)
+ARRIVED, TAKEN_MESSAGES, LOST_MESSAGES, HAS_TAKEN, MESSAGE_LIMIT, MESSAGE_CAPTURE, MESSAGE_SIZE = range(7)
 
 # A condition: alternatives, each of comparisons.
-(ALTERNATIVES, ALTERNATIVES_END, CONDITION_SIZE) = range(3)
-(COMPARISONS, COMPARISONS_END, ALTERNATIVE_SIZE) = range(3)
-(LEFT_VALUE, RIGHT_VALUE, RIGHT_CONSTANT, RELATION, COMPARISON_SIZE) = range(5)
+ALTERNATIVES, ALTERNATIVES_END, CONDITION_SIZE = range(3)
+COMPARISONS, COMPARISONS_END, ALTERNATIVE_SIZE = range(3)
+LEFT_VALUE, RIGHT_VALUE, RIGHT_CONSTANT, RELATION, COMPARISON_SIZE = range(5)
 
 # A semaphore, and what a process holds of it.
-(USED, USERS, CEILING, DEADLINE_CEILING, HAS_OWNER, SEMAPHORE_NUMBER, SEMAPHORE_ENTITY, SEMAPHORE_SIZE) = range(8)
-(HELD, HELD_SINCE, HOLD_SIZE) = range(3)
+USED, USERS, CEILING, DEADLINE_CEILING, HAS_OWNER, SEMAPHORE_NUMBER, SEMAPHORE_ENTITY, SEMAPHORE_SIZE = range(8)
+HELD, HELD_SINCE, HOLD_SIZE = range(3)
 
 # Some events of the operating system, as one operation names them; an entry of the list is (number, entity).
-(EVENT_LIST, EVENT_LIST_END, OF_PROCESS, NEEDS_ALL, IS_ACTIVE_WAIT, EVENT_ROW_SIZE) = range(6)
+EVENT_LIST, EVENT_LIST_END, OF_PROCESS, NEEDS_ALL, IS_ACTIVE_WAIT, EVENT_ROW_SIZE = range(6)
 
 # A runnable that others ask for; a process has a ticket for each: the number of what it has asked for last.
-(ASKED, BEGUN, ANSWERED, SERVICE_NUMBER, SERVICE_SIZE) = range(5)
+ASKED, BEGUN, ANSWERED, SERVICE_NUMBER, SERVICE_SIZE = range(5)
 
 # A server with a budget; a plan is (time, amount).
-(
-    SERVER_AT,
-    BUDGET,
-    FULL_BUDGET,
-    SERVER_PERIOD,
-    SERVER_KIND,
-    PARENT,
-    SERVER_DOMAIN,
-    SERVED,
-    SERVED_END,
-    IS_ACTIVE,
-    ACTIVE_SINCE,
-    BUDGET_BEFORE,
-    SERVER_DEADLINE,
-    BUDGET_RATIO,
-    PERIOD_RATIO,
-    PLANS,
-    PLANS_END,
-    SERVER_SIZE,
-) = range(18)
+SERVER_AT, BUDGET, FULL_BUDGET, SERVER_PERIOD, SERVER_KIND, PARENT, SERVER_DOMAIN, SERVED, SERVED_END = range(9)
+IS_ACTIVE, ACTIVE_SINCE, BUDGET_BEFORE, SERVER_DEADLINE, BUDGET_RATIO, PERIOD_RATIO = range(9, 15)
+PLANS, PLANS_END, SERVER_SIZE = range(15, 18)
 PLAN_TIME, PLAN_AMOUNT, PLAN_SIZE = range(3)
 DEFERRABLE, POLLING_SERVER, SPORADIC, CONSTANT_BANDWIDTH = range(4)
 
 # A stage of a chain; values are numbers of occurrences of the stimulus of the chain, -1 is none.
-(
-    VALUE,
-    TAKEN,
-    LINK,
-    BEFORE_STAGE,
-    CAPTURE,
-    REACHED,
-    NEEDED,
-    IS_MARKED,
-    MARKED_AT,
-    HAS_RESPONDED,
-    RESPONDED_AT,
-    OUT,
-    IS_OUT,
-    IS_LAST,
-    ROUTE,
-    STEP,
-    CHAIN_ENTITY,
-    STAGE_SIZE,
-) = range(18)
+# What it has taken, and where it comes from.
+VALUE, TAKEN, LINK, BEFORE_STAGE, CAPTURE = range(5)
+# How far its job has come.
+REACHED, NEEDED, IS_MARKED, MARKED_AT, HAS_RESPONDED, RESPONDED_AT = range(5, 11)
+# What it gives away, and to whom.
+OUT, IS_OUT, IS_LAST, ROUTE, STEP, CHAIN_ENTITY, STAGE_SIZE = range(11, 18)
 # A route of a chain.
-(STAMPS, ROUTE_NUMBER, ROUTE_SIZE) = range(3)
+STAMPS, ROUTE_NUMBER, ROUTE_SIZE = range(3)
 
 # A runnable whose executions in a process are measured: when the last one began, and the account of the job at that time.
-(
-    EXECUTION_NUMBER,
-    BEGAN,
-    BEFORE_RUNNING,
-    BEFORE_WAITING,
-    BEFORE_POLLING,
-    BEFORE_PARKING,
-    BEFORE_PREEMPTIONS,
-    BEFORE_MIGRATIONS,
-    EXECUTION_SIZE,
-) = range(9)
+EXECUTION_NUMBER, BEGAN, BEFORE_RUNNING, BEFORE_WAITING, BEFORE_POLLING = range(5)
+BEFORE_PARKING, BEFORE_PREEMPTIONS, BEFORE_MIGRATIONS, EXECUTION_SIZE = range(5, 9)
 
 #: An operation and its two arguments.
 OPERATION_SIZE = 3

@@ -11,7 +11,7 @@ import numpy as np
 from amalthea_uros._internal.arrays import Numbers
 from amalthea_uros.simulate.kernel.layout import RESPONSE, Observation
 from amalthea_uros.simulate.metrics.distributions import Distributions
-from amalthea_uros.simulate.results import ChainObservation, MetricObservation, RouteObservation
+from amalthea_uros.simulate.observations import ChainObservation, MetricObservation, RouteObservation
 from amalthea_uros.timing.basics.quantities import ChainQuantity
 from amalthea_uros.timing.observed.chain_latencies import MEASURED, SAME, RouteLatencies
 

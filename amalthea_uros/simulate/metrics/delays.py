@@ -19,8 +19,7 @@ from amalthea_uros._internal.arrays import Numbers
 from amalthea_uros.judge.evidence import ObservedValues
 from amalthea_uros.judge.limits import limits_of
 from amalthea_uros.perf.constraints import DelayConstraint, Matching
-from amalthea_uros.simulate.metrics.extremes import WINDOW, Extremes
-from amalthea_uros.simulate.observed_limits import LimitedQuantity
+from amalthea_uros.simulate.metrics.extremes import WINDOW, Extremes, LimitedQuantity
 
 _TOO_FAR = "sources and targets are too far apart to be observed"
 

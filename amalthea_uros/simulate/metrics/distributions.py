@@ -14,7 +14,7 @@ import numpy as np
 
 from amalthea_uros._internal.arrays import Numbers
 from amalthea_uros._internal.exact_sums import sums, sums_of_squares
-from amalthea_uros.simulate.results import MetricObservation, ObservedOccurrence, TimeHistogram
+from amalthea_uros.simulate.observations import MetricObservation, ObservedOccurrence, TimeHistogram
 
 #: There are never more bins.
 MAX_BINS = 1024

@@ -4,12 +4,21 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import NamedTuple
 
 from amalthea_uros._internal.arrays import Numbers
 from amalthea_uros.judge.evidence import ObservedValues
+from amalthea_uros.judge.limits import SystemLimit
 
 #: So many occurrences are kept that wait for a corresponding one; what corresponds to older ones is not evaluated.
 WINDOW = 2**16
+
+
+class LimitedQuantity(NamedTuple):
+    """A limit, and what was observed of the quantity."""
+
+    limit: SystemLimit
+    values: ObservedValues
 
 
 @dataclass(slots=True)

@@ -9,7 +9,7 @@ import numpy as np
 
 from amalthea_uros._internal.arrays import Numbers
 from amalthea_uros.simulate.metrics.distributions import Distributions
-from amalthea_uros.simulate.results import WITH_HISTOGRAM, CountObservation, MetricObservation
+from amalthea_uros.simulate.observations import WITH_HISTOGRAM, CountObservation, MetricObservation
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.timing.observed.job_times import BETWEEN, OWN, Job, own_times, times_between
 from amalthea_uros.units import Time

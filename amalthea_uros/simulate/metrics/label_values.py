@@ -20,10 +20,9 @@ from amalthea_uros.perf.activities import Communication
 from amalthea_uros.perf.constraints import DataAgeConstraint
 from amalthea_uros.perf.events import LabelChange, LabelEvent, ProcessChange
 from amalthea_uros.simulate.metrics.distributions import Distributions
-from amalthea_uros.simulate.metrics.extremes import Extremes
-from amalthea_uros.simulate.observed_limits import LimitedQuantity
+from amalthea_uros.simulate.metrics.extremes import Extremes, LimitedQuantity
+from amalthea_uros.simulate.observations import LabelObservation
 from amalthea_uros.simulate.program.watches import EventSource
-from amalthea_uros.simulate.results import LabelObservation
 
 
 @dataclass(slots=True, eq=False)

@@ -22,11 +22,12 @@ from amalthea_uros.perf.events import Event, EventSet, ProcessChange, ProcessEve
 from amalthea_uros.perf.system import System
 from amalthea_uros.simulate.kernel.layout import Observation
 from amalthea_uros.simulate.metrics.delays import delays
+from amalthea_uros.simulate.metrics.extremes import LimitedQuantity
 from amalthea_uros.simulate.metrics.label_values import DataAges, LabelAges, LabelValues, Reading
 from amalthea_uros.simulate.metrics.repetitions import Repetitions
 from amalthea_uros.simulate.metrics.runnable_orders import ExecutionOrder, RunnableOrder
 from amalthea_uros.simulate.metrics.synchronizations import AllOccurrences, SubsequentOccurrences
-from amalthea_uros.simulate.observed_limits import LimitedQuantity
+from amalthea_uros.simulate.observations import LabelObservation
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.program.build import KernelProgram
 from amalthea_uros.simulate.program.watches import (
@@ -37,7 +38,6 @@ from amalthea_uros.simulate.program.watches import (
     is_of_order,
     is_source,
 )
-from amalthea_uros.simulate.results import LabelObservation
 from amalthea_uros.timing.dataflow.events import EventLocator
 from amalthea_uros.timing.dataflow.runnable_order import order_scope
 

@@ -12,8 +12,7 @@ from amalthea_uros._internal.plural import counted
 from amalthea_uros.judge.evidence import ObservedValues
 from amalthea_uros.judge.limits import limits_of
 from amalthea_uros.perf.constraints import RepetitionConstraint
-from amalthea_uros.simulate.metrics.extremes import Extremes
-from amalthea_uros.simulate.observed_limits import LimitedQuantity
+from amalthea_uros.simulate.metrics.extremes import Extremes, LimitedQuantity
 
 
 @dataclass(slots=True)

@@ -15,7 +15,7 @@ from amalthea_uros.judge.evidence import ObservedValues
 from amalthea_uros.judge.limits import without_number
 from amalthea_uros.perf.constraints import OrderConstraint, Ordering
 from amalthea_uros.perf.events import ProcessChange, ProcessEvent, RunnableChange
-from amalthea_uros.simulate.observed_limits import LimitedQuantity
+from amalthea_uros.simulate.metrics.extremes import LimitedQuantity
 from amalthea_uros.simulate.program.watches import EventSource
 from amalthea_uros.timing.dataflow.runnable_order import satisfies_order
 

@@ -19,8 +19,7 @@ from amalthea_uros.judge.evidence import ObservedValues
 from amalthea_uros.judge.limits import limits_of
 from amalthea_uros.perf.constraints import ChainSynchronization, EventSynchronization
 from amalthea_uros.simulate.kernel.layout import NEVER
-from amalthea_uros.simulate.metrics.extremes import WINDOW, Extremes
-from amalthea_uros.simulate.observed_limits import LimitedQuantity
+from amalthea_uros.simulate.metrics.extremes import WINDOW, Extremes, LimitedQuantity
 
 
 @dataclass(slots=True, kw_only=True)

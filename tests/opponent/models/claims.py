@@ -23,8 +23,9 @@ from amalthea_uros.errors import AmurosError
 from amalthea_uros.judge.verdict import ObservedVerdict, Verdict
 from amalthea_uros.services.analyze import analyze_files
 from amalthea_uros.services.simulate import simulate_files
+from amalthea_uros.simulate.observations import RequirementObservation
 from amalthea_uros.simulate.options import Mode, Options
-from amalthea_uros.simulate.results import RequirementObservation, Simulation
+from amalthea_uros.simulate.results import Simulation
 from amalthea_uros.timing.basics.quantities import JobMetric
 
 #: The runs that are compared: how values are chosen, and the seed.

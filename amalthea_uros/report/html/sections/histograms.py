@@ -14,7 +14,7 @@ from amalthea_uros.report.pictures.histogram_marks import Mark, MarkKind
 from amalthea_uros.report.simulation_pictures import histogram_picture
 from amalthea_uros.services.report import ReportContent
 from amalthea_uros.services.simulate import SimulationResult
-from amalthea_uros.simulate.results import MetricObservation
+from amalthea_uros.simulate.observations import MetricObservation
 from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
 
 _MOST_CHAINS, _MOST_PROCESSES = 3, 3

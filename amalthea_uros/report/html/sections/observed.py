@@ -11,7 +11,8 @@ from amalthea_uros.report.latencies import value_text
 from amalthea_uros.report.process_order import by_core_and_priority
 from amalthea_uros.report.simulated import REMINDER, closing_line, duration_text
 from amalthea_uros.services.report import ReportContent
-from amalthea_uros.simulate.results import ChainObservation, MetricObservation, ProcessObservation, Simulation
+from amalthea_uros.simulate.observations import ChainObservation, MetricObservation, ProcessObservation
+from amalthea_uros.simulate.results import Simulation
 from amalthea_uros.timing.basics.quantities import ChainQuantity
 
 #: The quantities of chains that are both computed and observed.
