@@ -36,11 +36,11 @@ def judged(measurement: Measurement) -> Iterator[Finding]:
 def _uncounted(series: Series, place: Location) -> Iterator[Finding]:
     counts = series.counts
     problems = {"lost": counts.lost, "duplicated": counts.duplicated, "reordered": counts.reordered}
-    told = ", ".join(f"{number:,} {what}" for what, number in problems.items() if number)
-    if told:
+    reported = ", ".join(f"{number:,} {what}" for what, number in problems.items() if number)
+    if reported:
         severity = Severity.WARNING if counts.lost or counts.reordered else Severity.INFO
         yield Finding(
-            "MEA006", severity, f"events of {series.name!r}: {told}; they are not measured", place, object=series.name
+            "MEA006", severity, f"events of {series.name!r}: {reported}; they are not measured", place, object=series.name
         )
 
 

@@ -28,7 +28,7 @@ _FROM_ACTIVATION = {
 }
 
 
-class _OpenJob:
+class _RunningJob:
     """A job that has not ended.
 
     Attributes
@@ -90,7 +90,7 @@ class JobFollower:
 
     gaps: int = 0
     illegal: int = 0
-    _open: dict[tuple[int, int], _OpenJob] = field(default_factory=dict)
+    _open: dict[tuple[int, int], _RunningJob] = field(default_factory=dict)
     _processes: dict[int, _EndedJobs] = field(default_factory=dict)
     _runnables: dict[tuple[int, int], _EndedJobs] = field(default_factory=dict)
     #: The greatest number of a job of each process so far.
@@ -140,7 +140,7 @@ class JobFollower:
                 self._of(key[0]).incomplete += 1
             return False
         self._number(key)
-        job = self._open[key] = _OpenJob(_STATES[kind][1], time)
+        job = self._open[key] = _RunningJob(_STATES[kind][1], time)
         if kind == EventKind.ACTIVATE:
             job.activation = time
         else:
@@ -162,7 +162,7 @@ class JobFollower:
             if of == process:
                 ended.segment = -1
 
-    def _end(self, time: int, key: tuple[int, int], job: _OpenJob) -> None:
+    def _end(self, time: int, key: tuple[int, int], job: _RunningJob) -> None:
         del self._open[key]
         job.enter("terminated", time)
         for runnable, *_ in job.runnables:
@@ -194,7 +194,7 @@ class JobFollower:
                 return
             if process in self._newest:  # it has events of its own, and those of this job are missing
                 self._interrupt(process)
-            job = self._open[key] = _OpenJob("running", time, is_process=False)
+            job = self._open[key] = _RunningJob("running", time, is_process=False)
         if kind == EventKind.RUNNABLE_START:
             job.enter(job.state, time)
             job.runnables.append((runnable, instance, time, dict(job.times)))
@@ -204,7 +204,7 @@ class JobFollower:
             # Nothing is known of the process, so that it pauses with its runnable.
             job.enter("ready" if kind == EventKind.RUNNABLE_SUSPEND else "running", time)
 
-    def _end_runnable(self, time: int, key: tuple[int, int], job: _OpenJob, runnable: int, instance: int) -> None:
+    def _end_runnable(self, time: int, key: tuple[int, int], job: _RunningJob, runnable: int, instance: int) -> None:
         index = next((i for i, each in reversed(list(enumerate(job.runnables))) if each[:2] == (runnable, instance)), None)
         if index is None:
             self._of_runnable(key[0], runnable).incomplete += 1

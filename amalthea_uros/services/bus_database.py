@@ -7,7 +7,7 @@ from pathlib import Path
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.spec.description import Description
-from amalthea_uros.trace.can.dbc import BusMessage, read_dbc
+from amalthea_uros.trace.can.dbc import DbcMessage, read_dbc
 from amalthea_uros.trace.can.frames import EXTENDED
 from amalthea_uros.uros.transports.foreign import ForeignFrame
 
@@ -35,7 +35,7 @@ def database_frames(description: Description, folder: Path) -> tuple[ForeignFram
     return tuple(_frame(message, stated) for message in read_dbc(path).messages.values())
 
 
-def _frame(message: BusMessage, stated: Location | None) -> ForeignFrame:
+def _frame(message: DbcMessage, stated: Location | None) -> ForeignFrame:
     return ForeignFrame(
         name=message.name,
         identifier=message.identifier & ~EXTENDED,

@@ -23,7 +23,7 @@ from amalthea_uros.trace.btf.vocabulary import OS_EVENTS
 from amalthea_uros.trace.files import opened_text
 from amalthea_uros.trace.problems import TracePlace
 from amalthea_uros.trace.reading import BLOCK, MAX, LineReader, NumberedTable, Row, note_of, numbered_table
-from amalthea_uros.trace.sinks import WriteOptions
+from amalthea_uros.trace.sinks import Encoder, WriteOptions
 from amalthea_uros.trace.table import NO_NOTE, Entity, EntityKind, EventKind, EventTable
 
 HEADER = ["time_ps", "event", "source_kind", "source", "source_instance", "target_kind", "target", "target_instance", "note"]
@@ -103,11 +103,11 @@ class CsvReader(LineReader):
 _NAMES = {int(kind): name for name, kind in EVENT_NAMES.items()}
 
 
-class CsvEncoder:
+class CsvEncoder(Encoder):
     """Makes the lines of a CSV file; it has no options."""
 
-    def __init__(self, entities: Sequence[Entity], _options: WriteOptions) -> None:
-        self._entities = entities
+    def __init__(self, entities: Sequence[Entity], options: WriteOptions) -> None:
+        super().__init__(entities, options)
         self._fields: list[str] = []
 
     def begin(self) -> bytes:
@@ -134,10 +134,6 @@ class CsvEncoder:
                 for time, kind, source, job, target, number, note in rows
             ]
         ).encode()
-
-    def end(self) -> bytes:
-        """Nothing: the file ends with the last event."""
-        return b""
 
     def _notes(self, table: EventTable) -> list[str]:
         notes = [""] * len(table)

@@ -15,11 +15,15 @@ from amalthea_uros._internal.files import is_file
 from amalthea_uros._internal.limits import TRACE_LINE
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
-from amalthea_uros.trace.problems import TracePlace, TraceProblems
+from amalthea_uros.trace.problems import TracePlace, TraceProblems, UnreadableError
 
 #: What a packed file that is damaged raises while it is read.
 DAMAGED = (EOFError, gzip.BadGzipFile, zlib.error)
 _MAGIC = b"\x1f\x8b"
+
+
+#: Why a file is not text.
+LINE_TOO_LONG = f"a line is longer than {TRACE_LINE:,} characters"
 
 
 @contextmanager
@@ -74,8 +78,8 @@ def opened_bytes(path: Path, problems: TraceProblems) -> Iterator[IO[bytes]]:
     except DAMAGED as error:
         message = f"the compressed file is damaged: {error}; only the events before that are used"
         problems.add("TRC006", Severity.ERROR, message, advice="Check that it was written completely.")
-    except LineTooLongError as error:
-        message = f"a line is longer than {TRACE_LINE:,} characters; only the events before that are used"
+    except UnreadableError as error:
+        message = f"{error}; only the events before that are used"
         problems.add("TRC002", Severity.ERROR, message, TracePlace(error.line, 1), "Check that this is a trace.")
     except FileNotFoundError:
         raise _not_readable(path, "file not found", "Check the path.") from None
@@ -99,24 +103,11 @@ def opened_text(path: Path, problems: TraceProblems) -> Iterator[Iterator[str]]:
         yield _lines(text)
 
 
-class LineTooLongError(Exception):
-    """A line has more than `TRACE_LINE` characters: the file is no text.
-
-    Attributes
-    ----------
-    line : its number
-    """
-
-    def __init__(self, line: int) -> None:
-        super().__init__(line)
-        self.line = line
-
-
 def _lines(stream: TextIO) -> Iterator[str]:
     """The lines of a stream; a file without line ends, such as a device, would else become one in memory."""
     for number, line in enumerate(iter(partial(stream.readline, TRACE_LINE), ""), 1):
         if len(line) == TRACE_LINE:
-            raise LineTooLongError(number)
+            raise UnreadableError(LINE_TOO_LONG, number)
         yield line
 
 

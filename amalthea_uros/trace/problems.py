@@ -23,6 +23,20 @@ class TracePlace:
     text: str | None = None
 
 
+class UnreadableError(Exception):
+    """A part of a trace cannot be read; the text says why.
+
+    Attributes
+    ----------
+    line : of the file, counted from 1; None if it is not known
+    is_cut : whether the data end early
+    """
+
+    def __init__(self, message: str, line: int | None = None, *, is_cut: bool = False) -> None:
+        super().__init__(message)
+        self.line, self.is_cut = line, is_cut
+
+
 class TraceProblems:
     """The problems of one trace, in the order in which they occur first."""
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gzip
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
@@ -10,7 +11,7 @@ from datetime import datetime
 from importlib import import_module
 from pathlib import Path
 from types import TracebackType
-from typing import BinaryIO, Protocol, Self, cast, runtime_checkable
+from typing import BinaryIO, Protocol, Self, cast
 
 from amalthea_uros._internal.files import STANDARD_OUTPUT, FileError, is_stream, not_writable, replacing, write_bytes
 from amalthea_uros.diagnostics import Finding, Location, Severity
@@ -50,25 +51,32 @@ class WriteOptions:
     creation_date: datetime | None = None
 
 
-class Encoder(Protocol):
-    """What makes the bytes of a format: those at the beginning, those for each table, and those at the end."""
+class Encoder(ABC):
+    """Makes the bytes of a format: those at the beginning, those for each table, and those at the end.
+
+    Parameters
+    ----------
+    entities : those of the tables; more may be appended to the sequence while the trace is written
+    """
+
+    def __init__(self, entities: Sequence[Entity], options: WriteOptions) -> None:
+        self._entities, self._options = entities, options
 
     def begin(self) -> bytes:
-        """The bytes before all events."""
+        """The bytes before all events; nothing where a format has no header."""
+        return b""
 
+    @abstractmethod
     def encode(self, table: EventTable) -> bytes:
         """The bytes for some events."""
 
     def end(self) -> bytes:
-        """The bytes after all events."""
+        """The bytes after all events; nothing where a file ends with the last event."""
+        return b""
 
-
-@runtime_checkable
-class Accompanied(Protocol):
-    """An encoder whose file needs a second one beside it, to be understood."""
-
-    def companion(self) -> tuple[str, bytes]:
-        """What its name has after that of the file, and its content, once all events are known."""
+    def companion(self) -> tuple[str, bytes] | None:
+        """What a second file has after the name of the file, and its content, if one is needed to understand the first."""
+        return None
 
 
 class TraceSink(Protocol):
@@ -153,11 +161,12 @@ class _EncodingSink:
             self._is_open = False
             with _reporting(self._target), self._stack:
                 self._put(self._encoder.end())
-            if isinstance(self._encoder, Accompanied) and isinstance(self._target, Path) and not is_stream(self._target):
-                ending, content = self._encoder.companion()
-                companion = self._target.with_name(self._target.name.removesuffix(".gz") + ending)
-                with _reporting(companion):
-                    write_bytes(companion, content)
+            companion = self._encoder.companion()
+            if companion is not None and isinstance(self._target, Path) and not is_stream(self._target):
+                ending, content = companion
+                path = self._target.with_name(self._target.name.removesuffix(".gz") + ending)
+                with _reporting(path):
+                    write_bytes(path, content)
 
     def __enter__(self) -> Self:
         return self

@@ -1,13 +1,6 @@
 """Clocks that step, counters that start again, and buses that are recorded twice."""
 
-import numpy as np
-import pytest
 from can_frames import GAP, US, read, rules
-from hypothesis import given
-from hypothesis import strategies as st
-
-from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.trace.can.plausibility import unwrap
 
 
 def line(time: int, channel: str = "can0", frame: str = "123#11") -> str:
@@ -75,27 +68,3 @@ def test_two_buses_with_the_same_identifiers_are_told(tmp_path):
     [finding] = log.findings
     assert finding.rule == "CAN011"
     assert "1 equal identifiers" in finding.message
-
-
-@given(
-    start=st.integers(0, 2**16 - 1), steps=st.lists(st.integers(0, 2**16 - 1), max_size=50), bits=st.sampled_from([16, 20, 32])
-)
-def test_a_counter_that_starts_again_is_continued(start, steps, bits):
-    times = np.cumsum([start, *steps])
-    assert (unwrap(times % (1 << bits), bits) == times).all()
-
-
-@given(start=st.integers(0, 2**16 - 1), steps=st.lists(st.integers(0, 2**20), max_size=50), jitter=st.randoms())
-def test_a_coarser_clock_shows_the_rounds_that_a_counter_alone_hides(start, steps, jitter):
-    times = np.cumsum([start, *steps])
-    epoch = times + np.array([jitter.randrange(-10_000, 10_000) for _ in times]) + 10**15
-    assert (unwrap(times % (1 << 16), 16, epoch=epoch) == times).all()
-
-
-def test_values_that_do_not_fit_the_counter_are_refused():
-    with pytest.raises(InvalidArgumentError, match="from 0 to 65535"):
-        unwrap(np.array([0, 65536]), 16)
-
-
-def test_the_example_of_a_microsecond_counter_of_32_bits():
-    assert np.diff(unwrap(np.array([2**32 - 10, 5]), 32)).tolist() == [15]

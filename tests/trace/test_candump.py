@@ -10,9 +10,10 @@ from hypothesis import strategies as st
 
 from amalthea_uros.errors import InvalidArgumentError, ReadError
 from amalthea_uros.trace.can.candump_blocks import read_lines
-from amalthea_uros.trace.can.candump_lines import NotAFrameError, parse
+from amalthea_uros.trace.can.candump_lines import parse
 from amalthea_uros.trace.can.frames import XL
 from amalthea_uros.trace.can.logs import open_can_log
+from amalthea_uros.trace.problems import UnreadableError
 
 HEAD = "(1436509052.000000) can0 "
 
@@ -275,7 +276,7 @@ def test_columns_and_single_lines_are_read_alike(seconds, fraction, channel, fra
 
 @given(st.text(max_size=80))
 def test_any_text_is_a_line_or_not(text):
-    with suppress(NotAFrameError):
+    with suppress(UnreadableError):
         parse(text)
 
 

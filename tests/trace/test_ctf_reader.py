@@ -17,9 +17,8 @@ from traces import told
 from amalthea_uros.errors import InvalidArgumentError, ReadError
 from amalthea_uros.trace.ctf.metadata import described, read_metadata
 from amalthea_uros.trace.ctf.streams import PacketStream
-from amalthea_uros.trace.ctf.tsdl import MetadataError
 from amalthea_uros.trace.ctf.types import ArrayType, IntegerType, StringType
-from amalthea_uros.trace.problems import TraceProblems
+from amalthea_uros.trace.problems import TraceProblems, UnreadableError
 from amalthea_uros.trace.readers import format_of, open_trace
 from amalthea_uros.trace.state_charts import check_trace
 
@@ -347,7 +346,7 @@ def test_types_of_metadata():
     ],
 )
 def test_metadata_that_are_wrong(text, tmp_path):
-    with pytest.raises(MetadataError):
+    with pytest.raises(UnreadableError):
         described(text)
     (tmp_path / "metadata").write_text(text)
     with pytest.raises(ReadError) as error:

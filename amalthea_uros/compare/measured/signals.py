@@ -13,7 +13,7 @@ from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.measure.markers import Decoder, Marker
 
 if TYPE_CHECKING:
-    from amalthea_uros.trace.can.dbc import BusDatabase
+    from amalthea_uros.trace.can.dbc import DbcDatabase
 
 #: How some bytes are written; the first one is byte 0.
 _BYTES = re.compile(r"bytes? (\d{1,2})(?:\.\.(\d{1,2}))?(?: (big|little))?")
@@ -49,7 +49,7 @@ class Signals:
         self._path = path
 
     @cached_property
-    def _database(self) -> BusDatabase:
+    def _database(self) -> DbcDatabase:
         if self._path is None:
             raise InvalidArgumentError("signals need the description of the bus; add --dbc FILE")
         from amalthea_uros.trace.can.dbc import read_dbc

@@ -11,7 +11,7 @@ from amalthea_uros._version import __version__
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.trace.btf.header import TIMESCALES, escape
 from amalthea_uros.trace.btf.vocabulary import OS_EVENTS, WORDS
-from amalthea_uros.trace.sinks import WriteOptions
+from amalthea_uros.trace.sinks import Encoder, WriteOptions
 from amalthea_uros.trace.table import NO_NOTE, Entity, EntityKind, EventTable
 
 #: The types in files, at the places of their numbers.
@@ -20,7 +20,7 @@ _KNOWN = np.array(sorted(WORDS))
 _ENDINGS = {int(kind): f",{word}\n" for kind, word in WORDS.items()}
 
 
-class BtfEncoder:
+class BtfEncoder(Encoder):
     """Makes the lines of a BTF file.
 
     Raises
@@ -33,7 +33,7 @@ class BtfEncoder:
             raise InvalidArgumentError(
                 f"BTF has no timescale {options.timescale!r}; expected one of {', '.join(TIMESCALES)}, e.g. ns"
             )
-        self._entities, self._options = entities, options
+        super().__init__(entities, options)
         self._scale = TIMESCALES[options.timescale]
         self._fields: list[str] = []
         self._targets: list[str] = []
@@ -81,10 +81,6 @@ class BtfEncoder:
             [f"{time},{source},{job},{target}{number}{ending}" for time, source, job, target, number, ending in rows]
         )
         return _joined(mappings) + lines.encode()
-
-    def end(self) -> bytes:
-        """Nothing: the file ends with the last event."""
-        return b""
 
     def _mappings_of_new_entities(self) -> list[str]:
         lines = []

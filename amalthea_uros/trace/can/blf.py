@@ -12,7 +12,7 @@ from amalthea_uros._internal.limits import ADVICE, MODEL_SIZE
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.trace.can.python_can import PythonCanLog, Row, python_can
 from amalthea_uros.trace.files import opened_bytes
-from amalthea_uros.trace.problems import TracePlace
+from amalthea_uros.trace.problems import TracePlace, UnreadableError
 
 if TYPE_CHECKING:
     from can import BLFReader
@@ -27,16 +27,12 @@ _CONTAINER_TYPE = 10
 _PLAIN, _DEFLATED = 0, 2
 
 
-class TooLargeError(Exception):
-    """A container is larger than any that a recorder writes; the text says what to do."""
-
-
 def damages(stream: IO[bytes]) -> Iterator[str]:
     """What is wrong with the containers of a file, from its beginning.
 
     Raises
     ------
-    TooLargeError : a container must not be unpacked.
+    UnreadableError : a container must not be unpacked.
     """
     header = stream.read(_FILE.size)
     if len(header) < _FILE.size:
@@ -51,7 +47,7 @@ def damages(stream: IO[bytes]) -> Iterator[str]:
             yield "a container does not begin with LOBJ; it and the rest are not used"
             return
         if size > MODEL_SIZE:
-            raise TooLargeError(ADVICE)
+            raise UnreadableError(ADVICE)
         content = read_up_to(stream, size - _OBJECT.size)
         if len(content) < size - _OBJECT.size:
             yield "the file ends in a container"
@@ -75,7 +71,7 @@ def _is_sound(content: bytes) -> bool:
     except zlib.error:
         return False
     if unpacked > MODEL_SIZE or unpacking.unconsumed_tail:
-        raise TooLargeError(ADVICE)
+        raise UnreadableError(ADVICE)
     return unpacking.eof and unpacked == size
 
 
@@ -118,7 +114,7 @@ class BlfLog(PythonCanLog):
             try:
                 for damage in damages(stream):
                     self._report_damage(damage, TracePlace())
-            except TooLargeError as error:
+            except UnreadableError as error:
                 message = "a container of the file is too large to be unpacked; nothing is read"
                 self._problems.add("CAN008", Severity.ERROR, message, advice=str(error))
                 return False

@@ -15,11 +15,11 @@ from amalthea_uros._internal.arrays import Flags, Numbers
 from amalthea_uros._internal.limits import TRACE_LINE
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.trace.can.candump_blocks import CandumpLines, read_lines
-from amalthea_uros.trace.can.candump_lines import CandumpLine, NotAFrameError, parse
+from amalthea_uros.trace.can.candump_lines import CandumpLine, parse
 from amalthea_uros.trace.can.frames import UNKNOWN, FrameKind, FrameTable, is_receive_overflow, report_error, report_lost
 from amalthea_uros.trace.can.log_reader import LogReader
-from amalthea_uros.trace.files import LineTooLongError, opened_bytes
-from amalthea_uros.trace.problems import TracePlace
+from amalthea_uros.trace.files import LINE_TOO_LONG, opened_bytes
+from amalthea_uros.trace.problems import TracePlace, UnreadableError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -68,7 +68,7 @@ class CandumpLog(LogReader):
             if size:
                 yield block[:size]
             if len(rest) > TRACE_LINE:
-                raise LineTooLongError(self._line)
+                raise UnreadableError(LINE_TOO_LONG, self._line)
         if rest.endswith(b"\n"):
             yield rest
         elif rest:
@@ -139,7 +139,7 @@ class CandumpLog(LogReader):
             place = self._place(text, number)
             try:
                 line = parse(text.decode(errors="replace"))
-            except NotAFrameError as error:
+            except UnreadableError as error:
                 self._problems.add("CAN001", Severity.ERROR, str(error), place, _ADVICE)
                 continue
             if line.kind is FrameKind.ERROR:

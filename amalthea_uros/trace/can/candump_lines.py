@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 
 from amalthea_uros.trace.can.frames import EXTENDED, XL, FrameKind
+from amalthea_uros.trace.problems import UnreadableError
 
 #: Largest number of bytes of a frame of CAN, CAN FD and CAN XL.
 _CLASSIC, _FLEXIBLE, _LARGE = 8, 64, 2048
@@ -77,35 +78,31 @@ class CandumpLine:
     lost: int = 0
 
 
-class NotAFrameError(ValueError):
-    """A line is no frame, or one that cannot be used; the text says why."""
-
-
 def parse(text: str) -> CandumpLine:
     """What a line without its end says.
 
     Raises
     ------
-    NotAFrameError : nothing that can be used.
+    UnreadableError : nothing that can be used.
     """
     text = _COLOUR.sub("", text).strip(" ")
     if match := _LOG.fullmatch(text):
         return CandumpLine(stamp_of(match[1]), match[2], *_frame(match[3]))
     if match := _CONSOLE.fullmatch(text):
         if match[1] is None:
-            raise NotAFrameError(_NO_STAMP)
+            raise UnreadableError(_NO_STAMP)
         length = _CLASSIC if match[4] is None else int(match[4][:5])
         return CandumpLine(stamp_of(match[1]), match[2], *_console_frame(match[3], length, match[5]))
     if match := _DROPPED.fullmatch(text):
         return CandumpLine(None, match[2], 0, FrameKind.GAP, lost=int(match[1][:18]))
-    raise NotAFrameError(_NOT_A_FRAME)
+    raise UnreadableError(_NOT_A_FRAME)
 
 
 def is_frame(text: str) -> bool:
     """Whether a line without its end is a frame."""
     try:
         return parse(text).kind is not FrameKind.GAP
-    except NotAFrameError:
+    except UnreadableError:
         return False
 
 
@@ -114,14 +111,14 @@ def stamp_of(text: str) -> Stamp:
 
     Raises
     ------
-    NotAFrameError : it is none.
+    UnreadableError : it is none.
     """
     if match := _STAMP.fullmatch(text):
         seconds = int(match[1])
     elif match := _DATE.fullmatch(text):
         seconds = _seconds_of_date(match[1])
     else:
-        raise NotAFrameError(_NOT_A_FRAME)
+        raise UnreadableError(_NOT_A_FRAME)
     step = 10 ** (_PICOSECONDS - len(match[2]))
     return Stamp(seconds * 10**_PICOSECONDS + int(match[2]) * step, step, len(match[1]), match.re is _DATE)
 
@@ -130,7 +127,7 @@ def _seconds_of_date(text: str) -> int:
     try:
         date = datetime.strptime(text, "%Y-%m-%d %H:%M:%S").replace(tzinfo=UTC)
     except ValueError:
-        raise NotAFrameError(_NOT_A_FRAME) from None
+        raise UnreadableError(_NOT_A_FRAME) from None
     return round((date - _EPOCH).total_seconds())
 
 
@@ -143,7 +140,7 @@ def _frame(text: str) -> tuple[int, FrameKind, bytes]:
         return _identified(match[1])[0], FrameKind.REMOTE, b""
     if match := _XL.fullmatch(text):
         return XL | _standard(int(match[1], 16)), FrameKind.DATA, _bytes(match[2], _LARGE)
-    raise NotAFrameError(_NOT_A_FRAME)
+    raise UnreadableError(_NOT_A_FRAME)
 
 
 def _console_frame(identifier: str, length: int, text: str) -> tuple[int, FrameKind, bytes]:
@@ -153,7 +150,7 @@ def _console_frame(identifier: str, length: int, text: str) -> tuple[int, FrameK
     match = _CONSOLE_DATA.fullmatch(text)
     parts = re.split("[ `]", match[1].strip(" `")) if match and match[1] else []
     if match is None or len(parts) != length or length > _FLEXIBLE:
-        raise NotAFrameError(_NOT_A_FRAME)
+        raise UnreadableError(_NOT_A_FRAME)
     data = bytes(int(part, 2 if len(part) == 8 else 16) for part in parts)
     # The byte order is turned around with -S, which has its own mark between the bytes.
     return number, kind, data[::-1] if "`" in match[1].strip(" `") else data
@@ -164,18 +161,18 @@ def _identified(digits: str) -> tuple[int, FrameKind]:
     if len(digits) == 3:
         return _standard(number), FrameKind.DATA
     if number & ~(_MASK | _ERROR):
-        raise NotAFrameError(_NOT_A_FRAME)
+        raise UnreadableError(_NOT_A_FRAME)
     return (number & _MASK, FrameKind.ERROR) if number & _ERROR else (number | EXTENDED, FrameKind.DATA)
 
 
 def _standard(number: int) -> int:
     if number > _MAX_STANDARD:
-        raise NotAFrameError(_NOT_A_FRAME)
+        raise UnreadableError(_NOT_A_FRAME)
     return number
 
 
 def _bytes(text: str, limit: int) -> bytes:
     data = bytes.fromhex(text.replace(".", ""))
     if len(data) > limit:
-        raise NotAFrameError(_NOT_A_FRAME)
+        raise UnreadableError(_NOT_A_FRAME)
     return data

@@ -8,10 +8,9 @@ sending nor the bus is modelled: a stamp is when the event occurs.
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 
-from amalthea_uros.trace.sinks import WriteOptions
-from amalthea_uros.trace.table import Entity, EntityKind, EventKind, EventTable
+from amalthea_uros.trace.sinks import Encoder
+from amalthea_uros.trace.table import EntityKind, EventKind, EventTable
 
 #: The identifiers from here on are used, as in the measurements of the thesis.
 _FIRST = 0x1800_0001
@@ -24,15 +23,8 @@ _PLAIN = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 _WORDS = frozenset(["y", "n", "yes", "no", "on", "off", "true", "false", "null"])
 
 
-class CandumpEncoder:
+class CandumpEncoder(Encoder):
     """Makes the lines of a log; it has no options."""
-
-    def __init__(self, entities: Sequence[Entity], _options: WriteOptions) -> None:
-        self._entities = entities
-
-    def begin(self) -> bytes:
-        """Nothing: logs have no header."""
-        return b""
 
     def encode(self, table: EventTable) -> bytes:
         """The lines of the starts and ends among some events."""
@@ -46,10 +38,6 @@ class CandumpEncoder:
                 identifier = start if kind == EventKind.START else end
                 lines.append(f"({seconds:010}.{rest // _MICROSECOND:06}) {_CHANNEL} {identifier:08X}#{payload}\n")
         return "".join(lines).encode()
-
-    def end(self) -> bytes:
-        """Nothing: the file ends with the last event."""
-        return b""
 
     def companion(self) -> tuple[str, bytes]:
         """The end of the name of the file with the identifiers, and its content."""

@@ -28,7 +28,7 @@ _NOBODY = "Vector__XXX"
 
 
 @dataclass(frozen=True, slots=True)
-class BusSignal:
+class DbcSignal:
     """A value in the payload of a message: `raw * scale + offset`.
 
     Attributes
@@ -56,7 +56,7 @@ class BusSignal:
 
 
 @dataclass(frozen=True, slots=True)
-class BusMessage:
+class DbcMessage:
     """A message.
 
     Attributes
@@ -73,18 +73,18 @@ class BusMessage:
     senders: tuple[str, ...]
     receivers: tuple[str, ...]
     cycle_time: Time | None
-    signals: Mapping[str, BusSignal]
+    signals: Mapping[str, DbcSignal]
 
 
 @dataclass(frozen=True, slots=True)
-class BusDatabase:
+class DbcDatabase:
     """The messages of a bus, by their names."""
 
     path: Path
-    messages: Mapping[str, BusMessage]
+    messages: Mapping[str, DbcMessage]
 
-    def find(self, text: str) -> tuple[BusMessage, BusSignal]:
-        """The signal that is written as `BusMessage.Signal`.
+    def find(self, text: str) -> tuple[DbcMessage, DbcSignal]:
+        """The signal that is written as `DbcMessage.Signal`.
 
         Raises
         ------
@@ -101,7 +101,7 @@ class BusDatabase:
         return message, signal
 
 
-def read_dbc(path: Path) -> BusDatabase:
+def read_dbc(path: Path) -> DbcDatabase:
     """Read a DBC file.
 
     Raises
@@ -120,14 +120,14 @@ def read_dbc(path: Path) -> BusDatabase:
     database = CantoolsDatabase()
     try:
         database.add_dbc_string(text)
-        return BusDatabase(path, {message.name: _message(message) for message in database.messages})
+        return DbcDatabase(path, {message.name: _message(message) for message in database.messages})
     except Exception as error:  # of many kinds: of the parser, of cantools, and of what it uses
         raise ReadError([_not_dbc(path, error)]) from None
 
 
-def _message(message: CantoolsMessage) -> BusMessage:
+def _message(message: CantoolsMessage) -> DbcMessage:
     decode = _decoder(message)
-    return BusMessage(
+    return DbcMessage(
         name=message.name,
         identifier=message.frame_id | (EXTENDED if message.is_extended_frame else 0),
         length=message.length,
@@ -138,8 +138,8 @@ def _message(message: CantoolsMessage) -> BusMessage:
     )
 
 
-def _signal(signal: CantoolsSignal, decode: Callable[[bytes], Mapping[str, Any]]) -> BusSignal:
-    return BusSignal(signal.name, signal.length, _exact(signal.scale), _exact(signal.offset), signal.unit or "", decode)
+def _signal(signal: CantoolsSignal, decode: Callable[[bytes], Mapping[str, Any]]) -> DbcSignal:
+    return DbcSignal(signal.name, signal.length, _exact(signal.scale), _exact(signal.offset), signal.unit or "", decode)
 
 
 def _decoder(message: CantoolsMessage) -> Callable[[bytes], Mapping[str, Any]]:

@@ -9,7 +9,6 @@ import numpy as np
 
 from amalthea_uros._internal.arrays import Numbers
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.trace.can.frames import FrameKind, FrameTable
 from amalthea_uros.trace.problems import TracePlace, TraceProblems
 
@@ -80,39 +79,6 @@ def _with_gaps(table: FrameTable, places: Numbers) -> FrameTable:
     for gap in gaps.tolist():
         data[gap] = b""
     return FrameTable(table.channels, taken.time, taken.channel, taken.identifier, taken.kind, taken.line, data)
-
-
-def unwrap(ticks: Numbers, bits: int, *, epoch: Numbers | None = None) -> Numbers:
-    """The values of a counter as if it had more bits, in ticks from 0 of its first round.
-
-    Parameters
-    ----------
-    ticks : the values of the counter, in the order in which they were taken
-    bits : of the counter; it starts again from 0 after 2**bits ticks
-    epoch : for each value, the time of a coarser clock in the same ticks, such as that of the recorder; without it, two values are
-        taken to be less than one round apart: a longer pause cannot be seen in the counter alone
-
-    Raises
-    ------
-    InvalidArgumentError : a value does not fit into the bits.
-
-    Notes
-    -----
-    Zephyr's stamps of 32 bits are nanoseconds that are cut to 32 bits, of a cycle counter of 32 bits: they start again when either
-    does. They are only as this function expects if the counter is a whole number of nanosecond rounds long, as with 100 MHz; else
-    each round of the cycle counter adds an error of (-2**32 * 10**9 / frequency) modulo 2**32 ns.
-    """
-    size = 1 << bits
-    if not 1 <= bits <= 62 or ((ticks < 0) | (ticks >= size)).any():
-        raise InvalidArgumentError(f"a counter of {bits} bits has values from 0 to {size - 1}, and others were given")
-    rounds: Numbers
-    if epoch is None:
-        rounds = np.concatenate(([0], np.cumsum(np.diff(ticks) < 0)))[: len(ticks)]
-    else:
-        # The round in which the counter is nearest to the coarser clock, relative to the first value.
-        passed = epoch - epoch[:1] + ticks[:1]
-        rounds = np.floor_divide(passed - ticks + size // 2, size)
-    return ticks + size * rounds
 
 
 # Channels of one log compared: the same bus recorded twice, or two buses on which the same identifiers mean other frames.

@@ -16,6 +16,7 @@ from amalthea_uros.trace.ctf.types import (
     StructType,
     VariantType,
 )
+from amalthea_uros.trace.problems import UnreadableError
 
 if TYPE_CHECKING:
     from mmap import mmap
@@ -27,14 +28,6 @@ Fields: TypeAlias = dict[str, Any]
 _DEPTH = 40
 _FREE_STEPS = 4096
 _CODES = {8: "b", 16: "h", 32: "i", 64: "q"}
-
-
-class DecodingError(Exception):
-    """The bits do not fit the metadata."""
-
-
-class PacketEndError(DecodingError):
-    """The packet ends within a field."""
 
 
 class _Plan(NamedTuple):
@@ -89,7 +82,7 @@ class Decoder:
 
         Raises
         ------
-        DecodingError : the bits do not fit.
+        UnreadableError : the bits do not fit.
         """
         if kind is None:
             return {}
@@ -105,7 +98,7 @@ class Decoder:
     def _planned(self, plan: _Plan) -> Fields:
         end = self.position + plan.layout.size * 8
         if end > self.end:
-            raise PacketEndError("the packet ends within an event")
+            raise UnreadableError("the packet ends within an event", is_cut=True)
         values: Sequence[Value] = plan.layout.unpack_from(self.data, self.position >> 3)
         self.position = end
         if plan.texts:
@@ -122,7 +115,7 @@ class Decoder:
     def _value(self, kind: FieldType, depth: int) -> Value:
         self._steps += 1
         if depth > _DEPTH or self._steps > _FREE_STEPS + self.position - self._begin:
-            raise DecodingError("an event has too many fields in each other")
+            raise UnreadableError("an event has too many fields in each other")
         match kind:
             case IntegerType():
                 return self._integer(kind)
@@ -144,7 +137,7 @@ class Decoder:
         first, size = self.position, kind.size
         last = first + size
         if last > self.end:
-            raise PacketEndError("the packet ends within an event")
+            raise UnreadableError("the packet ends within an event", is_cut=True)
         self.position = last
         octets = self.data[first >> 3 : (last + 7) >> 3]
         value = int.from_bytes(octets, "big" if kind.is_big_endian else "little")
@@ -161,7 +154,7 @@ class Decoder:
         self._align(8)
         first = self.position >> 3
         if number > (self.end >> 3) - first:
-            raise PacketEndError("the packet ends within an event")
+            raise UnreadableError("the packet ends within an event", is_cut=True)
         self.position += number * 8
         return bytes(self.data[first : first + number])
 
@@ -177,14 +170,14 @@ class Decoder:
         first = self.position >> 3
         last = self.data.find(b"\0", first, self.end >> 3)
         if last < 0:
-            raise PacketEndError("the packet ends within a text")
+            raise UnreadableError("the packet ends within a text", is_cut=True)
         text = self._octets(last + 1 - first)
         return _text(text)
 
     def _array(self, kind: ArrayType, depth: int) -> Value:
         length = kind.length if isinstance(kind.length, int) else self._named(kind.length)
         if not isinstance(length, int) or length < 0:
-            raise DecodingError("the length of a sequence is not a number")
+            raise UnreadableError("the length of a sequence is not a number")
         element = kind.element
         if isinstance(element, IntegerType) and element.is_text:
             self._align(element.align)
@@ -216,7 +209,7 @@ class Decoder:
             option = kind.options.get(label.removeprefix("_")) if label else None
             if option is not None:
                 return option
-        raise DecodingError("no option of a variant is selected")
+        raise UnreadableError("no option of a variant is selected")
 
     def _named(self, reference: str, suffix: str = "") -> Value:
         """The value of a field by its name, which may come after those of the structures around it."""

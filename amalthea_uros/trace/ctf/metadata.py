@@ -8,8 +8,9 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from pathlib import Path
 
-from amalthea_uros.trace.ctf.tsdl import MetadataBlock, MetadataError, parse
+from amalthea_uros.trace.ctf.tsdl import MetadataBlock, parse
 from amalthea_uros.trace.ctf.types import FieldType, IntegerType, StructType, VariantType
+from amalthea_uros.trace.problems import UnreadableError
 
 #: Of packets of metadata: the magic number, and the header after it (section 7.1): uuid, checksum, content and packet size in bits,
 #: compression, encryption, checksum scheme, version.
@@ -84,13 +85,13 @@ def read_metadata(path: Path) -> Metadata:
 
     Raises
     ------
-    MetadataError : they cannot be understood.
+    UnreadableError : they cannot be understood.
     OSError : the file cannot be read.
     """
     with path.open("rb") as stream:
         data = stream.read(_MOST_BYTES + 1)
     if len(data) > _MOST_BYTES:
-        raise MetadataError(f"the metadata have more than {_MOST_BYTES:,} bytes", 1)
+        raise UnreadableError(f"the metadata have more than {_MOST_BYTES:,} bytes", 1)
     return described(_text(data).replace("\x00", " "))
 
 
@@ -99,7 +100,7 @@ def described(source: str) -> Metadata:
 
     Raises
     ------
-    MetadataError : they cannot be understood.
+    UnreadableError : they cannot be understood.
     """
     blocks = parse(source)
     trace = next((block for block in blocks if block.kind == "trace"), MetadataBlock("trace"))
@@ -124,7 +125,7 @@ def _clocks(blocks: list[MetadataBlock]) -> dict[str, TraceClock]:
         if block.kind == "clock":
             frequency = block.number("freq", 10**9)
             if frequency <= 0:
-                raise MetadataError("the frequency of a clock is not positive", 1)
+                raise UnreadableError("the frequency of a clock is not positive", 1)
             offset = block.number("offset_s", 0) * _SECOND + block.number("offset", 0) * _SECOND // frequency
             found[block.text("name")] = TraceClock(frequency, offset)
     return found
@@ -143,9 +144,9 @@ def _unpacked(data: bytes, order: str) -> bytes:
     while place + header.size <= len(data):
         magic, _, _, content, packet, *schemes, _, _ = header.unpack_from(data, place)
         if magic != _MAGIC or any(schemes[:2]):
-            raise MetadataError("a packet of metadata has a wrong magic number, or is compressed or encrypted", 1)
+            raise UnreadableError("a packet of metadata has a wrong magic number, or is compressed or encrypted", 1)
         if not header.size * 8 <= content <= packet:
-            raise MetadataError("a packet of metadata has a wrong size", 1)
+            raise UnreadableError("a packet of metadata has a wrong size", 1)
         parts.append(data[place + header.size : place + content // 8])
         place += packet // 8
     return b"".join(parts)

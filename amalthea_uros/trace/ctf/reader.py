@@ -13,8 +13,7 @@ from amalthea_uros.trace.ctf.interpreters import Interpreter, LinuxScheduler, Ze
 from amalthea_uros.trace.ctf.metadata import Metadata, read_metadata
 from amalthea_uros.trace.ctf.ros2 import Ros2
 from amalthea_uros.trace.ctf.streams import CtfEvent, PacketStream
-from amalthea_uros.trace.ctf.tsdl import MetadataError
-from amalthea_uros.trace.problems import TracePlace, TraceProblems
+from amalthea_uros.trace.problems import TracePlace, TraceProblems, UnreadableError
 from amalthea_uros.trace.reading import BLOCK, EventRows, NumberedTable, TraceReader
 from amalthea_uros.trace.schedulers.thread_log import UniqueNames
 from amalthea_uros.trace.schedulers.thread_states import ThreadStates
@@ -78,7 +77,7 @@ class CtfReader(TraceReader):
             path = folder / METADATA
             try:
                 yield folder, read_metadata(path)
-            except MetadataError as error:
+            except UnreadableError as error:
                 advice = "Use the metadata of the very build that was recorded."
                 self._problems_of(path).add(
                     "TRC024", Severity.ERROR, f"the metadata are wrong: {error}", TracePlace(error.line), advice

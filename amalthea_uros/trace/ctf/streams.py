@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.trace.ctf.decoding import Decoder, DecodingError, Fields, PacketEndError
+from amalthea_uros.trace.ctf.decoding import Decoder, Fields
 from amalthea_uros.trace.ctf.metadata import EventType, Metadata, StreamType, TraceClock
 from amalthea_uros.trace.ctf.types import IntegerType, StructType
-from amalthea_uros.trace.problems import TraceProblems
+from amalthea_uros.trace.problems import TraceProblems, UnreadableError
 
 _MAGIC = 0xC1FC1FC1
 #: A pause of a short clock at its overflow is doubtful if it is so many times the longest one before, and long at all.
@@ -80,7 +80,7 @@ class PacketStream:
             try:
                 kind, context = self._header(decoder)
                 packet = self._extent(decoder, context, place, size)
-            except DecodingError as error:
+            except UnreadableError as error:
                 self._report(f"{error}; searching for the next packet")
                 yield from self._loss(None)
                 place = self._next_packet(data, place)
@@ -100,11 +100,11 @@ class PacketStream:
         """The kind of stream and the context of a packet."""
         header = decoder.structure(self._metadata.packet_header)
         if header.get("magic", _MAGIC) != _MAGIC:
-            raise DecodingError("a packet does not begin with the magic number of CTF")
+            raise UnreadableError("a packet does not begin with the magic number of CTF")
         streams = self._metadata.streams
         kind = streams.get(header.get("stream_id", next(iter(streams), 0)))
         if kind is None:
-            raise DecodingError("a packet is of a stream that the metadata do not describe")
+            raise UnreadableError("a packet is of a stream that the metadata do not describe")
         decoder.stamps.clear()
         return kind, decoder.structure(kind.packet_context)
 
@@ -117,10 +117,10 @@ class PacketStream:
             or not decoder.position - place <= content <= total
             or total % 8
         ):
-            raise DecodingError("the sizes of a packet are wrong")
+            raise UnreadableError("the sizes of a packet are wrong")
         if place + total > size:
             if self._next_packet(decoder.data, place) < size:
-                raise DecodingError("the sizes of a packet are wrong")
+                raise UnreadableError("the sizes of a packet are wrong")
             self._report("the file ends within a packet; the events before that are used")
         begin, end = context.get("timestamp_begin"), context.get("timestamp_end")
         self._has_times_in_packets = isinstance(begin, int)
@@ -171,10 +171,10 @@ class PacketStream:
                     context = {**context, **decoder.structure(event.context)}
                 fields = decoder.structure(event.fields)
                 if decoder.position <= start:
-                    raise DecodingError("an event has no size")
+                    raise UnreadableError("an event has no size")
                 is_doubtful = self._advance(stamps)
-            except DecodingError as error:
-                if not isinstance(error, PacketEndError) or packet.is_whole:
+            except UnreadableError as error:
+                if not error.is_cut or packet.is_whole:
                     self._report(f"{error}; the rest of the packet is ignored")
                 yield from self._loss(None)
                 return
@@ -191,18 +191,18 @@ class PacketStream:
         )
         event = kind.events.get(number)
         if event is None:
-            raise DecodingError("an event has an id that the metadata do not know, so its length is not known")
+            raise UnreadableError("an event has an id that the metadata do not know, so its length is not known")
         return event, number
 
     def _advance(self, stamps: list[tuple[int, IntegerType]]) -> bool:
         """Take the time of an event over; whether it is doubtful that nothing is missing before it."""
         if not stamps:
-            raise DecodingError("events have no times")
+            raise UnreadableError("events have no times")
         stamp, kind = stamps[0]
         self._clock = self._metadata.clocks.get(kind.clock, self._clock)
         before, whole = self._stamp, self._whole(stamp, kind)
         if self._latest is not None and whole > self._latest:
-            raise DecodingError("an event is later than the end of its packet")
+            raise UnreadableError("an event is later than the end of its packet")
         self._set(whole)
         return not self._has_times_in_packets and kind.size < _WORD and self._is_doubtful(before, whole, kind)
 

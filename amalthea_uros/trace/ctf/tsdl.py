@@ -17,6 +17,7 @@ from amalthea_uros.trace.ctf.types import (
     StructType,
     VariantType,
 )
+from amalthea_uros.trace.problems import UnreadableError
 
 _TOKEN = re.compile(
     r"""(?P<skip>\s+|//[^\n]*|/\*.*?\*/)
@@ -27,19 +28,6 @@ _TOKEN = re.compile(
     |(?P<sign>:=|\.\.\.|->|[{}\[\]()<>;:,.=*+-])""",
     re.VERBOSE | re.DOTALL,
 )
-
-
-class MetadataError(Exception):
-    """The metadata cannot be understood.
-
-    Attributes
-    ----------
-    line : counted from 1
-    """
-
-    def __init__(self, message: str, line: int) -> None:
-        super().__init__(message)
-        self.line = line
 
 
 class Token(NamedTuple):
@@ -55,14 +43,14 @@ def tokens(source: str, most: int) -> list[Token]:
 
     Raises
     ------
-    MetadataError : there is something that is none, or there are too many.
+    UnreadableError : there is something that is none, or there are too many.
     """
     found: list[Token] = []
     place, line = 0, 1
     while place < len(source):
         match = _TOKEN.match(source, place)
         if match is None or len(found) >= most:
-            raise MetadataError("a character that TSDL does not know" if match is None else f"more than {most:,} words", line)
+            raise UnreadableError("a character that TSDL does not know" if match is None else f"more than {most:,} words", line)
         kind = match.lastgroup or "skip"
         if kind != "skip":
             found.append(Token(kind, match[0], line))
@@ -114,7 +102,7 @@ def parse(source: str) -> list[MetadataBlock]:
 
     Raises
     ------
-    MetadataError : they cannot be understood.
+    UnreadableError : they cannot be understood.
     """
     return _TsdlParser(tokens(source, _MOST_TOKENS)).blocks()
 
@@ -145,8 +133,8 @@ class _TsdlParser:
     def _after(self) -> Token:
         return self._tokens[min(self._place + 1, len(self._tokens) - 1)]
 
-    def _error(self, message: str) -> MetadataError:
-        return MetadataError(message, self._next.line)
+    def _error(self, message: str) -> UnreadableError:
+        return UnreadableError(message, self._next.line)
 
     def _take(self, text: str = "") -> Token:
         token = self._next

@@ -10,14 +10,8 @@ import json
 from collections.abc import Iterable, Iterator, Sequence
 
 from amalthea_uros.trace.sinks import WriteOptions
-from amalthea_uros.trace.table import Entity, EntityKind, EventTable
-from amalthea_uros.trace.viewers.timeline import Timeline, TrackChange, TrackMark
-
-#: What the format calls processes.
-_CORES, _PROCESSES = 1, 2
-_GROUPS = {_CORES: "Cores", _PROCESSES: "Tasks and ISRs"}
-#: Threads have numbers from here on: 0 is the idle thread, and the one with the number of its process is the main thread.
-_FIRST = 16
+from amalthea_uros.trace.table import Entity
+from amalthea_uros.trace.viewers.timeline import FIRST_TRACK, GROUPS, TimelineEncoder, TrackChange, TrackMark
 
 
 class _Track:
@@ -51,30 +45,28 @@ class _Track:
             self.ends.clear()
 
 
-class ChromeEncoder:
-    """Makes the JSON; it has no options."""
+class ChromeEncoder(TimelineEncoder):
+    """Makes the JSON. What the format calls processes are the groups of tracks, and each track is a thread of one."""
 
-    def __init__(self, entities: Sequence[Entity], _options: WriteOptions) -> None:
-        self._entities = entities
-        self._timeline = Timeline()
+    def __init__(self, entities: Sequence[Entity], options: WriteOptions) -> None:
+        super().__init__(entities, options)
         self._tracks: dict[int, _Track] = {}
         #: The fields that do not depend on the time, by track, state and entity.
         self._places: dict[tuple[int, str, int], str] = {}
 
     def begin(self) -> bytes:
         """The names of the groups of tracks."""
-        groups = (_metadata("process_name", group, group, name=title) for group, title in _GROUPS.items())
+        groups = (_metadata("process_name", group, group, name=title) for group, title in GROUPS.items())
         return ('{"traceEvents":[\n' + ",\n".join(groups)).encode()
-
-    def encode(self, table: EventTable) -> bytes:
-        """The slices that end in some events."""
-        return "".join(self._encoded(self._timeline.marks(table))).encode()
 
     def end(self) -> bytes:
         """The slices that are still open, and the end of the JSON."""
-        return ("".join(self._encoded(self._timeline.finish())) + "\n]}\n").encode()
+        return super().end() + b"\n]}\n"
 
-    def _encoded(self, marks: Iterable[TrackMark]) -> Iterator[str]:
+    def _encoded(self, marks: Iterable[TrackMark]) -> bytes:
+        return "".join(self._events(marks)).encode()
+
+    def _events(self, marks: Iterable[TrackMark]) -> Iterator[str]:
         for mark in marks:
             track = self._tracks.get(mark.track)
             if track is None:
@@ -89,18 +81,15 @@ class ChromeEncoder:
         place = self._places.get(key)
         if place is None:
             name = json.dumps(mark.state or self._entities[mark.entity].name, ensure_ascii=False)
-            place = f'"ph":"X","pid":{self._group(mark.track)},"tid":{_FIRST + mark.track},"name":{name}'
+            place = f'"ph":"X","pid":{self._group(mark.track)},"tid":{FIRST_TRACK + mark.track},"name":{name}'
             self._places[key] = place
         times = f'"ts":{_microseconds(mark.time)},"dur":{_microseconds(end - mark.time)}'
         return f"{{{place},{times}{_flow(mark)}}}"
 
     def _description(self, track: int) -> Iterator[str]:
-        group, thread, name = self._group(track), _FIRST + track, self._entities[track].name
+        group, thread, name = self._group(track), FIRST_TRACK + track, self._entities[track].name
         yield f",\n{_metadata('thread_name', group, thread, name=name)}"
         yield f",\n{_metadata('thread_sort_index', group, thread, sort_index=track)}"
-
-    def _group(self, track: int) -> int:
-        return _CORES if self._entities[track].kind is EntityKind.CORE else _PROCESSES
 
 
 def _flow(mark: TrackMark) -> str:

@@ -9,8 +9,15 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from amalthea_uros.trace.sinks import WriteOptions
-from amalthea_uros.trace.table import Entity, EntityKind, EventTable
-from amalthea_uros.trace.viewers.timeline import SHOWN_STATES, Timeline, TrackChange, TrackMark
+from amalthea_uros.trace.table import Entity
+from amalthea_uros.trace.viewers.timeline import (
+    FIRST_TRACK,
+    GROUPS,
+    SHOWN_STATES,
+    TimelineEncoder,
+    TrackChange,
+    TrackMark,
+)
 
 # The wire format of Protocol Buffers, as far as writing needs it (protobuf.dev, "Encoding").
 
@@ -69,19 +76,14 @@ _FLAGS = integer(_SEQUENCE_FLAGS, _NEEDS_STATE)
 _TRACK_EVENT_HEADS = [message(_TRACK_EVENT, bytes(length)).removesuffix(bytes(length)) for length in range(64)]
 _PACKET_HEADS = [message(_TRACE_PACKET, bytes(length)).removesuffix(bytes(length)) for length in range(128)]
 
-_CORES, _PROCESSES = 1, 2
-_GROUPS = {_CORES: "Cores", _PROCESSES: "Tasks and ISRs"}
-#: The tracks and the names of entities have numbers from here on; before them are the groups and the states.
-_FIRST = 16
 _STATES = {state: number for number, state in enumerate(SHOWN_STATES, 1)}
 
 
-class PerfettoEncoder:
-    """Makes the packets of a Perfetto file; it has no options."""
+class PerfettoEncoder(TimelineEncoder):
+    """Makes the packets of a Perfetto file."""
 
-    def __init__(self, entities: Sequence[Entity], _options: WriteOptions) -> None:
-        self._entities = entities
-        self._timeline = Timeline()
+    def __init__(self, entities: Sequence[Entity], options: WriteOptions) -> None:
+        super().__init__(entities, options)
         self._tracks: set[int] = set()
         self._names: set[int] = set()
         self._events: dict[tuple[object, ...], bytes] = {}
@@ -92,17 +94,9 @@ class PerfettoEncoder:
         first = _packet(integer(_SEQUENCE_FLAGS, _CLEARED), message(_INTERNED_DATA, *names))
         groups = (
             message(_TRACK_DESCRIPTOR, integer(_UUID, group), text(_NAME, title), integer(_CHILD_ORDERING, _EXPLICIT))
-            for group, title in _GROUPS.items()
+            for group, title in GROUPS.items()
         )
         return first + b"".join(map(_packet, groups))
-
-    def encode(self, table: EventTable) -> bytes:
-        """The packets of some events."""
-        return self._encoded(self._timeline.marks(table))
-
-    def end(self) -> bytes:
-        """The ends of the slices that are open."""
-        return self._encoded(self._timeline.finish())
 
     def _encoded(self, marks: Iterable[TrackMark]) -> bytes:
         packets: list[bytes] = []
@@ -123,10 +117,10 @@ class PerfettoEncoder:
         return b"".join(packets)
 
     def _event(self, mark: TrackMark) -> bytes:
-        event = integer(_TYPE, mark.change) + integer(_TRACK_UUID, _FIRST + mark.track)
+        event = integer(_TYPE, mark.change) + integer(_TRACK_UUID, FIRST_TRACK + mark.track)
         if mark.change is TrackChange.END:
             return event
-        return event + integer(_NAME_IID, _STATES[mark.state] if mark.state else _FIRST + mark.entity)
+        return event + integer(_NAME_IID, _STATES[mark.state] if mark.state else FIRST_TRACK + mark.entity)
 
     def _new_packets(self, mark: TrackMark) -> list[bytes]:
         """The packets that say what the track and the name of a mark are, unless earlier ones do."""
@@ -136,7 +130,7 @@ class PerfettoEncoder:
             packets.append(_packet(self._descriptor(mark.track)))
         if mark.change is not TrackChange.END and not mark.state and mark.entity not in self._names:
             self._names.add(mark.entity)
-            name = _name(_FIRST + mark.entity, self._entities[mark.entity].name)
+            name = _name(FIRST_TRACK + mark.entity, self._entities[mark.entity].name)
             packets.append(_packet(_FLAGS, message(_INTERNED_DATA, name)))
         return packets
 
@@ -144,9 +138,9 @@ class PerfettoEncoder:
         entity = self._entities[track]
         return message(
             _TRACK_DESCRIPTOR,
-            integer(_UUID, _FIRST + track),
+            integer(_UUID, FIRST_TRACK + track),
             text(_NAME, entity.name),
-            integer(_PARENT_UUID, _CORES if entity.kind is EntityKind.CORE else _PROCESSES),
+            integer(_PARENT_UUID, self._group(track)),
             integer(_SIBLING_ORDER_RANK, track),
             integer(_SIBLING_MERGE_BEHAVIOR, _NEVER_MERGED),
         )

@@ -6,11 +6,14 @@ the states on a core the runnables that the job is in. The slices of a track are
 
 from __future__ import annotations
 
+from abc import abstractmethod
+from collections.abc import Iterable, Sequence
 from enum import IntEnum
 from typing import NamedTuple
 
 from amalthea_uros.trace.btf.vocabulary import ENTERING, LEAVING, ON_CORE, PROCESS
-from amalthea_uros.trace.table import EventKind, EventTable
+from amalthea_uros.trace.sinks import Encoder, WriteOptions
+from amalthea_uros.trace.table import Entity, EntityKind, EventKind, EventTable
 
 
 class TrackChange(IntEnum):
@@ -172,3 +175,33 @@ class Timeline:
 
 def _flow(chain: int, occurrence: int) -> int:
     return (chain + 1 << _OCCURRENCE_BITS) + occurrence % (1 << _OCCURRENCE_BITS)
+
+
+#: The groups of tracks, by numbers that formats use for them.
+CORES, PROCESSES = 1, 2
+GROUPS = {CORES: "Cores", PROCESSES: "Tasks and ISRs"}
+#: Tracks and names of entities have numbers from here on; before them are the groups, and what formats need.
+FIRST_TRACK = 16
+
+
+class TimelineEncoder(Encoder):
+    """Makes the bytes of a format that shows slices and marks on tracks; it has no options."""
+
+    def __init__(self, entities: Sequence[Entity], options: WriteOptions) -> None:
+        super().__init__(entities, options)
+        self._timeline = Timeline()
+
+    def encode(self, table: EventTable) -> bytes:
+        """What some events change."""
+        return self._encoded(self._timeline.marks(table))
+
+    def end(self) -> bytes:
+        """The slices that are still open, and the end of the file."""
+        return self._encoded(self._timeline.finish())
+
+    @abstractmethod
+    def _encoded(self, marks: Iterable[TrackMark]) -> bytes:
+        """The bytes of some marks."""
+
+    def _group(self, track: int) -> int:
+        return CORES if self._entities[track].kind is EntityKind.CORE else PROCESSES
