@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from types import TracebackType
 from typing import Self
 
 from amalthea_uros.compare.measured.events import chain_starts
@@ -22,6 +21,7 @@ from amalthea_uros.simulate.results import Simulation
 from amalthea_uros.simulate.system import simulate_system
 from amalthea_uros.timing.activation.phases import with_first_arrivals
 from amalthea_uros.timing.basics.settings import Settings
+from amalthea_uros.trace.sinks import TraceSink
 from amalthea_uros.trace.table import Entity, EventTable
 from amalthea_uros.units import SECOND, Time
 
@@ -39,7 +39,7 @@ class Run:
     values: Measurement
 
 
-class _Measuring:
+class _Measuring(TraceSink):
     """A sink that measures the first events of a run; it is its own opener."""
 
     def __init__(self, system: System, most_events: int) -> None:
@@ -62,15 +62,6 @@ class _Measuring:
         self._end = int(part.time[-1])
         self._jobs.add(part)
         self._chains.add(part)
-
-    def close(self) -> None:
-        """Nothing is left to do."""
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None) -> None:
-        """Keep what was measured for the caller."""
 
     def measurement(self) -> Measurement:
         """What was measured."""

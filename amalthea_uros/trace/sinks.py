@@ -11,7 +11,7 @@ from datetime import datetime
 from importlib import import_module
 from pathlib import Path
 from types import TracebackType
-from typing import BinaryIO, Protocol, Self, cast
+from typing import BinaryIO, Self, cast
 
 from amalthea_uros._internal.files import STANDARD_OUTPUT, FileError, is_stream, not_writable, replacing, write_bytes
 from amalthea_uros.diagnostics import Finding, Location, Severity
@@ -79,23 +79,25 @@ class Encoder(ABC):
         return None
 
 
-class TraceSink(Protocol):
+class TraceSink(ABC):
     """Where events go, in the order in which they occur.
 
     As a context manager, it completes the trace at the end of the block, and discards it after an exception.
     """
 
+    @abstractmethod
     def write(self, table: EventTable) -> None:
         """Add some events."""
 
-    def close(self) -> None:
-        """Complete the trace."""
+    def close(self) -> None:  # noqa: B027 - many have nothing left to do
+        """Complete the trace, if something is left to do."""
 
-    def __enter__(self) -> Self: ...
+    def __enter__(self) -> Self:
+        return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
-    ) -> None: ...
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None) -> None:
+        if error is None:
+            self.close()
 
 
 def open_sink(
@@ -135,7 +137,7 @@ def _encoder(name: str, given: str) -> Callable[[Sequence[Entity], WriteOptions]
     )
 
 
-class _EncodingSink:
+class _EncodingSink(TraceSink):
     """Writes what an encoder makes of tables."""
 
     def __init__(self, target: Path | BinaryIO, encoder: Encoder, is_compressed: bool) -> None:
@@ -167,9 +169,6 @@ class _EncodingSink:
                 path = self._target.with_name(self._target.name.removesuffix(".gz") + ending)
                 with _reporting(path):
                     write_bytes(path, content)
-
-    def __enter__(self) -> Self:
-        return self
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None) -> None:
         if error is None:
@@ -212,7 +211,7 @@ def _not_writable(error: FileError) -> Finding:
 # Events that are kept in memory.
 
 
-class EventRecorder:
+class EventRecorder(TraceSink):
     """A sink that keeps all events; it is its own opener."""
 
     def __init__(self) -> None:
@@ -231,12 +230,3 @@ class EventRecorder:
     def write(self, table: EventTable) -> None:
         """Keep some events."""
         self._tables.append(table)
-
-    def close(self) -> None:
-        """Nothing is left to do."""
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None) -> None:
-        """Keep the events for the caller."""

@@ -7,57 +7,37 @@ from typing import TypeAlias
 
 from amalthea_uros.trace.table import EntityKind, EventKind
 
-_PROCESS = {
-    "activate": EventKind.ACTIVATE,
-    "start": EventKind.START,
-    "preempt": EventKind.PREEMPT,
-    "resume": EventKind.RESUME,
-    "terminate": EventKind.TERMINATE,
-    "poll": EventKind.POLL,
-    "run": EventKind.RUN,
-    "park": EventKind.PARK,
-    "poll_parking": EventKind.POLL_PARKING,
-    "release_parking": EventKind.RELEASE_PARKING,
-    "wait": EventKind.WAIT,
-    "release": EventKind.RELEASE,
-    "mtalimitexceeded": EventKind.ACTIVATION_LOST,
-    "interrupt_suspended": EventKind.INTERRUPT_SUSPENDED,
-}
+
+def _named(*kinds: EventKind, prefix: str = "", **others: EventKind) -> dict[str, EventKind]:
+    """Kinds of events by their words: their names here without a prefix, or others."""
+    return {kind.name.lower().removeprefix(prefix): kind for kind in kinds} | others
+
+
+_PROCESS = _named(
+    *(kind for kind in EventKind if kind <= EventKind.RELEASE),
+    EventKind.INTERRUPT_SUSPENDED,
+    mtalimitexceeded=EventKind.ACTIVATION_LOST,
+)
 
 #: The events that are about entities of a type (BTF 2.3.0, table 2-1 and chapters of the types).
 EVENTS: dict[EntityKind, dict[str, EventKind]] = {
     EntityKind.TASK: _PROCESS,
     EntityKind.ISR: _PROCESS,
-    EntityKind.RUNNABLE: {
-        "start": EventKind.RUNNABLE_START,
-        "suspend": EventKind.RUNNABLE_SUSPEND,
-        "resume": EventKind.RUNNABLE_RESUME,
-        "terminate": EventKind.RUNNABLE_TERMINATE,
-    },
+    EntityKind.RUNNABLE: _named(
+        EventKind.RUNNABLE_START,
+        EventKind.RUNNABLE_SUSPEND,
+        EventKind.RUNNABLE_RESUME,
+        EventKind.RUNNABLE_TERMINATE,
+        prefix="runnable_",
+    ),
     EntityKind.STIMULUS: {"trigger": EventKind.TRIGGER},
     EntityKind.LABEL: {"read": EventKind.READ, "write": EventKind.WRITE},
-    EntityKind.SEMAPHORE: {
-        "requestsemaphore": EventKind.REQUEST_SEMAPHORE,
-        "lock": EventKind.LOCK,
-        "unlock": EventKind.UNLOCK,
-        "assigned": EventKind.ASSIGNED,
-        "waiting": EventKind.WAITING,
-        "released": EventKind.RELEASED,
-        "increment": EventKind.INCREMENT,
-        "decrement": EventKind.DECREMENT,
-        "queued": EventKind.QUEUED,
-        "used": EventKind.USED,
-        "lock_used": EventKind.LOCK_USED,
-        "overfull": EventKind.OVERFULL,
-        "full": EventKind.FULL,
-        "unlock_full": EventKind.UNLOCK_FULL,
-        "free": EventKind.FREE,
-    },
-    EntityKind.OS_EVENT: {
-        "set_event": EventKind.SET_EVENT,
-        "clear_event": EventKind.CLEAR_EVENT,
-        "wait_event": EventKind.WAIT_EVENT,
-    },
+    EntityKind.SEMAPHORE: _named(
+        *(kind for kind in EventKind if EventKind.LOCK <= kind <= EventKind.RELEASED),
+        *(kind for kind in EventKind if EventKind.INCREMENT <= kind <= EventKind.FREE),
+        requestsemaphore=EventKind.REQUEST_SEMAPHORE,
+    ),
+    EntityKind.OS_EVENT: _named(EventKind.SET_EVENT, EventKind.CLEAR_EVENT, EventKind.WAIT_EVENT),
     EntityKind.SCHEDULER: {"schedule": EventKind.SCHEDULE, "schedulepoint": EventKind.SCHEDULE_POINT},
 }
 
@@ -71,44 +51,8 @@ PROCESSES = (EntityKind.TASK, EntityKind.ISR)
 #: The transitions by which a process gets onto a core, and those by which it leaves it.
 ENTERING = frozenset({EventKind.START, EventKind.RESUME, EventKind.POLL_PARKING})
 LEAVING = frozenset({EventKind.PREEMPT, EventKind.PARK, EventKind.WAIT, EventKind.TERMINATE})
-#: The changes of the state of a semaphore, which it causes itself.
-SEMAPHORE_STATES = frozenset(
-    {
-        EventKind.LOCK,
-        EventKind.UNLOCK,
-        EventKind.USED,
-        EventKind.LOCK_USED,
-        EventKind.OVERFULL,
-        EventKind.FULL,
-        EventKind.UNLOCK_FULL,
-        EventKind.FREE,
-    }
-)
 #: Events about an OS event; their note is the task that owns it.
 OS_EVENTS = frozenset(EVENTS[EntityKind.OS_EVENT].values())
-
-_BY_STIMULUS = (EntityKind.STIMULUS, *PROCESSES)
-_BY_PROCESS_OR_STIMULUS = (*PROCESSES, EntityKind.STIMULUS)
-
-#: The types of what can cause an event, the usual one first, as files do not say it. What causes its own events is tried before.
-SOURCES: dict[EventKind, tuple[EntityKind, ...]] = {
-    **dict.fromkeys(_PROCESS.values(), (EntityKind.CORE,)),
-    EventKind.ACTIVATE: _BY_STIMULUS,
-    EventKind.ACTIVATION_LOST: _BY_STIMULUS,
-    EventKind.INTERRUPT_SUSPENDED: (EntityKind.SCHEDULER,),
-    **dict.fromkeys(EVENTS[EntityKind.RUNNABLE].values(), PROCESSES),
-    EventKind.TRIGGER: _BY_PROCESS_OR_STIMULUS,
-    EventKind.READ: PROCESSES,
-    EventKind.WRITE: _BY_PROCESS_OR_STIMULUS,
-    **dict.fromkeys(EVENTS[EntityKind.SEMAPHORE].values(), PROCESSES),
-    **dict.fromkeys(SEMAPHORE_STATES, (*PROCESSES, EntityKind.SEMAPHORE)),
-    **dict.fromkeys(OS_EVENTS, PROCESSES),
-    EventKind.SET_EVENT: _BY_PROCESS_OR_STIMULUS,
-    EventKind.SCHEDULE: (EntityKind.SCHEDULER,),
-    EventKind.SCHEDULE_POINT: PROCESSES,
-    EventKind.CHAIN_STEP: PROCESSES,
-}
-
 
 # The state charts of BTF 2.3.0: for each event the states in which it may occur, and the state after it.
 
@@ -177,3 +121,26 @@ ACCESS = _chart(
         EventKind.DECREMENT: ("idle", "idle"),
     }
 )
+
+_BY_STIMULUS = (EntityKind.STIMULUS, *PROCESSES)
+_BY_PROCESS_OR_STIMULUS = (*PROCESSES, EntityKind.STIMULUS)
+
+#: The types of what can cause an event, the usual one first, as files do not say it. What causes its own events is tried before.
+SOURCES: dict[EventKind, tuple[EntityKind, ...]] = {
+    **dict.fromkeys(_PROCESS.values(), (EntityKind.CORE,)),
+    EventKind.ACTIVATE: _BY_STIMULUS,
+    EventKind.ACTIVATION_LOST: _BY_STIMULUS,
+    EventKind.INTERRUPT_SUSPENDED: (EntityKind.SCHEDULER,),
+    **dict.fromkeys(EVENTS[EntityKind.RUNNABLE].values(), PROCESSES),
+    EventKind.TRIGGER: _BY_PROCESS_OR_STIMULUS,
+    EventKind.READ: PROCESSES,
+    EventKind.WRITE: _BY_PROCESS_OR_STIMULUS,
+    **dict.fromkeys(EVENTS[EntityKind.SEMAPHORE].values(), PROCESSES),
+    # It causes the changes of its state itself.
+    **dict.fromkeys(SEMAPHORE, (*PROCESSES, EntityKind.SEMAPHORE)),
+    **dict.fromkeys(OS_EVENTS, PROCESSES),
+    EventKind.SET_EVENT: _BY_PROCESS_OR_STIMULUS,
+    EventKind.SCHEDULE: (EntityKind.SCHEDULER,),
+    EventKind.SCHEDULE_POINT: PROCESSES,
+    EventKind.CHAIN_STEP: PROCESSES,
+}
