@@ -13,7 +13,7 @@ from amalthea_uros.units import Time, time_text
 
 #: Shorter times are measured too coarsely, in steps of the clock.
 _FEWEST_STEPS = 10
-#: A maximum so many times as long as the second longest of at least so many values is doubtful.
+#: A maximum so many times as long as the second longest of at least so many values is uncertain.
 _FAR, _ENOUGH = 10, 20
 
 

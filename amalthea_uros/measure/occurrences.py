@@ -54,7 +54,7 @@ class MarkerCollector:
     channels : names of the buses
     origin : time of the first frame of the log, in picoseconds as the log states it; None: there is none
     first, last : times of the first and the latest frame in the window, from `origin` on; None: there is none
-    doubtful : for each marker the number of its frames at a step back of the clock, which are not used: one of the two stamps is wrong
+    uncertain : for each marker the number of its frames at a step back of the clock, which are not used: one of the two stamps is wrong
     seen : how often identifiers occur on which bus: (channel, identifier) -> number
     """
 
@@ -66,7 +66,7 @@ class MarkerCollector:
     origin: int | None = None
     first: int | None = None
     last: int | None = None
-    doubtful: dict[int, int] = field(default_factory=dict)
+    uncertain: dict[int, int] = field(default_factory=dict)
     seen: dict[tuple[int, int], int] = field(default_factory=dict)
     _parts: list[MarkerOccurrences] = field(default_factory=list)
 
@@ -97,12 +97,12 @@ class MarkerCollector:
             self.first = int(inside[0]) if self.first is None else self.first
             self.last = max(int(inside.max()), self.last or 0)
         self._count(table, is_frame)
-        is_doubtful = _at_steps_back(table)
+        is_uncertain = _at_steps_back(table)
         found = []
         for number, marker in enumerate(self.markers):
             places = self._found(table, is_frame, marker)
-            is_used = ~is_doubtful[places]
-            self.doubtful[number] = self.doubtful.get(number, 0) + int(np.count_nonzero(~is_used))
+            is_used = ~is_uncertain[places]
+            self.uncertain[number] = self.uncertain.get(number, 0) + int(np.count_nonzero(~is_used))
             found.append(places[is_used])
         rows = np.concatenate([np.empty(0, np.int64), *found])
         which = np.repeat(np.arange(len(found)), [len(each) for each in found])

@@ -160,9 +160,6 @@ def _missing(process: ProcessObservation, metric: JobMetric = JobMetric.RESPONSE
     return f"{process.name!r} has no deadline" if metric is JobMetric.LATENESS else f"only one job of {process.name!r} ended"
 
 
-# What was observed of the deadlines, requirements and constraints of a system.
-
-
 class ConstraintObservers(Protocol):
     """What has observed the constraints."""
 

@@ -61,9 +61,6 @@ def first_characters(path: Path, number: int) -> str:
     return first_bytes(path, number).decode("utf-8-sig", errors="replace")
 
 
-# The bytes and the lines of trace files, plain or packed with gzip.
-
-
 @contextmanager
 def opened_bytes(path: Path, problems: TraceProblems) -> Iterator[IO[bytes]]:
     """The unpacked bytes of a file; that the rest of it is damaged is a problem, and what comes before it has been read.

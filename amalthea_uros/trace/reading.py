@@ -110,9 +110,6 @@ def note_of(text: str, kind: EventKind, index: EntityIndex, name: str) -> int:
     return note if abs(note) <= MAX else NO_NOTE
 
 
-# What readers of text formats have in common.
-
-
 class TraceReader(ABC):
     """Gives the events of a trace; it can be used once."""
 

@@ -98,11 +98,11 @@ def _measured_object(
     if len(buses) > 1:
         findings.append(_several_buses(item, [log.channels[bus] for bus in buses], place))
     findings += (_undecoded(item, part.undecoded, place) for part in parts if part.undecoded)
-    doubtful = sum(log.doubtful.get(number, 0) for number in numbers)
-    return [_with_doubtful(series, doubtful) for part in parts for series in part.series], findings
+    uncertain = sum(log.uncertain.get(number, 0) for number in numbers)
+    return [_with_uncertain(series, uncertain) for part in parts for series in part.series], findings
 
 
-def _with_doubtful(series: Series, number: int) -> Series:
+def _with_uncertain(series: Series, number: int) -> Series:
     """A series that also counts the frames at steps back of the clock."""
     return replace(series, counts=replace(series.counts, reordered=series.counts.reordered + number))
 

@@ -112,8 +112,6 @@ BEFORE_PARKING, BEFORE_PREEMPTIONS, BEFORE_MIGRATIONS, EXECUTION_SIZE = range(5,
 OPERATION_SIZE = 3
 
 
-# The memory of the kernel.
-
 #: A list if the kernel is interpreted; an array of int64 if it is machine code, of which no more is asked than of a list.
 Memory: TypeAlias = list[int]
 

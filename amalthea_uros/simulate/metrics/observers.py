@@ -121,9 +121,6 @@ def in_order(places: Iterable[Numbers]) -> tuple[Numbers, Numbers]:
     return together[order], which[order]
 
 
-# What observes the constraints of a system, and labels: each gets the occurrences that it is about, chunk by chunk.
-
-
 class Metrics(Protocol):
     """The values that a constraint limits."""
 

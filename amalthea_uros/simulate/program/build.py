@@ -135,9 +135,6 @@ class _ProgramBuilder:
         self.image.put(0, {layout.PLACES: PLACES_AT_FIRST, layout.HAS_WRITES: int(has_writes)})
 
 
-# A system as the kernel executes it.
-
-
 @dataclass(frozen=True, slots=True)
 class KernelProgram:
     """A system as the kernel executes it.

@@ -183,9 +183,6 @@ class Resources:
         return self.image.record(layout.EVENT_ROW_SIZE, fields)
 
 
-# What the programs of all processes share.
-
-
 @dataclass(slots=True)
 class Parts:
     """What the programs of all processes share.

@@ -93,8 +93,6 @@ def _inverse_shape(average: float, logarithm: float) -> float:
     raise UnknownError("no Weibull distribution has the stated average and probability of exceeding the maximum")
 
 
-# The root of a function of one variable.
-
 _STEPS = 100
 
 

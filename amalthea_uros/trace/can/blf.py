@@ -75,8 +75,6 @@ def _is_sound(content: bytes) -> bool:
     return unpacking.eof and unpacked == size
 
 
-# Logs of CANalyzer and CANoe in the binary format of Vector (.blf), by python-can.
-
 _NANOSECOND = 1000
 
 

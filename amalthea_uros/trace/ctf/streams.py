@@ -14,8 +14,8 @@ from amalthea_uros.trace.ctf.types import IntegerType, StructType
 from amalthea_uros.trace.problems import TraceProblems, UnreadableError
 
 _MAGIC = 0xC1FC1FC1
-#: A pause of a short clock at its overflow is doubtful if it is so many times the longest one before, and long at all.
-_DOUBTFUL = 2
+#: A pause of a short clock at its overflow is uncertain if it is so many times the longest one before, and long at all.
+_UNCERTAIN = 2
 _SHORT_PAUSE = 10**10
 _WORD = 64
 _LARGER = "Record into a larger buffer, or fewer kinds of events."
@@ -172,13 +172,13 @@ class PacketStream:
                 fields = decoder.structure(event.fields)
                 if decoder.position <= start:
                     raise UnreadableError("an event has no size")
-                is_doubtful = self._advance(stamps)
+                is_uncertain = self._advance(stamps)
             except UnreadableError as error:
                 if not error.is_cut or packet.is_whole:
                     self._report(f"{error}; the rest of the packet is ignored")
                 yield from self._loss(None)
                 return
-            if is_doubtful:
+            if is_uncertain:
                 yield from self._loss(None)
             yield CtfEvent(self._time, event.name or f"event {number}", self._core, fields, context)
 
@@ -195,7 +195,7 @@ class PacketStream:
         return event, number
 
     def _advance(self, stamps: list[tuple[int, IntegerType]]) -> bool:
-        """Take the time of an event over; whether it is doubtful that nothing is missing before it."""
+        """Take the time of an event over; whether it is uncertain that nothing is missing before it."""
         if not stamps:
             raise UnreadableError("events have no times")
         stamp, kind = stamps[0]
@@ -204,7 +204,7 @@ class PacketStream:
         if self._latest is not None and whole > self._latest:
             raise UnreadableError("an event is later than the end of its packet")
         self._set(whole)
-        return not self._has_times_in_packets and kind.size < _WORD and self._is_doubtful(before, whole, kind)
+        return not self._has_times_in_packets and kind.size < _WORD and self._is_uncertain(before, whole, kind)
 
     def _whole(self, stamp: int, kind: IntegerType) -> int:
         """A stamp with the bits that a short clock does not show: it has overflown once at most since the last one."""
@@ -218,10 +218,10 @@ class PacketStream:
         self._stamp = stamp
         self._time = self._clock.time(stamp)
 
-    def _is_doubtful(self, before: int, after: int, kind: IntegerType) -> bool:
+    def _is_uncertain(self, before: int, after: int, kind: IntegerType) -> bool:
         """Whether a clock has overflown and the pause is much longer than all before."""
         pause = self._clock.time(after) - self._clock.time(before)
-        if before >> kind.size != after >> kind.size and pause > max(_DOUBTFUL * self._longest, _SHORT_PAUSE):
+        if before >> kind.size != after >> kind.size and pause > max(_UNCERTAIN * self._longest, _SHORT_PAUSE):
             message = "the clock has overflown early, or there is an unusually long pause; nothing is paired over it"
             self._problems.add("TRC023", Severity.WARNING, message, advice="Record with stamps of 64 bits.")
             return True

@@ -109,9 +109,6 @@ def server_call(body: Body, activity: ServerCall) -> None:
         body.code.add(operations.AWAIT, service, flags)
 
 
-# What is refused.
-
-
 def check_executing(body: Body, activity: ServerCall | SenderReceiverAccess) -> None:
     """Refuse runnables that are to be executed, but that no process executes.
 

@@ -153,9 +153,6 @@ def schedule_point(body: Body, activity: SchedulePoint) -> None:
     body.code.add(operations.POINT)
 
 
-# What takes time on the core.
-
-
 def execute(body: Body, activity: Execute) -> None:
     """Ticks or time."""
     body.demand(activity.demand)
