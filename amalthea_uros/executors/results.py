@@ -15,7 +15,7 @@ from amalthea_uros.units import Time, time_text
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Part:
+class TimePart:
     """A part of a response time or of a hop; None for a maximum that is not known.
 
     Attributes
@@ -63,7 +63,7 @@ class Hop(Shown):
     best: Time
     worst: Time | None
     source: str = ""
-    parts: tuple[Part, ...] = ()
+    parts: tuple[TimePart, ...] = ()
     share: Fraction | None = None
     reason: str = ""
     remedy: str = ""
@@ -113,7 +113,7 @@ class HandleResult(Shown):
     response: Response
     lateness: Span | None = None
     lost: Loss | None = None
-    terms: tuple[Part, ...] = ()
+    terms: tuple[TimePart, ...] = ()
 
     def __repr__(self) -> str:
         worst = "unknown" if self.response.worst is None else time_text(self.response.worst)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from amalthea_uros.analyze.results.chains import ChainResult
-from amalthea_uros.executors.results import Hop, Part
+from amalthea_uros.executors.results import Hop, TimePart
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.units import Rounding, Time, rounded_time_text, time_text
 
@@ -75,7 +75,7 @@ def write_hops_of_chain(chain: ChainResult, terminal: Terminal) -> None:
             terminal.line(f"  {hop.remedy}")
 
 
-def part_time(part: Part) -> str:
+def part_time(part: TimePart) -> str:
     """The time that a part takes at most, exactly."""
     return _exact(part.most)
 

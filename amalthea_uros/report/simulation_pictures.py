@@ -13,8 +13,8 @@ import numpy as np
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.names import require
 from amalthea_uros.perf.system import System
-from amalthea_uros.report.pictures.chain_ways import ChainWay
-from amalthea_uros.report.pictures.from_events import chain_way, jobs_of
+from amalthea_uros.report.pictures.chain_paths import DrawnPath
+from amalthea_uros.report.pictures.from_events import chain_path, jobs_of
 from amalthea_uros.report.pictures.gantt import GanttChart, gantt
 from amalthea_uros.report.pictures.histogram import Histogram, Series, histogram
 from amalthea_uros.report.pictures.histogram_marks import Mark, MarkKind
@@ -147,13 +147,13 @@ def _whole(observed: MetricObservation) -> Window:
     return floor(observed.at_max.time), ceil(observed.at_max.time + observed.max)
 
 
-def _way(events: EventTable, chain: str, stimulus: ObservedOccurrence, start: Time, end: Time) -> ChainWay:
+def _way(events: EventTable, chain: str, stimulus: ObservedOccurrence, start: Time, end: Time) -> DrawnPath:
     """The way of what is the response to a stimulus of a chain: of this stimulus, or of a newer one that overtakes it."""
     is_step = (events.kind == EventKind.CHAIN_STEP) & (events.target_instance >= stimulus.instance)
     is_step &= np.array([entity == Entity(EntityKind.CHAIN, chain) for entity in events.entities])[events.target]
     steps = events.where(is_step)
     last = steps.where(steps.note == steps.note.max(initial=0))
-    way = chain_way(steps, chain, int(last.target_instance[0])) if len(last) else ChainWay(chain, ())
+    way = chain_path(steps, chain, int(last.target_instance[0])) if len(last) else DrawnPath(chain, ())
     return replace(way, start=start, end=end)
 
 

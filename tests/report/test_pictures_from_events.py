@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.report.pictures.chain_ways import ChainStep, ChainWay
-from amalthea_uros.report.pictures.from_events import UNKNOWN_CORE, chain_way, jobs_of
+from amalthea_uros.report.pictures.chain_paths import ChainStep, DrawnPath
+from amalthea_uros.report.pictures.from_events import UNKNOWN_CORE, chain_path, jobs_of
 from amalthea_uros.report.pictures.gantt import GanttChart, gantt
 from amalthea_uros.report.pictures.jobs import CoreRows, Job, ProcessRow, RunnableSpan, Span, State
 from amalthea_uros.trace.table import NO_NOTE, Entity, EntityKind, EventKind, EventTable
@@ -177,13 +177,13 @@ def test_the_way_of_a_chain_passes_each_step_first():
     # The effect of occurrence 3 passes its second step twice, as it is read twice.
     events = (step(5, ISR, 2, 0), step(10, ISR, 3, 0), step(20, TASK, 3, 1), step(30, TASK, 3, 1), step(40, ISR, 3, 2))
     steps = (ChainStep("Interrupt", 10), ChainStep("Task", 20), ChainStep("Interrupt", 40))
-    assert chain_way(table(*events), "chain", 3) == ChainWay("chain", steps)
+    assert chain_path(table(*events), "chain", 3) == DrawnPath("chain", steps)
 
 
 @pytest.mark.parametrize(("chain", "occurrence"), [("chain", 7), ("other", 3)])
 def test_a_way_without_events_is_refused(chain, occurrence):
     with pytest.raises(InvalidArgumentError, match=f"occurrence {occurrence} of the chain '{chain}'"):
-        chain_way(table(step(10, ISR, 3, 0)), chain, occurrence)
+        chain_path(table(step(10, ISR, 3, 0)), chain, occurrence)
 
 
 @given(

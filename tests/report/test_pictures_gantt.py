@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from svg_reading import SVG, assert_readable, parsed, rectangles, scale, texts
 
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.report.pictures.chain_ways import ChainStep, ChainWay
+from amalthea_uros.report.pictures.chain_paths import ChainStep, DrawnPath
 from amalthea_uros.report.pictures.gantt import GanttChart, gantt
 from amalthea_uros.report.pictures.jobs import CoreRows, Job, ProcessRow, RunnableSpan, Span, State
 from amalthea_uros.units import MICROSECOND, MILLISECOND
@@ -135,7 +135,7 @@ def test_a_job_without_length_is_drawn():
 
 
 def test_a_chain_goes_from_step_to_step_and_has_its_latency_above():
-    way = ChainWay("sensor", (ChainStep("High", 30 * US), ChainStep("Low", 68 * US)), start=20 * US)
+    way = DrawnPath("sensor", (ChainStep("High", 30 * US), ChainStep("Low", 68 * US)), start=20 * US)
     picture = chart(HIGH, LOW, chains=(way,))
     x = scale(picture)
     assert "sensor: 48 us" in contents(picture)
@@ -144,7 +144,7 @@ def test_a_chain_goes_from_step_to_step_and_has_its_latency_above():
 
 
 def test_steps_outside_of_the_window_or_of_unknown_processes_are_not_drawn():
-    way = ChainWay("sensor", (ChainStep("High", 30 * US), ChainStep("Nobody", 40 * US), ChainStep("Low", 168 * US)))
+    way = DrawnPath("sensor", (ChainStep("High", 30 * US), ChainStep("Nobody", 40 * US), ChainStep("Low", 168 * US)))
     picture = chart(HIGH, LOW, chains=(way,))
     assert "sensor: 138 us" in contents(picture)
     assert len([node for node in parsed(picture).iter(f"{SVG}circle") if node.get("r") == "4"]) == 1
@@ -167,7 +167,7 @@ def test_runnables_that_are_too_narrow_are_mentioned():
 
 
 def test_names_are_escaped():
-    way = ChainWay(NASTY, (ChainStep(NASTY, 0), ChainStep(NASTY, 50 * US)))
+    way = DrawnPath(NASTY, (ChainStep(NASTY, 0), ChainStep(NASTY, 50 * US)))
     job = Job(0, (span("running", 0, 50),), runnables=(RunnableSpan(NASTY, 0, 50 * US),))
     picture = chart(ProcessRow(NASTY, (job,)), chains=(way,), title=NASTY)
     assert parsed(picture).findtext(f"{SVG}title") == NASTY
@@ -274,6 +274,6 @@ def batched(values, size):
 def test_every_chart_is_well_formed_and_its_text_is_readable(drawn_rows, title, data):
     names = [row.name for row in drawn_rows] or ["none"]
     steps = st.builds(ChainStep, st.sampled_from(names), TIMES.map(lambda time: time * US))
-    ways = st.builds(ChainWay, NAMES, st.lists(steps, min_size=1, max_size=4).map(tuple))
+    ways = st.builds(DrawnPath, NAMES, st.lists(steps, min_size=1, max_size=4).map(tuple))
     picture = chart(*drawn_rows, title=title, chains=tuple(data.draw(st.lists(ways, max_size=3))))
     assert_readable(picture)

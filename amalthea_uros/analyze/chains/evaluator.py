@@ -56,14 +56,14 @@ class ChainEvaluator:
     def _chain(self, chain: EventChain) -> ChainResult:
         try:
             unfolded, left_out = unfold(chain, self.context.system)
-            ways = routes_of_ways(unfolded, self.context.dataflow)
+            paths = routes_of_ways(unfolded, self.context.dataflow)
         except (UnfoldError, UnresolvedError) as error:
             self._note_unknown(chain, error)
             return ChainResult(name=chain.name, communication="", reason=str(error))
-        every = [route for found in ways.values() for route in found]
+        every = [route for found in paths.values() for route in found]
         self._note_left_out(chain, left_out)
-        self._note_ends(chain, tuple(ways))
-        found = self._evaluated(ways)
+        self._note_ends(chain, tuple(paths))
+        found = self._evaluated(paths)
         if self.budget.is_exceeded:
             self.context.notes.assume(f"{TOO_MANY_JOBS}; the chains without them have bounds of other methods")
         all_values = _combine(unfolded, found.values)
@@ -93,31 +93,31 @@ class ChainEvaluator:
         return tuple(sorted(filter(unknown.__contains__, found), key=unknown.__getitem__))
 
     def stages(self, chain: EventChain) -> list[Stage]:
-        """The stages of all ways through a chain; nothing if it cannot be evaluated."""
+        """The stages of all paths through a chain; nothing if it cannot be evaluated."""
         return [stage for route in self.routes(chain) for stage in self._stages(route)]
 
     def routes(self, chain: EventChain) -> list[Route]:
-        """The routes of all ways through a chain; nothing if it cannot be evaluated."""
+        """The routes of all paths through a chain; nothing if it cannot be evaluated."""
         try:
-            ways = routes_of_ways(unfold(chain, self.context.system)[0], self.context.dataflow)
+            paths = routes_of_ways(unfold(chain, self.context.system)[0], self.context.dataflow)
         except (UnfoldError, UnresolvedError):
             return []
-        return [route for found in ways.values() for route in found]
+        return [route for found in paths.values() for route in found]
 
     def processes(self, chain: EventChain) -> list[str]:
         """The processes in which the events of a chain occur, in its order; nothing if these cannot be located."""
         system, events = self.context.system, self.context.dataflow.events
         try:
-            ways = sequences(unfold(chain, system)[0])
-            found = (each.process.name for way in ways for name in way for each in events.of(system.events_by_name[name]))
+            paths = sequences(unfold(chain, system)[0])
+            found = (each.process.name for path in paths for name in path for each in events.of(system.events_by_name[name]))
             return list(dict.fromkeys(found))
         except (UnfoldError, UnresolvedError):
             return []
 
-    def _evaluated(self, ways: Mapping[tuple[str, ...], Sequence[Route]]) -> _Evaluated:
-        """The values of each way through a chain, and the reasons."""
+    def _evaluated(self, paths: Mapping[tuple[str, ...], Sequence[Route]]) -> _Evaluated:
+        """The values of each path through a chain, and the reasons."""
         found = _Evaluated()
-        for events, found_routes in ways.items():
+        for events, found_routes in paths.items():
             try:
                 methods = [self.latencies(route) for route in found_routes]
                 values = [list(method.values()) for method in methods]
@@ -139,12 +139,12 @@ class ChainEvaluator:
         """
         return _tightest(_worst_of([list(self.latencies(route).values()) for route in found]))
 
-    def _note_ends(self, chain: EventChain, ways: Sequence[tuple[str, ...]]) -> None:
+    def _note_ends(self, chain: EventChain, paths: Sequence[tuple[str, ...]]) -> None:
         """Report ends of a chain that it does not state itself."""
         notes = self.context.notes
         for end, stated, index in (("stimulus", chain.stimulus, 0), ("response", chain.response, -1)):
             if stated is None:
-                events = " and ".join(repr(event) for event in dict.fromkeys(way[index] for way in ways))
+                events = " and ".join(repr(event) for event in dict.fromkeys(path[index] for path in paths))
                 verb = "starts" if index == 0 else "ends"
                 notes.warning("CHN007", f"the chain {chain.name!r} has no {end} of its own; it {verb} with {events}", chain)
         for name in empty_sets(chain, self.context.system):
@@ -218,13 +218,13 @@ class ChainEvaluator:
 
 @dataclass(slots=True)
 class _Evaluated:
-    """Values by the events of a way through a chain.
+    """Values by the events of a path through a chain.
 
     Attributes
     ----------
     why : why the tightest values are exact or only bounds
     why_unbounded : why there is no bound of the reaction time
-    reason : why a way has no values
+    reason : why a path has no values
     """
 
     values: dict[tuple[str, ...], list[Value]] = field(default_factory=dict)
@@ -285,16 +285,16 @@ def _same(value: Value, others: Iterable[Value]) -> Value | None:
 
 
 def _combine(unfolded: Unfolded, values: Mapping[tuple[str, ...], list[Value]]) -> list[Value]:
-    """The values of a chain from those of all ways through it."""
+    """The values of a chain from those of all paths through it."""
     if len(values) == 1:
         return next(iter(values.values()))
     (_, first), *_ = values.items()
     found = []
     for value in first:
-        each = {events: _same(value, ways) for events, ways in values.items()}
+        each = {events: _same(value, paths) for events, paths in values.items()}
         if None in each.values() or value.quantity.is_mean:
             continue
-        times = {events: way.value for events, way in each.items() if way is not None}
+        times = {events: path.value for events, path in each.items() if path is not None}
         reacts = value.quantity in (Quantity.MAX_REACTION_TIME, Quantity.MAX_REDUCED_REACTION_TIME)
         if reacts:
             time = combined(unfolded, times)
@@ -307,7 +307,7 @@ def _combine(unfolded: Unfolded, values: Mapping[tuple[str, ...], list[Value]]) 
                 value=time,
                 # The maximum of minima is not the minimum of maxima: for alternatives it is a bound.
                 claim=Claim.BOUND
-                if reacts or any(way.claim is not Claim.EXACT for way in each.values() if way)
+                if reacts or any(path.claim is not Claim.EXACT for path in each.values() if path)
                 else Claim.EXACT,
                 method=value.method,
                 source=value.source,

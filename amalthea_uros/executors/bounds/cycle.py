@@ -54,8 +54,8 @@ _STEPS = 1000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Section:
-    """A part of an iteration of a thread: execution in the time base of the core, suspensions in picoseconds."""
+class IterationPart:
+    """A part of an iteration: execution in the time base of the core, suspensions in picoseconds."""
 
     demand: Time
     suspension: Suspension
@@ -170,22 +170,22 @@ class Cycle:
         return suspension_of(handle, self.solved.context.system, self.sending, self.session_wait)
 
     @cached_property
-    def whole(self) -> Section:
+    def whole(self) -> IterationPart:
         """The longest iteration: its overhead, and all callbacks that one iteration can call."""
         always = independent_handles(self.executor)
         excluded = [handle for handle in self.executor.handles if handle not in always]
         return self._part(always, excluded, self.demand.spin.upper)
 
-    def _part(self, always: Sequence[Handle], excluded: Sequence[Handle], demand: Time) -> Section:
+    def _part(self, always: Sequence[Handle], excluded: Sequence[Handle], demand: Time) -> IterationPart:
         """The demand of some handles; of those that exclude each other, the longest."""
         if not self.takes_one:
             always, excluded = (*always, *excluded), ()
         demand += sum(self.demand.of_handle(handle).upper for handle in always)
         demand += max((self.demand.of_handle(handle).upper for handle in excluded), default=0)
         longest = longest_of([self.suspension(handle) for handle in excluded])
-        return Section(demand=demand, suspension=in_sequence([*map(self.suspension, always), longest]))
+        return IterationPart(demand=demand, suspension=in_sequence([*map(self.suspension, always), longest]))
 
-    def before(self, handle: Handle) -> Section:
+    def before(self, handle: Handle) -> IterationPart:
         """What an iteration does before a callback, after it has fixed what is ready; the take of its message included."""
         at = self.executor.handles.index(handle)
         earlier, later = self.executor.handles[:at], self.executor.handles[at + 1 :]
@@ -195,7 +195,7 @@ class Cycle:
         always, excluded = self._possible_with(handle, later)
         takes = sum(self.demand.takes[each.name].upper for each in always)
         takes += max((self.demand.takes[each.name].upper for each in excluded), default=0)
-        return Section(demand=found.demand + takes, suspension=found.suspension)
+        return IterationPart(demand=found.demand + takes, suspension=found.suspension)
 
     def _possible_with(self, handle: Handle, others: Sequence[Handle]) -> tuple[Sequence[Handle], Sequence[Handle]]:
         """Of some handles those that can all be ready together with another one, and those of which one can be."""

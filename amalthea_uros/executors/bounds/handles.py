@@ -18,7 +18,7 @@ from amalthea_uros.executors.bounds.cycle import Cycle
 from amalthea_uros.executors.bounds.losses import loss_of_timer, loss_of_triggers
 from amalthea_uros.executors.bounds.queue import Delay, certain_overload, delay_of
 from amalthea_uros.executors.bounds.solved_system import METHOD
-from amalthea_uros.executors.results import HandleResult, Part
+from amalthea_uros.executors.results import HandleResult, TimePart
 from amalthea_uros.executors.semantics.loops import why_not_woken
 from amalthea_uros.executors.semantics.readiness import is_message, starts_alone
 from amalthea_uros.perf.executors import Handle, HandleKind, LoopKind
@@ -86,7 +86,7 @@ def _delay(handle: Handle, cycle: Cycle, length: Time | None, extra_jitter: Mapp
     return delay_of(handle, cycle, length, extra_jitter)
 
 
-def _terms(handle: Handle, cycle: Cycle, delay: Delay, wait: Time, waited_for: str, worst: Time) -> tuple[Part, ...]:
+def _terms(handle: Handle, cycle: Cycle, delay: Delay, wait: Time, waited_for: str, worst: Time) -> tuple[TimePart, ...]:
     """The parts of the worst response time of a handle, in the order of time.
 
     Parameters
@@ -97,7 +97,7 @@ def _terms(handle: Handle, cycle: Cycle, delay: Delay, wait: Time, waited_for: s
     """
     found = [
         *_of_cycle(cycle),
-        Part(name="wait", least=0, most=wait, why=waited_for),
+        TimePart(name="wait", least=0, most=wait, why=waited_for),
         _before(cycle, delay, wait),
         *_of_iteration(handle, cycle),
     ]
@@ -105,26 +105,26 @@ def _terms(handle: Handle, cycle: Cycle, delay: Delay, wait: Time, waited_for: s
     rest = worst - sum(term.most or 0 for term in stated)
     if rest:
         stated.insert(
-            -1, Part(name="preemption", least=0, most=rest, why="processes of higher priority, blocking, and rounding")
+            -1, TimePart(name="preemption", least=0, most=rest, why="processes of higher priority, blocking, and rounding")
         )
     return tuple(stated)
 
 
-def _of_cycle(cycle: Cycle) -> list[Part]:
+def _of_cycle(cycle: Cycle) -> list[TimePart]:
     """The cycle that is running when the handle is released."""
     demand = _time(cycle.whole.demand, cycle)
-    found = [Part(name="rest of the running iteration", least=0, most=demand, why="what is ready was fixed just before")]
+    found = [TimePart(name="rest of the running iteration", least=0, most=demand, why="what is ready was fixed just before")]
     loop = cycle.executor.loop
     if loop.kind is LoopKind.PERIODIC:
         why = f"the next iteration begins when the period of {time_text(loop.period or 0)} has passed"
-        return [*found, Part(name="sleep", least=0, most=max(0, (cycle.longest or 0) - demand), why=why)]
+        return [*found, TimePart(name="sleep", least=0, most=max(0, (cycle.longest or 0) - demand), why=why)]
     suspension = cycle.whole.suspension
     return [
         *found,
-        Part(name="publications of the running iteration", least=0, most=suspension.most or 0, why=suspension.why),
-        Part(name="sleep", least=0, most=cycle.sleep, why="the loop sleeps after each iteration"),
-        Part(name="acknowledgements", least=0, most=cycle.writing.most or 0, why=cycle.writing.why),
-        Part(
+        TimePart(name="publications of the running iteration", least=0, most=suspension.most or 0, why=suspension.why),
+        TimePart(name="sleep", least=0, most=cycle.sleep, why="the loop sleeps after each iteration"),
+        TimePart(name="acknowledgements", least=0, most=cycle.writing.most or 0, why=cycle.writing.why),
+        TimePart(
             name="session",
             least=0,
             most=cycle.session_wait or 0,
@@ -133,38 +133,40 @@ def _of_cycle(cycle: Cycle) -> list[Part]:
     ]
 
 
-def _before(cycle: Cycle, delay: Delay, wait: Time) -> Part:
+def _before(cycle: Cycle, delay: Delay, wait: Time) -> TimePart:
     """The further cycles, one for each message before it."""
     count, length = (delay.cycles or 1) - 1, cycle.longest_with(wait) or 0
     why = f"{counted(count, 'message')}, each of which takes an iteration of at most {time_text(length)}"
     if delay.earlier:
         why += f", less {time_text(delay.earlier)} by which it arrives later"
-    return Part(name="messages before it", least=0, most=count * length - delay.earlier, why=why)
+    return TimePart(name="messages before it", least=0, most=count * length - delay.earlier, why=why)
 
 
-def _of_iteration(handle: Handle, cycle: Cycle) -> list[Part]:
+def _of_iteration(handle: Handle, cycle: Cycle) -> list[TimePart]:
     """The iteration that serves a handle, up to the end of its callback, which comes last."""
     costs, before, own = cycle.demand, cycle.before(handle), cycle.suspension(handle)
     spin, take, callback = costs.spin.upper, costs.takes[handle.name].upper, costs.callbacks[handle.name]
     others = before.demand - spin - take
     names = [each.name for each in cycle.executor.handles[: cycle.executor.handles.index(handle)]]
     return [
-        Part(name="overhead of the executor", least=0, most=_time(spin, cycle), why="fill the wait set and check all handles"),
-        Part(
+        TimePart(
+            name="overhead of the executor", least=0, most=_time(spin, cycle), why="fill the wait set and check all handles"
+        ),
+        TimePart(
             name="callbacks before it",
             least=0,
             most=_time(others, cycle),
             why=f"in the order of the executor: {', '.join(names)}",
         ),
-        Part(name="publications before it", least=0, most=before.suspension.most or 0, why=before.suspension.why),
-        Part(
+        TimePart(name="publications before it", least=0, most=before.suspension.most or 0, why=before.suspension.why),
+        TimePart(
             name="take",
             least=costs.takes[handle.name].lower // cycle.time_base,
             most=_time(take, cycle),
             why="read its message",
         ),
-        Part(name="publish", least=own.least, most=own.most or 0, why=own.why),
-        Part(name="its execution", least=callback.lower // cycle.time_base, most=_time(callback.upper, cycle)),
+        TimePart(name="publish", least=own.least, most=own.most or 0, why=own.why),
+        TimePart(name="its execution", least=callback.lower // cycle.time_base, most=_time(callback.upper, cycle)),
     ]
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from amalthea_uros.executors.results import ExecutorResult, HandleResult, Hop, Loss, Part
+from amalthea_uros.executors.results import ExecutorResult, HandleResult, Hop, Loss, TimePart
 
 
 def executor_json(executor: ExecutorResult) -> dict[str, Any]:
@@ -43,7 +43,7 @@ def _loss_json(loss: Loss) -> dict[str, Any]:
     return {"what": loss.what, "is_certain": loss.is_certain, "most": loss.most, "sequence": loss.sequence}
 
 
-def part_json(part: Part) -> dict[str, Any]:
+def part_json(part: TimePart) -> dict[str, Any]:
     """A part of a response time or of a hop."""
     return {"name": part.name, "min_ps": part.least, "max_ps": part.most, "why": part.why}
 

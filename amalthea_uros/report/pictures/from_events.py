@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.report.pictures.chain_ways import ChainStep, ChainWay
+from amalthea_uros.report.pictures.chain_paths import ChainStep, DrawnPath
 from amalthea_uros.report.pictures.jobs import ON_CORE, CoreRows, Job, ProcessRow, RunnableSpan, Span, State
 from amalthea_uros.trace.table import Entity, EntityKind, EventKind, EventTable
 from amalthea_uros.units import Time
@@ -68,7 +68,7 @@ def jobs_of(
     return reader.rows(last if end is None else end, deadlines or {})
 
 
-def chain_way(table: EventTable, chain: str, instance: int) -> ChainWay:
+def chain_path(table: EventTable, chain: str, instance: int) -> DrawnPath:
     """The way of an occurrence of a chain's stimulus: where its effect passes each step first.
 
     Raises
@@ -83,7 +83,7 @@ def chain_way(table: EventTable, chain: str, instance: int) -> ChainWay:
             steps.append(ChainStep(table.entities[table.source[row]].name, int(table.time[row])))
     if not steps:
         raise InvalidArgumentError(f"the trace has no first step of occurrence {instance} of the chain {chain!r}")
-    return ChainWay(chain, tuple(steps))
+    return DrawnPath(chain, tuple(steps))
 
 
 @dataclass(slots=True)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.report.pictures.boxes import MOST_TOOLTIPS
-from amalthea_uros.report.pictures.chain_ways import LANE, ChainWay, draw_way
+from amalthea_uros.report.pictures.chain_paths import LANE, DrawnPath, draw_path
 from amalthea_uros.report.pictures.gantt_legend import legend_entries, legend_notes
 from amalthea_uros.report.pictures.gantt_rows import BASE, ROW, DrawnRow, draw_row, lay_out
 from amalthea_uros.report.pictures.jobs import CoreRows
@@ -42,7 +42,7 @@ class GanttChart:
     start: Time
     end: Time
     cores: tuple[CoreRows, ...]
-    chains: tuple[ChainWay, ...] = ()
+    chains: tuple[DrawnPath, ...] = ()
 
     def __post_init__(self) -> None:
         check_window(self.start, self.end)
@@ -69,7 +69,7 @@ def gantt(chart: GanttChart) -> str:
             (
                 draw_grid(axis, top, bottom),
                 *(draw_row(row, axis, has_tooltips=has_tooltips) for row in rows),
-                *(draw_way(way, index, axis, lanes + LANE * index, middles) for index, way in enumerate(chart.chains)),
+                *(draw_path(way, index, axis, lanes + LANE * index, middles) for index, way in enumerate(chart.chains)),
             ),
         ),
         legend,

@@ -29,7 +29,7 @@ from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.bounds.evaluate import evaluate_executors
 from amalthea_uros.executors.bounds.publications import sending_times
 from amalthea_uros.executors.bounds.transmissions import agent_hop, arrival_jitter, process_hop, received, sent
-from amalthea_uros.executors.results import ExecutorResult, Hop, Part
+from amalthea_uros.executors.results import ExecutorResult, Hop, TimePart
 from amalthea_uros.perf.constraints import LatencyConstraint
 from amalthea_uros.perf.events import EventChain, LabelEvent
 from amalthea_uros.perf.network import Direction, Span, Transmission
@@ -227,7 +227,7 @@ def _until_sent(hop: Hop, sending: Span, least: Time) -> Hop:
     hop = replace(hop, best=max(0, hop.best - least))
     if hop.worst is None or sending.most is None:
         return hop
-    held_up = Part(name="until it goes on after sending the message", least=-sending.least, most=-sending.most)
+    held_up = TimePart(name="until it goes on after sending the message", least=-sending.least, most=-sending.most)
     parts = (*hop.parts, held_up) if hop.parts and sending.most else hop.parts
     return replace(hop, worst=hop.worst - sending.most, parts=parts)
 

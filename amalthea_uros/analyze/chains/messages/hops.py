@@ -22,7 +22,7 @@ from amalthea_uros.analyze.chains.messages.segments import CallbackSegment, Entr
 from amalthea_uros.analyze.chains.route_latencies import RouteLatencies
 from amalthea_uros.analyze.chains.stage_timing import UnboundedStageError
 from amalthea_uros.analyze.results.chains import Quantity, Value
-from amalthea_uros.executors.results import ExecutorResult, HandleResult, Hop, HopKind, Part
+from amalthea_uros.executors.results import ExecutorResult, HandleResult, Hop, HopKind, TimePart
 from amalthea_uros.perf.events import Event, ProcessChange, ProcessEvent
 from amalthea_uros.perf.executors import HandleKind
 from amalthea_uros.timing.awaited import awaited
@@ -90,7 +90,9 @@ class CallbackHops:
                 reason=reason or f"the time between two messages of {handle.name!r} has no maximum",
                 remedy=f"Read the data in a timer callback, or let the path begin with the topic of {handle.name!r}.",
             )
-        wait = Part(name=f"until {handle.name} is due next", least=0, most=interval, why="the data came just after it was due")
+        wait = TimePart(
+            name=f"until {handle.name} is due next", least=0, most=interval, why="the data came just after it was due"
+        )
         return replace(
             response,
             kind=HopKind.SAMPLING,
@@ -98,7 +100,10 @@ class CallbackHops:
             best=0,
             worst=interval + response.worst,
             source=f"period and response time of {handle.name}",
-            parts=(wait, *(response.parts or (Part(name=f"response time of {handle.name}", least=0, most=response.worst),))),
+            parts=(
+                wait,
+                *(response.parts or (TimePart(name=f"response time of {handle.name}", least=0, most=response.worst),)),
+            ),
         )
 
     def _result(self, segment: CallbackSegment) -> HandleResult:
@@ -136,8 +141,8 @@ def task_hop(segment: TaskSegment, entry: EntryKind, is_last: bool, evaluator: C
         return _unknown(entry, name, reason, f"See the results of {segment.processes[0]!r}.")
     value, wait = bounds
     parts = (
-        Part(name=f"until {segment.processes[0]} is activated", least=0, most=wait),
-        Part(name=f"from its activation through {name}", least=0, most=value.value),
+        TimePart(name=f"until {segment.processes[0]} is activated", least=0, most=wait),
+        TimePart(name=f"from its activation through {name}", least=0, most=value.value),
     )
     return Hop(
         kind=_kind(entry),

@@ -1,4 +1,4 @@
-"""The way of one occurrence of a chain's stimulus through the jobs that pass its effect on."""
+"""The path of one occurrence of a chain's stimulus through the jobs that pass its effect on."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ class ChainStep:
 
 
 @dataclass(frozen=True, slots=True)
-class ChainWay:
-    """The way of a chain's effect.
+class DrawnPath:
+    """The path of a chain's effect.
 
     Attributes
     ----------
@@ -51,8 +51,8 @@ class ChainWay:
         return start, self.steps[-1].time if self.end is None else self.end
 
 
-def draw_way(way: ChainWay, index: int, axis: TimeAxis, lane: float, middles: Mapping[str, float]) -> Markup:
-    """The way from step to step, and its latency as a dimension line above all rows.
+def draw_path(path: DrawnPath, index: int, axis: TimeAxis, lane: float, middles: Mapping[str, float]) -> Markup:
+    """The path from step to step, and its latency as a dimension line above all rows.
 
     Parameters
     ----------
@@ -61,11 +61,11 @@ def draw_way(way: ChainWay, index: int, axis: TimeAxis, lane: float, middles: Ma
     middles : where the boxes of each process are
     """
     points = [
-        (axis.x(step.time), middles[step.process]) for step in way.steps if step.process in middles and axis.has(step.time)
+        (axis.x(step.time), middles[step.process]) for step in path.steps if step.process in middles and axis.has(step.time)
     ]
     dash = _DASHES[index % len(_DASHES)]
     y = lane + LANE - 8
-    start, end = way.ends
+    start, end = path.ends
     extensions = [
         (axis.x(time), point[1])
         for time, point in zip((start, end), (points[:1] + points[-1:]), strict=False)
@@ -74,7 +74,7 @@ def draw_way(way: ChainWay, index: int, axis: TimeAxis, lane: float, middles: Ma
     parts = [_extension(x, y - _TICK, bottom) for x, bottom in extensions]
     parts += [_segment(*ends, dash) for ends in pairwise(points)]
     parts += [element("circle", class_="line paper", cx=x, cy=height, r=_RADIUS) for x, height in points]
-    return element("g", tooltip(_description(way)), joined(parts), _dimension(way, axis, y, dash))
+    return element("g", tooltip(_description(path)), joined(parts), _dimension(path, axis, y, dash))
 
 
 def _extension(x: float, top: float, bottom: float) -> Markup:
@@ -92,12 +92,12 @@ def _segment(begin: tuple[float, float], end: tuple[float, float], dash: str) ->
     return joined((element("path", class_="halo", d=ends), line))
 
 
-def _dimension(way: ChainWay, axis: TimeAxis, y: float, dash: str) -> Markup:
-    start, end = way.ends
+def _dimension(path: DrawnPath, axis: TimeAxis, y: float, dash: str) -> Markup:
+    start, end = path.ends
     left, right = axis.x(axis.clipped(start)), axis.x(axis.clipped(end))
     ticks = "".join(f"M{number(axis.x(time))} {number(y - _TICK)}v{2 * _TICK}" for time in (start, end) if axis.has(time))
     latency = time_text(end - start)
-    name = elided(way.name, TEXT_SIZE, axis.width - text_width(f": {latency}", TEXT_SIZE))
+    name = elided(path.name, TEXT_SIZE, axis.width - text_width(f": {latency}", TEXT_SIZE))
     label = f"{name}: {latency}"
     half = text_width(label, TEXT_SIZE) / 2
     middle = min(max((left + right) / 2, axis.left + half), axis.right - half)
@@ -110,7 +110,7 @@ def _dimension(way: ChainWay, axis: TimeAxis, y: float, dash: str) -> Markup:
     )
 
 
-def _description(way: ChainWay) -> str:
-    start, end = way.ends
-    steps = ", ".join(f"{step.process} at {time_text(step.time)}" for step in way.steps)
-    return f"{way.name}: {time_text(end - start)} from {time_text(start)} on; {steps}"
+def _description(path: DrawnPath) -> str:
+    start, end = path.ends
+    steps = ", ".join(f"{step.process} at {time_text(step.time)}" for step in path.steps)
+    return f"{path.name}: {time_text(end - start)} from {time_text(start)} on; {steps}"
