@@ -24,7 +24,7 @@ def written(folder, version, *contents, root="Amalthea"):
 
 def text_property(key, value):
     """A custom property with a text."""
-    return f'<customProperties key="{key}"><value xsi:type="am:StringObject" value="{value}"/></customProperties>'
+    return f'<customProperties key="{key}"><value t="StringObject" value="{value}"/></customProperties>'
 
 
 def damaged(content, values, seed):

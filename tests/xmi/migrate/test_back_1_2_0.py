@@ -39,15 +39,15 @@ def parameter(name, value):
 
 
 def integer(name, number):
-    return parameter(name, f'xsi:type="am:IntegerObject" value="{number}"')
+    return parameter(name, f't="IntegerObject" value="{number}"')
 
 
 def time(name, number, unit="ms"):
-    return parameter(name, f'xsi:type="am:Time" value="{number}" unit="{unit}"')
+    return parameter(name, f't="Time" value="{number}" unit="{unit}"')
 
 
 def string(name, text):
-    return parameter(name, f'xsi:type="am:StringObject" value="{text}"')
+    return parameter(name, f't="StringObject" value="{text}"')
 
 
 def allocated(content, properties=""):
@@ -100,7 +100,7 @@ def test_definitions_are_kept_with_all_they_say(models):
             scheduler("OSEK"),
             definition(
                 "OSEK",
-                '<customProperties key="k"><value xsi:type="am:StringObject" value="Q?type=Task"/></customProperties>',
+                '<customProperties key="k"><value t="StringObject" value="Q?type=Task"/></customProperties>',
                 description="two&#xA;lines",
                 tags="a+tag?type=Tag",
                 requiresParentScheduler="true",
@@ -111,7 +111,7 @@ def test_definitions_are_kept_with_all_they_say(models):
             )
             + definition("of nobody")
             + PRIORITY
-            + parameter_definition("quantum / x", "Time", '<defaultValue xsi:type="am:Time" value="3" unit="us"/>'),
+            + parameter_definition("quantum / x", "Time", '<defaultValue t="Time" value="3" unit="us"/>'),
         )
     }"""
     (node,) = found(taken_back(models, content), "osModel")
@@ -183,7 +183,7 @@ def test_other_parameters_are_kept_and_extended_ones_are_extensions(models):
         string("extended%3A+slice", "50us"),
         time("deadline", 10),
         string("priority", "high"),
-        parameter("list", 'xsi:type="am:ListObject"'),
+        parameter("list", 't="ListObject"'),
     ]
     names = ("taskGroup", "extended: slice", "deadline", "priority", "list")
     definitions = OSEK + "".join(map(parameter_definition, names))
@@ -218,8 +218,8 @@ def test_what_the_step_up_fills_in_is_not_restored(models):
     """The task group 0 and the quantum 0 of an allocation and algorithm that state none."""
     osek = definition("OSEK", processParameters="taskGroup?type=SchedulingParameterDefinition")
     content = os_model(scheduler("OSEK"), osek + parameter_definition("taskGroup"))
-    group = '<customProperties key="osekTaskGroup"><value xsi:type="am:StringObject" value="0"/></customProperties>'
-    priority = '<customProperties key="priority"><value xsi:type="am:StringObject" value="4"/></customProperties>'
+    group = '<customProperties key="osekTaskGroup"><value t="StringObject" value="0"/></customProperties>'
+    priority = '<customProperties key="priority"><value t="StringObject" value="4"/></customProperties>'
     roots = taken_back(models, content + allocated("", group + priority))
     (task,) = found(roots, "swModel", "tasks")
     assert keys(task) == ["AMALTHEA 2.0.0: customProperties/osekTaskGroup", "AMALTHEA 2.0.0: customProperties/priority"]
@@ -235,7 +235,7 @@ def test_what_the_step_up_fills_in_is_not_restored(models):
 
 
 def test_defaults_of_parameters_are_stated(models):
-    default = '<defaultValue xsi:type="am:IntegerObject" value="7"/>'
+    default = '<defaultValue t="IntegerObject" value="7"/>'
     content = os_model(scheduler("OSEK"), OSEK + parameter_definition("priority", "Integer", default)) + allocated("")
     (node,) = found(taken_back(models, content), "mappingModel", "taskAllocation")
     assert node.child("schedulingParameters").attributes == {"priority": "7"}
@@ -243,7 +243,7 @@ def test_defaults_of_parameters_are_stated(models):
 
 
 def test_a_stated_parameter_needs_no_default(models):
-    default = '<defaultValue xsi:type="am:IntegerObject" value="7"/>'
+    default = '<defaultValue t="IntegerObject" value="7"/>'
     content = os_model(scheduler("OSEK"), OSEK + parameter_definition("priority", "Integer", default))
     (node,) = found(taken_back(models, content + allocated(integer("priority", 3))), "mappingModel", "taskAllocation")
     assert [child.attributes for child in node.all("schedulingParameters")] == [{"priority": "3"}]
@@ -251,7 +251,7 @@ def test_a_stated_parameter_needs_no_default(models):
 
 
 def test_a_default_that_was_changed_in_1_2_0_counts(models):
-    default = '<defaultValue xsi:type="am:IntegerObject" value="7"/>'
+    default = '<defaultValue t="IntegerObject" value="7"/>'
     content = os_model(scheduler("OSEK"), OSEK + parameter_definition("priority", "Integer", default))
     older, _ = migrated(models.files("newer", "2.0.0", content + allocated("")), "1.2.0")
     (allocation,) = found(older.roots, "mappingModel", "taskAllocation")
@@ -263,7 +263,7 @@ def test_a_default_that_was_changed_in_1_2_0_counts(models):
 
 def test_processes_of_all_kinds_keep_properties_that_are_parameters_in_1_2_0(models):
     properties = "".join(
-        f'<customProperties key="{key}"><value xsi:type="am:StringObject" value="4"/></customProperties>'
+        f'<customProperties key="{key}"><value t="StringObject" value="4"/></customProperties>'
         for key in ("osekTaskGroup", "priority")
     )
     content = f"""<swModel><isrs name="I">{properties}</isrs></swModel>
@@ -279,7 +279,7 @@ def test_processes_of_all_kinds_keep_properties_that_are_parameters_in_1_2_0(mod
         integer("priority", 1) + integer("taskGroup", 2),
         integer("priority", 1) + integer("minBudget", 2),
         integer("priority", 1) + '<schedulingParameters key="extended%3A+k?type=SchedulingParameterDefinition">'
-        '<value xsi:type="am:StringObject"/></schedulingParameters>',
+        '<value t="StringObject"/></schedulingParameters>',
     ],
 )
 def test_definitions_are_kept_where_an_allocation_keeps_a_parameter(models, parameters):
@@ -318,7 +318,7 @@ def test_comments_come_back(models):
     [
         ("", "", [], 0),
         ("<!--why-->", "", [], 2),
-        ("", '<customProperties key="k"><value xsi:type="am:StringObject" value="v"/></customProperties>', [], 2),
+        ("", '<customProperties key="k"><value t="StringObject" value="v"/></customProperties>', [], 2),
         # The step up would put them there.
         ("", "", ['<osModel><osOverheads name="O"/></osModel>'], 2),
     ],
@@ -347,20 +347,20 @@ def test_the_os_model_may_be_in_another_file(models):
     content = os_model(scheduler("My+own"), definition("My own") + PRIORITY)
     mapping = """<swModel><tasks name="T"/></swModel><mappingModel><taskAllocation task="T?type=Task">
     <schedulingParameters><key href="amlt:/#priority?type=SchedulingParameterDefinition"/>
-    <value xsi:type="am:IntegerObject" value="3"/></schedulingParameters>
+    <value t="IntegerObject" value="3"/></schedulingParameters>
     <scheduler href="amlt:/#S?type=TaskScheduler"/></taskAllocation></mappingModel>"""
     taken_back(models, mapping, content)
 
 
 def test_conditions_are_on_modes(models):
     before = """<swModel><runnables name="R"><executionCondition>
-    <entries xsi:type="am:ModeValueCondition" value="on" relation="EQUAL"/>
-    <entries xsi:type="am:ConditionConjunction"><entries xsi:type="am:ModeValueCondition" value="1"/></entries>
+    <entries t="ModeValueCondition" value="on" relation="EQUAL"/>
+    <entries t="ConditionConjunction"><entries t="ModeValueCondition" value="1"/></entries>
     </executionCondition><activityGraph>
-    <items xsi:type="am:WhileLoop"><condition><entries xsi:type="am:ConditionConjunction"/></condition></items>
+    <items t="WhileLoop"><condition><entries t="ConditionConjunction"/></condition></items>
     {}</activityGraph></runnables></swModel>"""
-    switch = """<items xsi:type="am:{}Switch"><entries name="e"><condition><entries xsi:type="am:{}ConditionConjunction"/>
-    </condition><items xsi:type="am:Group"/></entries><defaultEntry/></items>"""
+    switch = """<items t="{}Switch"><entries name="e"><condition><entries t="{}ConditionConjunction"/>
+    </condition><items t="Group"/></entries><defaultEntry/></items>"""
     taken_back(models, before.format(""))
     expected = before.replace("ConditionConj", "ModeConditionConj").format(switch.format("Mode", "Mode"))
     assert models.migrate("2.0.0", "1.2.0", before.format(switch.format("", ""))) == models.read("1.2.0", expected)
@@ -373,7 +373,7 @@ def test_tags_of_overheads_are_kept(models):
     assert keys(node) == ["AMALTHEA 2.0.0: tags"]
 
 
-FILL = '<entries xsi:type="am:ChannelFillCondition" fillLevel="1"/>'
+FILL = '<entries t="ChannelFillCondition" fillLevel="1"/>'
 
 
 @pytest.mark.parametrize(
@@ -421,7 +421,7 @@ FILL = '<entries xsi:type="am:ChannelFillCondition" fillLevel="1"/>'
         ),
         (
             os_model(scheduler("OSEK"), OSEK + PRIORITY)
-            + '<eventModel><customProperties key="k"><value xsi:type="am:ReferenceObject" value="OSEK?type=SchedulerDefinition"/>'
+            + '<eventModel><customProperties key="k"><value t="ReferenceObject" value="OSEK?type=SchedulerDefinition"/>'
             "</customProperties></eventModel>",
             "reference 'value': its target is lost",
         ),
@@ -440,13 +440,13 @@ def test_what_1_2_0_has_no_place_for_is_an_error(models, content, message):
     [
         '<osModel><customProperties key="AMALTHEA 2.0.0: schedulerDefinitions/OSEK"/></osModel>',
         '<osModel><customProperties key="AMALTHEA 2.0.0: schedulerDefinitions/OSEK"><value/></customProperties></osModel>',
-        """<osModel><customProperties key="AMALTHEA 2.0.0: schedulerDefinitions/OSEK"><value xsi:type="am:MapObject">
+        """<osModel><customProperties key="AMALTHEA 2.0.0: schedulerDefinitions/OSEK"><value t="MapObject">
         <entries/><entries key="processParameters"><value/></entries><entries key="tags"><value/></entries>
         <entries key="customProperties"/></value></customProperties>
         <operatingSystems><taskSchedulers name="S"><customProperties key="AMALTHEA 2.0.0: definition"/></taskSchedulers>
         <interruptControllers><schedulingParameters/></interruptControllers></operatingSystems></osModel>""",
-        """<osModel><customProperties key="AMALTHEA 2.0.0: schedulerDefinitions/OSEK"><value xsi:type="am:MapObject">
-        <entries key="processParameters"><value><values xsi:type="am:StringObject" value="lost"/></value></entries></value>
+        """<osModel><customProperties key="AMALTHEA 2.0.0: schedulerDefinitions/OSEK"><value t="MapObject">
+        <entries key="processParameters"><value><values t="StringObject" value="lost"/></value></entries></value>
         </customProperties></osModel>
         <mappingModel><taskAllocation><customProperties key="AMALTHEA 2.0.0: defaults"/>
         <customProperties key="AMALTHEA 2.0.0: schedulingParameters/priority"/><schedulingParameters priority="1"/>

@@ -32,16 +32,16 @@ def test_a_limit_that_is_not_stated_is_1(models, before, after):
 @pytest.mark.parametrize("tag", ["tasks", "isrs", "runnables"])
 def test_local_mode_labels_are_an_error(models, tag):
     before = f"""<swModel>
-    <modes xsi:type="am:NumericMode" name="m"/><modeLabels name="G" mode="m?type=NumericMode"/>
+    <modes t="NumericMode" name="m"/><modeLabels name="G" mode="m?type=NumericMode"/>
     <{tag} name="X"><localLabels name="L" mode="m?type=NumericMode"/><activityGraph>
-    <items xsi:type="am:ModeLabelAssignment" globalLabel="G?type=ModeLabel"/>
-    <items xsi:type="am:LocalModeLabelAssignment"><valueSource xsi:type="am:IntegerConst" value="1"/></items>
-    <items xsi:type="am:RunnableCall"><context><valueSource xsi:type="am:IntegerConst" value="1"/></context></items>
+    <items t="ModeLabelAssignment" globalLabel="G?type=ModeLabel"/>
+    <items t="LocalModeLabelAssignment"><valueSource t="IntegerConst" value="1"/></items>
+    <items t="RunnableCall"><context><valueSource t="IntegerConst" value="1"/></context></items>
     </activityGraph></{tag}></swModel>
-    <eventModel><events xsi:type="am:ModeLabelEvent" name="E" entity="G?type=ModeLabel"/></eventModel>"""
+    <eventModel><events t="ModeLabelEvent" name="E" entity="G?type=ModeLabel"/></eventModel>"""
     after = f"""<swModel>
-    <modes xsi:type="am:NumericMode" name="m"/><modeLabels name="G" mode="m?type=NumericMode"/>
-    <{tag} name="X"><activityGraph><items xsi:type="am:RunnableCall"/></activityGraph></{tag}></swModel><eventModel/>"""
+    <modes t="NumericMode" name="m"/><modeLabels name="G" mode="m?type=NumericMode"/>
+    <{tag} name="X"><activityGraph><items t="RunnableCall"/></activityGraph></{tag}></swModel><eventModel/>"""
     assert models.migrate("2.1.0", "2.0.0", before) == models.read("2.0.0", after)
     assert sorted(message.partition(":")[0] for message in models.messages(NoteKind.LOST)) == [
         "assignment between a mode label and a local one",
@@ -55,11 +55,11 @@ def test_local_mode_labels_are_an_error(models, tag):
 @pytest.mark.parametrize(
     "content",
     [
-        '<entries xsi:type="am:LocalModeCondition" relation="EQUAL"/>',
-        '<entries xsi:type="am:ModeValueCondition" relation="LESS_THAN_OR_EQUAL" value="1"/>',
-        '<entries xsi:type="am:ModeLabelCondition" relation="GREATER_THAN_OR_EQUAL"/>',
-        '<entries xsi:type="am:ChannelFillCondition" relation="EQUAL" fillLevel="1"/>',
-        '<entries xsi:type="am:ConditionConjunction"><entries xsi:type="am:LocalModeCondition"/></entries>',
+        '<entries t="LocalModeCondition" relation="EQUAL"/>',
+        '<entries t="ModeValueCondition" relation="LESS_THAN_OR_EQUAL" value="1"/>',
+        '<entries t="ModeLabelCondition" relation="GREATER_THAN_OR_EQUAL"/>',
+        '<entries t="ChannelFillCondition" relation="EQUAL" fillLevel="1"/>',
+        '<entries t="ConditionConjunction"><entries t="LocalModeCondition"/></entries>',
     ],
 )
 def test_new_conditions_are_an_error(models, content):
@@ -70,8 +70,8 @@ def test_new_conditions_are_an_error(models, content):
 @pytest.mark.parametrize(
     "content",
     [
-        '<entries xsi:type="am:ModeValueCondition" relation="LESS_THAN" value="1"/>',
-        '<entries xsi:type="am:ChannelFillCondition" fillLevel="1"/>',
+        '<entries t="ModeValueCondition" relation="LESS_THAN" value="1"/>',
+        '<entries t="ChannelFillCondition" fillLevel="1"/>',
     ],
 )
 def test_older_conditions_stay(models, content):

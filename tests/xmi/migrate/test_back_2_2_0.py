@@ -5,8 +5,8 @@ from inline_models import InlineModels
 
 from amalthea_uros.xmi.migrate.notes import NoteKind
 
-TYPE = '<typeDefinitions xsi:type="am:BaseTypeDefinition" name="unsigned 8"/>'
-TYPE_REF = 'xsi:type="am:TypeRef" typeDef="unsigned+8?type=BaseTypeDefinition"'
+TYPE = '<typeDefinitions t="BaseTypeDefinition" name="unsigned 8"/>'
+TYPE_REF = 't="TypeRef" typeDef="unsigned+8?type=BaseTypeDefinition"'
 
 
 @pytest.fixture
@@ -15,7 +15,7 @@ def models(tmp_path):
 
 
 def semaphore(attributes, kept=""):
-    value = f'<value xsi:type="am:BooleanObject" value="{kept}"/>'
+    value = f'<value t="BooleanObject" value="{kept}"/>'
     content = f'<customProperties key="AMALTHEA 3.0.0: ownership">{value}</customProperties>' if kept else ""
     return f'<osModel><semaphores name="S" maxValue="1" {attributes}>{content}</semaphores></osModel>'
 
@@ -40,15 +40,15 @@ def test_a_type_may_be_in_another_file_or_in_none(models):
     <labels name="L"><dataType href="amlt:/#unsigned+8?type=BaseTypeDefinition"/></labels>
     <labels name="M"><dataType href="amlt:/#missing?type=BaseTypeDefinition"/></labels></swModel>"""
     after = """<swModel>
-    <labels name="L"><dataType xsi:type="am:TypeRef"><typeDef href="amlt:/#unsigned+8?type=BaseTypeDefinition"/></dataType></labels>
-    <labels name="M"><dataType xsi:type="am:TypeRef"><typeDef href="amlt:/#missing?type=BaseTypeDefinition"/></dataType></labels>
+    <labels name="L"><dataType t="TypeRef"><typeDef href="amlt:/#unsigned+8?type=BaseTypeDefinition"/></dataType></labels>
+    <labels name="M"><dataType t="TypeRef"><typeDef href="amlt:/#missing?type=BaseTypeDefinition"/></dataType></labels>
     </swModel>"""
     other = f"<swModel>{TYPE}</swModel>"
     assert models.migrate("3.0.0", "2.2.0", before, other) == models.read("2.2.0", after, other)
 
 
 def test_a_type_that_refers_to_nothing_is_an_error(models):
-    content = """<swModel><typeDefinitions xsi:type="am:DataTypeDefinition" name="D"><dataType xsi:type="am:TypeRef"/>
+    content = """<swModel><typeDefinitions t="DataTypeDefinition" name="D"><dataType t="TypeRef"/>
     </typeDefinitions></swModel>"""
     models.migrate("3.0.0", "2.2.0", content)
     assert models.messages(NoteKind.LOST) == ["data type that refers to nothing"]

@@ -18,9 +18,9 @@ def clocks_of(tmp_path, target, clocks):
     return models.parts("stimuliModel", "clocks"), notes
 
 
-SINE = """<clocks xsi:type="am:ClockSinusFunction" name="c" amplitude="2.0" yOffset="1.5"><period value="1" unit="s"/>
+SINE = """<clocks t="ClockSinusFunction" name="c" amplitude="2.0" yOffset="1.5"><period value="1" unit="s"/>
     <shift value="5" unit="ms"/></clocks>"""
-TRIANGLE = '<clocks xsi:type="am:ClockTriangleFunction" name="c" max="3.0" min="0.5"><period value="1" unit="s"/></clocks>'
+TRIANGLE = '<clocks t="ClockTriangleFunction" name="c" max="3.0" min="0.5"><period value="1" unit="s"/></clocks>'
 
 
 @pytest.mark.parametrize(
@@ -29,7 +29,7 @@ TRIANGLE = '<clocks xsi:type="am:ClockTriangleFunction" name="c" max="3.0" min="
         (SINE, {"period": "1", "xOffset": "5", "peakToPeak": "4.0", "yOffset": "1.5"}),
         (TRIANGLE, {"period": "1", "peakToPeak": "2.5", "yOffset": "0.5"}),
         (SINE.replace('"2.0"', '"?"'), {"period": "1", "xOffset": "5", "yOffset": "1.5"}),
-        ('<clocks xsi:type="am:ClockSinusFunction" name="c"/>', {}),
+        ('<clocks t="ClockSinusFunction" name="c"/>', {}),
     ],
 )
 def test_the_curve_of_a_clock_is_stated_beyond_the_published_conversions(tmp_path, clock, expected):
@@ -49,13 +49,13 @@ def test_until_then_the_curve_of_a_clock_is_a_text(tmp_path, target):
 
 # Execution times
 
-NEED = """<runnableItems xsi:type="am:ExecutionNeed">{default}<extended key="P?type=ProcessingUnitDefinition">
+NEED = """<runnableItems t="ExecutionNeed">{default}<extended key="P?type=ProcessingUnitDefinition">
     <value key="Instructions">{value}</value></extended></runnableItems>"""
-GAUSS = """<value xsi:type="am:NeedDeviation"><deviation><distribution xsi:type="am:GaussDistribution">
-    <mean xsi:type="am:LongObject" value="100"/><sd xsi:type="am:LongObject" value="{}"/></distribution></deviation></value>"""
+GAUSS = """<value t="NeedDeviation"><deviation><distribution t="GaussDistribution">
+    <mean t="LongObject" value="100"/><sd t="LongObject" value="{}"/></distribution></deviation></value>"""
 CORES = """<hwModel>{definitions}<featureCategories name="Instructions"><features name="IPC" value="2.0"/></featureCategories>
     </hwModel>"""
-DEFINITION = '<definitions xsi:type="am:ProcessingUnitDefinition" name="{}" features="Instructions/IPC?type=HwFeature"/>'
+DEFINITION = '<definitions t="ProcessingUnitDefinition" name="{}" features="Instructions/IPC?type=HwFeature"/>'
 
 
 @pytest.mark.parametrize(
@@ -74,9 +74,9 @@ def test_the_standard_deviation_is_divided_like_the_mean(tmp_path, target, expec
     assert of_kind(notes, NoteKind.LOST) == []
 
 
-UNEVEN = """<value xsi:type="am:NeedDeviation"><deviation><lowerBound xsi:type="am:LongObject" value="1"/>
-    <upperBound xsi:type="am:LongObject" value="5"/><distribution xsi:type="am:GaussDistribution">
-    <mean xsi:type="am:LongObject" value="3"/></distribution></deviation></value>"""
+UNEVEN = """<value t="NeedDeviation"><deviation><lowerBound t="LongObject" value="1"/>
+    <upperBound t="LongObject" value="5"/><distribution t="GaussDistribution">
+    <mean t="LongObject" value="3"/></distribution></deviation></value>"""
 
 
 @pytest.mark.parametrize(
@@ -85,7 +85,7 @@ UNEVEN = """<value xsi:type="am:NeedDeviation"><deviation><lowerBound xsi:type="
 )
 def test_ticks_are_never_less_than_the_instructions_take(tmp_path, target, expected):
     """Otherwise runnables of one instruction each would take no time on a core that executes two per cycle."""
-    needs = [NEED.format(default="", value=value) for value in ('<value xsi:type="am:NeedConstant" value="1"/>', UNEVEN)]
+    needs = [NEED.format(default="", value=value) for value in ('<value t="NeedConstant" value="1"/>', UNEVEN)]
     hardware = CORES.format(definitions=DEFINITION.format("P"))
     content = f'<swModel><runnables name="R">{"".join(needs)}</runnables></swModel>{hardware}'
     models, notes = migrated(written(tmp_path, "0.9.2", content), target)
@@ -98,7 +98,7 @@ def test_ticks_are_never_less_than_the_instructions_take(tmp_path, target, expec
 def test_decimals_are_divided_exactly(tmp_path):
     """7 instructions at 0.7 per cycle are 10 ticks, although 0.7 as a binary number is a little less."""
     hardware = CORES.format(definitions=DEFINITION.format("P")).replace("2.0", "0.7")
-    need = NEED.format(default="", value='<value xsi:type="am:NeedConstant" value="7"/>')
+    need = NEED.format(default="", value='<value t="NeedConstant" value="7"/>')
     content = f'<swModel><runnables name="R">{need}</runnables></swModel>{hardware}'
     models, _ = migrated(written(tmp_path, "0.9.2", content), "3.3.0")
     assert [
@@ -109,13 +109,13 @@ def test_decimals_are_divided_exactly(tmp_path):
 @pytest.mark.parametrize("target", ["0.9.5", "3.3.0"])
 def test_an_upper_bound_that_is_not_stated_is_left_open(tmp_path, target):
     """Execution times of 0 would be a result, where the older model has a gap."""
-    uniform = """<value xsi:type="am:NeedDeviation"><deviation><lowerBound xsi:type="am:LongObject" value="6"/>
-        <distribution xsi:type="am:UniformDistribution"/></deviation></value>"""
+    uniform = """<value t="NeedDeviation"><deviation><lowerBound t="LongObject" value="6"/>
+        <distribution t="UniformDistribution"/></deviation></value>"""
     default = f'<default key="Instructions">{uniform}</default>'
     need = NEED.format(default=default, value=uniform)
     hardware = CORES.format(definitions=DEFINITION.format("P") + DEFINITION.format("Q"))
-    rate = """<stimuliModel><stimuli xsi:type="am:VariableRateStimulus" name="V"><occurrencesPerStep>
-        <distribution xsi:type="am:UniformDistribution"/></occurrencesPerStep></stimuli></stimuliModel>"""
+    rate = """<stimuliModel><stimuli t="VariableRateStimulus" name="V"><occurrencesPerStep>
+        <distribution t="UniformDistribution"/></occurrencesPerStep></stimuli></stimuliModel>"""
     content = f'<swModel><runnables name="R">{need}</runnables></swModel>{hardware}{rate}'
     models, notes = migrated(written(tmp_path, "0.9.2", content), target)
     found = [node for tree in models.trees for node in tree.root.walk() if "lowerBound" in node.attributes]
@@ -128,10 +128,8 @@ def test_an_upper_bound_that_is_not_stated_is_left_open(tmp_path, target):
 
 
 def test_execution_times_without_upper_bound_are_no_execution_times(tmp_path):
-    deviation = (
-        '<value xsi:type="am:NeedDeviation"><deviation><distribution xsi:type="am:UniformDistribution"/></deviation></value>'
-    )
-    need = f'<runnableItems xsi:type="am:ExecutionNeed"><default key="Instructions">{deviation}</default></runnableItems>'
+    deviation = '<value t="NeedDeviation"><deviation><distribution t="UniformDistribution"/></deviation></value>'
+    need = f'<runnableItems t="ExecutionNeed"><default key="Instructions">{deviation}</default></runnableItems>'
     model = amuros.migrate(written(tmp_path, "0.9.2", f'<swModel><runnables name="R">{need}</runnables></swModel>')).model
     extraction = amuros.extract(model)
     assert not states_demand(extraction.system)
@@ -139,11 +137,9 @@ def test_execution_times_without_upper_bound_are_no_execution_times(tmp_path):
 
 
 def test_a_latency_without_upper_bound_is_unknown(tmp_path):
-    deviation = (
-        '<cycles><lowerBound xsi:type="am:LongObject" value="1"/><distribution xsi:type="am:UniformDistribution"/></cycles>'
-    )
-    definition = f"""<hwModel><definitions xsi:type="am:MemoryDefinition" name="M">
-        <accessLatency xsi:type="am:LatencyDeviation">{deviation}</accessLatency></definitions></hwModel>"""
+    deviation = '<cycles><lowerBound t="LongObject" value="1"/><distribution t="UniformDistribution"/></cycles>'
+    definition = f"""<hwModel><definitions t="MemoryDefinition" name="M">
+        <accessLatency t="LatencyDeviation">{deviation}</accessLatency></definitions></hwModel>"""
     models, _ = migrated(written(tmp_path, "0.9.2", definition), "3.3.0")
     [latency] = models.parts("hwModel", "definitions", "accessLatency")
     assert (latency.type, latency.attributes) == ("DiscreteValueUniformDistribution", {"lowerBound": "1"})
@@ -155,8 +151,8 @@ def states_demand(system):
 
 
 def test_a_jitter_without_bounds_is_unknown_and_not_none(tmp_path):
-    jitter = '<jitter><distribution xsi:type="am:WeibullParameters" kappa="1.0" lambda="2.0"/></jitter>'
-    stimulus = '<stimuli xsi:type="am:PeriodicStimulus" name="P"><recurrence value="10" unit="ms"/>{}</stimuli>'
+    jitter = '<jitter><distribution t="WeibullParameters" kappa="1.0" lambda="2.0"/></jitter>'
+    stimulus = '<stimuli t="PeriodicStimulus" name="P"><recurrence value="10" unit="ms"/>{}</stimuli>'
     kinds = []
     for content in (stimulus.format(jitter), stimulus.format("")):
         model = amuros.migrate(written(tmp_path, "0.9.2", f"<stimuliModel>{content}</stimuliModel>")).model
@@ -190,7 +186,7 @@ def test_the_kind_of_a_memory_comes_back(tmp_path, kind, target, memory_type, ke
 
 def test_a_position_in_a_file_that_is_not_here_stays_one(tmp_path):
     """Once the result of a migration is migrated again, it must not mean what is at that position in the file itself."""
-    content = """<swModel><labels name="own"/><runnables name="R"><callGraph><items xsi:type="am:LabelAccess">
+    content = """<swModel><labels name="own"/><runnables name="R"><callGraph><items t="LabelAccess">
         <data href="{}gone.amxmi#//@swModel/@labels.0"/></items></callGraph></runnables></swModel>"""
     for prefix in ("", "amlt:/#"):
         models, _ = migrated(written(tmp_path, "0.9.5", content.format(prefix)), "3.3.0")
@@ -225,7 +221,7 @@ def test_isrs_without_interrupt_controllers_stay_on_their_cores(tmp_path, target
 @pytest.mark.parametrize(("version", "tag"), [("0.7.1", "labels"), ("0.8.0", "group")])
 def test_the_labels_of_a_pairing_constraint_can_be_read(tmp_path, version, tag):
     content = f"""<swModel><labels name="L"/></swModel><constraintsModel>
-        <affinityConstraints xsi:type="am:DataPairingConstraint"><{tag} labels="L?type=Label"/></affinityConstraints>
+        <affinityConstraints t="DataPairingConstraint"><{tag} labels="L?type=Label"/></affinityConstraints>
         </constraintsModel>"""
     model = amuros.migrate(written(tmp_path, version, content)).model
     [constraint] = model.all(amuros.am.DataPairingConstraint)
@@ -246,8 +242,8 @@ def test_the_labels_of_a_pairing_constraint_can_be_read(tmp_path, version, tag):
     ],
 )
 def test_texts_that_are_references_to_stimuli_follow(tmp_path, text, expected):
-    value = f'<{{}} xsi:type="am:StringObject" value="{text}"/>'
-    values = f'<value xsi:type="am:ListObject">{value.format("values")}</value>'
+    value = f'<{{}} t="StringObject" value="{text}"/>'
+    values = f'<value t="ListObject">{value.format("values")}</value>'
     content = f"""<swModel><tasks name="T"><customProperties key="k">{value.format("value")}</customProperties>
         <customProperties key="l">{values}</customProperties></tasks></swModel>"""
     models, _ = migrated(written(tmp_path, "0.8.0", content), "0.8.1")

@@ -207,7 +207,7 @@ def test_an_early_file_of_070_takes_the_step(tmp_path):
     path.write_text(
         """<am:Amalthea xmlns:am="http://app4mc.eclipse.org/amalthea/0.7.0" xmlns:xmi="http://www.omg.org/XMI"
         xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"><swModel><tasks name="T"/></swModel><mappingModel>
-        <processAllocation xsi:type="am:TaskAllocation" process="T?type=Task"/></mappingModel></am:Amalthea>"""
+        <processAllocation t="TaskAllocation" process="T?type=Task"/></mappingModel></am:Amalthea>"""
     )
     models, _ = migrated([path], "0.7.0")
     assert only(models, "mappingModel", "taskAllocation").target("task").name == "T"

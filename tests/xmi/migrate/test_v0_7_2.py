@@ -106,8 +106,7 @@ OFFICIAL_ITEMS = (
     '<runnableItems t="InstructionsConstant" value="1"><customProperties key="k"/><fetchStatistic/></runnableItems>'
     '<runnableItems t="InstructionsDeviation"><customProperties key="k"/><deviation/></runnableItems>'
     '<runnableItems t="RunnableModeSwitch"><entries><items t="InstructionsConstant" value="3"/>'
-    '<items t="LabelAccess" buffered="buffered"/>'
-    '</entries></runnableItems><runnableItems t="Group"><items>'
+    '<items t="LabelAccess" buffered="buffered"/></entries></runnableItems><runnableItems t="Group"><items>'
     '<runnableItem t="LabelAccess" buffered="buffered"/></items></runnableItems>'
 )
 
@@ -115,8 +114,7 @@ OFFICIAL_ITEMS = (
 def test_new_runnable_items_stay(up):
     items = (
         '<runnableItems t="RunnableInstructions"><default t="InstructionsConstant" value="1"/></runnableItems>'
-        '<runnableItems t="Group"><items t="LabelAccess" data="l?type=Label"/></runnableItems>'
-        '<runnableItems t="ProbabilityGroup"/>'
+        '<runnableItems t="Group"><items t="LabelAccess" data="l?type=Label"/></runnableItems><runnableItems t="ProbabilityGroup"/>'
     )
     result = up(runnable(items), source="0.7.2")
     assert result.lines[4:] == [

@@ -155,7 +155,7 @@ def test_a_custom_property_that_was_there_is_not_taken_for_what_the_task_states(
         files(
             "0.8.0",
             f'<swModel><tasks name="T" {attribute}="5">{text_property(attribute, 7)}</tasks></swModel><osModel>'
-            '<operatingSystems name="O"><taskSchedulers name="S"><schedulingAlgorithm xsi:type="am:OSEK"/></taskSchedulers>'
+            '<operatingSystems name="O"><taskSchedulers name="S"><schedulingAlgorithm t="OSEK"/></taskSchedulers>'
             "</operatingSystems></osModel><mappingModel>"
             '<taskAllocation task="T?type=Task" scheduler="S?type=TaskScheduler"/></mappingModel>',
         ),
@@ -170,14 +170,14 @@ def test_a_custom_property_that_was_there_is_not_taken_for_what_the_task_states(
 
 # Stimuli
 
-CALLS = '<callGraph><graphEntries xsi:type="am:CallSequence"><calls xsi:type="am:{}"{}</graphEntries></callGraph>'
+CALLS = '<callGraph><graphEntries t="CallSequence"><calls t="{}"{}</graphEntries></callGraph>'
 
 
 @pytest.mark.parametrize("tag", ["tasks", "isrs"])
 def test_a_trigger_of_another_kind_of_stimulus_keeps_it_as_custom_property(same, tag):
-    stimuli = '<stimuliModel><stimuli xsi:type="am:Single{}" name="S"/></stimuliModel>'
+    stimuli = '<stimuliModel><stimuli t="Single{}" name="S"/></stimuliModel>'
     before = CALLS.format("InterProcessActivation", ' stimulus="S?type=Single"/>')
-    kept = '<customProperties key="stimulus"><value xsi:type="am:ReferenceObject" value="S?type=SingleStimulus"/></customProperties>'
+    kept = '<customProperties key="stimulus"><value t="ReferenceObject" value="S?type=SingleStimulus"/></customProperties>'
     after = CALLS.format("InterProcessTrigger", f">{kept}</calls>")
     same(
         f'<swModel><{tag} name="T">{before}</{tag}></swModel>{stimuli.format("")}',
@@ -187,9 +187,9 @@ def test_a_trigger_of_another_kind_of_stimulus_keeps_it_as_custom_property(same,
 
 def test_every_class_of_stimuli_is_renamed_also_in_references_to_no_file(same):
     names = ("ArrivalCurve", "InterProcess", "Periodic", "Single", "Sporadic", "Synthetic")
-    before = "".join(f'<stimuli xsi:type="am:{name}" name="{name}"/>' for name in (*names, "PeriodicEvent"))
-    after = "".join(f'<stimuli xsi:type="am:{name}Stimulus" name="{name}"/>' for name in names)
-    after += '<stimuli xsi:type="am:VariableRateStimulus" name="PeriodicEvent"/>'
+    before = "".join(f'<stimuli t="{name}" name="{name}"/>' for name in (*names, "PeriodicEvent"))
+    after = "".join(f'<stimuli t="{name}Stimulus" name="{name}"/>' for name in names)
+    after += '<stimuli t="VariableRateStimulus" name="PeriodicEvent"/>'
     task = '<swModel><tasks name="T"><stimuli href="amlt:/#elsewhere?type={}"/></tasks></swModel>'
     same(
         f"<stimuliModel>{before}</stimuliModel>{task.format('PeriodicEvent')}",
@@ -200,54 +200,48 @@ def test_every_class_of_stimuli_is_renamed_also_in_references_to_no_file(same):
 def test_mode_value_lists(same):
     entry = '<entries{} valueProvider="L?type=ModeLabel" value="M/a?type=ModeLiteral"/>'
     model = '<swModel><modes name="M"><literals name="a"/></modes><modeLabels name="L"/></swModel><stimuliModel>'
-    model += '<stimuli xsi:type="am:CustomStimulus" name="S">{}</stimuli></stimuliModel>'
+    model += '<stimuli t="CustomStimulus" name="S">{}</stimuli></stimuliModel>'
     lists = ("setModeValueList", "enablingModeValueList", "disablingModeValueList")
 
     def stimulus(typed):
         return model.format("".join(f"<{name}>{entry.format(typed)}</{name}>" for name in lists))
 
-    same(stimulus(""), stimulus(' xsi:type="am:ModeValue"'))
+    same(stimulus(""), stimulus(' t="ModeValue"'))
     conjunction = model.format(
-        '<enablingModeValueList><entries xsi:type="am:ModeValueConjunction"><entries/></entries></enablingModeValueList>'
+        '<enablingModeValueList><entries t="ModeValueConjunction"><entries/></entries></enablingModeValueList>'
     )
     same(conjunction, conjunction)
 
 
 # Software
 
-ACTIVATION = (
-    '<swModel><runnables name="R" {}="P?type=PeriodicActivation"/><activations xsi:type="am:PeriodicActivation" name="P">'
-)
+ACTIVATION = '<swModel><runnables name="R" {}="P?type=PeriodicActivation"/><activations t="PeriodicActivation" name="P">'
 
 
 def test_activations(same):
     same(
         ACTIVATION.format("activation") + '<deadline value="3" unit="ms"/></activations>'
-        '<activations xsi:type="am:EventActivation" name="E" trigger="e?type=ProcessEvent"/></swModel>'
-        '<eventModel><events xsi:type="am:ProcessEvent" name="e"/></eventModel>',
+        '<activations t="EventActivation" name="E" trigger="e?type=ProcessEvent"/></swModel>'
+        '<eventModel><events t="ProcessEvent" name="e"/></eventModel>',
         ACTIVATION.format("activations")
-        + '<customProperties key="deadline"><value xsi:type="am:TimeObject" value="3" unit="ms"/></customProperties></activations>'
-        '<activations xsi:type="am:EventActivation" name="E" triggeringEvents="e?type=ProcessEvent"/></swModel>'
-        '<eventModel><events xsi:type="am:ProcessEvent" name="e"/></eventModel>',
+        + '<customProperties key="deadline"><value t="TimeObject" value="3" unit="ms"/></customProperties></activations>'
+        '<activations t="EventActivation" name="E" triggeringEvents="e?type=ProcessEvent"/></swModel>'
+        '<eventModel><events t="ProcessEvent" name="e"/></eventModel>',
     )
 
 
 def test_the_keys_of_custom_properties_stay_unique(same):
-    model = (
-        f'<swModel><activations xsi:type="am:PeriodicActivation" name="P">{text_property("deadline", "x")}{{}}</activations>'
-    )
+    model = f'<swModel><activations t="PeriodicActivation" name="P">{text_property("deadline", "x")}{{}}</activations>'
     model += "</swModel>"
     same(
         model.format('<deadline value="3" unit="ms"/>'),
-        model.format(
-            '<customProperties key="deadline 2"><value xsi:type="am:TimeObject" value="3" unit="ms"/></customProperties>'
-        ),
+        model.format('<customProperties key="deadline 2"><value t="TimeObject" value="3" unit="ms"/></customProperties>'),
     )
 
 
 def test_the_activation_of_a_process_prototype_keeps_its_name(same):
     model = '<swModel><processPrototypes name="P" activation="A?type=SingleActivation"/>'
-    model += '<activations xsi:type="am:SingleActivation" name="A"/></swModel>'
+    model += '<activations t="SingleActivation" name="A"/></swModel>'
     same(model, model)
 
 
@@ -260,15 +254,15 @@ SYSTEM = '<osModel><operatingSystems name="OS">{}</operatingSystems></osModel>'
 def test_scheduling_units(same, tag):
     notes = same(
         SYSTEM.format(
-            f'<{tag} name="S" scheduleUnitPriority="0"><schedulingUnit xsi:type="am:SchedulingSWUnit" priority="0" '
+            f'<{tag} name="S" scheduleUnitPriority="0"><schedulingUnit t="SchedulingSWUnit" priority="0" '
             f'interruptController="C?type=InterruptController">{text_property("k", "v")}'
-            '<instructions xsi:type="am:InstructionsDeviation"><deviation/></instructions></schedulingUnit></'
-            f'{tag}><{tag} name="H"><schedulingUnit xsi:type="am:SchedulingHWUnit">{text_property("k", "v")}</schedulingUnit></{tag}>'
+            '<instructions t="InstructionsDeviation"><deviation/></instructions></schedulingUnit></'
+            f'{tag}><{tag} name="H"><schedulingUnit t="SchedulingHWUnit">{text_property("k", "v")}</schedulingUnit></{tag}>'
             '<interruptControllers name="C"/>'
         ),
         SYSTEM.format(
             f'<{tag} name="S">{text_property("SchedulingSWUnit_CustomProperty__k", "v")}'
-            '<computationItems xsi:type="am:RunnableInstructions"><default xsi:type="am:InstructionsDeviation"><deviation/></default>'
+            '<computationItems t="RunnableInstructions"><default t="InstructionsDeviation"><deviation/></default>'
             f'</computationItems></{tag}><{tag} name="H">{text_property("SchedulingHWUnit_CustomProperty__k", "v")}</{tag}>'
             '<interruptControllers name="C"/>'
         ),
@@ -280,7 +274,7 @@ def test_a_custom_property_without_value_of_a_scheduling_unit_moves_like_others(
     key = "SchedulingHWUnit_CustomProperty__k"
     same(
         SYSTEM.format(
-            '<taskSchedulers name="S"><schedulingUnit xsi:type="am:SchedulingHWUnit"><customProperties key="k"/></schedulingUnit>'
+            '<taskSchedulers name="S"><schedulingUnit t="SchedulingHWUnit"><customProperties key="k"/></schedulingUnit>'
             "</taskSchedulers>"
         ),
         SYSTEM.format(f'<taskSchedulers name="S"><customProperties key="{key}"/></taskSchedulers>'),
@@ -289,7 +283,7 @@ def test_a_custom_property_without_value_of_a_scheduling_unit_moves_like_others(
 
 def test_what_becomes_of_scheduling_units_is_noted(files):
     schedulers = f'<taskSchedulers name="S" scheduleUnitPriority="0"><schedulingUnit priority="3">{text_property("k", "v")}'
-    schedulers += '<instructions xsi:type="am:InstructionsConstant" value="1"/></schedulingUnit></taskSchedulers>'
+    schedulers += '<instructions t="InstructionsConstant" value="1"/></schedulingUnit></taskSchedulers>'
     schedulers += (
         f'<taskSchedulers name="H"><schedulingUnit>{text_property("k", "v")}<delay value="1" unit="ns"/></schedulingUnit>'
     )
@@ -310,7 +304,7 @@ def test_what_becomes_of_scheduling_units_is_noted(files):
 
 
 def test_what_else_a_scheduling_unit_states_is_not_lost_silently(same):
-    unit = '<schedulingUnit xsi:type="am:SchedulingHWUnit" priority="0" x="1"><y z="2"/></schedulingUnit>'
+    unit = '<schedulingUnit t="SchedulingHWUnit" priority="0" x="1"><y z="2"/></schedulingUnit>'
     notes = same(
         SYSTEM.format(f'<taskSchedulers name="S">{unit}</taskSchedulers>'), SYSTEM.format('<taskSchedulers name="S"/>')
     )
@@ -319,9 +313,9 @@ def test_what_else_a_scheduling_unit_states_is_not_lost_silently(same):
 
 def test_parameters_of_a_scheduler_in_its_algorithm(same):
     model = SYSTEM.format(
-        '<taskSchedulers name="S"><schedulingAlgorithm xsi:type="am:UserSpecificSchedulingAlgorithm"><{0} key="a" value="1"/>'
+        '<taskSchedulers name="S"><schedulingAlgorithm t="UserSpecificSchedulingAlgorithm"><{0} key="a" value="1"/>'
         '<{0} key="b" value="2"/></schedulingAlgorithm></taskSchedulers>'
-        '<taskSchedulers name="P"><schedulingAlgorithm xsi:type="am:PfairPD2" quantSizeNs="1000"/></taskSchedulers>'
+        '<taskSchedulers name="P"><schedulingAlgorithm t="PfairPD2" quantSizeNs="1000"/></taskSchedulers>'
     )
     same(model.format("parameter"), model.format("parameterExtensions"))
 
@@ -365,15 +359,15 @@ def test_a_model_without_system_has_no_quartzes(same):
 
 # Event chains
 
-OUTER = '<eventChains name="outer"><{0} xsi:type="am:{1}"><eventChain name="inner"/></{0}></eventChains>'
+OUTER = '<eventChains name="outer"><{0} t="{1}"><eventChain name="inner"/></{0}></eventChains>'
 
 
 @pytest.mark.parametrize("tag", ["segments", "strands"])
 def test_inner_chains_of_another_file(same, tag):
     inner = '<scope href="amlt:/#inner?type=EventChain"/>'
-    scope = '<timingConstraints xsi:type="am:EventChainSynchronizationConstraint" name="c">{}</timingConstraints>'
+    scope = '<timingConstraints t="EventChainSynchronizationConstraint" name="c">{}</timingConstraints>'
     outer = '<scope href="amlt:/#outer?type=EventChain"/>'
-    kept = '<customProperties key="scope"><value xsi:type="am:ListObject"><values xsi:type="am:StringObject" '
+    kept = '<customProperties key="scope"><value t="ListObject"><values t="StringObject" '
     kept += 'value="amlt:/#inner?type=EventChain"/></value></customProperties>'
     same(
         [
@@ -388,16 +382,16 @@ def test_inner_chains_of_another_file(same, tag):
 
 
 def test_a_chain_in_no_file_may_be_an_outer_one(same):
-    model = '<constraintsModel><eventChains name="a"><segments xsi:type="am:EventChainReference">{}</segments></eventChains>'
+    model = '<constraintsModel><eventChains name="a"><segments t="EventChainReference">{}</segments></eventChains>'
     model += "</constraintsModel>"
     reference = '<eventChain href="amlt:/#b?type=EventChain"/>'
     same(model.format(reference), model.format(reference))
 
 
 def test_references_to_inner_chains_are_noted(files):
-    model = OUTER.format("segments", "SubEventChain") + '<eventChains name="c"><strands xsi:type="am:EventChainReference" '
+    model = OUTER.format("segments", "SubEventChain") + '<eventChains name="c"><strands t="EventChainReference" '
     model += 'eventChain="inner?type=EventChain"/></eventChains>'
-    model += '<timingConstraints xsi:type="am:EventChainLatencyConstraint" name="l" scope="inner?type=EventChain"/>'
+    model += '<timingConstraints t="EventChainLatencyConstraint" name="l" scope="inner?type=EventChain"/>'
     _, notes = migrated(files("0.8.0", f"<constraintsModel>{model}</constraintsModel>"), "0.8.1")
     assert of_kind(notes, NoteKind.KEPT) == [
         ("reference to an inner event chain", "inner?type=EventChain"),
@@ -406,8 +400,8 @@ def test_references_to_inner_chains_are_noted(files):
 
 
 def test_the_name_of_an_inner_chain_means_the_outer_one_that_shares_it(files):
-    model = '<constraintsModel><eventChains name="a"><segments xsi:type="am:SubEventChain"><eventChain name="b"/></segments>'
-    model += '<segments xsi:type="am:EventChainReference" eventChain="b?type=EventChain"/></eventChains><eventChains name="b"/>'
+    model = '<constraintsModel><eventChains name="a"><segments t="SubEventChain"><eventChain name="b"/></segments>'
+    model += '<segments t="EventChainReference" eventChain="b?type=EventChain"/></eventChains><eventChains name="b"/>'
     models, _ = migrated(files("0.8.0", model + "</constraintsModel>"), "0.8.1")
     first, second = models.trees[0].root.find("constraintsModel", "eventChains")
     assert first.children[1].references == {"eventChain": [second]}
@@ -419,19 +413,19 @@ EVERYTHING = (
     '<swModel><tasks name="T" priority="5" osekTaskGroup="2" stimuli="P?type=Periodic">'
     + CALLS.format("InterProcessActivation", ' stimulus="I?type=InterProcess"/>')
     + '</tasks><isrs name="J" priority="0"/><runnables name="R" activation="A?type=PeriodicActivation"/>'
-    '<activations xsi:type="am:PeriodicActivation" name="A"><deadline value="3" unit="ms"/></activations></swModel>'
+    '<activations t="PeriodicActivation" name="A"><deadline value="3" unit="ms"/></activations></swModel>'
     '<hwModel><memoryTypes name="M" xAccessPattern="x"/><system name="S"><quartzes name="q"><quartzes name="r"/></quartzes></system>'
     "</hwModel>"
     + SYSTEM.format(
-        '<taskSchedulers name="S"><schedulingAlgorithm xsi:type="am:UserSpecificSchedulingAlgorithm"><parameter key="a" value="1"/>'
-        '</schedulingAlgorithm><schedulingUnit xsi:type="am:SchedulingSWUnit" priority="1"><instructions xsi:type="am:X" value="1"/>'
-        '</schedulingUnit></taskSchedulers><taskSchedulers name="H"><schedulingUnit xsi:type="am:SchedulingHWUnit">'
+        '<taskSchedulers name="S"><schedulingAlgorithm t="UserSpecificSchedulingAlgorithm"><parameter key="a" value="1"/>'
+        '</schedulingAlgorithm><schedulingUnit t="SchedulingSWUnit" priority="1"><instructions t="X" value="1"/>'
+        '</schedulingUnit></taskSchedulers><taskSchedulers name="H"><schedulingUnit t="SchedulingHWUnit">'
         '<delay value="1" unit="ns"/></schedulingUnit></taskSchedulers>'
     )
-    + '<stimuliModel><stimuli xsi:type="am:Periodic" name="P"><setModeValueList><entries/></setModeValueList></stimuli>'
-    '<stimuli xsi:type="am:InterProcess" name="I"/></stimuliModel><constraintsModel>'
+    + '<stimuliModel><stimuli t="Periodic" name="P"><setModeValueList><entries/></setModeValueList></stimuli>'
+    '<stimuli t="InterProcess" name="I"/></stimuliModel><constraintsModel>'
     + OUTER.format("segments", "SubEventChain")
-    + '<timingConstraints xsi:type="am:EventChainLatencyConstraint" name="l" scope="inner?type=EventChain outer?type=EventChain"/>'
+    + '<timingConstraints t="EventChainLatencyConstraint" name="l" scope="inner?type=EventChain outer?type=EventChain"/>'
     '</constraintsModel><mappingModel><taskAllocation task="T?type=Task" scheduler="S?type=TaskScheduler" priority="3"/>'
     '<isrAllocation isr="J?type=ISR"/><coreAllocation scheduler="S?type=TaskScheduler" core="C?type=Core"/></mappingModel>'
 )

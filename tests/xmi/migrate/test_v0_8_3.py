@@ -24,8 +24,8 @@ def same(tmp_path):
 # Stimuli
 
 DEVIATION = (
-    '<{0}><lowerBound xsi:type="am:Time" value="1" unit="ms"/><upperBound xsi:type="am:Time" value="3" unit="ms"/>'
-    '<distribution xsi:type="am:WeibullEstimators" pRemainPromille="0.5"><mean xsi:type="am:Time" value="2" unit="ms"/>'
+    '<{0}><lowerBound t="Time" value="1" unit="ms"/><upperBound t="Time" value="3" unit="ms"/>'
+    '<distribution t="WeibullEstimators" pRemainPromille="0.5"><mean t="Time" value="2" unit="ms"/>'
     "</distribution></{0}>"
 )
 KEPT = "lowerBound=1ms, upperBound=3ms, distribution=WeibullEstimators(pRemainPromille=0.5, mean=2ms)"
@@ -35,15 +35,15 @@ KEPT = "lowerBound=1ms, upperBound=3ms, distribution=WeibullEstimators(pRemainPr
     "kind", ["CustomStimulus", "EventStimulus", "InterProcessStimulus", "SingleStimulus", "ArrivalCurveStimulus"]
 )
 def test_a_deviation_without_successor_is_kept_as_custom_property(same, kind):
-    model = '<stimuliModel><stimuli xsi:type="am:' + kind + '" name="S">{}</stimuli></stimuliModel>'
+    model = '<stimuliModel><stimuli t="' + kind + '" name="S">{}</stimuli></stimuliModel>'
     before = model.format(DEVIATION.format("stimulusDeviation"))
     notes = same(before, model.format(text_property("stimulusDeviation", KEPT)))
     assert not of_kind(notes, NoteKind.LOST)
 
 
 def test_variable_rate_activations_have_no_deviation_but_sporadic_ones_do(same):
-    model = '<swModel><activations xsi:type="am:VariableRateActivation" name="V">{}</activations>'
-    model += f'<activations xsi:type="am:SporadicActivation" name="S">{DEVIATION.format("activationDeviation")}</activations></swModel>'
+    model = '<swModel><activations t="VariableRateActivation" name="V">{}</activations>'
+    model += f'<activations t="SporadicActivation" name="S">{DEVIATION.format("activationDeviation")}</activations></swModel>'
     before = model.format(DEVIATION.format("activationDeviation"))
     same(before, model.format(text_property("activationDeviation", KEPT)))
 
@@ -51,18 +51,18 @@ def test_variable_rate_activations_have_no_deviation_but_sporadic_ones_do(same):
 def test_references_to_a_clocked_stimulus_follow_in_all_files(same):
     software = '<swModel><tasks name="T"><stimuli href="amlt:/#P+1?type={0}"/><stimuli href="amlt:/#gone?type={1}"/></tasks>'
     software += '<isrs name="I"><stimuli href="amlt:/#P+1?type={0}"/></isrs></swModel><eventModel>'
-    software += '<events xsi:type="am:StimulusEvent" name="e"><entity href="amlt:/#P+1?type={0}"/></events></eventModel>'
-    clock = '<stimuliModel><clocks xsi:type="am:ClockMultiplierList" name="c"/></stimuliModel>'
+    software += '<events t="StimulusEvent" name="e"><entity href="amlt:/#P+1?type={0}"/></events></eventModel>'
+    clock = '<stimuliModel><clocks t="ClockMultiplierList" name="c"/></stimuliModel>'
     same(
         [
             software.format("PeriodicStimulus", "SporadicStimulus"),
-            '<stimuliModel><stimuli xsi:type="am:PeriodicStimulus" name="P 1"><clock href="amlt:/#c?type=ClockMultiplierList"/>'
+            '<stimuliModel><stimuli t="PeriodicStimulus" name="P 1"><clock href="amlt:/#c?type=ClockMultiplierList"/>'
             "</stimuli></stimuliModel>",
             clock,
         ],
         [
             software.format("VariableRateStimulus", "RelativePeriodicStimulus"),
-            '<stimuliModel><stimuli xsi:type="am:VariableRateStimulus" name="P 1"><scenario>'
+            '<stimuliModel><stimuli t="VariableRateStimulus" name="P 1"><scenario>'
             '<clock href="amlt:/#c?type=ClockMultiplierList"/></scenario></stimuli></stimuliModel>',
             clock,
         ],
@@ -70,11 +70,9 @@ def test_references_to_a_clocked_stimulus_follow_in_all_files(same):
 
 
 def test_what_a_clocked_stimulus_loses_is_noted(files):
-    text = '<stimuliModel><stimuli xsi:type="am:PeriodicStimulus" name="P" clock="c?type=ClockSinusFunction">'
+    text = '<stimuliModel><stimuli t="PeriodicStimulus" name="P" clock="c?type=ClockSinusFunction">'
     text += '<offset value="1" unit="s"/>'
-    text += (
-        f'{DEVIATION.format("stimulusDeviation")}</stimuli><clocks xsi:type="am:ClockSinusFunction" name="c"/></stimuliModel>'
-    )
+    text += f'{DEVIATION.format("stimulusDeviation")}</stimuli><clocks t="ClockSinusFunction" name="c"/></stimuliModel>'
     _, notes = migrated(files("0.8.2", text), "0.8.3")
     assert of_kind(notes, NoteKind.LOST) == [("deviation of a periodic stimulus with a clock", KEPT)]
     assert of_kind(notes, NoteKind.KEPT) == [("offset of a periodic stimulus with a clock", "1s")]
@@ -82,10 +80,10 @@ def test_what_a_clocked_stimulus_loses_is_noted(files):
 
 def test_the_description_of_a_sporadic_stimulus_is_lost_and_noted(same):
     notes = same(
-        '<stimuliModel><stimuli xsi:type="am:SporadicStimulus" name="S" description="why"/>'
-        '<stimuli xsi:type="am:SporadicStimulus" name="T" description=""/></stimuliModel>',
-        '<stimuliModel><stimuli xsi:type="am:RelativePeriodicStimulus" name="S"/>'
-        '<stimuli xsi:type="am:RelativePeriodicStimulus" name="T"/></stimuliModel>',
+        '<stimuliModel><stimuli t="SporadicStimulus" name="S" description="why"/>'
+        '<stimuli t="SporadicStimulus" name="T" description=""/></stimuliModel>',
+        '<stimuliModel><stimuli t="RelativePeriodicStimulus" name="S"/>'
+        '<stimuli t="RelativePeriodicStimulus" name="T"/></stimuliModel>',
     )
     assert of_kind(notes, NoteKind.LOST) == [("description of a sporadic stimulus", "'why'")]
 
@@ -93,20 +91,20 @@ def test_the_description_of_a_sporadic_stimulus_is_lost_and_noted(same):
 # Mode switches
 
 MODES = '<swModel><modes name="M"><literals name="a"/><literals name="b"/></modes><modeLabels name="L"/>{}</swModel>'
-ONE = '<condition><entries xsi:type="am:ModeValue" valueProvider="L?type=ModeLabel" value="M/a?type=ModeLiteral"/></condition>'
+ONE = '<condition><entries t="ModeValue" valueProvider="L?type=ModeLabel" value="M/a?type=ModeLiteral"/></condition>'
 
 
 @pytest.mark.parametrize("tag", ["tasks", "isrs"])
 def test_switches_in_switches(same, tag):
-    graph = f'<{tag} name="T"><callGraph><graphEntries xsi:type="am:ProbabilitySwitch"><entries><items xsi:type="am:ModeSwitch"{{0}}>'
-    graph += '<defaultEntry><items xsi:type="am:ModeSwitch"{0}><entries name="e"{1}{2}</items></defaultEntry></items></entries>'
+    graph = f'<{tag} name="T"><callGraph><graphEntries t="ProbabilitySwitch"><entries><items t="ModeSwitch"{{0}}>'
+    graph += '<defaultEntry><items t="ModeSwitch"{0}><entries name="e"{1}{2}</items></defaultEntry></items></entries>'
     graph += f"</graphEntries></callGraph></{tag}>"
     before = graph.format(' valueProvider="L?type=ModeLabel"', ' values="M/a?type=ModeLiteral"', "/>")
     notes = same(MODES.format(before), MODES.format(graph.format("", "", f">{ONE}</entries>")))
     assert of_kind(notes, NoteKind.LOST) == [("mode label of a switch without entries", "L?type=ModeLabel")]
 
 
-RUNNABLE = '<runnables name="R"><runnableItems xsi:type="am:RunnableModeSwitch"><defaultEntry><items xsi:type="am:RunnableModeSwitch"{}'
+RUNNABLE = '<runnables name="R"><runnableItems t="RunnableModeSwitch"><defaultEntry><items t="RunnableModeSwitch"{}'
 RUNNABLE += "</items></defaultEntry></runnableItems></runnables>"
 
 
@@ -116,17 +114,17 @@ def test_a_switch_in_the_default_of_a_switch_of_a_runnable(same):
 
 
 def test_labels_and_literals_of_other_files(same):
-    task = '<swModel><tasks name="T"><callGraph><graphEntries xsi:type="am:ModeSwitch">{}</graphEntries></callGraph></tasks></swModel>'
+    task = '<swModel><tasks name="T"><callGraph><graphEntries t="ModeSwitch">{}</graphEntries></callGraph></tasks></swModel>'
     label = '<valueProvider href="amlt:/#L?type=ModeLabel"/>'
     before = task.format(f'{label}<entries><values href="amlt:/#M/a?type=ModeLiteral"/></entries>')
-    after = '<entries><condition><entries xsi:type="am:ModeValue">{}<value href="amlt:/#M/a?type=ModeLiteral"/></entries></condition>'
+    after = '<entries><condition><entries t="ModeValue">{}<value href="amlt:/#M/a?type=ModeLiteral"/></entries></condition>'
     after = task.format(f"{after}</entries>")
     modes = MODES.format("")
     same([before, modes], [after.format(label), modes])
 
 
 def test_labels_and_literals_that_are_no_references_are_lost(same):
-    task = '<tasks name="T"><callGraph><graphEntries xsi:type="am:ModeSwitch"{}</graphEntries></callGraph></tasks>'
+    task = '<tasks name="T"><callGraph><graphEntries t="ModeSwitch"{}</graphEntries></callGraph></tasks>'
     notes = same(
         MODES.format(task.format(' valueProvider="L"><entries values="a"/>')),
         MODES.format(task.format("><entries><condition/></entries>")),
@@ -138,7 +136,7 @@ def test_labels_and_literals_that_are_no_references_are_lost(same):
 
 
 def test_an_entry_without_literals_is_never_taken(same):
-    task = '<tasks name="T"><callGraph><graphEntries xsi:type="am:ModeSwitch"{}</graphEntries></callGraph></tasks>'
+    task = '<tasks name="T"><callGraph><graphEntries t="ModeSwitch"{}</graphEntries></callGraph></tasks>'
     same(
         MODES.format(task.format(' valueProvider="L?type=ModeLabel"><entries/>')),
         MODES.format(task.format("><entries><condition/></entries>")),
@@ -146,7 +144,7 @@ def test_an_entry_without_literals_is_never_taken(same):
 
 
 def test_a_literal_of_a_mode_in_no_file_is_not_taken_for_one_of_the_same_name(files):
-    task = '<tasks name="T"><callGraph><graphEntries xsi:type="am:ModeSwitch" valueProvider="L?type=ModeLabel"><entries>'
+    task = '<tasks name="T"><callGraph><graphEntries t="ModeSwitch" valueProvider="L?type=ModeLabel"><entries>'
     task += (
         '<values href="amlt:/#M/a?type=ModeLiteral"/><values href="amlt:/#Other/a?type=ModeLiteral"/></entries></graphEntries>'
     )
@@ -159,7 +157,7 @@ def test_a_literal_of_a_mode_in_no_file_is_not_taken_for_one_of_the_same_name(fi
 
 
 def test_interface_ports_and_references_to_them(same):
-    model = '<componentsModel><components name="C"><ports xsi:type="am:{0}" name="p" kind="provides"/></components><systems>'
+    model = '<componentsModel><components name="C"><ports t="{0}" name="p" kind="provides"/></components><systems>'
     model += (
         '<connectors><sourcePort port="C/p?type={0}"/><targetPort><port href="amlt:/#D/q?type={0}"/></targetPort></connectors>'
     )
@@ -170,20 +168,20 @@ def test_interface_ports_and_references_to_them(same):
 # Leftovers and damage
 
 EVERYTHING = (
-    '<stimuliModel><stimuli xsi:type="am:PeriodicStimulus" name="P" clock="c?type=ClockSinusFunction"><offset value="1" unit="s"/>'
+    '<stimuliModel><stimuli t="PeriodicStimulus" name="P" clock="c?type=ClockSinusFunction"><offset value="1" unit="s"/>'
     f'<recurrence value="2" unit="s"/>{DEVIATION.format("stimulusDeviation")}</stimuli>'
-    f'<stimuli xsi:type="am:PeriodicStimulus" name="Q">{DEVIATION.format("stimulusDeviation")}</stimuli>'
-    f'<stimuli xsi:type="am:SporadicStimulus" name="S">{DEVIATION.format("stimulusDeviation")}</stimuli>'
-    f'<stimuli xsi:type="am:CustomStimulus" name="U">{DEVIATION.format("stimulusDeviation")}</stimuli>'
-    '<stimuli xsi:type="am:SyntheticStimulus" name="Y"><period value="9" unit="ms"/><triggerTimes><timestamps value="1" unit="ms"/>'
-    '</triggerTimes></stimuli><stimuli xsi:type="am:SingleStimulus" name="X"><activation value="3" unit="ms"/></stimuli>'
-    '<stimuli xsi:type="am:ArrivalCurveStimulus" name="A"><entries numberOfEvents="2"/></stimuli>'
-    '<clocks xsi:type="am:ClockSinusFunction" name="c"/></stimuliModel>'
+    f'<stimuli t="PeriodicStimulus" name="Q">{DEVIATION.format("stimulusDeviation")}</stimuli>'
+    f'<stimuli t="SporadicStimulus" name="S">{DEVIATION.format("stimulusDeviation")}</stimuli>'
+    f'<stimuli t="CustomStimulus" name="U">{DEVIATION.format("stimulusDeviation")}</stimuli>'
+    '<stimuli t="SyntheticStimulus" name="Y"><period value="9" unit="ms"/><triggerTimes><timestamps value="1" unit="ms"/>'
+    '</triggerTimes></stimuli><stimuli t="SingleStimulus" name="X"><activation value="3" unit="ms"/></stimuli>'
+    '<stimuli t="ArrivalCurveStimulus" name="A"><entries numberOfEvents="2"/></stimuli>'
+    '<clocks t="ClockSinusFunction" name="c"/></stimuliModel>'
     + MODES.format(
         RUNNABLE.format(' valueProvider="L?type=ModeLabel"><entries values="M/a?type=ModeLiteral M/b?type=ModeLiteral"/>')
-        + f'<activations xsi:type="am:VariableRateActivation" name="V">{DEVIATION.format("activationDeviation")}</activations>'
+        + f'<activations t="VariableRateActivation" name="V">{DEVIATION.format("activationDeviation")}</activations>'
     )
-    + '<componentsModel><components name="C"><ports xsi:type="am:FInterfacePort" name="p"/></components></componentsModel>'
+    + '<componentsModel><components name="C"><ports t="FInterfacePort" name="p"/></components></componentsModel>'
 )
 
 

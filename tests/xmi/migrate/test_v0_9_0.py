@@ -120,7 +120,7 @@ class TestClocks:
             root, _ = convert(content, target)
             found = root.find("hwModel", "domains", "defaultValue") + root.find("hwModel", "definitions", "size")
             assert {node.get("unit") for node in found} == units
-        native = '<hwModel><domains xsi:type="am:FrequencyDomain" name="D"><defaultValue value="5.0"/></domains></hwModel>'
+        native = '<hwModel><domains t="FrequencyDomain" name="D"><defaultValue value="5.0"/></domains></hwModel>'
         root, _ = convert(native, "0.9.8", version="0.9.7")
         assert root.find("hwModel", "domains", "defaultValue")[0].get("unit") == ""
 
@@ -159,7 +159,7 @@ class TestDefinitions:
     @pytest.mark.parametrize("kind", ["Bus", "Bridge", "CrossbarSwitch", ""])
     def test_networks_types(self, convert, kind, policy, expected):
         stated = f' schedPolicy="{policy}"' if policy else ""
-        stated += f' xsi:type="am:{kind}"' if kind else ""
+        stated += f' t="{kind}"' if kind else ""
         root, _ = convert(f'<hwModel><networkTypes name="N" conConnections="0"{stated}/></hwModel>')
         (node,) = root.find("hwModel", "definitions")
         assert (node.type, node.get("policy")) == ("ConnectionHandlerDefinition", expected)
@@ -237,7 +237,7 @@ class TestStructures:
         assert "'memory': caches cannot be referred to" in lost(notes)
 
     def test_custom_properties_and_tags_stay(self, convert):
-        own = '<customProperties key="k"><value xsi:type="am:StringObject" value="v"/></customProperties>'
+        own = '<customProperties key="k"><value t="StringObject" value="v"/></customProperties>'
         content = on_chip(f'<cores name="C" tags="t?type=Tag" lockstepGroup="2">{own}</cores>', before=own)
         content += '<commonElements><tags name="t"/></commonElements>'
         root, _ = convert(content)
@@ -249,9 +249,9 @@ class TestStructures:
     def test_ports(self, convert):
         cycles = 'readCycles="8" writeCycles="0" baseAddress="0x0" addressRange="0x100" schedValue="2" direction="R"'
         content = on_chip(
-            f'<memories name="m"><ports xsi:type="am:ComplexPort" name="a" {cycles} network="n?type=Network"/></memories>'
-            f'<cores name="C"><ports xsi:type="am:ComplexPort" name="b" master="true" {cycles}><pins name="pin"/></ports></cores>'
-            '<networks name="n"/><ports xsi:type="am:HwPort" name="c" master="false"/>'
+            f'<memories name="m"><ports t="ComplexPort" name="a" {cycles} network="n?type=Network"/></memories>'
+            f'<cores name="C"><ports t="ComplexPort" name="b" master="true" {cycles}><pins name="pin"/></ports></cores>'
+            '<networks name="n"/><ports t="HwPort" name="c" master="false"/>'
         )
         root, notes = convert(content)
         (a,), (b,), (c,) = module(root, "m").all("ports"), module(root, "C").all("ports"), chip(root).all("ports")
@@ -277,11 +277,11 @@ class TestStructures:
 
 
 def path(latencies, source="C?type=Core", target="R?type=Memory", name="p"):
-    return f'<accessPaths xsi:type="am:LatencyAccessPath" name="{name}" source="{source}" target="{target}">{latencies}</accessPaths>'
+    return f'<accessPaths t="LatencyAccessPath" name="{name}" source="{source}" target="{target}">{latencies}</accessPaths>'
 
 
 def constant(value, access="RW", more=""):
-    return f'<latencies xsi:type="am:LatencyConstant" accessType="{access}" value="{value}" {more}/>'
+    return f'<latencies t="LatencyConstant" accessType="{access}" value="{value}" {more}/>'
 
 
 class TestAccessPaths:
@@ -306,7 +306,7 @@ class TestAccessPaths:
             path(constant(1), source="N?type=Network")
             + path(constant(1), target="N?type=Network")
             + path(constant(1), target="L2?type=Memory")
-            + '<accessPaths xsi:type="am:HwAccessPath" name="h"/><accessPaths/>',
+            + '<accessPaths t="HwAccessPath" name="h"/><accessPaths/>',
             cache,
         )
         root, notes = convert(content)
@@ -318,7 +318,7 @@ class TestAccessPaths:
         assert lost(notes) == {"access path from something in no file"}
 
     def test_without_access_type_both_directions_are_meant(self, convert):
-        latency = '<latencies xsi:type="am:LatencyConstant" value="4"/>'
+        latency = '<latencies t="LatencyConstant" value="4"/>'
         root, notes = convert(on_chip('<cores name="C"/><memories name="R"/>', path(latency)))
         assert self.costs(root) == [{"readLatency": "4", "writeLatency": "4"}]
         assert any(note.kind is NoteKind.DEFAULTED for note in notes)
@@ -326,8 +326,8 @@ class TestAccessPaths:
     def test_latencies_are_in_cycles_of_the_core(self, convert):
         core = '<cores name="C"><prescaler clockRatio="1.5" quartz="Q?type=Quartz"/></cores><memories name="R"/>'
         deviation = (
-            '<latencies xsi:type="am:LatencyDeviation" accessType="R" quartz="Q?type=Quartz"><deviation>'
-            '<lowerBound xsi:type="am:LongObject" value="1"/><upperBound xsi:type="am:LongObject" value="9"/></deviation></latencies>'
+            '<latencies t="LatencyDeviation" accessType="R" quartz="Q?type=Quartz"><deviation>'
+            '<lowerBound t="LongObject" value="1"/><upperBound t="LongObject" value="9"/></deviation></latencies>'
         )
         paths = path(constant(9, "RW", 'quartz="Q?type=Quartz"')) + path(deviation, name="q") + path(constant(9), name="r")
         root, notes = convert(on_chip(core, paths))
@@ -356,21 +356,19 @@ class TestAccessPaths:
 
     def test_several_latencies_are_added_up(self, convert):
         inner = path(constant(2) + constant(3, "R"), name="inner")
-        outer = path('<latencies xsi:type="am:AccessPathRef" ref="inner?type=LatencyAccessPath"/>' + constant(10), name="outer")
+        outer = path('<latencies t="AccessPathRef" ref="inner?type=LatencyAccessPath"/>' + constant(10), name="outer")
         root, _ = convert(on_chip('<cores name="C"/><memories name="R"/>', inner + outer))
         assert self.costs(root) == [{"readLatency": "5", "writeLatency": "2"}, {"readLatency": "15", "writeLatency": "12"}]
 
     @pytest.mark.parametrize(("bounds", "expected"), [((4, 9), ["6", "11"]), ((4, None), ["6"]), ((None, None), [])])
     def test_latencies_with_bounds_are_added_up_as_bounds(self, convert, bounds, expected):
         stated = "".join(
-            f'<{name} xsi:type="am:LongObject" value="{value}"/>'
+            f'<{name} t="LongObject" value="{value}"/>'
             for name, value in zip(("lowerBound", "upperBound"), bounds, strict=True)
             if value is not None
         )
-        uniform = '<distribution xsi:type="am:UniformDistribution"/>'
-        deviation = (
-            f'<latencies xsi:type="am:LatencyDeviation" accessType="R"><deviation>{stated}{uniform}</deviation></latencies>'
-        )
+        uniform = '<distribution t="UniformDistribution"/>'
+        deviation = f'<latencies t="LatencyDeviation" accessType="R"><deviation>{stated}{uniform}</deviation></latencies>'
         content = on_chip('<cores name="C"/><memories name="R"/>', path(constant(2, "R") + deviation))
         root, notes = convert(content)
         (latency,) = module(root, "C").child("accessElements").children
@@ -379,14 +377,14 @@ class TestAccessPaths:
         assert not lost(notes)
 
     def test_a_path_that_is_part_of_itself(self, convert):
-        ref = '<latencies xsi:type="am:AccessPathRef" ref="{}?type=LatencyAccessPath"/>'
+        ref = '<latencies t="AccessPathRef" ref="{}?type=LatencyAccessPath"/>'
         paths = path(ref.format("b") + constant(1), name="a") + path(ref.format("a") + ref.format("x"), name="b")
         root, notes = convert(on_chip('<cores name="C"/><memories name="R"/>', paths))
         assert len(self.costs(root)) == 2
         assert any("part of itself" in message for message in lost(notes))
 
     def test_paths_that_grow_without_bound(self, convert):
-        ref = '<latencies xsi:type="am:AccessPathRef" ref="p{}?type=LatencyAccessPath"/>'
+        ref = '<latencies t="AccessPathRef" ref="p{}?type=LatencyAccessPath"/>'
         paths = path(constant(1), name="p0") + "".join(path(ref.format(at) * 2, name=f"p{at + 1}") for at in range(60))
         root, _ = convert(on_chip('<cores name="C"/><memories name="R"/>', paths))
         assert len(self.costs(root)) == 61
@@ -394,9 +392,9 @@ class TestAccessPaths:
 
 class TestNeeds:
     def test_wherever_instructions_are(self, convert):
-        item = '<{0} xsi:type="am:RunnableInstructions"><default xsi:type="am:{1}"/></{0}>'
+        item = '<{0} t="RunnableInstructions"><default t="{1}"/></{0}>'
         constant_, deviation = "InstructionsConstant", "InstructionsDeviation"
-        group = f'<runnableItems xsi:type="am:Group">{item.format("items", constant_)}</runnableItems>'
+        group = f'<runnableItems t="Group">{item.format("items", constant_)}</runnableItems>'
         scheduler = item.format("computationItems", deviation)
         scheduler = f"<operatingSystems><taskSchedulers>{scheduler}</taskSchedulers></operatingSystems>"
         root, _ = convert(f"<swModel><runnables name='R'>{group}</runnables></swModel><osModel>{scheduler}</osModel>")
@@ -406,9 +404,8 @@ class TestNeeds:
 
     def test_the_fetches_are_lost(self, convert):
         root, notes = convert(
-            '<swModel><runnables name="R"><runnableItems xsi:type="am:RunnableInstructions">'
-            '<default xsi:type="am:InstructionsDeviation">'
-            '<fetchStatistic value="3"/><deviation><lowerBound xsi:type="am:LongObject" value="1"/></deviation></default>'
+            '<swModel><runnables name="R"><runnableItems t="RunnableInstructions"><default t="InstructionsDeviation">'
+            '<fetchStatistic value="3"/><deviation><lowerBound t="LongObject" value="1"/></deviation></default>'
             "</runnableItems></runnables></swModel>"
         )
         (need,) = root.find("swModel", "runnables", "runnableItems", "default", "value")
@@ -416,8 +413,8 @@ class TestNeeds:
         assert lost(notes) == {"'fetchStatistic' of instructions"}
 
     def test_the_category_is_made_once_for_all_files(self, tmp_path):
-        default = '<default xsi:type="am:InstructionsConstant" value="1"/>'
-        item = f'<runnableItems xsi:type="am:RunnableInstructions">{default}</runnableItems>'
+        default = '<default t="InstructionsConstant" value="1"/>'
+        item = f'<runnableItems t="RunnableInstructions">{default}</runnableItems>'
         software = [
             write(tmp_path / f"{at}.amxmi", f"<swModel><runnables name='{at}'>{item}</runnables></swModel>") for at in "ab"
         ]
@@ -428,9 +425,7 @@ class TestNeeds:
         assert [len(tree.root.find("hwModel", "featureCategories")) for tree in models.trees] == [0, 0, 1]
 
     def test_instructions_elsewhere_stay(self, convert):
-        overhead = (
-            '<osOverheads><apiOverhead><apiSchedule xsi:type="am:InstructionsConstant" value="1"/></apiOverhead></osOverheads>'
-        )
+        overhead = '<osOverheads><apiOverhead><apiSchedule t="InstructionsConstant" value="1"/></apiOverhead></osOverheads>'
         root, _ = convert(f"<osModel>{overhead}</osModel>")
         assert root.find("osModel", "osOverheads", "apiOverhead", "apiSchedule")[0].type == "InstructionsConstant"
 
@@ -453,9 +448,9 @@ class TestReferences:
         assert mapping.child("memoryMapping").target("memory").type == "Memory"
 
     CONSTRAINTS = (
-        '<constraintsModel><affinityConstraints xsi:type="am:RunnablePairingConstraint"><target xsi:type="am:TargetCore">'
+        '<constraintsModel><affinityConstraints t="RunnablePairingConstraint"><target t="TargetCore">'
         '<cores href="amlt:/#c1?type=Core"/></target></affinityConstraints>'
-        '<affinityConstraints xsi:type="am:DataSeparationConstraint"><target xsi:type="am:TargetMemory">'
+        '<affinityConstraints t="DataSeparationConstraint"><target t="TargetMemory">'
         '<memories href="amlt:/#m?type=Memory"/></target></affinityConstraints>'
         '<physicalSectionConstraints name="p"><memories href="amlt:/#m?type=Memory"/></physicalSectionConstraints></constraintsModel>'
         "<eventModel>{}</eventModel>"
@@ -464,7 +459,7 @@ class TestReferences:
 
     def test_hardware_in_no_file(self, convert):
         kinds = ("ProcessEvent", "ProcessChainEvent", "RunnableEvent", "SemaphoreEvent")
-        content = self.CONSTRAINTS.format("".join(f'<events xsi:type="am:{kind}" core="c1?type=Core"/>' for kind in kinds))
+        content = self.CONSTRAINTS.format("".join(f'<events t="{kind}" core="c1?type=Core"/>' for kind in kinds))
         root, notes = convert(content)
         targets = root.find("constraintsModel", "affinityConstraints", "target")
         assert targets[0].target("cores").target_class == "ProcessingUnit"
@@ -494,13 +489,13 @@ class TestReferences:
         assert details == ["L2", "L2"]
 
     def test_other_limits_have_no_hardware_context(self, convert):
-        limit = '<requirements name="r"><limit xsi:type="am:TimeRequirementLimit" metric="ResponseTime"/></requirements>'
+        limit = '<requirements name="r"><limit t="TimeRequirementLimit" metric="ResponseTime"/></requirements>'
         root, notes = convert(f"<constraintsModel>{limit}</constraintsModel>")
         assert root.find("constraintsModel", "requirements", "limit")[0].get("metric") == "ResponseTime"
         assert not notes
 
     def test_hardware_context(self, convert):
-        limit = '<requirements name="r{0}"><limit xsi:type="am:CPUPercentageRequirementLimit" hardwareContext="{0}"/></requirements>'
+        limit = '<requirements name="r{0}"><limit t="CPUPercentageRequirementLimit" hardwareContext="{0}"/></requirements>'
         limits = limit.format("C?type=Core") + limit.format("E?type=ECU")
         root, notes = convert(on_chip('<cores name="C"/>') + f"<constraintsModel>{limits}</constraintsModel>")
         found = [node.target("hardwareContext") for node in root.find("constraintsModel", "requirements", "limit")]
@@ -515,13 +510,13 @@ class TestReferences:
         assert [node.name for node in allocation.references["responsibility"]] == ["e200z6", "e200z0"]
 
     def test_custom_properties(self, convert):
-        value = '<customProperties key="{0}"><value xsi:type="am:ReferenceObject" value="{0}"/></customProperties>'
+        value = '<customProperties key="{0}"><value t="ReferenceObject" value="{0}"/></customProperties>'
         targets = [
             *("C?type=Core", "T?type=CoreType", "N?type=Network", "B?type=Bus", "M?type=Microcontroller", "Q?type=Quartz"),
             "x?type=Task",
         ]
         content = on_chip(
-            '<cores name="C"/><networks name="N"/>', before='<coreTypes name="T"/><networkTypes xsi:type="am:Bus" name="B"/>'
+            '<cores name="C"/><networks name="N"/>', before='<coreTypes name="T"/><networkTypes t="Bus" name="B"/>'
         )
         content += f"<swModel><tasks name='x'>{''.join(map(value.format, targets))}</tasks></swModel>"
         root, _ = convert(content)
@@ -540,14 +535,13 @@ def test_old_content_under_the_new_namespace_is_converted(convert):
 
 def test_new_content_stays(tmp_path):
     text = (
-        '<hwModel><definitions xsi:type="am:ProcessingUnitDefinition" name="D" features="Instructions/IPC_2?type=HwFeature"/>'
+        '<hwModel><definitions t="ProcessingUnitDefinition" name="D" features="Instructions/IPC_2?type=HwFeature"/>'
         '<featureCategories name="Instructions"><features name="IPC_2" value="2"/></featureCategories>'
         '<structures name="S" structureType="System">'
-        '<modules xsi:type="am:ProcessingUnit" name="C" definition="D?type=ProcessingUnitDefinition">'
-        '<ports name="p" portType="initiator" priority="3"/><accessElements name="a">'
-        '<readLatency xsi:type="am:LatencyConstant" cycles="2"/>'
+        '<modules t="ProcessingUnit" name="C" definition="D?type=ProcessingUnitDefinition">'
+        '<ports name="p" portType="initiator" priority="3"/><accessElements name="a"><readLatency t="LatencyConstant" cycles="2"/>'
         "</accessElements></modules></structures></hwModel>"
-        '<eventModel><events xsi:type="am:ProcessEvent" name="e" processingUnit="C?type=ProcessingUnit"/></eventModel>'
+        '<eventModel><events t="ProcessEvent" name="e" processingUnit="C?type=ProcessingUnit"/></eventModel>'
     )
     models, _ = migrated([write(tmp_path / "a.amxmi", text, "0.8.3")], "0.9.0")
     assert meaning(models) == meaning(opened(write(tmp_path / "b.amxmi", text, "0.9.0")))
@@ -568,11 +562,11 @@ def test_new_content_stays(tmp_path):
         on_chip('<memories name="R" type="RAM"/><memories name="R2" type="no?type=MemoryType"/>'),
         on_chip('<cores name="C"/>', "<accessPaths/>" + path("<latencies/>") + path(constant("many"), target="no?type=Memory")),
         on_chip('<cores name="C" coreType="C?type=Core"><memories name="R" type="C?type=Core"/></cores>'),
-        "<swModel><runnables><runnableItems xsi:type='am:RunnableInstructions'><default/><extended/><extended><value/></extended>"
+        "<swModel><runnables><runnableItems t='RunnableInstructions'><default/><extended/><extended><value/></extended>"
         "</runnableItems></runnables></swModel>",
         "<mappingModel><taskAllocation coreAffinity='C'/><memoryMapping memory='R'/></mappingModel>"
         "<eventModel><events core='C'/></eventModel>",
-        "<swModel><tasks><customProperties key='k'><value xsi:type='am:ReferenceObject'/></customProperties>"
+        "<swModel><tasks><customProperties key='k'><value t='ReferenceObject'/></customProperties>"
         "<customProperties/></tasks></swModel>",
     ],
 )

@@ -18,7 +18,7 @@ def same(tmp_path):
 def hardware(*definitions, category="Instructions"):
     """A hardware model with definitions of processing units, by name and the text of their instructions per cycle."""
     made = [
-        f'<definitions xsi:type="am:ProcessingUnitDefinition" name="{name}" features="{category}/F{number}?type=HwFeature"/>'
+        f'<definitions t="ProcessingUnitDefinition" name="{name}" features="{category}/F{number}?type=HwFeature"/>'
         for number, (name, _) in enumerate(definitions)
     ]
     features = [f'<features name="F{number}" value="{value}"/>' for number, (_, value) in enumerate(definitions)]
@@ -30,24 +30,24 @@ def runnable(items):
 
 
 def need(*entries):
-    return f'<runnableItems xsi:type="am:ExecutionNeed">{"".join(entries)}</runnableItems>'
+    return f'<runnableItems t="ExecutionNeed">{"".join(entries)}</runnableItems>'
 
 
 def ticks(*entries, tag="runnableItems"):
-    return f'<{tag} xsi:type="am:Ticks">{"".join(entries)}</{tag}>'
+    return f'<{tag} t="Ticks">{"".join(entries)}</{tag}>'
 
 
 def default(value, key="Instructions"):
-    return f'<default key="{key}"><value xsi:type="am:NeedConstant" value="{value}"/></default>'
+    return f'<default key="{key}"><value t="NeedConstant" value="{value}"/></default>'
 
 
 def extended(definition, value, key="Instructions"):
-    inner = f'<value key="{key}"><value xsi:type="am:NeedConstant" value="{value}"/></value>'
+    inner = f'<value key="{key}"><value t="NeedConstant" value="{value}"/></value>'
     return f'<extended key="{definition}?type=ProcessingUnitDefinition">{inner}</extended>'
 
 
 def constant(value, tag="default"):
-    return f'<{tag} xsi:type="am:DiscreteValueConstant" value="{value}"/>'
+    return f'<{tag} t="DiscreteValueConstant" value="{value}"/>'
 
 
 def of_definition(definition, value):
@@ -55,12 +55,12 @@ def of_definition(definition, value):
 
 
 def deviation(content, key="Instructions"):
-    inner = f'<value xsi:type="am:NeedDeviation"><deviation>{content}</deviation></value>'
+    inner = f'<value t="NeedDeviation"><deviation>{content}</deviation></value>'
     return f'<default key="{key}">{inner}</default>'
 
 
 def bound(tag, value, kind="LongObject", more=""):
-    return f'<{tag} xsi:type="am:{kind}" value="{value}"{more}/>'
+    return f'<{tag} t="{kind}" value="{value}"{more}/>'
 
 
 # Instructions become ticks
@@ -120,7 +120,7 @@ def test_impossible_instructions_per_cycle_divide_nothing(same, value):
 
 @pytest.mark.parametrize(("features", "missing"), [("Instructions/IPC_2.0", ["Instructions/IPC_2.0"]), ("FLOP/x", [])])
 def test_instructions_per_cycle_in_a_missing_file_are_reported(tmp_path, features, missing):
-    definition = f'<definitions xsi:type="am:ProcessingUnitDefinition" name="P" features="{features}?type=HwFeature"/>'
+    definition = f'<definitions t="ProcessingUnitDefinition" name="P" features="{features}?type=HwFeature"/>'
     content = f"{runnable(need(default(10)))}<hwModel>{definition}</hwModel>"
     _, notes = migrated(written(tmp_path, "0.9.2", content), "0.9.3")
     message = "the number of instructions per cycle is in no file: 1 is taken"
@@ -138,17 +138,17 @@ def test_what_is_no_number_stays(same):
 
 def test_bounds_and_mean_are_divided_the_standard_deviation_is_not(same):
     units = hardware(("P", "2.0"))
-    gauss = '<distribution xsi:type="am:GaussDistribution">' + bound("sd", 6) + bound("mean", 15) + "</distribution>"
+    gauss = '<distribution t="GaussDistribution">' + bound("sd", 6) + bound("mean", 15) + "</distribution>"
     given = bound("lowerBound", 11) + bound("upperBound", 21) + gauss
-    entry = f'<value key="Instructions"><value xsi:type="am:NeedDeviation"><deviation>{given}</deviation></value></value>'
-    value = '<value xsi:type="am:DiscreteValueGaussDistribution" lowerBound="5" upperBound="10" mean="7" sd="6"/>'
+    entry = f'<value key="Instructions"><value t="NeedDeviation"><deviation>{given}</deviation></value></value>'
+    value = '<value t="DiscreteValueGaussDistribution" lowerBound="5" upperBound="10" mean="7" sd="6"/>'
     same(
         runnable(need(of_definition("P", entry))) + units,
         runnable(ticks(of_definition("P", value))) + units,
     )
 
 
-@pytest.mark.parametrize("other", ["", '<hwModel><definitions xsi:type="am:MemoryDefinition" name="M"/></hwModel>'])
+@pytest.mark.parametrize("other", ["", '<hwModel><definitions t="MemoryDefinition" name="M"/></hwModel>'])
 def test_missing_hardware_is_reported(tmp_path, other):
     _, notes = migrated(written(tmp_path, "0.9.2", runnable(need(default(1), extended("P", 8))) + other), "0.9.3")
     assert of_kind(notes, NoteKind.DEFAULTED) == [
@@ -158,8 +158,8 @@ def test_missing_hardware_is_reported(tmp_path, other):
 
 
 def test_needs_of_other_keys_are_an_item_behind_the_ticks(same):
-    label = '<runnableItems xsi:type="am:RunnableCall"/>'
-    kept = f'<runnableItems xsi:type="am:ExecutionNeed"><needs key="F L">{constant(7, "value")}</needs></runnableItems>'
+    label = '<runnableItems t="RunnableCall"/>'
+    kept = f'<runnableItems t="ExecutionNeed"><needs key="F L">{constant(7, "value")}</needs></runnableItems>'
     same(
         runnable(need(default(7, "F L"), default(5)) + label),
         runnable(ticks(constant(5)) + kept + label),
@@ -167,7 +167,7 @@ def test_needs_of_other_keys_are_an_item_behind_the_ticks(same):
 
 
 def test_needs_without_instructions_are_no_ticks(same):
-    kept = f'<runnableItems xsi:type="am:ExecutionNeed"><needs key="FLOP">{constant(7, "value")}</needs></runnableItems>'
+    kept = f'<runnableItems t="ExecutionNeed"><needs key="FLOP">{constant(7, "value")}</needs></runnableItems>'
     notes = same(runnable(need(default(7, "FLOP"), extended("P", 3, "FLOP"))), runnable(kept))
     message = "execution needs of definitions have no keys other than instructions any more"
     assert (message, "FLOP value=3") in of_kind(notes, NoteKind.LOST)
@@ -181,14 +181,14 @@ def test_a_need_that_cannot_be_said_is_unknown_and_not_none(same):
 
 def test_needs_in_groups_and_switches_are_found(same):
     def nest(items):
-        inner = f'<items xsi:type="am:RunnableModeSwitch"><defaultEntry>{items}</defaultEntry></items>'
-        return runnable(f'<runnableItems xsi:type="am:Group" ordered="true">{inner}</runnableItems>')
+        inner = f'<items t="RunnableModeSwitch"><defaultEntry>{items}</defaultEntry></items>'
+        return runnable(f'<runnableItems t="Group" ordered="true">{inner}</runnableItems>')
 
     same(
         nest(need(default(5), default(2, "FLOP")).replace("runnableItems", "items")),
         nest(
             ticks(constant(5), tag="items")
-            + f'<items xsi:type="am:ExecutionNeed"><needs key="FLOP">{constant(2, "value")}</needs></items>'
+            + f'<items t="ExecutionNeed"><needs key="FLOP">{constant(2, "value")}</needs></items>'
         ),
     )
 
@@ -225,10 +225,10 @@ def test_custom_properties_and_comments_stay(tmp_path):
 @pytest.mark.parametrize(
     ("distribution", "result"),
     [
-        ('xsi:type="am:BetaDistribution" alpha="0.5" beta="2.0"', 'BetaDistribution" alpha="0.5" beta="2.0"'),
-        ('xsi:type="am:Boundaries" samplingType="BestCase"', 'Boundaries" samplingType="BestCase"'),
-        ('xsi:type="am:UniformDistribution"', 'UniformDistribution"'),
-        ('xsi:type="am:WeibullEstimators" pRemainPromille="3"', 'WeibullEstimatorsDistribution" pRemainPromille="3"'),
+        ('t="BetaDistribution" alpha="0.5" beta="2.0"', 'BetaDistribution" alpha="0.5" beta="2.0"'),
+        ('t="Boundaries" samplingType="BestCase"', 'Boundaries" samplingType="BestCase"'),
+        ('t="UniformDistribution"', 'UniformDistribution"'),
+        ('t="WeibullEstimators" pRemainPromille="3"', 'WeibullEstimatorsDistribution" pRemainPromille="3"'),
     ],
 )
 def test_each_kind_of_values_has_its_classes(same, distribution, result):
@@ -237,37 +237,37 @@ def test_each_kind_of_values_has_its_classes(same, distribution, result):
 
     times = '<lowerBound value="1"/><upperBound value="2"/>'
     numbers = 'lowerBound="1" upperBound="2"'
-    rate = '<stimuli xsi:type="am:VariableRateStimulus" name="V">{}</stimuli>'
-    jitter = '<stimuli xsi:type="am:PeriodicStimulus" name="P">{}</stimuli>'
+    rate = '<stimuli t="VariableRateStimulus" name="V">{}</stimuli>'
+    jitter = '<stimuli t="PeriodicStimulus" name="P">{}</stimuli>'
     same(
         runnable(need(deviation(given("LongObject"))))
         + "<stimuliModel>"
         + rate.format(f"<occurrencesPerStep>{given('DoubleObject')}</occurrencesPerStep>")
         + jitter.format(f"<jitter>{given('Time')}</jitter>")
         + "</stimuliModel>",
-        runnable(ticks(f'<default xsi:type="am:DiscreteValue{result} {numbers}/>'))
+        runnable(ticks(f'<default t="DiscreteValue{result} {numbers}/>'))
         + "<stimuliModel>"
-        + rate.format(f'<occurrencesPerStep xsi:type="am:ContinuousValue{result} {numbers}/>')
-        + jitter.format(f'<jitter xsi:type="am:Time{result}>{times}</jitter>')
+        + rate.format(f'<occurrencesPerStep t="ContinuousValue{result} {numbers}/>')
+        + jitter.format(f'<jitter t="Time{result}>{times}</jitter>')
         + "</stimuliModel>",
     )
 
 
 def activation(name, content):
-    return f'<swModel><activations xsi:type="am:{name}" name="A">{content}</activations></swModel>'
+    return f'<swModel><activations t="{name}" name="A">{content}</activations></swModel>'
 
 
 def test_the_deviation_of_a_sporadic_activation_is_its_occurrence(same):
     content = bound("lowerBound", 1, "Time", ' unit="ms"') + bound("upperBound", 2, "Time", ' unit="ms"')
-    uniform = '<distribution xsi:type="am:UniformDistribution"/>'
+    uniform = '<distribution t="UniformDistribution"/>'
     times = '<lowerBound value="1" unit="ms"/><upperBound value="2" unit="ms"/>'
     same(
         activation("SporadicActivation", f"<activationDeviation>{content}{uniform}</activationDeviation>"),
-        activation("SporadicActivation", f'<occurrence xsi:type="am:TimeUniformDistribution">{times}</occurrence>'),
+        activation("SporadicActivation", f'<occurrence t="TimeUniformDistribution">{times}</occurrence>'),
     )
     same(
         activation("SporadicActivation", f"<activationDeviation>{content}</activationDeviation>"),
-        activation("SporadicActivation", f'<occurrence xsi:type="am:TimeBoundaries">{times}</occurrence>'),
+        activation("SporadicActivation", f'<occurrence t="TimeBoundaries">{times}</occurrence>'),
     )
 
 
@@ -277,28 +277,28 @@ def test_occurrences_of_an_activation_are_numbers(same):
         activation("VariableRateActivation", f"<occurrencesPerStep>{content}</occurrencesPerStep>"),
         activation(
             "VariableRateActivation",
-            '<occurrencesPerStep xsi:type="am:ContinuousValueBoundaries" lowerBound="1.5" upperBound="2"/>',
+            '<occurrencesPerStep t="ContinuousValueBoundaries" lowerBound="1.5" upperBound="2"/>',
         ),
     )
 
 
 def test_measured_deviations_are_times(same):
     def model(content):
-        return f'<measurementModel><measurements xsi:type="am:TaskMeasurement">{content}</measurements></measurementModel>'
+        return f'<measurementModel><measurements t="TaskMeasurement">{content}</measurements></measurementModel>'
 
     given = bound("lowerBound", 1, "Time") + bound("upperBound", 2, "Time")
-    weibull = '<distribution xsi:type="am:WeibullEstimators">' + bound("mean", 3, "Time") + "</distribution>"
+    weibull = '<distribution t="WeibullEstimators">' + bound("mean", 3, "Time") + "</distribution>"
     average = '<lowerBound value="1"/><upperBound value="2"/><average value="3"/>'
     same(
         model(f"<runtimeDeviation>{given}{weibull}</runtimeDeviation>"),
-        model(f'<runtimeDeviation xsi:type="am:TimeWeibullEstimatorsDistribution">{average}</runtimeDeviation>'),
+        model(f'<runtimeDeviation t="TimeWeibullEstimatorsDistribution">{average}</runtimeDeviation>'),
     )
 
 
 def test_weibull_parameters_are_kept_as_text(same):
-    weibull = '<distribution xsi:type="am:WeibullParameters" kappa="5.0" lambda="6.0"/>'
+    weibull = '<distribution t="WeibullParameters" kappa="5.0" lambda="6.0"/>'
     given = bound("lowerBound", 10) + bound("upperBound", 20) + weibull
-    bounds = '<default xsi:type="am:DiscreteValueBoundaries" lowerBound="10" upperBound="20"/>'
+    bounds = '<default t="DiscreteValueBoundaries" lowerBound="10" upperBound="20"/>'
     kept = text_property("WeibullParameters", "kappa=5.0 lambda=6.0")
     same(runnable(need(deviation(given))), runnable(ticks(kept, bounds)))
     without_bounds = same(runnable(need(deviation(weibull))), runnable(ticks(kept)))
@@ -307,18 +307,18 @@ def test_weibull_parameters_are_kept_as_text(same):
 
 def test_bounds_are_kept_where_no_distribution_is_stated(same):
     def stimulus(content, name="RelativePeriodicStimulus"):
-        return f'<stimuliModel><stimuli xsi:type="am:{name}" name="S">{content}</stimuli></stimuliModel>'
+        return f'<stimuliModel><stimuli t="{name}" name="S">{content}</stimuli></stimuliModel>'
 
     given = f"<nextOccurrence>{bound('upperBound', 20, 'Time')}</nextOccurrence>"
-    kept = '<nextOccurrence xsi:type="am:TimeBoundaries"><upperBound value="20"/></nextOccurrence>'
+    kept = '<nextOccurrence t="TimeBoundaries"><upperBound value="20"/></nextOccurrence>'
     same(stimulus(given), stimulus(kept))
 
 
 @pytest.mark.parametrize("name", ["lowerBound", "upperBound"])
 def test_one_bound_is_enough_to_be_kept(same, name):
-    periodic = '<stimuliModel><stimuli xsi:type="am:PeriodicStimulus" name="S">{}</stimuli></stimuliModel>'
+    periodic = '<stimuliModel><stimuli t="PeriodicStimulus" name="S">{}</stimuli></stimuliModel>'
     given = periodic.format(f"<jitter>{bound(name, 20, 'Time')}</jitter>")
-    same(given, periodic.format(f'<jitter xsi:type="am:TimeBoundaries"><{name} value="20"/></jitter>'))
+    same(given, periodic.format(f'<jitter t="TimeBoundaries"><{name} value="20"/></jitter>'))
     notes = same(periodic.format("<jitter/>"), periodic.format(""))
     assert of_kind(notes, NoteKind.LOST) == [("states neither a value nor bounds", "")]
 
@@ -328,38 +328,36 @@ def test_one_bound_is_enough_to_be_kept(same, name):
 )
 def test_unknown_attributes_of_distributions_are_lost(tmp_path, distribution, known):
     stated = " ".join(f'{name}="{text}"' for name, text in {**known, "odd": "2"}.items())
-    given = bound("lowerBound", 1) + bound("upperBound", 2) + f'<distribution xsi:type="am:{distribution}" {stated}/>'
+    given = bound("lowerBound", 1) + bound("upperBound", 2) + f'<distribution t="{distribution}" {stated}/>'
     models, notes = migrated(written(tmp_path, "0.9.2", runnable(need(deviation(given)))), "0.9.3")
     assert of_kind(notes, NoteKind.LOST) == [("not an attribute of this class", "odd='2'")]
     assert not any("odd" in text for node in models.walk() for text in (*node.attributes, *node.attributes.values()))
 
 
 def test_comments_inside_deviations_stay(tmp_path):
-    given = (
-        f"<!-- a -->{bound('lowerBound', 1)}{bound('upperBound', 2)}<!-- b --><distribution xsi:type='am:UniformDistribution'/>"
-    )
+    given = f"<!-- a -->{bound('lowerBound', 1)}{bound('upperBound', 2)}<!-- b --><distribution t='UniformDistribution'/>"
     models, _ = migrated(written(tmp_path, "0.9.2", runnable(need(deviation(given)))), "0.9.3")
     (found,) = models.parts("swModel", "runnables", "runnableItems", "default")
     assert sorted(found.comments or ()) == ["<!-- a -->", "<!-- b -->"]
 
 
 def test_a_missing_bound_of_a_number_is_0(same):
-    given = deviation(bound("upperBound", 20) + '<distribution xsi:type="am:UniformDistribution"/>')
-    result = '<default xsi:type="am:DiscreteValueUniformDistribution" lowerBound="0" upperBound="20"/>'
+    given = deviation(bound("upperBound", 20) + '<distribution t="UniformDistribution"/>')
+    result = '<default t="DiscreteValueUniformDistribution" lowerBound="0" upperBound="20"/>'
     notes = same(runnable(need(given)), runnable(ticks(result)))
     assert ("a bound that is not stated is 0", "lowerBound") in of_kind(notes, NoteKind.DEFAULTED)
 
 
 def test_a_gauss_distribution_without_bounds_is_not_cut_off(same):
-    gauss = f'<distribution xsi:type="am:GaussDistribution">{bound("mean", 5)}{bound("sd", 1)}</distribution>'
-    plain = '<default xsi:type="am:DiscreteValueGaussDistribution" mean="5" sd="1"/>'
+    gauss = f'<distribution t="GaussDistribution">{bound("mean", 5)}{bound("sd", 1)}</distribution>'
+    plain = '<default t="DiscreteValueGaussDistribution" mean="5" sd="1"/>'
     same(runnable(need(deviation(gauss))), runnable(ticks(plain)))
 
 
 def test_a_constant_without_a_value_and_a_deviation_without_content(same):
-    empty = '<default key="Instructions"><value xsi:type="am:NeedConstant"/></default>'
-    same(runnable(need(empty)), runnable(ticks('<default xsi:type="am:DiscreteValueConstant"/>')))
-    empty = '<default key="Instructions"><value xsi:type="am:NeedDeviation"/></default>'
+    empty = '<default key="Instructions"><value t="NeedConstant"/></default>'
+    same(runnable(need(empty)), runnable(ticks('<default t="DiscreteValueConstant"/>')))
+    empty = '<default key="Instructions"><value t="NeedDeviation"/></default>'
     notes = same(runnable(need(empty)), runnable(ticks()))
     assert of_kind(notes, NoteKind.LOST) == [("states neither a value nor bounds", "")]
 
@@ -369,7 +367,7 @@ def test_a_constant_without_a_value_and_a_deviation_without_content(same):
 
 def test_limits_of_a_step_are_attributes(same):
     def stimulus(attributes, content):
-        return f'<stimuliModel><stimuli xsi:type="am:VariableRateStimulus" {attributes}>{content}</stimuli></stimuliModel>'
+        return f'<stimuliModel><stimuli t="VariableRateStimulus" {attributes}>{content}</stimuli></stimuliModel>'
 
     same(
         stimulus("", '<maxIncreasePerStep value="2.5"/><maxDecreasePerStep/>'),
@@ -379,33 +377,32 @@ def test_limits_of_a_step_are_attributes(same):
 
 def test_latencies(same):
     def access(content):
-        units = f'<modules xsi:type="am:ProcessingUnit" name="P"><accessElements name="a">{content}</accessElements></modules>'
+        units = f'<modules t="ProcessingUnit" name="P"><accessElements name="a">{content}</accessElements></modules>'
         return f'<hwModel><structures name="S">{units}</structures></hwModel>'
 
     given = bound("lowerBound", 1) + bound("upperBound", 4)
-    uniform = '<distribution xsi:type="am:UniformDistribution"/>'
+    uniform = '<distribution t="UniformDistribution"/>'
     same(
         access(
-            '<readLatency xsi:type="am:LatencyConstant" cycles="9"/>'
-            f'<writeLatency xsi:type="am:LatencyDeviation"><cycles>{given}{uniform}</cycles></writeLatency>'
+            '<readLatency t="LatencyConstant" cycles="9"/>'
+            f'<writeLatency t="LatencyDeviation"><cycles>{given}{uniform}</cycles></writeLatency>'
         ),
         access(
-            constant(9, "readLatency")
-            + '<writeLatency xsi:type="am:DiscreteValueUniformDistribution" lowerBound="1" upperBound="4"/>'
+            constant(9, "readLatency") + '<writeLatency t="DiscreteValueUniformDistribution" lowerBound="1" upperBound="4"/>'
         ),
     )
-    lost = f'<writeLatency xsi:type="am:LatencyDeviation"><cycles>{given}</cycles></writeLatency>'
-    same(access(lost), access('<writeLatency xsi:type="am:DiscreteValueBoundaries" lowerBound="1" upperBound="4"/>'))
-    memory = '<hwModel><definitions xsi:type="am:MemoryDefinition" name="M">{}</definitions></hwModel>'
+    lost = f'<writeLatency t="LatencyDeviation"><cycles>{given}</cycles></writeLatency>'
+    same(access(lost), access('<writeLatency t="DiscreteValueBoundaries" lowerBound="1" upperBound="4"/>'))
+    memory = '<hwModel><definitions t="MemoryDefinition" name="M">{}</definitions></hwModel>'
     same(
-        memory.format('<accessLatency xsi:type="am:LatencyConstant" cycles="3"/>'),
+        memory.format('<accessLatency t="LatencyConstant" cycles="3"/>'),
         memory.format(constant(3, "accessLatency")),
     )
 
 
 def test_chunks(same):
     def access(attribute):
-        return runnable(f'<runnableItems xsi:type="am:ChannelSend"><transmissionPolicy {attribute}="10"/></runnableItems>')
+        return runnable(f'<runnableItems t="ChannelSend"><transmissionPolicy {attribute}="10"/></runnableItems>')
 
     notes = same(access("chunkProcessingInstructions"), access("chunkProcessingTicks"))
     assert (notes[-1].kind, notes[-1].attribute) == (NoteKind.RENAMED, "chunkProcessingInstructions")
@@ -420,17 +417,17 @@ def overheads(content, more=""):
 
 def test_overheads_of_operating_systems(same):
     given = (
-        '<apiOverhead><apiIocRead xsi:type="am:InstructionsConstant"/>'
-        '<apiSetEvent value="4"/><apiWaitEvent xsi:type="am:InstructionsDeviation"><deviation/></apiWaitEvent></apiOverhead>'
-        '<isrCategory2Overhead><postExecutionOverhead xsi:type="am:InstructionsConstant" value="7">'
-        '<fetchStatistic><count xsi:type="am:SingleValueStatistic" value="3"/></fetchStatistic>'
+        '<apiOverhead><apiIocRead t="InstructionsConstant"/>'
+        '<apiSetEvent value="4"/><apiWaitEvent t="InstructionsDeviation"><deviation/></apiWaitEvent></apiOverhead>'
+        '<isrCategory2Overhead><postExecutionOverhead t="InstructionsConstant" value="7">'
+        '<fetchStatistic><count t="SingleValueStatistic" value="3"/></fetchStatistic>'
         "</postExecutionOverhead></isrCategory2Overhead>"
     )
     result = (
         f"<apiOverhead><apiIocRead>{{}}</apiIocRead><apiSetEvent>{constant(4)}</apiSetEvent><apiWaitEvent/></apiOverhead>"
         f"<isrCategory2Overhead><postExecutionOverhead>{constant(7)}</postExecutionOverhead></isrCategory2Overhead>"
     )
-    not_stated = '<default xsi:type="am:DiscreteValueConstant"/>'
+    not_stated = '<default t="DiscreteValueConstant"/>'
     notes = same(overheads(given), overheads(result.format(not_stated)))
     lost = ("fetch statistics of instructions have no successor", "count(value=3)")
     assert lost in of_kind(notes, NoteKind.LOST)
@@ -438,19 +435,19 @@ def test_overheads_of_operating_systems(same):
 
 def test_overheads_are_ticks_of_each_definition(same):
     units = hardware(("P", "2.0"))
-    given = '<apiOverhead><apiSetEvent xsi:type="am:InstructionsConstant" value="9"/></apiOverhead>'
+    given = '<apiOverhead><apiSetEvent t="InstructionsConstant" value="9"/></apiOverhead>'
     result = constant(9) + of_definition("P", constant(4, "value"))
     same(overheads(given) + units, overheads(f"<apiOverhead><apiSetEvent>{result}</apiSetEvent></apiOverhead>") + units)
-    nothing = '<apiOverhead><apiSetEvent xsi:type="am:InstructionsDeviation"/></apiOverhead>'
+    nothing = '<apiOverhead><apiSetEvent t="InstructionsDeviation"/></apiOverhead>'
     same(overheads(nothing) + units, overheads("<apiOverhead><apiSetEvent/></apiOverhead>") + units)
 
 
-@pytest.mark.parametrize("kind", ["", ' xsi:type="am:InstructionsDeviation"'])
+@pytest.mark.parametrize("kind", ["", ' t="InstructionsDeviation"'])
 def test_overheads_with_bounds_beside_custom_properties(same, kind):
-    bounds = bound("lowerBound", 1) + bound("upperBound", 4) + '<distribution xsi:type="am:UniformDistribution"/>'
+    bounds = bound("lowerBound", 1) + bound("upperBound", 4) + '<distribution t="UniformDistribution"/>'
     own = text_property("k", "v")
     given = f"<apiOverhead>{own}<apiSetEvent{kind}>{own}<deviation>{bounds}</deviation></apiSetEvent></apiOverhead>"
-    uniform = '<default xsi:type="am:DiscreteValueUniformDistribution" lowerBound="1" upperBound="4"/>'
+    uniform = '<default t="DiscreteValueUniformDistribution" lowerBound="1" upperBound="4"/>'
     same(overheads(given), overheads(f"<apiOverhead>{own}<apiSetEvent>{own}{uniform}</apiSetEvent></apiOverhead>"))
 
 
@@ -476,7 +473,7 @@ def test_a_file_of_the_newer_version_is_converted_where_it_is_old(tmp_path):
 
 
 def test_jitter_of_constraints_is_a_time(same):
-    jitter = '<timingConstraints xsi:type="am:RepetitionConstraint"><jitter value="3"/></timingConstraints>'
+    jitter = '<timingConstraints t="RepetitionConstraint"><jitter value="3"/></timingConstraints>'
     content = f"<constraintsModel>{jitter}</constraintsModel>"
     same(content, content)
 
@@ -486,17 +483,15 @@ def test_jitter_of_constraints_is_a_time(same):
     [
         runnable(need("<default/>", "<default key='Instructions'/>", "<extended/>", "<extended><value/></extended>")),
         runnable(need(deviation(""), deviation("<distribution/>", "FLOP"))),
-        runnable(
-            need(deviation('<lowerBound/><upperBound/><distribution xsi:type="am:GaussDistribution"><mean/></distribution>'))
-        ),
-        runnable('<runnableItems xsi:type="am:ExecutionNeed"/>'),
+        runnable(need(deviation('<lowerBound/><upperBound/><distribution t="GaussDistribution"><mean/></distribution>'))),
+        runnable('<runnableItems t="ExecutionNeed"/>'),
         runnable(need(extended("P", 1).replace(' key="P?type=ProcessingUnitDefinition"', ""))),
         runnable(need("<default key='Instructions'><value/></default>")),
-        '<hwModel><definitions xsi:type="am:ProcessingUnitDefinition" features="_gone Instructions/x?type=HwFeature"/></hwModel>'
+        '<hwModel><definitions t="ProcessingUnitDefinition" features="_gone Instructions/x?type=HwFeature"/></hwModel>'
         + runnable(need(default(3), extended("_gone", 2))),
-        '<osModel><osOverheads><apiOverhead><apiSetEvent xsi:type="am:InstructionsDeviation"/></apiOverhead></osOverheads></osModel>',
-        '<stimuliModel><stimuli xsi:type="am:PeriodicStimulus"><jitter/></stimuli></stimuliModel>',
-        '<hwModel><definitions><accessLatency xsi:type="am:LatencyDeviation"/></definitions></hwModel>',
+        '<osModel><osOverheads><apiOverhead><apiSetEvent t="InstructionsDeviation"/></apiOverhead></osOverheads></osModel>',
+        '<stimuliModel><stimuli t="PeriodicStimulus"><jitter/></stimuli></stimuliModel>',
+        '<hwModel><definitions><accessLatency t="LatencyDeviation"/></definitions></hwModel>',
     ],
 )
 def test_damaged_content_is_survived(tmp_path, content):
@@ -505,5 +500,5 @@ def test_damaged_content_is_survived(tmp_path, content):
 
 def test_a_root_that_states_a_class_of_parts_is_survived(tmp_path):
     (path,) = written(tmp_path, "0.9.2", "")
-    path.write_text(path.read_text("utf-8").replace("<am:Amalthea ", '<am:Amalthea xsi:type="am:LatencyConstant" '), "utf-8")
+    path.write_text(path.read_text("utf-8").replace("<am:Amalthea ", '<am:Amalthea t="LatencyConstant" '), "utf-8")
     migrated([path], "0.9.3")

@@ -20,14 +20,12 @@ def same(tmp_path):
 
 
 def deadline_of(name, text):
-    limit = (
-        f'<limit xsi:type="am:TimeRequirementLimit" limitType="UpperLimit" metric="ResponseTime"><limitValue {text}/></limit>'
-    )
-    return f'<requirements xsi:type="am:RunnableRequirement" name="deadline" runnable="{name}?type=Runnable">{limit}</requirements>'
+    limit = f'<limit t="TimeRequirementLimit" limitType="UpperLimit" metric="ResponseTime"><limitValue {text}/></limit>'
+    return f'<requirements t="RunnableRequirement" name="deadline" runnable="{name}?type=Runnable">{limit}</requirements>'
 
 
 def test_deadlines_join_the_requirements_that_are_there(same):
-    other = '<requirements xsi:type="am:ProcessRequirement" name="r"/>'
+    other = '<requirements t="ProcessRequirement" name="r"/>'
     runnables = (
         '<swModel><runnables name="A">{}</runnables><runnables name="B"/><runnables name="C+ 1">{}</runnables></swModel>'
     )
@@ -67,7 +65,7 @@ def test_a_deadline_without_value_is_no_requirement_for_0(tmp_path, target, left
 
 
 def test_aliases_need_not_be_complete(same):
-    types = '<swModel><typeDefinitions xsi:type="am:BaseTypeDefinition" name="t">{}</typeDefinitions></swModel>'
+    types = '<swModel><typeDefinitions t="BaseTypeDefinition" name="t">{}</typeDefinitions></swModel>'
     same(
         types.format('<dataMapping platformType="int"/><dataMapping platformName="C" platformType="long"/>'),
         types.format('<aliases alias="int"/><aliases target="C" alias="long"/>'),
@@ -75,7 +73,7 @@ def test_aliases_need_not_be_complete(same):
 
 
 def test_ports_of_modules(same):
-    memory = '<modules xsi:type="am:Memory"><ports name="p" portInterface="{}"/></modules>'
+    memory = '<modules t="Memory"><ports name="p" portInterface="{}"/></modules>'
     ports = f'<hwModel><structures name="S">{memory}</structures></hwModel>'
     same(ports.format("ABH"), ports.format("AHB"))
     same(ports.format("AXI"), ports.format("AXI"))
@@ -87,7 +85,7 @@ MODES = (
     '<modes {}name="m 1"><literals name="on x"/><literals name="off"/></modes><modes {}name="n"><literals name="on x"/></modes>'
 )
 OLD_MODES = MODES.format("", "")
-NEW_MODES = MODES.format('xsi:type="am:EnumMode" ', 'xsi:type="am:EnumMode" ')
+NEW_MODES = MODES.format('t="EnumMode" ', 't="EnumMode" ')
 
 
 def software(content, old=True):
@@ -124,7 +122,7 @@ def test_literals_that_their_mode_lacks(same):
 
 
 def access(data, attributes):
-    return f'<runnableItems xsi:type="am:ModeLabelAccess" data="{data}?type=ModeLabel" {attributes}/>'
+    return f'<runnableItems t="ModeLabelAccess" data="{data}?type=ModeLabel" {attributes}/>'
 
 
 def test_a_label_without_initial_value_has_the_only_mode_of_its_uses(same):
@@ -157,20 +155,20 @@ def test_a_label_without_initial_value_has_the_mode_of_conditions_and_assignment
     def model(labels, condition, entry, old):
         lists = f"<setModeValueList><entries {entry}/></setModeValueList>"
         switch = f"<entries><condition>{condition}</condition></entries>"
-        process = f'<callGraph><graphEntries xsi:type="am:ModeSwitch">{switch}</graphEntries></callGraph>'
-        stimulus = f'<stimuli xsi:type="am:SingleStimulus" name="S">{lists}</stimuli>'
+        process = f'<callGraph><graphEntries t="ModeSwitch">{switch}</graphEntries></callGraph>'
+        stimulus = f'<stimuli t="SingleStimulus" name="S">{lists}</stimuli>'
         return software(f"{labels}<isrs name='I'>{process}</isrs>", old) + f"<stimuliModel>{stimulus}</stimuliModel>"
 
     same(
         model(
             '<modeLabels name="a"/><modeLabels name="b"/>',
-            '<entries xsi:type="am:ModeValue" valueProvider="a?type=ModeLabel" value="m+1/off?type=ModeLiteral"/>',
-            'xsi:type="am:ModeValue" valueProvider="b?type=ModeLabel" value="n/on+x?type=ModeLiteral"',
+            '<entries t="ModeValue" valueProvider="a?type=ModeLabel" value="m+1/off?type=ModeLiteral"/>',
+            't="ModeValue" valueProvider="b?type=ModeLabel" value="n/on+x?type=ModeLiteral"',
             old=True,
         ),
         model(
             '<modeLabels name="a" mode="m+1?type=EnumMode"/><modeLabels name="b" mode="n?type=EnumMode"/>',
-            '<entries xsi:type="am:ModeCondition" label="a?type=ModeLabel" value="off" relation="EQUAL"/>',
+            '<entries t="ModeCondition" label="a?type=ModeLabel" value="off" relation="EQUAL"/>',
             'label="b?type=ModeLabel" value="on x"',
             old=False,
         ),
@@ -193,20 +191,20 @@ def test_a_label_without_initial_value_has_the_mode_that_an_older_version_stated
 
 def test_mode_switches_of_tasks_and_interrupts(same):
     def model(process, condition, old):
-        switch = f'<graphEntries xsi:type="am:ModeSwitch"><entries name="e"><condition>{condition}</condition></entries></graphEntries>'
+        switch = f'<graphEntries t="ModeSwitch"><entries name="e"><condition>{condition}</condition></entries></graphEntries>'
         labels = '<modeLabels name="l" {}/>'
         stated = 'initialValue="m+1/off?type=ModeLiteral"' if old else 'mode="m+1?type=EnumMode" initialValue="off"'
         return software(f"{labels.format(stated)}<{process} name='P'><callGraph>{switch}</callGraph></{process}>", old)
 
-    given = '<entries xsi:type="am:ModeValue" valueProvider="l?type=ModeLabel" value="m+1/off?type=ModeLiteral"/>'
-    result = '<entries xsi:type="am:ModeCondition" label="l?type=ModeLabel" value="off" relation="EQUAL"/>'
+    given = '<entries t="ModeValue" valueProvider="l?type=ModeLabel" value="m+1/off?type=ModeLiteral"/>'
+    result = '<entries t="ModeCondition" label="l?type=ModeLabel" value="off" relation="EQUAL"/>'
     for process in ("tasks", "isrs"):
         same(model(process, given, old=True), model(process, result, old=False))
 
 
 def stimulus(content):
     labels = "".join(f'<modeLabels name="{name}" displayName="d"/>' for name in "abc")
-    return f'<swModel>{labels}</swModel><stimuliModel><stimuli xsi:type="am:SingleStimulus" name="S">{content}</stimuli></stimuliModel>'
+    return f'<swModel>{labels}</swModel><stimuliModel><stimuli t="SingleStimulus" name="S">{content}</stimuli></stimuliModel>'
 
 
 def old_list(tag, *entries):
@@ -214,16 +212,16 @@ def old_list(tag, *entries):
 
 
 def value(label, literal, single=True):
-    kind = ' xsi:type="am:ModeValue"' if single else ""
+    kind = ' t="ModeValue"' if single else ""
     return f'<entries{kind} valueProvider="{label}?type=ModeLabel" value="x/{literal}?type=ModeLiteral"/>'
 
 
 def all_of(*entries, kind="ModeValueConjunction"):
-    return f'<entries xsi:type="am:{kind}">{"".join(entries)}</entries>'
+    return f'<entries t="{kind}">{"".join(entries)}</entries>'
 
 
 def condition(label, literal, relation="EQUAL", single=True):
-    kind = ' xsi:type="am:ModeCondition"' if single else ""
+    kind = ' t="ModeCondition"' if single else ""
     return f'<entries{kind} label="{label}?type=ModeLabel" value="{literal}" relation="{relation}"/>'
 
 
@@ -316,7 +314,7 @@ def test_an_empty_list_disables_nothing(becomes):
 
 def test_what_is_new_already_is_left_alone(tmp_path):
     def model(alias):
-        types = f'<typeDefinitions xsi:type="am:BaseTypeDefinition" name="t">{alias}</typeDefinitions>'
+        types = f'<typeDefinitions t="BaseTypeDefinition" name="t">{alias}</typeDefinitions>'
         label = '<modeLabels name="a" mode="m+1?type=EnumMode" initialValue="off"/>'
         lists = '<setModeValueList><entries label="a?type=ModeLabel" value="off"/></setModeValueList>'
         new = lists + conditions(condition("a", "off", "NOT_EQUAL"), condition("a", "off"))
@@ -333,10 +331,10 @@ def test_what_is_new_already_is_left_alone(tmp_path):
     [
         software('<modeLabels name="a" initialValue="on"/><modeLabels name="b" initialValue="_none"/>'),
         software('<modeLabels name="a" initialValue="m+1?type=Mode"/>'),
-        software('<runnables><deadline/><deadline/><runnableItems xsi:type="am:ModeLabelAccess"/></runnables>'),
+        software('<runnables><deadline/><deadline/><runnableItems t="ModeLabelAccess"/></runnables>'),
         stimulus(old_list("disabling", "<entries/>", all_of(), all_of("<entries/>")) + old_list("enabling", "<entries/>")),
         stimulus("<setModeValueList><entries/></setModeValueList>" + old_list("enabling") * 2 + old_list("disabling") * 2),
-        stimulus(old_list("disabling", '<entries xsi:type="am:ModeValue" valueProvider="gone?type=ModeLabel"/>')),
+        stimulus(old_list("disabling", '<entries t="ModeValue" valueProvider="gone?type=ModeLabel"/>')),
         "<swModel><typeDefinitions><dataMapping/></typeDefinitions></swModel>",
     ],
 )

@@ -25,14 +25,14 @@ def process(tag, content):
 
 
 def sequence(attributes, content, tag="graphEntries"):
-    return f'<{tag} xsi:type="am:CallSequence" {attributes}>{content}</{tag}>'
+    return f'<{tag} t="CallSequence" {attributes}>{content}</{tag}>'
 
 
 def group(attributes, content):
-    return f'<items xsi:type="am:Group" ordered="true" {attributes}>{content}</items>'
+    return f'<items t="Group" ordered="true" {attributes}>{content}</items>'
 
 
-CALL = '<{} xsi:type="am:{}" runnable="R?type=Runnable">{}</{}>'
+CALL = '<{} t="{}" runnable="R?type=Runnable">{}</{}>'
 
 
 def old_call(content=""):
@@ -46,20 +46,20 @@ def new_call(content=""):
 @pytest.mark.parametrize("tag", ["tasks", "isrs"])
 def test_call_graphs_of_processes(same, tag):
     given = (
-        '<graphEntries xsi:type="am:ProbabilitySwitch"><entries probability="1.0">'
+        '<graphEntries t="ProbabilitySwitch"><entries probability="1.0">'
         + sequence('name=""', old_call(), "items")
         + "</entries></graphEntries>"
-        + '<graphEntries xsi:type="am:ModeSwitch"><defaultEntry>'
-        + sequence('name="s"', '<calls xsi:type="am:SetEvent"><counter offset="2"/></calls>', "items")
+        + '<graphEntries t="ModeSwitch"><defaultEntry>'
+        + sequence('name="s"', '<calls t="SetEvent"><counter offset="2"/></calls>', "items")
         + "</defaultEntry></graphEntries>"
         + sequence("", "")
     )
     result = (
-        '<items xsi:type="am:ProbabilitySwitch"><entries probability="1.0">'
+        '<items t="ProbabilitySwitch"><entries probability="1.0">'
         + group('name="CallSequence"', new_call())
         + "</entries></items>"
-        + '<items xsi:type="am:ModeSwitch"><defaultEntry>'
-        + group('name="s"', '<items xsi:type="am:SetEvent"><counter offset="2"/></items>')
+        + '<items t="ModeSwitch"><defaultEntry>'
+        + group('name="s"', '<items t="SetEvent"><counter offset="2"/></items>')
         + "</defaultEntry></items>"
         + group('name="CallSequence"', "")
     )
@@ -74,7 +74,7 @@ def test_custom_properties_of_a_sequence_are_no_calls(same):
 
 
 def test_calls_keep_counters_and_statistics(same):
-    statistic = '<statistic><statistic xsi:type="am:SingleValueStatistic" value="3"/></statistic>'
+    statistic = '<statistic><statistic t="SingleValueStatistic" value="3"/></statistic>'
     content = f'<counter prescaler="2"/>{statistic}'
     same(
         process("tasks", sequence('name="s"', old_call(content))),
@@ -86,10 +86,10 @@ def test_calls_keep_counters_and_statistics(same):
 def test_steps_without_a_counter_keep_it_as_text(same, name):
     counter = '<counter prescaler="2" offset="1"/>'
     notes = same(
-        process("tasks", sequence('name="s"', f'<calls xsi:type="am:{name}">{counter}</calls>')),
+        process("tasks", sequence('name="s"', f'<calls t="{name}">{counter}</calls>')),
         process(
             "tasks",
-            group('name="s"', f'<items xsi:type="am:{name}">{text_property("counter", "prescaler=2 offset=1")}</items>'),
+            group('name="s"', f'<items t="{name}">{text_property("counter", "prescaler=2 offset=1")}</items>'),
         ),
     )
     assert of_kind(notes, NoteKind.KEPT) == [(f"{name} has no counter any more", "prescaler=2 offset=1")]
@@ -97,13 +97,11 @@ def test_steps_without_a_counter_keep_it_as_text(same, name):
 
 def test_items_of_runnables_keep_their_order_and_the_rest_of_the_runnable(same):
     same(
-        '<swModel><runnables name="R" service="true">'
-        '<runnableItems xsi:type="am:LabelAccess" data="L?type=Label"/><parameters name="p"/>'
-        '<runnableItems xsi:type="am:Group" name="g"><items xsi:type="am:RunnableModeSwitch"/></runnableItems>'
+        '<swModel><runnables name="R" service="true"><runnableItems t="LabelAccess" data="L?type=Label"/><parameters name="p"/>'
+        '<runnableItems t="Group" name="g"><items t="RunnableModeSwitch"/></runnableItems>'
         "</runnables><labels name='L'/></swModel>",
-        '<swModel><runnables name="R" service="true"><parameters name="p"/><callGraph>'
-        '<items xsi:type="am:LabelAccess" data="L?type=Label"/>'
-        '<items xsi:type="am:Group" name="g"><items xsi:type="am:ModeSwitch"/></items>'
+        '<swModel><runnables name="R" service="true"><parameters name="p"/><callGraph><items t="LabelAccess" data="L?type=Label"/>'
+        '<items t="Group" name="g"><items t="ModeSwitch"/></items>'
         "</callGraph></runnables><labels name='L'/></swModel>",
     )
 
@@ -116,12 +114,12 @@ def stimuli(content):
 
 
 def clock(name, kind, attributes="", content=""):
-    return f'<clocks xsi:type="am:{kind}" name="{name}" {attributes}>{content}</clocks>'
+    return f'<clocks t="{kind}" name="{name}" {attributes}>{content}</clocks>'
 
 
 def scenario(clock, kind):
     inner = f'<scenario clock="{clock}?type={kind}"/>'
-    return f'<stimuli xsi:type="am:VariableRateStimulus" name="V{clock}">{inner}</stimuli>'
+    return f'<stimuli t="VariableRateStimulus" name="V{clock}">{inner}</stimuli>'
 
 
 def test_triangles_and_lists_keep_their_definition_as_text(same):
@@ -158,7 +156,7 @@ def test_references_to_clocks_follow(same):
 def test_clocks_in_another_file(same):
     def user(kind):
         inner = f'<scenario><clock href="amlt:/#c?type={kind}"/></scenario>'
-        return stimuli(f'<stimuli xsi:type="am:VariableRateStimulus">{inner}</stimuli>')
+        return stimuli(f'<stimuli t="VariableRateStimulus">{inner}</stimuli>')
 
     same(
         [user("ClockMultiplierList"), stimuli(clock("c", "ClockMultiplierList"))],
@@ -184,7 +182,7 @@ def test_properties_that_are_there_stay(same):
     before = text_property("a", "1") + text_property(KEY, "mine")
     given = f'<scenario>{before}<recurrence value="10"/></scenario>'
     result = f"<scenario>{before}{text_property(KEY + ' 2', 'recurrence=10')}</scenario>"
-    stimulus = '<stimuli xsi:type="am:VariableRateStimulus">{}</stimuli>'
+    stimulus = '<stimuli t="VariableRateStimulus">{}</stimuli>'
     notes = same(stimuli(stimulus.format(given)), stimuli(stimulus.format(result)))
     assert of_kind(notes, NoteKind.KEPT) == [("the recurrence of a scenario has no successor", "recurrence=10")]
 
@@ -193,9 +191,9 @@ def test_properties_that_are_there_stay(same):
 
 
 def test_what_is_new_already_is_left_alone(tmp_path):
-    new = "<swModel><runnables name='R'><callGraph><items xsi:type='am:Ticks'/>{}</callGraph>{}</runnables></swModel>"
+    new = "<swModel><runnables name='R'><callGraph><items t='Ticks'/>{}</callGraph>{}</runnables></swModel>"
     clocks = stimuli(clock("c", "ClockFunction", 'curveType="sine"', '<period value="1" unit="s"/>'))
-    late = "{} xsi:type='am:LabelAccess'/>"
+    late = "{} t='LabelAccess'/>"
     result, notes = migrated(written(tmp_path, "0.9.5", new.format("", late.format("<runnableItems")) + clocks), "0.9.5")
     expected, _ = migrated(written(tmp_path, "0.9.5", new.format(late.format("<items"), "") + clocks), "0.9.5")
     assert meaning(result) == meaning(expected)
@@ -210,7 +208,7 @@ def test_what_is_new_already_is_left_alone(tmp_path):
         stimuli(
             clock("c", "ClockSinusFunction", "", "<period/><shift/>") * 2 + clock("d", "ClockMultiplierList", "", "<entries/>")
         ),
-        stimuli('<clocks xsi:type="am:ClockTriangleFunction" max="1" min="2"/>' + scenario("", "ClockTriangleFunction")),
+        stimuli('<clocks t="ClockTriangleFunction" max="1" min="2"/>' + scenario("", "ClockTriangleFunction")),
     ],
 )
 def test_damaged_content_is_survived(tmp_path, content):

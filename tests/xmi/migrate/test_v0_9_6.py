@@ -5,7 +5,7 @@ from inline_models import InlineModels
 
 from amalthea_uros.xmi.migrate.notes import NoteKind
 
-EVENTS = '<eventModel><events xsi:type="am:ProcessEvent" name="a"/><events xsi:type="am:ProcessEvent" name="b"/></eventModel>'
+EVENTS = '<eventModel><events t="ProcessEvent" name="a"/><events t="ProcessEvent" name="b"/></eventModel>'
 ENDS = 'stimulus="a?type=ProcessEvent" response="b?type=ProcessEvent"'
 
 
@@ -20,13 +20,13 @@ def chains(content):
 
 def test_segments_and_strands_of_one_chain_become_a_sequence_that_ends_with_the_strands(models):
     before = f"""<eventChains name="c" {ENDS}>
-        <strands xsi:type="am:EventChainReference" eventChain="x?type=EventChain"/>
-        <segments xsi:type="am:EventChainReference" eventChain="y?type=EventChain"/>
+        <strands t="EventChainReference" eventChain="x?type=EventChain"/>
+        <segments t="EventChainReference" eventChain="y?type=EventChain"/>
       </eventChains><eventChains name="x" {ENDS}/><eventChains name="y" {ENDS}/>"""
     after = f"""<eventChains name="c" {ENDS} itemType="sequence">
-        <items xsi:type="am:EventChainReference" eventChain="y?type=EventChain"/>
-        <items xsi:type="am:EventChainContainer"><eventChain {ENDS} itemType="parallel">
-          <items xsi:type="am:EventChainReference" eventChain="x?type=EventChain"/>
+        <items t="EventChainReference" eventChain="y?type=EventChain"/>
+        <items t="EventChainContainer"><eventChain {ENDS} itemType="parallel">
+          <items t="EventChainReference" eventChain="x?type=EventChain"/>
         </eventChain></items>
       </eventChains><eventChains name="x" {ENDS}/><eventChains name="y" {ENDS}/>"""
     assert models.migrate("0.9.5", "0.9.6", chains(before)) == models.read("0.9.6", chains(after))
@@ -34,8 +34,8 @@ def test_segments_and_strands_of_one_chain_become_a_sequence_that_ends_with_the_
 
 
 def test_parallel_chains_with_a_latency_constraint_are_to_be_checked(models):
-    constraint = '<timingConstraints xsi:type="am:EventChainLatencyConstraint" name="l" scope="c?type=EventChain"/>'
-    strands = '<strands xsi:type="am:EventChainReference" eventChain="x?type=EventChain"/>'
+    constraint = '<timingConstraints t="EventChainLatencyConstraint" name="l" scope="c?type=EventChain"/>'
+    strands = '<strands t="EventChainReference" eventChain="x?type=EventChain"/>'
     chain = f'<eventChains name="c" {ENDS}>{strands}</eventChains><eventChains name="x" {ENDS}/>'
     models.migrate("0.9.5", "0.9.7", chains(chain + constraint))
     assert ["latency constraint" in message for message in models.messages(NoteKind.TO_CHECK)] == [True]
@@ -45,10 +45,10 @@ def test_parallel_chains_with_a_latency_constraint_are_to_be_checked(models):
 
 @pytest.mark.parametrize("scope", ["c", "outer", "outermost"])
 def test_parallel_chains_are_to_be_checked_also_as_parts_of_chains_with_a_latency_constraint(models, scope):
-    constraint = f'<timingConstraints xsi:type="am:EventChainLatencyConstraint" name="l" scope="{scope}?type=EventChain"/>'
-    segment = '<segments xsi:type="am:EventChainReference" eventChain="{}?type=EventChain"/>'
-    strands = '<strands xsi:type="am:EventChainReference" eventChain="x?type=EventChain"/>'
-    inner = f'<segments xsi:type="am:EventChainContainer"><eventChain {ENDS}>{segment.format("c")}</eventChain></segments>'
+    constraint = f'<timingConstraints t="EventChainLatencyConstraint" name="l" scope="{scope}?type=EventChain"/>'
+    segment = '<segments t="EventChainReference" eventChain="{}?type=EventChain"/>'
+    strands = '<strands t="EventChainReference" eventChain="x?type=EventChain"/>'
+    inner = f'<segments t="EventChainContainer"><eventChain {ENDS}>{segment.format("c")}</eventChain></segments>'
     chain = f"""<eventChains name="c" {ENDS}>{strands}</eventChains><eventChains name="x" {ENDS}>{segment.format("x")}</eventChains>
         <eventChains name="outer" {ENDS}>{inner}</eventChains>
         <eventChains name="outermost" {ENDS}>{segment.format("outer")}</eventChains>"""
@@ -63,36 +63,36 @@ def test_chains_without_ends_are_to_be_checked_once(models):
 
 def test_a_file_of_0_9_6_may_have_chains_and_conditions_of_0_9_5(models):
     before = f"""<eventChains name="c" {ENDS}>
-        <segments xsi:type="am:EventChainReference" eventChain="c?type=EventChain"/></eventChains>"""
+        <segments t="EventChainReference" eventChain="c?type=EventChain"/></eventChains>"""
     after = f"""<eventChains name="c" {ENDS} itemType="sequence">
-        <items xsi:type="am:EventChainReference" eventChain="c?type=EventChain"/></eventChains>"""
+        <items t="EventChainReference" eventChain="c?type=EventChain"/></eventChains>"""
     assert models.migrate("0.9.6", "0.9.7", chains(before)) == models.read("0.9.7", chains(after))
     condition = """<swModel><runnables name="R"><executionCondition>
-      <entries xsi:type="am:ModeConditionConjunction"><entries{} value="on" relation="EQUAL"/></entries>
+      <entries t="ModeConditionConjunction"><entries{} value="on" relation="EQUAL"/></entries>
       </executionCondition></runnables></swModel>"""
-    typed = condition.format(' xsi:type="am:ModeValueCondition"')
+    typed = condition.format(' t="ModeValueCondition"')
     assert models.migrate("0.9.6", "0.9.7", condition.format("")) == models.read("0.9.7", typed)
 
 
 @pytest.mark.parametrize("version", ["0.9.5", "0.9.6", "0.9.7"])
 def test_what_is_in_the_new_form_stays(models, version):
     content = f"""<eventChains name="c" {ENDS} itemType="parallel" minItemsCompleted="2">
-        <items xsi:type="am:EventChainReference" eventChain="c?type=EventChain"/></eventChains>"""
+        <items t="EventChainReference" eventChain="c?type=EventChain"/></eventChains>"""
     assert models.migrate(version, "0.9.8", chains(content)) == models.read("0.9.8", chains(content))
 
 
 def test_conditions_of_isrs_and_stimuli_are_converted_and_entries_of_switches_are_not(models):
-    text = """<swModel><isrs name="I"><{graph}><items xsi:type="am:ModeSwitch"><entries name="e">
+    text = """<swModel><isrs name="I"><{graph}><items t="ModeSwitch"><entries name="e">
         <condition><entries {kind} value="on"/></condition></entries></items></{graph}></isrs></swModel>
-      <stimuliModel><stimuli xsi:type="am:InterProcessStimulus" name="S">
+      <stimuliModel><stimuli t="InterProcessStimulus" name="S">
         <executionCondition><entries {kind} value="on"/></executionCondition></stimuli></stimuliModel>"""
-    before = text.format(graph="callGraph", kind='xsi:type="am:ModeCondition"')
-    after = text.format(graph="activityGraph", kind='xsi:type="am:ModeValueCondition"')
+    before = text.format(graph="callGraph", kind='t="ModeCondition"')
+    after = text.format(graph="activityGraph", kind='t="ModeValueCondition"')
     assert models.migrate("0.9.5", "0.9.7", before) == models.read("0.9.7", after)
 
 
 def test_a_snapshot_of_0_9_7_takes_the_step_again(models):
-    text = '<swModel><runnables name="R"><executionCondition><entries xsi:type="am:{}"/></executionCondition></runnables></swModel>'
+    text = '<swModel><runnables name="R"><executionCondition><entries t="{}"/></executionCondition></runnables></swModel>'
     assert models.migrate("0.9.7", "0.9.8", text.format("ModeCondition")) == models.read(
         "0.9.8", text.format("ModeValueCondition")
     )

@@ -13,15 +13,15 @@ def models(tmp_path):
 
 def test_interface_ports_become_ports_that_refer_to_interfaces(models):
     software = """<swModel><tasks name="T"/><runnables name="R"><{graph}>
-        <items xsi:type="am:SenderReceiverRead" port="{port}"/></{graph}></runnables></swModel>"""
+        <items t="SenderReceiverRead" port="{port}"/></{graph}></runnables></swModel>"""
     before = (
         software.format(graph="callGraph", port="p?type=InterfacePort")
         + """<componentsModel>
       <components name="C 1" tasks="T?type=Task">
-        <ports xsi:type="am:InterfacePort" name="p" interfaceName="Speed value" kind="provides"/>
-        <ports xsi:type="am:InterfacePort" name="q" kind="requires"/></components>
-      <components xsi:type="am:Composite" name="D">
-        <ports xsi:type="am:InterfacePort" name="r" interfaceName="Speed value" kind="requires"/>
+        <ports t="InterfacePort" name="p" interfaceName="Speed value" kind="provides"/>
+        <ports t="InterfacePort" name="q" kind="requires"/></components>
+      <components t="Composite" name="D">
+        <ports t="InterfacePort" name="r" interfaceName="Speed value" kind="requires"/>
         <connectors name="x"><sourcePort port="p?type=InterfacePort"/><targetPort port="r?type=InterfacePort"/></connectors>
       </components></componentsModel>"""
     )
@@ -31,7 +31,7 @@ def test_interface_ports_become_ports_that_refer_to_interfaces(models):
       <components name="C 1" processes="T?type=Task">
         <ports name="p" kind="provides" interface="Speed+value?type=MainInterface"/>
         <ports name="q" kind="requires"/></components>
-      <components xsi:type="am:Composite" name="D">
+      <components t="Composite" name="D">
         <ports name="r" kind="requires" interface="Speed+value?type=MainInterface"/>
         <connectors name="x"><sourcePort port="C+1/p?type=ComponentPort"/><targetPort port="D/r?type=ComponentPort"/></connectors>
       </components><interfaces name="Speed value"/></componentsModel>"""
@@ -43,7 +43,7 @@ def test_interface_ports_become_ports_that_refer_to_interfaces(models):
 def test_an_interface_may_be_in_another_file(models):
     component = """<componentsModel><components name="C">
         <ports {} name="p" kind="provides"{}</components>{}</componentsModel>"""
-    one = component.format('xsi:type="am:InterfacePort"', ' interfaceName="I"/>', "")
+    one = component.format('t="InterfacePort"', ' interfaceName="I"/>', "")
     first = component.format("", ' interface="I?type=MainInterface"/>', '<interfaces name="I"/>')
     second = component.format("", '><interface href="amlt:/#I?type=MainInterface"/></ports>', "")
     assert models.migrate("0.9.6", "0.9.7", one, one) == models.read("0.9.7", first, second)
@@ -56,18 +56,18 @@ def test_ports_in_no_file_keep_their_name(models):
 
 
 def test_two_graphs_of_a_process_become_one(models):
-    before = """<swModel><tasks name="T"><activityGraph><items xsi:type="am:SchedulePoint"/></activityGraph>
-      <callGraph><items xsi:type="am:Group" name="g"/></callGraph></tasks></swModel>"""
-    after = """<swModel><tasks name="T"><activityGraph><items xsi:type="am:SchedulePoint"/>
-      <items xsi:type="am:Group" name="g"/></activityGraph></tasks></swModel>"""
+    before = """<swModel><tasks name="T"><activityGraph><items t="SchedulePoint"/></activityGraph>
+      <callGraph><items t="Group" name="g"/></callGraph></tasks></swModel>"""
+    after = """<swModel><tasks name="T"><activityGraph><items t="SchedulePoint"/>
+      <items t="Group" name="g"/></activityGraph></tasks></swModel>"""
     assert models.migrate("0.9.6", "0.9.7", before) == models.read("0.9.7", after)
 
 
 def test_what_is_mandatory_now_is_to_be_checked_and_not_invented(models):
-    content = """<swModel><activations xsi:type="am:SingleActivation" name="A"><min value="1" unit="ms"/></activations></swModel>
-      <stimuliModel><stimuli xsi:type="am:PeriodicStimulus" name="P"/>
-        <stimuli xsi:type="am:RelativePeriodicStimulus" name="R"/>
-        <stimuli xsi:type="am:VariableRateStimulus" name="V"/></stimuliModel>
+    content = """<swModel><activations t="SingleActivation" name="A"><min value="1" unit="ms"/></activations></swModel>
+      <stimuliModel><stimuli t="PeriodicStimulus" name="P"/>
+        <stimuli t="RelativePeriodicStimulus" name="R"/>
+        <stimuli t="VariableRateStimulus" name="V"/></stimuliModel>
       <componentsModel><systems name="S"><connectors name="x"><sourcePort/></connectors></systems></componentsModel>"""
     assert models.migrate("0.9.6", "0.9.7", content) == models.read("0.9.7", content)
     assert sorted(message.partition(",")[0] for message in models.messages(NoteKind.TO_CHECK)) == [

@@ -6,7 +6,7 @@ from migration import migrated
 
 from amalthea_uros.xmi.migrate.notes import NoteKind
 
-PROPERTY = '<customProperties key="{}"><value xsi:type="am:StringObject" value="{}"/></customProperties>'
+PROPERTY = '<customProperties key="{}"><value t="StringObject" value="{}"/></customProperties>'
 
 
 @pytest.fixture
@@ -18,9 +18,9 @@ def measured(properties, measurements):
     return f'<swModel><tasks name="T 1">{properties}</tasks></swModel>{measurements}'
 
 
-MEASUREMENT = f"""<measurementModel><measurements xsi:type="am:TaskMeasurement" task="T+1?type=Task">{PROPERTY.format("tool", "X")}
+MEASUREMENT = f"""<measurementModel><measurements t="TaskMeasurement" task="T+1?type=Task">{PROPERTY.format("tool", "X")}
     <runtimes value="5" unit="us"/><runtimes value="7" unit="us"/>
-    <runtimeDeviation xsi:type="am:TimeBoundaries"><lowerBound value="1" unit="us"/><upperBound value="9" unit="us"/></runtimeDeviation>
+    <runtimeDeviation t="TimeBoundaries"><lowerBound value="1" unit="us"/><upperBound value="9" unit="us"/></runtimeDeviation>
   </measurements></measurementModel>"""
 
 
@@ -40,7 +40,7 @@ def test_comments_on_a_measurement_stay_with_what_was_measured(models):
 
 def test_measurements_of_event_chains_and_notes_on_all_of_them_stay(models):
     note = PROPERTY.format("bench", "A")
-    measurements = f"""<measurementModel>{note}<measurements xsi:type="am:EventChainMeasurement" eventChain="E?type=EventChain">
+    measurements = f"""<measurementModel>{note}<measurements t="EventChainMeasurement" eventChain="E?type=EventChain">
       <runtimes value="5" unit="us"/></measurements></measurementModel>"""
     chains = '<constraintsModel><eventChains name="E">{}</eventChains></constraintsModel>'
     after = note + chains.format(PROPERTY.format("measured runtimes", "5 us"))
@@ -49,23 +49,23 @@ def test_measurements_of_event_chains_and_notes_on_all_of_them_stay(models):
 
 
 def test_measurements_of_nothing_are_lost_with_a_note(models):
-    content = """<measurementModel><measurements xsi:type="am:TaskMeasurement"/>
-      <measurements xsi:type="am:RunnableMeasurement" runnable="X?type=Runnable"/></measurementModel>"""
+    content = """<measurementModel><measurements t="TaskMeasurement"/>
+      <measurements t="RunnableMeasurement" runnable="X?type=Runnable"/></measurementModel>"""
     assert models.migrate("1.0.0", "1.1.0", measured("", content)) == models.read("1.1.0", measured("", ""))
     assert len(models.messages(NoteKind.LOST)) == 2
 
 
 def test_only_events_of_processes_lose_the_deadline(models):
-    text = '<eventModel><events xsi:type="am:ProcessEvent" name="e"{}/><events xsi:type="am:ProcessEvent" name="f"{}/></eventModel>'
+    text = '<eventModel><events t="ProcessEvent" name="e"{}/><events t="ProcessEvent" name="f"{}/></eventModel>'
     before = text.format(' eventType="deadline"', ' eventType="start"')
     assert models.migrate("0.9.9", "1.0.0", before) == models.read("1.0.0", text.format("", ' eventType="start"'))
     assert len(models.messages(NoteKind.LOST)) == 1
 
 
 def test_no_occurrences_become_one(models):
-    text = """<stimuliModel><stimuli xsi:type="am:PeriodicBurstStimulus" name="B" {0}/>
-      <stimuli xsi:type="am:PeriodicBurstStimulus" name="D"/><stimuli xsi:type="am:PeriodicStimulus" name="P"/>
-      <stimuli xsi:type="am:ArrivalCurveStimulus" name="A"><entries {1}/><entries numberOfOccurrences="3"/></stimuli></stimuliModel>"""
+    text = """<stimuliModel><stimuli t="PeriodicBurstStimulus" name="B" {0}/>
+      <stimuli t="PeriodicBurstStimulus" name="D"/><stimuli t="PeriodicStimulus" name="P"/>
+      <stimuli t="ArrivalCurveStimulus" name="A"><entries {1}/><entries numberOfOccurrences="3"/></stimuli></stimuliModel>"""
     before = text.format('occurrenceCount="0"', 'numberOfOccurrences="0"')
     after = text.format('occurrenceCount="1"', 'numberOfOccurrences="1"')
     assert models.migrate("1.1.0", "1.2.0", before) == models.read("1.2.0", after)
@@ -75,14 +75,14 @@ def test_no_occurrences_become_one(models):
 
 @pytest.mark.parametrize("text", ["-1", "many", "", "1", "99"])
 def test_other_numbers_stay(models, text):
-    content = f'<stimuliModel><stimuli xsi:type="am:PeriodicBurstStimulus" name="B" occurrenceCount="{text}"/></stimuliModel>'
+    content = f'<stimuliModel><stimuli t="PeriodicBurstStimulus" name="B" occurrenceCount="{text}"/></stimuliModel>'
     assert models.migrate("1.1.0", "1.2.0", content) == models.read("1.2.0", content)
     assert len(models.messages(NoteKind.TO_CHECK)) == (text == "-1")
 
 
 def test_what_2_1_0_does_not_allow_is_to_be_checked(models):
     content = """<swModel><runnables name="R"><executionCondition>
-        <entries xsi:type="am:ChannelFillCondition" fillLevel="3"/></executionCondition></runnables></swModel>
+        <entries t="ChannelFillCondition" fillLevel="3"/></executionCondition></runnables></swModel>
       <osModel><semaphores name="S" initialValue="-1" maxValue="-1"/></osModel>
       <mappingModel><memoryMapping/></mappingModel>"""
     assert models.migrate("2.0.0", "2.1.0", content) == models.read("2.1.0", content)
@@ -91,7 +91,7 @@ def test_what_2_1_0_does_not_allow_is_to_be_checked(models):
 
 def test_what_2_1_0_allows_is_not_to_be_checked(models):
     content = """<swModel><runnables name="R"><executionCondition>
-        <entries xsi:type="am:ChannelFillCondition" fillLevel="3" relation="EQUAL"/></executionCondition></runnables></swModel>
+        <entries t="ChannelFillCondition" fillLevel="3" relation="EQUAL"/></executionCondition></runnables></swModel>
       <osModel><semaphores name="S" initialValue="0" maxValue="1"/><semaphores name="T"/></osModel>
       <mappingModel><memoryMapping memory="what?"/></mappingModel>"""
     assert models.migrate("2.0.0", "2.1.0", content) == models.read("2.1.0", content)

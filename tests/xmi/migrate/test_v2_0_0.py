@@ -22,7 +22,7 @@ def models(tmp_path):
 
 
 def property_(key, text):
-    return f'<customProperties key="{key}"><value xsi:type="am:StringObject" value="{text}"/></customProperties>'
+    return f'<customProperties key="{key}"><value t="StringObject" value="{text}"/></customProperties>'
 
 
 def parameter(key, value):
@@ -31,16 +31,16 @@ def parameter(key, value):
 
 
 def integer(key, number):
-    return parameter(key, f'xsi:type="am:IntegerObject" value="{number}"')
+    return parameter(key, f't="IntegerObject" value="{number}"')
 
 
 def string(key, text):
-    return parameter(key, f'xsi:type="am:StringObject" value="{text}"')
+    return parameter(key, f't="StringObject" value="{text}"')
 
 
 def old_os(*algorithms):
     schedulers = [
-        f'<taskSchedulers name="S{number}"><schedulingAlgorithm xsi:type="am:{algorithm}"/></taskSchedulers>'
+        f'<taskSchedulers name="S{number}"><schedulingAlgorithm t="{algorithm}"/></taskSchedulers>'
         for number, algorithm in enumerate(algorithms)
     ]
     return f'<osModel><operatingSystems name="OS">{"".join(schedulers)}</operatingSystems></osModel>'
@@ -90,7 +90,7 @@ def test_known_algorithms_have_parameters(models):
 
 def test_interrupt_controllers_and_priorities_of_isrs(models):
     before = """<osModel><operatingSystems name="OS"><interruptControllers name="C">
-        <schedulingAlgorithm xsi:type="am:PriorityBased"/></interruptControllers></operatingSystems></osModel>"""
+        <schedulingAlgorithm t="PriorityBased"/></interruptControllers></operatingSystems></osModel>"""
     after = f"""<osModel><operatingSystems name="OS">
         <interruptControllers name="C" definition="PriorityBased?type=SchedulerDefinition"/></operatingSystems>
         <schedulerDefinitions name="PriorityBased" processParameters="priority?type=SchedulingParameterDefinition" {FLAGS}/>
@@ -109,17 +109,17 @@ def test_interrupt_controllers_and_priorities_of_isrs(models):
 )
 def test_the_quantum_is_a_parameter_of_the_algorithm(models, algorithm, attribute, content):
     before = f"""<osModel><operatingSystems name="OS"><taskSchedulers name="S">
-      <schedulingAlgorithm xsi:type="am:{algorithm}" {attribute}>{content}</schedulingAlgorithm>
+      <schedulingAlgorithm t="{algorithm}" {attribute}>{content}</schedulingAlgorithm>
       </taskSchedulers></operatingSystems></osModel>"""
     after = f"""<osModel><operatingSystems name="OS"><taskSchedulers name="S" definition="{algorithm}?type=SchedulerDefinition">
-      {parameter("quantSize", 'xsi:type="am:Time" value="500" unit="ns"')}</taskSchedulers></operatingSystems>
+      {parameter("quantSize", 't="Time" value="500" unit="ns"')}</taskSchedulers></operatingSystems>
       <schedulerDefinitions name="{algorithm}" algorithmParameters="quantSize?type=SchedulingParameterDefinition"/>
       <schedulingParameterDefinitions name="quantSize" type="Time" many="false" mandatory="false"/></osModel>"""
     assert models.migrate("1.2.0", "2.0.0", before) == models.read("2.0.0", after)
 
 
 def test_algorithms_of_the_user_have_definitions_of_their_own(models):
-    scheduler = """<taskSchedulers name="{0}"><schedulingAlgorithm xsi:type="am:UserSpecificSchedulingAlgorithm">{1}
+    scheduler = """<taskSchedulers name="{0}"><schedulingAlgorithm t="UserSpecificSchedulingAlgorithm">{1}
       </schedulingAlgorithm></taskSchedulers>"""
     extension = '<parameterExtensions key="{}" value="v"/>'
     before = scheduler.format("A", extension.format("b c")) + scheduler.format("B", "")
@@ -153,7 +153,7 @@ def test_numbers_of_algorithms_of_the_user_are_new_and_in_order(models):
 def test_a_key_that_occurs_twice_is_one_parameter_of_the_definition(models):
     extension = '<parameterExtensions key="k" value="{}"/>'
     before = f"""<osModel><operatingSystems name="OS"><taskSchedulers name="S0">
-      <schedulingAlgorithm xsi:type="am:UserSpecificSchedulingAlgorithm">{extension.format(1)}{extension.format(2)}
+      <schedulingAlgorithm t="UserSpecificSchedulingAlgorithm">{extension.format(1)}{extension.format(2)}
       </schedulingAlgorithm></taskSchedulers></operatingSystems></osModel>"""
     after = f"""<osModel><operatingSystems name="OS">
       <taskSchedulers name="S0" definition="UserSpecificSchedulingAlgorithm1?type=SchedulerDefinition">
@@ -165,7 +165,7 @@ def test_a_key_that_occurs_twice_is_one_parameter_of_the_definition(models):
 
 
 def test_a_quantum_that_is_stated_twice_stays_twice(models):
-    before = """<osModel><operatingSystems name="OS"><taskSchedulers name="S0"><schedulingAlgorithm xsi:type="am:PfairPD2"
+    before = """<osModel><operatingSystems name="OS"><taskSchedulers name="S0"><schedulingAlgorithm t="PfairPD2"
       quantSizeNs="5"><parameterExtensions key="quantSizeNs" value="6"/></schedulingAlgorithm></taskSchedulers>
       </operatingSystems></osModel>"""
     text = "\n".join(models.migrate("1.2.0", "2.0.0", before))
@@ -186,8 +186,8 @@ def test_a_newer_file_of_the_set_takes_the_definitions(models):
 @pytest.mark.parametrize(
     "content",
     [
-        '<schedulingParameters key="x"><value xsi:type="am:IntegerObject" value="4"/></schedulingParameters>',
-        '<schedulingParameters><value xsi:type="am:IntegerObject" value="4"/></schedulingParameters>',
+        '<schedulingParameters key="x"><value t="IntegerObject" value="4"/></schedulingParameters>',
+        '<schedulingParameters><value t="IntegerObject" value="4"/></schedulingParameters>',
     ],
 )
 def test_damaged_parameters_of_2_0_0_stay_in_a_snapshot(models, content):
@@ -205,8 +205,8 @@ def test_one_set_of_definitions_for_several_files(models):
     key = '<key href="amlt:/#{}?type=SchedulingParameterDefinition"/>'
     after = f"""<mappingModel><taskAllocation>
       <task href="amlt:/#T+0?type=Task"/><scheduler href="amlt:/#S0?type=TaskScheduler"/>
-      <schedulingParameters>{key.format("priority")}<value xsi:type="am:IntegerObject" value="4"/></schedulingParameters>
-      <schedulingParameters>{key.format("extended%3A+k")}<value xsi:type="am:StringObject" value="v"/></schedulingParameters>
+      <schedulingParameters>{key.format("priority")}<value t="IntegerObject" value="4"/></schedulingParameters>
+      <schedulingParameters>{key.format("extended%3A+k")}<value t="StringObject" value="v"/></schedulingParameters>
       </taskAllocation></mappingModel>"""
     extended = '<schedulingParameterDefinitions name="extended: k" type="String" many="false" mandatory="false"/>'
     os = new_os(FPP + PRIORITY + extended, "FixedPriorityPreemptive")
@@ -226,7 +226,7 @@ def test_definitions_that_are_there_are_used(models):
     present = new_os(FPP.replace("name=", 'description="mine" name=') + PRIORITY, "FixedPriorityPreemptive")
     scheduler, end = '<taskSchedulers name="S1"{}</taskSchedulers>', "</operatingSystems>"
     old, new = (
-        '><schedulingAlgorithm xsi:type="am:FixedPriorityPreemptive"/>',
+        '><schedulingAlgorithm t="FixedPriorityPreemptive"/>',
         ' definition="FixedPriorityPreemptive?type=SchedulerDefinition">',
     )
     before, after = (present.replace(end, scheduler.format(form) + end) for form in (old, new))
@@ -254,7 +254,7 @@ def test_budgets_of_a_task(models):
     )
     algorithm = "FixedPriorityPreemptiveWithBudgetEnforcement"
     before = tasks("") + old_os(algorithm) + allocated(f'<schedulingParameters priority="-3">{budgets}</schedulingParameters>')
-    time = 'xsi:type="am:Time" value="{}" unit="ms"'
+    time = 't="Time" value="{}" unit="ms"'
     given = integer("priority", -3) + parameter("minBudget", time.format(1)) + parameter("maxBudget", time.format(2))
     given += parameter("replenishment", time.format(10))
     assert models.migrate("1.2.0", "2.0.0", before) == models.read(
@@ -308,7 +308,7 @@ def test_without_any_task_group_none_is_invented(models):
 def test_task_groups_below_a_grouping(models):
     text = """<osModel><operatingSystems name="OS"><taskSchedulers name="S0"{}<parentAssociation parent="P?type=TaskScheduler"/>
       </taskSchedulers><taskSchedulers name="P"{}</taskSchedulers></operatingSystems>{}</osModel>"""
-    old = [f'><schedulingAlgorithm xsi:type="am:{algorithm}"/>' for algorithm in ("Grouping", "OSEK")]
+    old = [f'><schedulingAlgorithm t="{algorithm}"/>' for algorithm in ("Grouping", "OSEK")]
     new = [f' definition="{algorithm}?type=SchedulerDefinition">' for algorithm in ("Grouping", "OSEK")]
     before = tasks(property_("osekTaskGroup", "2")) + text.format(*old, "") + allocated("")
     definitions = '<schedulerDefinitions name="Grouping"/>' + OSEK + PRIORITY + GROUP
@@ -317,7 +317,7 @@ def test_task_groups_below_a_grouping(models):
 
 
 def test_schedulers_in_a_circle_end(models):
-    scheduler = """<taskSchedulers name="S0"><schedulingAlgorithm xsi:type="am:Grouping"/>
+    scheduler = """<taskSchedulers name="S0"><schedulingAlgorithm t="Grouping"/>
       <parentAssociation parent="S0?type=TaskScheduler"/></taskSchedulers>"""
     os = f'<osModel><operatingSystems name="OS">{scheduler}</operatingSystems></osModel>'
     models.migrate("1.2.0", "2.0.0", tasks(property_("osekTaskGroup", "1")) + os + allocated(""))
@@ -326,8 +326,8 @@ def test_schedulers_in_a_circle_end(models):
 
 def test_damaged_content_does_not_raise(models):
     scheduler = """<taskSchedulers name="S0"><schedulingAlgorithm><parameterExtensions/></schedulingAlgorithm>
-        <schedulingAlgorithm xsi:type="am:OSEK"/><schedulingAlgorithm xsi:type="am:OSEK"/><parentAssociation/></taskSchedulers>
-      <taskSchedulers><schedulingAlgorithm xsi:type="am:PfairPD2" quantSizeNs="short" other="1"/></taskSchedulers>"""
+        <schedulingAlgorithm t="OSEK"/><schedulingAlgorithm t="OSEK"/><parentAssociation/></taskSchedulers>
+      <taskSchedulers><schedulingAlgorithm t="PfairPD2" quantSizeNs="short" other="1"/></taskSchedulers>"""
     mapping = """<mappingModel><taskAllocation/><isrAllocation/><taskAllocation task="X?type=Task" scheduler="Y?type=TaskScheduler">
       <schedulingParameters/><schedulingParameters priority="high" weight="3"><other/></schedulingParameters>
       <parameterExtensions/></taskAllocation><isrAllocation isr="X?type=ISR"/></mappingModel>"""
@@ -344,7 +344,7 @@ def test_damaged_content_does_not_raise(models):
 
 
 def test_comments_stay_with_the_scheduler_and_the_allocation(models):
-    pfair = """<!--1--><schedulingAlgorithm xsi:type="am:PfairPD2"><!--2--><parameterExtensions key="quantSizeNs" value="5"/>
+    pfair = """<!--1--><schedulingAlgorithm t="PfairPD2"><!--2--><parameterExtensions key="quantSizeNs" value="5"/>
       <!--3--><parameterExtensions key="k" value="v"/></schedulingAlgorithm>"""
     os = f'<osModel><operatingSystems name="OS"><taskSchedulers name="S0">{pfair}</taskSchedulers></operatingSystems></osModel>'
     mapping = allocated(
@@ -361,7 +361,7 @@ def test_comments_stay_with_the_scheduler_and_the_allocation(models):
 
 
 def test_a_written_class_of_a_disjunction_is_renamed(models):
-    text = """<swModel><runnables name="R"><executionCondition xsi:type="am:{}"><entries xsi:type="am:{}"/></executionCondition>
+    text = """<swModel><runnables name="R"><executionCondition t="{}"><entries t="{}"/></executionCondition>
       </runnables></swModel>"""
     before = text.format("ModeConditionDisjunction", "ModeConditionConjunction")
     after = text.format("ConditionDisjunction", "ConditionConjunction")
