@@ -7,12 +7,12 @@ value.
 
 from __future__ import annotations
 
-import gc
 from collections import Counter
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any
 
+from amalthea_uros._internal.garbage import paused_garbage_collection
 from amalthea_uros.difference.alignment import increasing
 from amalthea_uros.difference.fingerprint import Fingerprints, is_sequence, unknown_content
 from amalthea_uros.difference.matching import ElementMatching
@@ -76,18 +76,12 @@ class ModelChange:
 
 def difference(old: Model, new: Model) -> list[ModelChange]:
     """The differences in meaning, in the order of the new model; a removed object has the position of its container."""
-    was_enabled = gc.isenabled()
-    # The comparison makes many objects and no garbage: scanning both models for it would take half of the time.
-    gc.disable()
-    try:
+    with paused_garbage_collection():
         changes = _ModelComparison(old, new).changes()
         if len(changes) <= _SHORTEST_EXCHANGE:
             return changes
         # Where names were exchanged, as in a swap, the same content under other names is the shorter description.
         return min(changes, _ModelComparison(old, new, by_content=True).changes(), key=len)
-    finally:
-        if was_enabled:
-            gc.enable()
 
 
 class _ModelComparison:

@@ -385,7 +385,7 @@ FILL = '<entries t="ChannelFillCondition" fillLevel="1"/>'
         ),
         (
             os_model("", OSEK + OSEK + PRIORITY),
-            "definition without a unique name: in AMALTHEA 1.2.0, the name tells it",
+            "definition without a unique name: AMALTHEA 1.2.0 identifies it by name",
         ),
         (os_model(scheduler("missing"), ""), "the definition of the scheduler is in none of the files"),
         (

@@ -118,7 +118,7 @@ def test_the_scheduler_of_an_isr_in_a_missing_file_is_lost(tmp_path):
     models, notes = step(tmp_path, m__amxmi=content)
     [made] = all_of(models, "processAllocation")
     assert (made.type, made.references.keys()) == ("mapping:ISRAllocation", {"process"})
-    assert messages(notes, "lost") == ["scheduler of an ISR: it is in no file, and ISRs have interrupt controllers now"]
+    assert messages(notes, "lost") == ["scheduler of an ISR: not found in the files, and ISRs now have interrupt controllers"]
 
 
 def test_the_interrupt_controller_of_an_early_file_stays(tmp_path):
@@ -141,7 +141,7 @@ def test_the_class_of_a_process_in_a_missing_file_is_that_of_the_reference(tmp_p
         </executableAllocation></mappingModel>""",
     )
     assert [node.type for node in all_of(models, "processAllocation")] == ["mapping:ISRAllocation", "mapping:TaskAllocation"]
-    assert messages(notes, "defaulted") == ["allocation of a process that is in no file: taken as one of a task"]
+    assert messages(notes, "defaulted") == ["allocation of a process that is not in the files; assuming a task"]
 
 
 @pytest.mark.parametrize(

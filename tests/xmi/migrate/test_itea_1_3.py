@@ -275,7 +275,7 @@ def test_a_label_in_a_missing_file(tmp_path):
         </callGraph></tasks></swModel>"""
     models, notes = step(tmp_path, m__amxmi=content)
     assert all_of(models, "graphEntries")[0].target("valueProvider").is_proxy
-    assert messages(notes, "lost") == ["mode label of a label that is in no file"]
+    assert messages(notes, "lost") == ["mode label of a label that is not in the files"]
 
 
 STIMULUS = """<stimuli xsi:type="stimuli:Single" name="s"><setLabelsList><entries {0} value="3"/></setLabelsList>

@@ -87,12 +87,12 @@ class TestClocks:
         quartz = '<quartzes name="Q"><frequency value="fast"/></quartzes>'
         root, notes = convert(self.prescaled('clockRatio="0.5"', quartz))
         assert module(root, "C").target("frequencyDomain").child("defaultValue") is None
-        assert "frequency behind a prescaler: not a number" in lost(notes)
+        assert "frequency after a prescaler: not a number" in lost(notes)
 
     def test_a_negative_ratio_gives_no_frequency(self, convert):
         root, notes = convert(self.prescaled('clockRatio="-0.5"'))
         assert module(root, "C").target("frequencyDomain").child("defaultValue") is None
-        assert "frequency behind a prescaler: negative" in lost(notes)
+        assert "frequency after a prescaler: negative" in lost(notes)
 
     def test_a_quartz_that_is_in_no_file(self, convert):
         content = '<cores name="C{0}"><prescaler clockRatio="{0}"><quartz href="amlt:/#X?type=Quartz"/></prescaler></cores>'
@@ -100,7 +100,7 @@ class TestClocks:
         target = module(root, "C1.0").target("frequencyDomain")
         assert (target.get("path"), target.target_class) == ("X", "FrequencyDomain")
         assert "frequencyDomain" not in module(root, "C0.5").references
-        assert "prescaler: its quartz is in none of the files" in lost(notes)
+        assert "prescaler: its quartz is not in the files" in lost(notes)
 
     def test_a_prescaler_without_quartz(self, convert):
         root, notes = convert(on_chip('<cores name="C"><prescaler clockRatio="0.5"/></cores>'))
@@ -315,7 +315,7 @@ class TestAccessPaths:
 
     def test_a_path_from_a_core_in_no_file(self, convert):
         _, notes = convert(on_chip('<memories name="R"/>', path(constant(1), source="gone?type=Core")))
-        assert lost(notes) == {"access path from something in no file"}
+        assert lost(notes) == {"access path whose source is not in the files"}
 
     def test_without_access_type_both_directions_are_meant(self, convert):
         latency = '<latencies t="LatencyConstant" value="4"/>'

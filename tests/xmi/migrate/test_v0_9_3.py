@@ -115,7 +115,7 @@ def test_impossible_instructions_per_cycle_divide_nothing(same, value):
         runnable(need(default(10), extended("P", 8))) + units,
         runnable(ticks(constant(10), of_definition("P", constant(8, "value")))) + units,
     )
-    assert ("not a number of instructions per cycle, 1 is taken", value) in of_kind(notes, NoteKind.DEFAULTED)
+    assert ("not a number of instructions per cycle; assuming 1", value) in of_kind(notes, NoteKind.DEFAULTED)
 
 
 @pytest.mark.parametrize(("features", "missing"), [("Instructions/IPC_2.0", ["Instructions/IPC_2.0"]), ("FLOP/x", [])])
@@ -123,7 +123,7 @@ def test_instructions_per_cycle_in_a_missing_file_are_reported(tmp_path, feature
     definition = f'<definitions t="ProcessingUnitDefinition" name="P" features="{features}?type=HwFeature"/>'
     content = f"{runnable(need(default(10)))}<hwModel>{definition}</hwModel>"
     _, notes = migrated(written(tmp_path, "0.9.2", content), "0.9.3")
-    message = "the number of instructions per cycle is in no file: 1 is taken"
+    message = "number of instructions per cycle not found in the files; assuming 1"
     assert of_kind(notes, NoteKind.DEFAULTED) == [(message, name) for name in missing]
 
 
@@ -152,8 +152,8 @@ def test_bounds_and_mean_are_divided_the_standard_deviation_is_not(same):
 def test_missing_hardware_is_reported(tmp_path, other):
     _, notes = migrated(written(tmp_path, "0.9.2", runnable(need(default(1), extended("P", 8))) + other), "0.9.3")
     assert of_kind(notes, NoteKind.DEFAULTED) == [
-        ("no definition of a processing unit in the files: 1 instruction per cycle is taken", ""),
-        ("the definition of a processing unit is in no file: 1 instruction per cycle is taken", ""),
+        ("no definition of a processing unit in the files; assuming 1 instruction per cycle", ""),
+        ("definition of a processing unit not found in the files; assuming 1 instruction per cycle", ""),
     ]
 
 
@@ -169,7 +169,7 @@ def test_needs_of_other_keys_are_an_item_behind_the_ticks(same):
 def test_needs_without_instructions_are_no_ticks(same):
     kept = f'<runnableItems t="ExecutionNeed"><needs key="FLOP">{constant(7, "value")}</needs></runnableItems>'
     notes = same(runnable(need(default(7, "FLOP"), extended("P", 3, "FLOP"))), runnable(kept))
-    message = "execution needs of definitions have no keys other than instructions any more"
+    message = "execution needs of definitions no longer have keys other than instructions"
     assert (message, "FLOP value=3") in of_kind(notes, NoteKind.LOST)
 
 
@@ -202,7 +202,7 @@ def test_schedulers_have_no_needs_but_ticks(same, scheduler):
         system(need(default(5), default(2, "FLOP")).replace("runnableItems", "computationItems")),
         system(ticks(constant(5), tag="computationItems")),
     )
-    lost = ("schedulers have no execution needs other than ticks any more", "FLOP value=2")
+    lost = ("schedulers no longer have execution needs other than ticks", "FLOP value=2")
     assert of_kind(notes, NoteKind.LOST) == [lost]
 
 
@@ -302,7 +302,7 @@ def test_weibull_parameters_are_kept_as_text(same):
     kept = text_property("WeibullParameters", "kappa=5.0 lambda=6.0")
     same(runnable(need(deviation(given))), runnable(ticks(kept, bounds)))
     without_bounds = same(runnable(need(deviation(weibull))), runnable(ticks(kept)))
-    assert of_kind(without_bounds, NoteKind.LOST) == [("states neither a value nor bounds", "")]
+    assert of_kind(without_bounds, NoteKind.LOST) == [("neither a value nor bounds are specified", "")]
 
 
 def test_bounds_are_kept_where_no_distribution_is_stated(same):
@@ -320,7 +320,7 @@ def test_one_bound_is_enough_to_be_kept(same, name):
     given = periodic.format(f"<jitter>{bound(name, 20, 'Time')}</jitter>")
     same(given, periodic.format(f'<jitter t="TimeBoundaries"><{name} value="20"/></jitter>'))
     notes = same(periodic.format("<jitter/>"), periodic.format(""))
-    assert of_kind(notes, NoteKind.LOST) == [("states neither a value nor bounds", "")]
+    assert of_kind(notes, NoteKind.LOST) == [("neither a value nor bounds are specified", "")]
 
 
 @pytest.mark.parametrize(
@@ -345,7 +345,7 @@ def test_a_missing_bound_of_a_number_is_0(same):
     given = deviation(bound("upperBound", 20) + '<distribution t="UniformDistribution"/>')
     result = '<default t="DiscreteValueUniformDistribution" lowerBound="0" upperBound="20"/>'
     notes = same(runnable(need(given)), runnable(ticks(result)))
-    assert ("a bound that is not stated is 0", "lowerBound") in of_kind(notes, NoteKind.DEFAULTED)
+    assert ("missing bound: 0", "lowerBound") in of_kind(notes, NoteKind.DEFAULTED)
 
 
 def test_a_gauss_distribution_without_bounds_is_not_cut_off(same):
@@ -359,7 +359,7 @@ def test_a_constant_without_a_value_and_a_deviation_without_content(same):
     same(runnable(need(empty)), runnable(ticks('<default t="DiscreteValueConstant"/>')))
     empty = '<default key="Instructions"><value t="NeedDeviation"/></default>'
     notes = same(runnable(need(empty)), runnable(ticks()))
-    assert of_kind(notes, NoteKind.LOST) == [("states neither a value nor bounds", "")]
+    assert of_kind(notes, NoteKind.LOST) == [("neither a value nor bounds are specified", "")]
 
 
 # Stimuli, hardware, operating systems

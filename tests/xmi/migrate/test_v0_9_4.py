@@ -281,7 +281,7 @@ def test_what_disables_is_excluded_from_each_alternative_that_does_not_exclude_i
             ),
         ),
     )
-    message = "disablingModeValueList is a part of executionCondition now"
+    message = "disablingModeValueList is now part of executionCondition"
     assert (message, "a == 2 OR c == 3") in of_kind(notes, NoteKind.CONVERTED)
 
 

@@ -92,7 +92,7 @@ def test_steps_without_a_counter_keep_it_as_text(same, name):
             group('name="s"', f'<items t="{name}">{text_property("counter", "prescaler=2 offset=1")}</items>'),
         ),
     )
-    assert of_kind(notes, NoteKind.KEPT) == [(f"{name} has no counter any more", "prescaler=2 offset=1")]
+    assert of_kind(notes, NoteKind.KEPT) == [(f"{name} no longer has a counter", "prescaler=2 offset=1")]
 
 
 def test_items_of_runnables_keep_their_order_and_the_rest_of_the_runnable(same):

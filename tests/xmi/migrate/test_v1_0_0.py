@@ -70,7 +70,7 @@ def test_no_occurrences_become_one(models):
     after = text.format('occurrenceCount="1"', 'numberOfOccurrences="1"')
     assert models.migrate("1.1.0", "1.2.0", before) == models.read("1.2.0", after)
     assert len(models.messages(NoteKind.CONVERTED)) == 2
-    assert models.messages(NoteKind.TO_CHECK) == ["occurrenceCount is not stated: it was 0 by default, and is 1 now"]
+    assert models.messages(NoteKind.TO_CHECK) == ["occurrenceCount is not set: the default was 0 and is now 1"]
 
 
 @pytest.mark.parametrize("text", ["-1", "many", "", "1", "99"])
@@ -95,4 +95,4 @@ def test_what_2_1_0_allows_is_not_to_be_checked(models):
       <osModel><semaphores name="S" initialValue="0" maxValue="1"/><semaphores name="T"/></osModel>
       <mappingModel><memoryMapping memory="what?"/></mappingModel>"""
     assert models.migrate("2.0.0", "2.1.0", content) == models.read("2.1.0", content)
-    assert models.messages(NoteKind.TO_CHECK) == ["maxValue is not stated: it was 0 by default, and is 1 now"]
+    assert models.messages(NoteKind.TO_CHECK) == ["maxValue is not set: the default was 0 and is now 1"]

@@ -278,7 +278,7 @@ def _refuse_ambiguous(definitions: Iterable[Node], notes: StepNotes) -> None:
     names: set[str] = set()
     for node in definitions:
         if not node.name or node.name in names:
-            notes.lost(node, "definition without a unique name: in AMALTHEA 1.2.0, the name tells it", repr(node.name), "name")
+            notes.lost(node, "definition without a unique name: AMALTHEA 1.2.0 identifies it by name", repr(node.name), "name")
         names.add(node.name)
 
 

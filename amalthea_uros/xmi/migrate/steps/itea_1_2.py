@@ -71,7 +71,7 @@ class _Allocations:
             kind = local_name(allocation.type)
             if kind == "RunnableAllocation" or (kind != "ProcessAllocation" and "entity" in allocation.references):
                 allocation.tag, allocation.type = "runnableAllocation", "mapping:RunnableAllocation"
-                self.notes.renamed(allocation, "allocation of a runnable has a feature of its own")
+                self.notes.renamed(allocation, "allocation of a runnable has a separate feature")
             else:
                 allocation.tag = "processAllocation"
                 self.split_process(allocation)
@@ -93,7 +93,7 @@ class _Allocations:
         allocation.type = "mapping:TaskAllocation"
         if process is not None and process.is_proxy and not process.get("class"):
             self.notes.defaulted(
-                allocation, "allocation of a process that is in no file: taken as one of a task", process.get("path")
+                allocation, "allocation of a process that is not in the files; assuming a task", process.get("path")
             )
         else:
             self.notes.converted(allocation, "allocation of a process is one of a task", process.name if process else "")
@@ -105,7 +105,7 @@ class _Allocations:
         system = scheduler.parent
         if scheduler.is_proxy or system is None:
             allocation.references.pop("scheduler", None)
-            message = "scheduler of an ISR: it is in no file, and ISRs have interrupt controllers now"
+            message = "scheduler of an ISR: not found in the files, and ISRs now have interrupt controllers"
             self.notes.lost(allocation, message, scheduler.get("path"), "scheduler")
             return
         controller = self.controllers.get(system)

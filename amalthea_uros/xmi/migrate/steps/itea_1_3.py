@@ -212,7 +212,7 @@ class _LabelConverter:
         holder = label.parent
         if label.tag != "labels" or holder is None:
             if label.is_proxy:
-                self.notes.lost(source, "mode label of a label that is in no file", label.get("path"))
+                self.notes.lost(source, "mode label of a label that is not in the files", label.get("path"))
             return label
         found = self.made.get(label) or (self.known.get((label.root, label.name)) if label.name else None)
         if found is None:

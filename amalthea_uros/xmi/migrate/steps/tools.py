@@ -96,12 +96,12 @@ def make_positive(node: Node, attribute: str, notes: StepNotes) -> None:
     anything.
     """
     if attribute not in node.attributes:
-        notes.to_check(node, f"{attribute} is not stated: it was 0 by default, and is 1 now", "", attribute)
+        notes.to_check(node, f"{attribute} is not set: the default was 0 and is now 1", "", attribute)
         return
     number = whole_number(node.get(attribute))
     if number == 0:
         node.attributes[attribute] = "1"
-        notes.converted(node, f"{attribute} 0 is not allowed any more, and is 1 now", "", attribute)
+        notes.converted(node, f"{attribute} 0 is no longer allowed; set to 1", "", attribute)
     elif number is not None and number < 0:
         notes.to_check(node, f"{attribute} must be positive", str(number), attribute)
 

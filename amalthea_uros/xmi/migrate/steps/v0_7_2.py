@@ -95,7 +95,7 @@ class _Mover:
                 self.replaced[part] = self.known[part.tag, part.name]
         message = f"{node.tag} of a property constraint: the one of the same name in the hardware model is meant"
         if node.children or node.references or not node.attributes.items() <= known.attributes.items():
-            self.notes.lost(node, f"{message}; what it states besides is dropped", content_of(node))
+            self.notes.lost(node, f"{message}; its other content is dropped", content_of(node))
         else:
             self.notes.converted(node, message, node.name)
 

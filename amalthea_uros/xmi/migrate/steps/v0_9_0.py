@@ -133,7 +133,7 @@ class AccessPaths:
             if path.type != "LatencyAccessPath":
                 self.notes.lost(path, "access path over hardware elements", path.name)
             elif core is not None and core.is_proxy:
-                self.notes.lost(path, "access path from something in no file", path.name)
+                self.notes.lost(path, "access path whose source is not in the files", path.name)
             elif core is None or core.type != "ProcessingUnit":
                 self.notes.lost(path, "access path from something other than a core", path.name)
             elif target is None or self._class_of(target) not in _DESTINATIONS:
@@ -188,7 +188,7 @@ class AccessPaths:
                 access = stated.get("accessType", "_undefined_")
                 if access not in _LATENCIES:
                     self.notes.defaulted(
-                        stated, "latency without access type: taken for reading and writing", access, "accessType"
+                        stated, "latency without access type; assuming reading and writing", access, "accessType"
                     )
                 if stated.get("transferSize", "0") != "0":
                     self.notes.lost(stated, "'transferSize' of latencies", stated.get("transferSize"), "transferSize")
@@ -229,7 +229,7 @@ class AccessPaths:
         latency = stated.copy()
         quartz, domain = stated.target("quartz"), core.target("frequencyDomain")
         if quartz is None:
-            self.notes.defaulted(stated, "latency without quartz: taken as cycles of the core", stated.get("value"), "quartz")
+            self.notes.defaulted(stated, "latency without quartz; assuming cycles of the core", stated.get("value"), "quartz")
             return latency
         if quartz is domain:
             return latency

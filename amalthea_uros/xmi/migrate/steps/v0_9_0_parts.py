@@ -150,7 +150,7 @@ class Clocks:
             domain = None
         if domain is None:
             self.notes.lost(
-                module, "prescaler: its quartz is in none of the files", f"{quartz.get('path') or quartz.name} x {ratio}"
+                module, "prescaler: its quartz is not in the files", f"{quartz.get('path') or quartz.name} x {ratio}"
             )
             return
         module.refer("frequencyDomain", domain)
@@ -161,7 +161,7 @@ class Clocks:
         text = prescaler.get("clockRatio")
         number = _number(text)
         if not text or number == 0:
-            self.notes.defaulted(prescaler, "prescaler without clock ratio, or with ratio 0: taken as 1", text, "clockRatio")
+            self.notes.defaulted(prescaler, "prescaler without clock ratio, or with ratio 0; assuming 1", text, "clockRatio")
             return None
         return None if number == 1 else text.strip()
 
@@ -182,7 +182,7 @@ class Clocks:
             else:
                 # It is not the frequency of the quartz either.
                 words = "not a number" if factor is None or value is None else "negative"
-                self.notes.lost(made, f"frequency behind a prescaler: {words}", f"{frequency.get('value')} x {ratio}")
+                self.notes.lost(made, f"frequency after a prescaler: {words}", f"{frequency.get('value')} x {ratio}")
                 frequency.remove()
         return made
 

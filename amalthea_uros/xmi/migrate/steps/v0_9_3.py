@@ -63,7 +63,7 @@ def change(models: ModelSet, notes: StepNotes) -> None:
 def _rename_chunks(models: ModelSet, kind: NoteKind, notes: StepNotes) -> None:
     for node in models.nodes("transmissionPolicy"):
         if node.rename("chunkProcessingInstructions", "chunkProcessingTicks"):
-            message = "instructions per chunk are ticks now, not divided by the instructions per cycle"
+            message = "instructions per chunk are now ticks, not divided by the instructions per cycle"
             notes.add(kind, node, message, node.get("chunkProcessingTicks"), "chunkProcessingInstructions")
 
 
@@ -77,7 +77,7 @@ def _convert_latency(node: Node, values: Values, notes: StepNotes) -> None:
         return
     node.replace_by(stated)
     keep_comments(node, stated)
-    notes.converted(node, "a latency has a class of its own for each distribution now", stated.type)
+    notes.converted(node, "latency now has one class per distribution", stated.type)
 
 
 def _convert_deviations(node: Node, place: _Place, values: Values, notes: StepNotes) -> None:
@@ -89,14 +89,14 @@ def _convert_deviations(node: Node, place: _Place, values: Values, notes: StepNo
         if not values.restate(part, place.kind, place.becomes, node):
             part.remove()
             continue
-        notes.converted(part, "a deviation has a class of its own for each distribution now", part.type)
+        notes.converted(part, "deviation now has one class per distribution", part.type)
 
 
 def _convert_step_limits(node: Node, notes: StepNotes) -> None:
     for part in node.all(*_STEP_LIMITS):
         if "value" in part.attributes:
             node.attributes[part.tag] = part.attributes["value"]
-            notes.converted(part, "the limit of a step is an attribute now", part.attributes["value"])
+            notes.converted(part, "the limit of a step is now an attribute", part.attributes["value"])
         else:
             notes.lost(part, "a limit of a step without a value")
         part.remove()

@@ -57,7 +57,7 @@ class Ticks:
             return self.rate_of(feature)
         for missing in (each.get("path") for each in features):
             if missing.startswith(f"{_INSTRUCTIONS}/"):
-                message = "the number of instructions per cycle is in no file: 1 is taken"
+                message = "number of instructions per cycle not found in the files; assuming 1"
                 self.notes.defaulted(definition, message, missing, "features")
         return None
 
@@ -70,7 +70,7 @@ class Ticks:
         if math.isfinite(rate) and rate > 0:
             # The decimal that is written: 7 instructions at 0.7 per cycle are 10 ticks, not a little more.
             return Fraction(repr(rate))
-        self.notes.defaulted(feature, "not a number of instructions per cycle, 1 is taken", feature.get("value"), "value")
+        self.notes.defaulted(feature, "not a number of instructions per cycle; assuming 1", feature.get("value"), "value")
         return None
 
     # Execution needs
@@ -78,7 +78,7 @@ class Ticks:
     def convert_needs(self, needs: Sequence[Node]) -> None:
         """Convert the items that state execution needs."""
         if needs and not self.definitions:
-            self.notes.defaulted(needs[0], "no definition of a processing unit in the files: 1 instruction per cycle is taken")
+            self.notes.defaulted(needs[0], "no definition of a processing unit in the files; assuming 1 instruction per cycle")
         following: dict[Node, Node] = {}
         for node in needs:
             self.convert_need(node, following)
@@ -96,7 +96,7 @@ class Ticks:
         by_definition = self.instructions_by_definition(extended)
         if node.tag == "computationItems":
             for entry in others:
-                self.notes.lost(entry, "schedulers have no execution needs other than ticks any more", _shown(entry))
+                self.notes.lost(entry, "schedulers no longer have execution needs other than ticks", _shown(entry))
             others = []
         if not instructions and not by_definition:
             if others:
@@ -104,14 +104,14 @@ class Ticks:
             else:
                 # Without it, the runnable would take no time, instead of an unknown one.
                 node.type = "Ticks"
-                self.notes.to_check(node, "an execution need of which nothing is left is Ticks without a number now")
+                self.notes.to_check(node, "execution need without content is now Ticks without a number")
             return
         if others:
             following[node] = Node(node.tag, "ExecutionNeed", origin=node.origin)
             self.keep_others(following[node], others)
-            self.notes.moved(node, "execution needs other than instructions are an item of their own now")
+            self.notes.moved(node, "execution needs other than instructions are now a separate item")
         node.type = "Ticks"
-        self.notes.renamed(node, "an execution need in instructions is Ticks now")
+        self.notes.renamed(node, "an execution need in instructions is now Ticks")
         self.fill(node, instructions, by_definition)
 
     def last_of_each_key(self, entries: list[Node]) -> dict[str, Node]:
@@ -134,7 +134,7 @@ class Ticks:
                 self.notes.lost(entry, "the execution need of a definition has no value")
             for value in values:
                 if value not in fitting[:1]:
-                    message = "execution needs of definitions have no keys other than instructions any more"
+                    message = "execution needs of definitions no longer have keys other than instructions"
                     self.notes.lost(value, message, _shown(value))
             if fitting:
                 found.append((entry, fitting[0]))
@@ -180,7 +180,9 @@ class Ticks:
         """Turn the instructions of one definition into ticks."""
         definition = entry.target("key")
         if definition is None or definition.is_proxy:
-            self.notes.defaulted(entry, "the definition of a processing unit is in no file: 1 instruction per cycle is taken")
+            self.notes.defaulted(
+                entry, "definition of a processing unit not found in the files; assuming 1 instruction per cycle"
+            )
             return
         rate = self.rate(definition)
         if rate is not None and rate != 1:
@@ -218,7 +220,7 @@ class Ticks:
             if name == _DEVIATION or quotient.denominator != 1:
                 exact[name] = _rounded(name, quotient)
         if shown:
-            message = "instructions are ticks now: divided by the instructions per cycle of the definition"
+            message = "instructions are now ticks: divided by the instructions per cycle of the definition"
             self.notes.converted(ticks, message, ", ".join(shown))
         if exact:
             self.postpone_exact(ticks, exact)
@@ -249,7 +251,7 @@ class Ticks:
         properties = part.all("customProperties")
         part.set_children([])
         part.take([*properties, *([stated] if stated else ())])
-        self.notes.converted(part, "instructions of the operating system are ticks now")
+        self.notes.converted(part, "instructions of the operating system are now ticks")
         if stated:
             self.add_definitions(part, stated)
 

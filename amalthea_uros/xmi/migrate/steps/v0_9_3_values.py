@@ -18,7 +18,7 @@ DEVIATIONS = {"NeedDeviation": "deviation", "InstructionsDeviation": "deviation"
 
 _LOST = "a deviation without a distribution that has a successor is lost"
 
-_UNBOUNDED = "the upper bound is mandatory, but was not stated: it is left open"
+_UNBOUNDED = "the mandatory upper bound was not specified; left open"
 
 
 class _DistributionForm(NamedTuple):
@@ -66,7 +66,7 @@ class Values:
             return inner if self.restate(inner, DISCRETE, tag, owner) else None
         attribute = CONSTANTS.get(node.type, "value")
         if node.type not in CONSTANTS and attribute not in node.attributes:
-            self.notes.lost(node, "states neither a value nor bounds")
+            self.notes.lost(node, "neither a value nor bounds are specified")
             return None
         made = Node(tag, "DiscreteValueConstant", origin=node.origin)
         if attribute in node.attributes:
@@ -108,7 +108,7 @@ class Values:
                 continue
             else:
                 node.attributes[name] = _ZEROS[kind]
-            self.notes.defaulted(node, "a bound that is not stated is 0", name, name)
+            self.notes.defaulted(node, "missing bound: 0", name, name)
 
 
 def _drop_statistics(node: Node, notes: StepNotes) -> None:
@@ -132,13 +132,13 @@ def _keep_bounds(node: Node, distribution: Node | None, kind: str, owner: Node, 
             notes.kept(distribution, "a distribution without a successor; only its bounds are part of the model now", text)
         _report_unknown(distribution, set(stated), notes)
     if node.child("lowerBound") or node.child("upperBound"):
-        notes.converted(node, "a deviation without a distribution that has a successor: its bounds are Boundaries now")
+        notes.converted(node, "deviation without a distribution that has a successor: its bounds are now Boundaries")
         return True
     if kind == TIME and distribution is not None:
         # Without it, a stimulus would have no jitter, instead of one of unknown size.
-        notes.to_check(node, "the bounds are mandatory, but were not stated: they are left open")
+        notes.to_check(node, "the mandatory bounds were not specified; left open")
         return True
-    notes.lost(node, "states neither a value nor bounds")
+    notes.lost(node, "neither a value nor bounds are specified")
     return False
 
 

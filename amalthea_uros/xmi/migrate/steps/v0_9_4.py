@@ -64,7 +64,7 @@ class ModeConversion:
             mode = self.mode_of(literal)
             if mode is not None:
                 node.references["mode"] = [mode]
-            self.notes.converted(node, "the initial value of a mode label is text now", literal_name(literal), "initialValue")
+            self.notes.converted(node, "the initial value of a mode label is now text", literal_name(literal), "initialValue")
         elif not node.references.get("mode"):
             self.restore_mode(node, list(self.used.get(node, ())))
 
@@ -85,7 +85,7 @@ class ModeConversion:
         """`write` is called `set`."""
         if node.get("access") == "write":
             node.attributes["access"] = "set"
-            self.notes.renamed(node, "access 'write' of a mode label is 'set' now", attribute="access")
+            self.notes.renamed(node, "access 'write' of a mode label is now 'set'", attribute="access")
         node.rename("modeValue", "value")
         self.convert_value(node, node.target("data"))
 
@@ -116,7 +116,7 @@ class ModeConversion:
         node.attributes["relation"] = "EQUAL"
         node.rename("valueProvider", "label")
         self.convert_value(node, node.target("label"))
-        self.notes.converted(node, "a mode value in a condition is a comparison now")
+        self.notes.converted(node, "a mode value in a condition is now a comparison")
 
     def convert_value(self, node: Node, label: Node | None) -> None:
         """Replace the reference to a literal by its name."""
@@ -149,7 +149,7 @@ class ModeConversion:
         """One condition instead of a list that enables and one that disables; after all comparisons."""
         for node in self.models.nodes("enablingModeValueList"):
             node.tag = "executionCondition"
-            self.notes.renamed(node, "enablingModeValueList is executionCondition now")
+            self.notes.renamed(node, "enablingModeValueList is now executionCondition")
         for node in self.models.nodes("disablingModeValueList"):
             self.dissolve(node)
 
@@ -169,7 +169,7 @@ class ModeConversion:
             self.notes.kept(disabling, message, _text(disabling))
         else:
             self.exclude(stimulus, comparisons, disabling)
-            self.notes.converted(disabling, "disablingModeValueList is a part of executionCondition now", _text(disabling))
+            self.notes.converted(disabling, "disablingModeValueList is now part of executionCondition", _text(disabling))
 
     def exclude(self, stimulus: Node, comparisons: list[Comparison], like: Node) -> None:
         """Enable a stimulus only where none of some comparisons is true."""
@@ -242,7 +242,7 @@ def change(models: ModelSet, notes: StepNotes) -> None:
     for node in models.nodes("ports"):
         if node.get("portInterface") == "ABH":
             node.attributes["portInterface"] = "AHB"
-            notes.renamed(node, "the port interface ABH is spelt AHB now", attribute="portInterface")
+            notes.renamed(node, "the port interface ABH is now spelled AHB", attribute="portInterface")
     modes = ModeConversion(models, notes)
     modes.convert()
     modes.convert_stimuli()
@@ -257,7 +257,7 @@ def _move_deadlines(runnable: Node, models: ModelSet, notes: StepNotes) -> None:
         limit = requirement.add("limit", "TimeRequirementLimit", like=deadline, limitType="UpperLimit", metric="ResponseTime")
         deadline.tag = "limitValue"
         limit.insert(deadline)
-        notes.moved(deadline, "the deadline of a runnable is a requirement now", deadline.get("value") + deadline.get("unit"))
+        notes.moved(deadline, "the deadline of a runnable is now a requirement", deadline.get("value") + deadline.get("unit"))
         if "value" not in deadline.attributes:
             # It would be one for a response time of 0.
             drop, message = requirement.remove, "a deadline without value is no requirement"
@@ -268,7 +268,7 @@ def _convert_mapping(node: Node, notes: StepNotes) -> None:
     node.tag = "aliases"
     node.rename("platformName", "target")
     node.rename("platformType", "alias")
-    notes.renamed(node, "the mapping of a data type to a platform is an alias now", node.get("alias"))
+    notes.renamed(node, "the mapping of a data type to a platform is now an alias", node.get("alias"))
 
 
 STEP = Step(

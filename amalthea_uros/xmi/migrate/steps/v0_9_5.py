@@ -132,7 +132,7 @@ def change(models: ModelSet, notes: StepNotes) -> None:
     found = by_class(models, ("CallSequence", *_RENAMED, *_WITHOUT_COUNTER))
     for node in models.nodes("graphEntries"):
         node.tag = "items"
-        notes.renamed(node, "graphEntries of a call graph are items now")
+        notes.renamed(node, "graphEntries of a call graph are now items")
     for node in found["CallSequence"]:
         _convert_sequence(node, notes)
     for old, new in _RENAMED.items():
@@ -155,7 +155,7 @@ def _convert_sequence(node: Node, notes: StepNotes) -> None:
         node.attributes["name"] = "CallSequence"
     for call in node.all("calls"):
         call.tag = "items"
-    notes.renamed(node, "CallSequence is an ordered Group now", node.name)
+    notes.renamed(node, "CallSequence is now an ordered Group", node.name)
 
 
 def _keep_counter(node: Node, notes: StepNotes) -> None:
@@ -164,7 +164,7 @@ def _keep_counter(node: Node, notes: StepNotes) -> None:
         counter.remove()
         keep_comments(counter, node)
         add_property(node, "counter", text)
-        notes.kept(counter, f"{node.type} has no counter any more", text)
+        notes.kept(counter, f"{node.type} no longer has a counter", text)
 
 
 def _make_graph(runnable: Node, notes: StepNotes) -> None:
@@ -175,7 +175,7 @@ def _make_graph(runnable: Node, notes: StepNotes) -> None:
         item.tag = "items"
     graph.take(items)
     if items:
-        notes.moved(runnable, "the items of a runnable are in a call graph now")
+        notes.moved(runnable, "the items of a runnable are now in a call graph")
 
 
 STEP = Step(

@@ -21,9 +21,7 @@ def change_0_9_9(models: ModelSet, notes: StepNotes) -> None:
     for event in models.nodes("events"):
         if event.type == "ProcessEvent" and event.get("eventType") == "deadline":
             del event.attributes["eventType"]
-            notes.lost(
-                event, "event type 'deadline' does not exist any more: the event now means all event types", "", "eventType"
-            )
+            notes.lost(event, "event type 'deadline' no longer exists: the event now means all event types", "", "eventType")
 
 
 def _remove_measurements(models: ModelSet, model: Node, notes: StepNotes) -> None:
@@ -33,7 +31,7 @@ def _remove_measurements(models: ModelSet, model: Node, notes: StepNotes) -> Non
             _move_properties(measurement, measured, notes)
             keep_comments(measurement, measured)
         name = repr(measured.name) if measured is not None else "unknown"
-        what = ("measurement, for which there is no place any more", f"of {name}: {_described(measurement)}")
+        what = ("measurement: no longer supported", f"of {name}: {_described(measurement)}")
         if measured is None or measured.is_proxy:
             notes.lost(measurement, *what)
             continue

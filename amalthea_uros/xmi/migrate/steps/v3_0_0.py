@@ -28,7 +28,7 @@ def change_2_0_0(models: ModelSet, notes: StepNotes) -> None:
     for holder in models.nodes(*CONDITIONS):
         for condition in conditions_below(holder):
             if condition.type == "ChannelFillCondition" and not condition.get("relation"):
-                notes.to_check(condition, "fill level of a channel: how it is compared has to be stated now", "", "relation")
+                notes.to_check(condition, "fill level of a channel: the relation must now be specified", "", "relation")
 
 
 STEP_2_1_0 = Step("2.0.0", "2.1.0", change_2_0_0)
@@ -81,7 +81,7 @@ def _convert(owner: Node, feature: str, part: Node, definitions: _Definitions, n
     else:
         definition = definitions.of(owner, part)
         owner.refer(feature, definition)
-        notes.converted(owner, "data type is now a type definition of its own", definition.name, feature)
+        notes.converted(owner, "data type is now a separate type definition", definition.name, feature)
 
 
 class _Definitions:
