@@ -138,7 +138,7 @@ class Element:
         )
 
     def __repr__(self) -> str:
-        from amalthea_uros.metamodel.representation import representation
+        from amalthea_uros.metamodel.summary import representation
 
         return representation(self)
 
