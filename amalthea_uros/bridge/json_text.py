@@ -11,14 +11,12 @@ from enum import StrEnum
 from types import NoneType, UnionType
 from typing import Any, TypeVar, Union, get_args, get_origin, get_type_hints
 
+from amalthea_uros.errors import UnknownError
+
 T = TypeVar("T")
 
 #: A text of this length is no property that was built.
 _LONGEST = 10_000_000
-
-
-class MalformedError(ValueError):
-    """A text that is not the JSON of a value; says what is wrong."""
 
 
 def to_text(value: Any, *, without: tuple[str, ...] = ()) -> str:
@@ -41,14 +39,14 @@ def from_text(kind: type[T], text: str, **known: Any) -> T:
 
     Raises
     ------
-    MalformedError : the text is not that of a value of the kind.
+    UnknownError : the text is not that of a value of the kind.
     """
     if len(text) > _LONGEST:
-        raise MalformedError("the text is too long")
+        raise UnknownError("the text is too long")
     try:
         content = json.loads(text)
     except (ValueError, RecursionError) as error:
-        raise MalformedError(f"not valid JSON: {error}") from None
+        raise UnknownError(f"not valid JSON: {error}") from None
     found: T = _of_dataclass(kind, content, known)
     return found
 
@@ -68,13 +66,13 @@ def _default(field: Any) -> Any:
 
 def _of_dataclass(kind: type[Any], content: Any, known: dict[str, Any]) -> Any:
     if not isinstance(content, dict):
-        raise MalformedError(f"{kind.__name__} is not an object")
+        raise UnknownError(f"{kind.__name__} is not an object")
     declared = {each.name: each for each in fields(kind) if each.compare and each.name not in known}
     if unknown := sorted(content.keys() - declared.keys()):
-        raise MalformedError(f"{kind.__name__} has no {unknown[0]!r}")
+        raise UnknownError(f"{kind.__name__} has no {unknown[0]!r}")
     missing = [name for name, each in declared.items() if name not in content and _default(each) is MISSING]
     if missing:
-        raise MalformedError(f"{kind.__name__} needs {missing[0]!r}")
+        raise UnknownError(f"{kind.__name__} needs {missing[0]!r}")
     hints = get_type_hints(kind)
     return kind(**known, **{name: _value(hints[name], item, f"{kind.__name__}.{name}") for name, item in content.items()})
 
@@ -86,14 +84,14 @@ def _value(hint: Any, content: Any, where: str) -> Any:
         return None if content is None else _value(inner[0], content, where)
     if origin in (tuple, frozenset):
         if not isinstance(content, list):
-            raise MalformedError(f"{where} is not a list")
+            raise UnknownError(f"{where} is not a list")
         return origin(_value(arguments[0], item, where) for item in content)
     if is_dataclass(hint):
         return _of_dataclass(hint, content, {})  # type: ignore[arg-type]
     if issubclass(hint, StrEnum):
         if content not in list(hint):
-            raise MalformedError(f"{content!r} is not a value of {where}")
+            raise UnknownError(f"{content!r} is not a value of {where}")
         return hint(content)
     if type(content) is not hint:
-        raise MalformedError(f"{where} is not of type {hint.__name__}")
+        raise UnknownError(f"{where} is not of type {hint.__name__}")
     return content

@@ -13,6 +13,7 @@ from lxml import etree
 from amalthea_uros._internal.resources import resource_folder
 from amalthea_uros._internal.similar import similar
 from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.metamodel.factfile import FeatureKind
 from amalthea_uros.metamodel.model import Document
 from amalthea_uros.metamodel.versions import NAMESPACE_PREFIX, VersionFacts, facts, spelled, supported_versions
@@ -53,14 +54,6 @@ _WHOLE_NUMBERS = {
 }
 
 
-class NoSchemaError(LookupError):
-    """There is no schema of an AMALTHEA version."""
-
-    def __init__(self, version: str) -> None:
-        super().__init__(f"no XML schema for {spelled(version)}; there is one for {', '.join(supported_versions())}")
-        self.version = version
-
-
 @dataclass(frozen=True, slots=True)
 class SchemaProblem:
     """A violation of the schema of a version.
@@ -86,10 +79,11 @@ def schema_path(version: str) -> Path:
 
     Raises
     ------
-    NoSchemaError : if there is none.
+    UnknownError : if there is none.
     """
     if version not in supported_versions():
-        raise NoSchemaError(version)
+        others = ", ".join(supported_versions())
+        raise UnknownError(f"no XML schema for {spelled(version)}; there is one for {others}")
     return resource_folder("schemas") / f"amalthea-{version}.xsd"
 
 
@@ -98,7 +92,7 @@ def validate(data: bytes, version: str) -> list[SchemaProblem]:
 
     Raises
     ------
-    NoSchemaError : if there is no schema of the version.
+    UnknownError : if there is no schema of the version.
     """
     schema = _schema(version)
     try:
@@ -375,7 +369,7 @@ def schema_findings(document: Document) -> list[Finding]:
     try:
         # The file of a model that was migrated in memory still has its old version.
         problems = validate(source.text.encode(), document.file_version)
-    except NoSchemaError as error:
+    except UnknownError as error:
         return [Finding("XSD000", Severity.WARNING, str(error), Location(path))]
     return [
         Finding(

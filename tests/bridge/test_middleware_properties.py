@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 
 from amalthea_uros.bridge.build import build_model
 from amalthea_uros.bridge.extract import extract
-from amalthea_uros.bridge.json_text import MalformedError, from_text, to_text
+from amalthea_uros.bridge.json_text import from_text, to_text
 from amalthea_uros.diagnostics import Location
-from amalthea_uros.errors import WriteError
+from amalthea_uros.errors import UnknownError, WriteError
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.perf.executors import Executor, Handle, HandleKind, Loop, LoopKind, TriggerCondition, TriggerKind
 from amalthea_uros.perf.hardware import Core, Hardware, Structure
@@ -154,5 +154,5 @@ def test_a_network_that_cannot_be_read_is_a_finding(before, after, message, left
 
 @pytest.mark.parametrize("text", ["", "[]", "1", "null", "{}", "[" * 100_000, '{"name": null}', '{"name": "x", "loop": []}'])
 def test_no_text_is_a_crash(text):
-    with pytest.raises(MalformedError):
+    with pytest.raises(UnknownError):
         from_text(Executor, text, task="T")

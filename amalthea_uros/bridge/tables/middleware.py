@@ -12,8 +12,9 @@ from functools import partial
 from typing import Any, TypeVar
 
 from amalthea_uros.bridge.context import Building, Extracting
-from amalthea_uros.bridge.json_text import MalformedError, from_text, to_text
+from amalthea_uros.bridge.json_text import from_text, to_text
 from amalthea_uros.bridge.kinds import ObjectKind
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.perf.executors import Executor
@@ -101,8 +102,8 @@ def _extracted(
                 try:
                     found = read(element, _text(item))
                     if (flaw := flaw_of(found)) is not None:
-                        raise MalformedError(flaw)
-                except MalformedError as error:
+                        raise UnknownError(flaw)
+                except UnknownError as error:
                     context.note("EXT005", f"the property {key!r} cannot be read: {error}", element)
                     context.without_property.add(element)
                 else:
@@ -111,7 +112,7 @@ def _extracted(
 
 def _text(item: am.CustomProperty) -> str:
     if not isinstance(item.value, am.StringObject):
-        raise MalformedError("it is not a text")
+        raise UnknownError("it is not a text")
     return item.value.value or ""
 
 
