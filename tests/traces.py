@@ -5,8 +5,8 @@ from random import Random
 
 import numpy as np
 
-from amalthea_uros.trace.btf.vocabulary import OS_EVENTS
 from amalthea_uros.trace.table import NO_NOTE, Entity, EntityKind, EventKind, EventTable
+from amalthea_uros.trace.vocabulary import OS_EVENTS
 
 DTYPES = (np.int64, np.int16, np.int32, np.int64, np.int32, np.int64, np.int64)
 

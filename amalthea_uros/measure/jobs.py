@@ -15,8 +15,8 @@ from amalthea_uros._internal.arrays import Flags, Numbers
 from amalthea_uros.measure.series import Counts, MeasuredKind, Series, statistics_of
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.timing.observed.job_times import BETWEEN, OWN, Job, own_times, times_between
-from amalthea_uros.trace.btf.vocabulary import PROCESS
 from amalthea_uros.trace.table import EventKind, EventTable
+from amalthea_uros.trace.vocabulary import PROCESS
 
 #: What the states of a job count as; in READY no time is counted.
 _COLUMNS = {"running": Job.RUNNING, "waiting": Job.WAITING, "polling": Job.POLLING, "parking": Job.PARKING}

@@ -1,38 +1,18 @@
-"""Simulations of whole systems, and the evaluation of a run."""
+"""Simulations of whole systems."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass, field
-from fractions import Fraction
 from typing import TypeAlias
 
-from amalthea_uros._internal.by_name import Results
-from amalthea_uros._internal.plural import counted
-from amalthea_uros.judge.limits import Deadline, deadline_of
-from amalthea_uros.perf.software import Isr
 from amalthea_uros.perf.system import System
-from amalthea_uros.simulate.kernel import layout
-from amalthea_uros.simulate.kernel.operations import POLLING, RUNNING
-from amalthea_uros.simulate.metrics.chains import chain_observation
-from amalthea_uros.simulate.metrics.jobs import JobMetrics
-from amalthea_uros.simulate.not_simulated import NotSimulated
-from amalthea_uros.simulate.observations import (
-    ChainObservation,
-    CoreObservation,
-    CountObservation,
-    ProcessObservation,
-    RunnableObservation,
-)
-from amalthea_uros.simulate.observed_limits import LOOPING, judge_process, judge_requirements
+from amalthea_uros.simulate.evaluation import Evaluation
 from amalthea_uros.simulate.options import Options
-from amalthea_uros.simulate.program.build import KernelProgram, build_program
+from amalthea_uros.simulate.program.build import build_program
 from amalthea_uros.simulate.results import Simulation
 from amalthea_uros.simulate.run import SimulationRun
 from amalthea_uros.timing.activation.phases import with_first_arrivals
-from amalthea_uros.timing.activation.releases import ASSUMPTION
-from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.trace.sinks import TraceSink
 from amalthea_uros.trace.table import Entity
@@ -55,163 +35,4 @@ def simulate_system(system: System, options: Options, sinks: Sequence[OpenSink] 
     run = SimulationRun(context, options, program)
     with ExitStack() as stack:
         run.execute([stack.enter_context(open_sink(program.entities)) for open_sink in sinks])
-    return _Evaluation(run).result()
-
-
-#: Findings about what only analyses do not know.
-_OF_ANALYSES = ("ANA002", "ANA003", "ANA004", "ANA005", "ANA007")
-
-
-@dataclass(slots=True)
-class _Evaluation:
-    """What a run has shown of each thing."""
-
-    run: SimulationRun
-    context: TimingContext = field(init=False)
-    program: KernelProgram = field(init=False)
-
-    def __post_init__(self) -> None:
-        self.context, self.program = self.run.context, self.run.program
-
-    def result(self) -> Simulation:
-        """What was observed."""
-        system, program, notes = self.context.system, self.program, self.context.notes
-        self._note_left_out()
-        self.run.observers.finish()
-        left_out = NotSimulated(self.context, frozenset(program.left_out))
-        processes = Results(
-            judge_process(
-                each,
-                system.processes[each.name],
-                left_out.doubt_about(each.name),
-                LOOPING if each.name in system.executor_of_task else "",
-            )
-            for each in self._processes()
-        )
-        found = Results(self._chain(name) for name in system.chains)
-        duration = self.run.options.duration
-        runnables = Results(map(self._runnable, self.program.runnables, self.run.runnables))
-        doubts = left_out.doubt_about_limits()
-        requirements = Results(judge_requirements(system, processes, found, duration, runnables, self.run.observers, doubts))
-        return Simulation(
-            duration=duration,
-            seed=self.run.options.seed,
-            mode=self.run.options.mode,
-            cores=Results(self._core(name, record) for name, record in program.cores.items()),
-            processes=processes,
-            left_out=Results(self._left_out(name, reason) for name, reason in program.left_out.items()),
-            chains=found,
-            runnables=runnables,
-            labels=Results(self.run.observers.labels()),
-            requirements=requirements,
-            assumptions=tuple(notes.assumptions),
-            findings=tuple(finding for finding in notes.found if finding.rule not in _OF_ANALYSES),
-        )
-
-    def _note_left_out(self) -> None:
-        """Make findings of what is not simulated."""
-        system, notes = self.context.system, self.context.notes
-        for name, reason in self.program.left_out.items():
-            notes.error("SIM001", f"{name!r} is not simulated: {reason}", system.processes[name])
-        for executor in system.executors:
-            message = (
-                f"the loop of {executor.name!r} is not simulated: its task executes iterations that call by chance what may be ready, "
-                "so that the times of its callbacks, and of what they send or activate, are not those of the executor"
-            )
-            notes.warning("SIM006", message, executor)
-        for name, reason in self.program.chains_left_out.items():
-            notes.warning("SIM002", f"the chain {name!r} is not followed: {reason}", system.chains[name])
-        for name, record in self.program.channels.items():
-            lost = int(self.run.driver.memory[record + layout.OVERFLOWS])
-            if lost:
-                message = f"the channel {name!r} was full: {counted(lost, 'element')} lost"
-                notes.warning("SIM004", message, system.channels[name])
-        for (process, source), queue in self.program.messages.items():
-            lost = int(self.run.driver.memory[queue + layout.LOST_MESSAGES])
-            if lost:
-                message = (
-                    f"the queue of {source!r} was full: {counted(lost, 'message')} lost, because {process!r} takes one in a job"
-                )
-                notes.warning("SIM005", message, system.processes[process])
-
-    # Cores and processes.
-
-    def _processes(self) -> Iterator[ProcessObservation]:
-        for name, found in zip(self.program.processes, self.run.jobs, strict=True):
-            yield self._process(name, found)
-
-    def _deadline(self, name: str) -> Deadline | None:
-        # The rounds of an executor that loops follow each other as they do not in a simulation: no verdict on them is right.
-        deadline = None if name in self.context.system.executor_of_task else deadline_of(name, self.context)
-        if deadline is not None and deadline.is_implicit:
-            self.context.notes.assume(ASSUMPTION)
-        return deadline
-
-    def _left_out(self, name: str, reason: str) -> ProcessObservation:
-        """A process that is not simulated."""
-        process, deadline, placement = self.context.system.processes[name], self._deadline(name), self.context.placement(name)
-        none = CountObservation(total=0, min=0, max=0)
-        seen = ProcessObservation(
-            name=name,
-            is_isr=isinstance(process, Isr),
-            core=placement.core,
-            priority=placement.priority,
-            jobs=0,
-            load=Fraction(0),
-            metrics={},
-            preemptions=none,
-            migrations=none,
-            deadline=None if deadline is None else deadline.value,
-            is_implicit=deadline is not None and deadline.is_implicit,
-        )
-        return judge_process(seen, process, left_out=reason)
-
-    def _process(self, name: str, found: JobMetrics) -> ProcessObservation:
-        memory, record, deadline = self.run.driver.memory, self.program.records[name], self._deadline(name)
-        pending = self.run.driver.pending(name)
-        used = found.total(JobMetric.RUNNING_TIME) + found.total(JobMetric.POLLING_TIME) + self._used_by_last_job(record)
-        placement = self.context.placement(name)
-        waited = self.run.end - int(memory[record + layout.ACTIVATION]) if pending else 0
-        return ProcessObservation(
-            name=name,
-            is_isr=isinstance(self.context.system.processes[name], Isr),
-            core=placement.core,
-            priority=placement.priority,
-            jobs=found.count,
-            load=Fraction(used, self.run.end),
-            metrics=found.observations(None if deadline is None else deadline.value),
-            preemptions=found.preemptions,
-            migrations=found.migrations,
-            lost_activations=int(memory[record + layout.LOST]),
-            unfinished=pending,
-            longest_unfinished=Fraction(waited, self.program.units),
-            deadline=None if deadline is None else deadline.value,
-            is_implicit=deadline is not None and deadline.is_implicit,
-        )
-
-    def _used_by_last_job(self, record: int) -> int:
-        """The time in which the job that has not ended has had a core."""
-        memory = self.run.driver.memory
-        used = int(memory[record + layout.TIME_RUNNING]) + int(memory[record + layout.TIME_POLLING])
-        is_on_core = memory[record + layout.STATE] in (RUNNING, POLLING)
-        return used + (self.run.end - int(memory[record + layout.SINCE]) if is_on_core else 0)
-
-    def _runnable(self, name: str, found: JobMetrics) -> RunnableObservation:
-        return RunnableObservation(
-            name=name,
-            executions=found.count,
-            metrics=found.observations(None),
-            preemptions=found.preemptions,
-            migrations=found.migrations,
-        )
-
-    def _core(self, name: str, record: int) -> CoreObservation:
-        memory = self.run.driver.memory
-        last = self.run.end - int(memory[record + layout.BEGIN]) if memory[record + layout.RUNS] else 0
-        return CoreObservation(name=name, load=Fraction(int(memory[record + layout.BUSY]) + last, self.run.end))
-
-    def _chain(self, name: str) -> ChainObservation:
-        routes = [
-            (route.text, self.run.routes[number]) for number, route in enumerate(self.program.routes) if route.chain == name
-        ]
-        return chain_observation(name, routes, self.run.end, self.program.chains_left_out.get(name, ""))
+    return Evaluation(run).result()

@@ -19,12 +19,12 @@ from pathlib import Path
 import numpy as np
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.trace.btf.vocabulary import OS_EVENTS
 from amalthea_uros.trace.files import opened_text
 from amalthea_uros.trace.problems import TracePlace
 from amalthea_uros.trace.reading import BLOCK, MAX, LineReader, NumberedTable, Row, note_of, numbered_table
 from amalthea_uros.trace.sinks import Encoder, WriteOptions
 from amalthea_uros.trace.table import NO_NOTE, Entity, EntityKind, EventKind, EventTable
+from amalthea_uros.trace.vocabulary import OS_EVENTS
 
 HEADER = ["time_ps", "event", "source_kind", "source", "source_instance", "target_kind", "target", "target_instance", "note"]
 

@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from amalthea_uros.trace.btf.vocabulary import ENTERING, LEAVING
 from amalthea_uros.trace.table import NO_NOTE, EventKind, EventTable
+from amalthea_uros.trace.vocabulary import ENTERING, LEAVING
 
 
 class Inserted(NamedTuple):

@@ -13,7 +13,10 @@ from typing import NamedTuple
 
 from amalthea_uros._internal.arrays import Numbers
 from amalthea_uros.diagnostics import Finding, Severity
-from amalthea_uros.trace.btf.vocabulary import (
+from amalthea_uros.trace.problems import TracePlace, TraceProblems
+from amalthea_uros.trace.readers import open_trace
+from amalthea_uros.trace.table import Entity, EntityKind, EventKind, EventTable
+from amalthea_uros.trace.vocabulary import (
     ACCESS,
     ENTERING,
     LEAVING,
@@ -25,9 +28,6 @@ from amalthea_uros.trace.btf.vocabulary import (
     SOURCES,
     WORDS,
 )
-from amalthea_uros.trace.problems import TracePlace, TraceProblems
-from amalthea_uros.trace.readers import open_trace
-from amalthea_uros.trace.table import Entity, EntityKind, EventKind, EventTable
 
 #: What creates an instance, of which the numbers have no gaps.
 _COUNTED = frozenset({EventKind.ACTIVATE, EventKind.ACTIVATION_LOST, EventKind.RUNNABLE_START, EventKind.TRIGGER})

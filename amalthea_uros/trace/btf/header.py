@@ -9,10 +9,10 @@ from __future__ import annotations
 import re
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.trace.btf.vocabulary import TYPES
 from amalthea_uros.trace.problems import TracePlace, TraceProblems
 from amalthea_uros.trace.reading import EntityIndex
 from amalthea_uros.trace.table import EntityKind
+from amalthea_uros.trace.vocabulary import TYPES
 
 #: What may be around fields and at the ends of lines; other white space belongs to names.
 BLANKS = " \t\r\n"

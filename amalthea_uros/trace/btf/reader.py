@@ -8,11 +8,11 @@ from pathlib import Path
 
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.trace.btf.header import BLANKS, BtfHeader
-from amalthea_uros.trace.btf.vocabulary import EVENTS, SOURCES
 from amalthea_uros.trace.files import opened_text
 from amalthea_uros.trace.problems import TracePlace
 from amalthea_uros.trace.reading import BLOCK, MAX, LineReader, NumberedTable, Pattern, Row, note_of, numbered_table
 from amalthea_uros.trace.table import NO_NOTE, EventKind
+from amalthea_uros.trace.vocabulary import EVENTS, SOURCES
 
 #: Types and events of older versions and of descriptions of the system, which say nothing about its timing.
 _IGNORED_TYPES = frozenset({"SIM", "SYS", "IB", "ECU", "Processor", "P", "M", "C"})

@@ -10,9 +10,9 @@ import numpy as np
 from amalthea_uros._version import __version__
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.trace.btf.header import TIMESCALES, escape
-from amalthea_uros.trace.btf.vocabulary import OS_EVENTS, WORDS
 from amalthea_uros.trace.sinks import Encoder, WriteOptions
 from amalthea_uros.trace.table import NO_NOTE, Entity, EntityKind, EventTable
+from amalthea_uros.trace.vocabulary import OS_EVENTS, WORDS
 
 #: The types in files, at the places of their numbers.
 _TYPES: list[EntityKind] = [kind for kind in EntityKind if kind is not EntityKind.CHAIN]

@@ -11,9 +11,9 @@ from collections.abc import Iterable, Sequence
 from enum import IntEnum
 from typing import NamedTuple
 
-from amalthea_uros.trace.btf.vocabulary import ENTERING, LEAVING, ON_CORE, PROCESS
 from amalthea_uros.trace.sinks import Encoder, WriteOptions
 from amalthea_uros.trace.table import Entity, EntityKind, EventKind, EventTable
+from amalthea_uros.trace.vocabulary import ENTERING, LEAVING, ON_CORE, PROCESS
 
 
 class TrackChange(IntEnum):
