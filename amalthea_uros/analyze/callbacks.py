@@ -21,6 +21,7 @@ from amalthea_uros.analyze.response_times.metrics import Span
 from amalthea_uros.analyze.response_times.schedule import demand_cycle, demand_table, demands_of_jobs
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.results.processes import CallbackResult, Metric
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.results import ExecutorResult
 from amalthea_uros.perf.activities import Activity, Call, ServerCall, Terminate
 from amalthea_uros.perf.constraints import Bound, TimeLimit, TimeMetric
@@ -28,7 +29,6 @@ from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.jobs.counters import first_effect, is_always, min_distance, takes_effect
 from amalthea_uros.timing.jobs.positions import ActivityPosition
@@ -76,7 +76,7 @@ class CallbackEvaluator:
                 continue
             try:
                 positions = self.context.dataflow.events.positions(process.name)
-            except UnresolvedError as error:
+            except UnknownError as error:
                 # It can call any of them.
                 yield from (_unknown(name, process, str(error)) for name in sorted(wanted))
                 continue

@@ -6,6 +6,7 @@ from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Generic, Protocol, TypeAlias, TypeVar
 
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.judge.limits import SystemLimit
 from amalthea_uros.perf.activities import Call
 from amalthea_uros.perf.constraints import (
@@ -18,7 +19,6 @@ from amalthea_uros.perf.constraints import (
 )
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.dataflow.chains import events_of
-from amalthea_uros.timing.dataflow.events import UnresolvedError
 
 
 class LimitedObject(Protocol):
@@ -154,5 +154,5 @@ def _raising(name: str, context: TimingContext) -> set[str]:
     event = context.system.events_by_name.get(name)
     try:
         return set() if event is None else {each.process.name for each in context.dataflow.events.of(event)}
-    except UnresolvedError:
+    except UnknownError:
         return set()

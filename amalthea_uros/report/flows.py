@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from amalthea_uros.analyze.results.analysis import Analysis
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.software import Isr, Process
 from amalthea_uros.perf.stimuli import EventTriggered, InterProcess, Periodic
 from amalthea_uros.perf.system import System
 from amalthea_uros.report.activation_text import activation_text
 from amalthea_uros.timing.context import Placement, TimingContext
-from amalthea_uros.timing.dataflow.chains import UnfoldError, unfold
-from amalthea_uros.timing.dataflow.events import UnresolvedError
+from amalthea_uros.timing.dataflow.chains import unfold
 from amalthea_uros.timing.dataflow.links import LinkKind, reads, writes
 from amalthea_uros.timing.dataflow.routes import routes_of_ways
 
@@ -107,7 +107,7 @@ class SystemFlows:
         try:
             for process in self.system.processes:
                 self.context.dataflow.by_name(process, writes)
-        except UnresolvedError as error:
+        except UnknownError as error:
             return str(error)
         return ""
 
@@ -138,7 +138,7 @@ class SystemFlows:
     def _path(self, name: str) -> ChainPath:
         try:
             ways = routes_of_ways(unfold(self.system.chains[name], self.context.system)[0], self.context.dataflow)
-        except (UnfoldError, UnresolvedError) as error:
+        except UnknownError as error:
             return ChainPath(name, (), str(error))
         route, *_ = next(iter(ways.values()))
         passed = [occurrence.process.name for occurrence in route.occurrences]

@@ -9,11 +9,10 @@ from amalthea_uros._internal.paths import StrPath, is_description
 from amalthea_uros.analyze.results.chains import ChainResult
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.diagnostics import Finding
-from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.errors import InvalidArgumentError, UnknownError
 from amalthea_uros.findings.suppression import unsuppressed
 from amalthea_uros.names import require
 from amalthea_uros.services.inputs import open_system
-from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.paths import Path as ProcessPath
 from amalthea_uros.timing.dataflow.paths import paths, with_chains
 
@@ -53,7 +52,7 @@ def find_paths(model: StrPath, start: str, end: str) -> PathsResult:
     require("process, runnable or label", [start, end], {**system.processes, **system.runnables, **system.labels})
     try:
         found = paths(system, start, end)
-    except UnresolvedError as error:
+    except UnknownError as error:
         raise InvalidArgumentError(str(error)) from None
     chains = analyze_system(with_chains(system, found.found)).chains if found.found else ()
     return PathsResult(

@@ -6,13 +6,13 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.judge.limits import Stated
 from amalthea_uros.perf.constraints import DataAgeConstraint, LatencyConstraint, OrderConstraint, Requirement
 from amalthea_uros.perf.events import Event
 from amalthea_uros.simulate.program.watches import event_names, simple_events
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.dataflow.chains import UnfoldError, sequences, unfold
-from amalthea_uros.timing.dataflow.events import UnresolvedError
+from amalthea_uros.timing.dataflow.chains import sequences, unfold
 from amalthea_uros.timing.dataflow.links import reads, writes
 from amalthea_uros.timing.jobs.positions import ActivityPosition
 
@@ -73,7 +73,7 @@ class NotSimulated:
                     yield from self._on_events(self._events_of_chain(chain))
                 case _:
                     yield from self._on_events(simple_events(event_names(limiting, self.context.system), self.context.system))
-        except (UnfoldError, UnresolvedError):
+        except UnknownError:
             yield from self.context.system.processes
 
     def _on_events(self, events: Iterable[Event]) -> Iterator[str]:

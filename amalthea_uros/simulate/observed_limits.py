@@ -9,6 +9,7 @@ from types import MappingProxyType
 from typing import Protocol
 
 from amalthea_uros._internal.by_name import Results
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.judge.evidence import ObservedProcess, ObservedValues
 from amalthea_uros.judge.limits import JOB_METRICS, EventConstraint, SystemLimit, deadline_limit, stated_limits, without_number
 from amalthea_uros.judge.verdict import in_doubt, not_observed, observe, observe_process
@@ -42,7 +43,7 @@ from amalthea_uros.simulate.observations import (
 )
 from amalthea_uros.timing.activation.releases import activation_period
 from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric, is_deviation_from_period
-from amalthea_uros.timing.dataflow.chains import UnfoldError, forks, unfold
+from amalthea_uros.timing.dataflow.chains import forks, unfold
 from amalthea_uros.units import Time
 
 _SHARES = {
@@ -271,7 +272,7 @@ def _decide_some(chain: EventChain, limit: SystemLimit, system: System) -> bool:
     """Whether the longest way through a chain, or the shortest one for a lower limit, does not decide on a reaction."""
     try:
         found = list(forks(unfold(chain, system)[0]))
-    except UnfoldError:
+    except UnknownError:
         return False
     is_earlier = any(fork.needed < len(fork.branches) for fork in found)
     is_later = any(fork.needed > 1 for fork in found)

@@ -7,23 +7,19 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TypeVar
 
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.os import Policy, Scheduler
 from amalthea_uros.perf.stimuli import EventTriggered, InterProcess
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.activation.activations import (
-    Activations,
-    TriggeredTogether,
-    UnknownActivationError,
-    triggered_together,
-)
+from amalthea_uros.timing.activation.activations import Activations, TriggeredTogether, triggered_together
 from amalthea_uros.timing.activation.phases import arrival_assumptions, with_bounded_arrivals
 from amalthea_uros.timing.activation.releases import response_time_limits
 from amalthea_uros.timing.awaited import why_suspended
 from amalthea_uros.timing.basics.limits import MAX_INPUT
-from amalthea_uros.timing.basics.notes import Notes, UnknownDemandError
+from amalthea_uros.timing.basics.notes import Notes
 from amalthea_uros.timing.basics.settings import Memory, Settings
 from amalthea_uros.timing.blocking.critical_sections import Locks, Protection, spinlocks_of
-from amalthea_uros.timing.blocking.regions import KeptOff, ProcessStretches, StretchWalk, UnclearLocksError
+from amalthea_uros.timing.blocking.regions import KeptOff, ProcessStretches, StretchWalk
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.timing.demand.model import DemandModel
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
@@ -33,7 +29,7 @@ from amalthea_uros.timing.event_models import EventModel
 from amalthea_uros.timing.jobs.executed import states_execution_time
 from amalthea_uros.timing.jobs.server_calls import with_direct_calls
 from amalthea_uros.timing.scheduling.allocation import allocated_cores, effective_priority
-from amalthea_uros.timing.scheduling.ranks import NotSchedulableError, ScheduledProcess, Scheduling, Server
+from amalthea_uros.timing.scheduling.ranks import ScheduledProcess, Scheduling, Server
 from amalthea_uros.timing.successors import with_successors
 from amalthea_uros.timing.touching import Touching
 
@@ -167,7 +163,7 @@ class TimingContext:
             return self.demands.get(process)
         try:
             return self.demand_model.of_process(model, core)
-        except UnknownDemandError:
+        except UnknownError:
             return None
 
     def stated_activations(self, process: str) -> EventModel | None:
@@ -178,7 +174,7 @@ class TimingContext:
             return None
         try:
             return self.activations.of(model)
-        except UnknownActivationError:
+        except UnknownError:
             return None
 
     def can_borrow(self, process: str) -> bool:
@@ -245,12 +241,12 @@ class TimingContext:
                 if scheduled.process.name in self.scheduled:
                     self.mark_unknown(scheduled.process.name, "it is allocated more than once")
                 self.scheduled[scheduled.process.name] = scheduled
-            except NotSchedulableError as error:
+            except UnknownError as error:
                 self.mark_unknown(allocation.task, str(error))
         for isr in self.system.mapping.isrs:
             try:
                 self.scheduled[isr.isr] = scheduling.isr(isr.isr, isr.controller, isr.priority)
-            except NotSchedulableError as error:
+            except UnknownError as error:
                 self.mark_unknown(isr.isr, str(error))
         for name in self.system.processes:
             if name not in self.scheduled:
@@ -264,18 +260,18 @@ class TimingContext:
                 if (scheduler := self.deciding(name, scheduled.core)) is not None:
                     self.decisions[name] = model.of_decision(scheduler, scheduled.core)
                 if name in self.unknown_demands:
-                    raise UnknownDemandError(self.unknown_demands[name])
+                    raise UnknownError(self.unknown_demands[name])
                 if reason := why_suspended(name, self.system, self.dataflow):
-                    raise UnknownDemandError(reason)
+                    raise UnknownError(reason)
                 demand = model.of_process(scheduled.process, scheduled.core)
                 if not states_execution_time(scheduled.process, self.system):
-                    raise UnknownDemandError("it has no execution time, and neither have the runnables that it calls")
+                    raise UnknownError("it has no execution time, and neither have the runnables that it calls")
                 if name in self.decisions:
                     demand = MultiframeDemand((*demand.frames, *self.decisions[name].frames))
                 if demand.worst > MAX_INPUT:
-                    raise UnknownDemandError("its execution time exceeds the supported range of times")
+                    raise UnknownError("its execution time exceeds the supported range of times")
                 self.demands[name] = demand
-            except UnknownDemandError as error:
+            except UnknownError as error:
                 self.notes.warning("ANA004", f"the execution demand of {name!r} is unknown: {error}", scheduled.process)
                 self.mark_unknown(name, str(error))
 
@@ -300,16 +296,14 @@ class TimingContext:
 
         Raises
         ------
-        UnknownDemandError : it decides on another core, so that the task waits for what that one executes, or also about other
+        UnknownError : it decides on another core, so that the task waits for what that one executes, or also about other
             schedulers, so that nobody states when.
         """
         scheduler = self.decider(task)
         if scheduler is not None and scheduler.name != self._scheduler_of.get(task):
-            raise UnknownDemandError(
-                f"{scheduler.name!r}, above its scheduler, needs time to decide, and nobody states when it does"
-            )
+            raise UnknownError(f"{scheduler.name!r}, above its scheduler, needs time to decide, and nobody states when it does")
         if scheduler is not None and scheduler.executing_core not in (None, core):
-            raise UnknownDemandError(
+            raise UnknownError(
                 f"its scheduler {scheduler.name!r} decides on another core, {scheduler.executing_core!r}, which cannot be analysed"
             )
         return scheduler
@@ -327,7 +321,7 @@ class TimingContext:
                 walk = StretchWalk(self.system, KeptOff(), lambda _: 0, self.demand_model.possible_branches, requests)
                 try:
                     walk.of(self.scheduled[name].process.activities)
-                except UnclearLocksError as error:
+                except UnknownError as error:
                     self._mark_unclear(name, str(error))
         locks = Locks(self.system, self.protection, requests)
         self.open_semaphores = locks.open_semaphores

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import Trigger
 from amalthea_uros.perf.stimuli import InterProcess
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.links import Dataflow
 
 
@@ -29,6 +29,6 @@ def _triggered(name: str, system: System, dataflow: Dataflow) -> frozenset[str]:
     """The stimuli that the jobs of a process trigger."""
     try:
         positions = dataflow.events.positions(name)
-    except UnresolvedError:
+    except UnknownError:
         return frozenset(stimulus.name for stimulus in system.stimuli.stimuli if isinstance(stimulus, InterProcess))
     return frozenset(position.activity.stimulus for position in positions if isinstance(position.activity, Trigger))

@@ -10,12 +10,12 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import Incomplete, Migrate
 from amalthea_uros.perf.conditions import read_by
 from amalthea_uros.perf.software import Isr
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.blocking.critical_sections import Protection, protection_of
-from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.links import Dataflow, DirectLink, LinkKind, reads, writes
 from amalthea_uros.timing.jobs.executed import executed
 from amalthea_uros.timing.scheduling.allocation import allocated_cores, scheduler_cores
@@ -156,7 +156,7 @@ class Touching:
             for link in self._links.get(name, ()):
                 if link.kind is not LinkKind.DATA or link.name in self._decisive(link.target):
                     yield link.target
-        except UnresolvedError:
+        except UnknownError:
             yield from self.system.processes  # it is unknown what some process does
 
     @cached_property
@@ -187,7 +187,7 @@ class Touching:
             try:
                 if self.cores_of(name) and label in self.dataflow.by_name(name, writes):
                     yield name
-            except UnresolvedError:
+            except UnknownError:
                 yield name
 
     def closure(self, seeds: Iterable[str]) -> Mapping[str, str]:

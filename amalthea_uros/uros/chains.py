@@ -7,11 +7,11 @@ from dataclasses import dataclass, field
 from itertools import pairwise, product
 
 from amalthea_uros.diagnostics import Location
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf import events as perf
 from amalthea_uros.perf.constraints import LatencyConstraint, LatencyKind
 from amalthea_uros.perf.software import Label
 from amalthea_uros.spec.requirements import Chain, Moment
-from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.timing.dataflow.routes import is_linked
 from amalthea_uros.uros.application.notes import Notes
@@ -248,7 +248,7 @@ class Chains:
         """Whether a label or a trigger connects two events, so that no message has to."""
         try:
             ends = product(*(self.dataflow.events.of(self.events[name]) for name in (first, then)))
-        except UnresolvedError:
+        except UnknownError:
             return False
         return any(self.dataflow.data(*pair) or self.dataflow.triggers(*(end.process.name for end in pair)) for pair in ends)
 

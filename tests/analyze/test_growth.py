@@ -15,6 +15,7 @@ from amalthea_uros.analyze.response_times import propagation, schedule
 from amalthea_uros.analyze.response_times.core_schedule import CoreSchedules
 from amalthea_uros.analyze.response_times.propagation import solve
 from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import Call, Demand, Execute, RaiseEvent, Trigger
 from amalthea_uros.perf.constraints import Constraints, DataAgeConstraint, Requirement, TimeLimit, TimeMetric
 from amalthea_uros.perf.distributions import Boundaries
@@ -28,7 +29,7 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.notes import Notes
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.dataflow import events as dataflow_events
-from amalthea_uros.timing.dataflow.events import EventLocator, UnresolvedError
+from amalthea_uros.timing.dataflow.events import EventLocator
 
 #: Tasks on a core.
 HERE = 4
@@ -185,7 +186,7 @@ def test_activities_that_are_too_many_are_walked_once(monkeypatch):
     deep = Task(name="deep", activities=(Call(runnable="r0"),))
     locator = EventLocator(System(software=Software(tasks=(deep,), runnables=nested)))
     for _ in range(3):
-        with pytest.raises(UnresolvedError, match="too deeply nested"):
+        with pytest.raises(UnknownError, match="too deeply nested"):
             locator.positions("deep")
     assert walks == ["deep"]
 

@@ -4,11 +4,12 @@ from effort import examples
 from hypothesis import given
 from system_strategies import systems
 
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import AccessKind, Call, Group, LabelAccess, RaiseEvent
 from amalthea_uros.perf.events import CustomEvent, LabelChange, LabelEvent, RunnableEvent
 from amalthea_uros.perf.software import Runnable, Software, Task
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.dataflow.events import EventLocator, UnresolvedError, raises
+from amalthea_uros.timing.dataflow.events import EventLocator, raises
 
 
 @given(systems())
@@ -17,7 +18,7 @@ def test_they_are_those_that_a_look_at_each_activity_finds(system):
     locator = EventLocator(system)
     try:
         everything = list(locator.all_positions())
-    except UnresolvedError:
+    except UnknownError:
         return
     for event in system.events.events:
         assert locator.raising(event) == [position for position in everything if raises(position, event)]

@@ -12,7 +12,7 @@ from support import ROOT, analysis_of, corpus, hand_written
 from test_rules import model
 
 from amalthea_uros import build_model, check, load
-from amalthea_uros.errors import ReadError
+from amalthea_uros.errors import ReadError, UnknownError
 from amalthea_uros.perf.activities import (
     AccessKind,
     Call,
@@ -46,7 +46,6 @@ from amalthea_uros.perf.os import OperatingSystem, Os, Policy, Scheduler
 from amalthea_uros.perf.software import Channel, Label, Runnable, Software, Task
 from amalthea_uros.perf.stimuli import EventTriggered, InterProcess, Periodic, Stimuli
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.timing.dataflow.routes import UnlinkedError, routes
 from amalthea_uros.units import MILLISECOND as MS
@@ -177,7 +176,7 @@ def test_the_gaps_of_random_chains(system):
             is_gap = False
         except UnlinkedError:
             is_gap = True
-        except UnresolvedError:
+        except UnknownError:
             continue
         is_told = (chain.name, first.name, then.name) in found
         assert is_told is is_gap

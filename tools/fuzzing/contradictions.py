@@ -8,11 +8,12 @@ from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import ChainResult
 from amalthea_uros.analyze.results.processes import ProcessResult
 from amalthea_uros.analyze.results.requirements import RequirementResult
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.judge.verdict import ObservedVerdict, Verdict
 from amalthea_uros.simulate.observations import ChainObservation, ProcessObservation, RequirementObservation
 from amalthea_uros.simulate.results import Simulation
 from amalthea_uros.timing.basics.quantities import JobMetric
-from amalthea_uros.timing.dataflow.chains import UnfoldError, forks, unfold
+from amalthea_uros.timing.dataflow.chains import forks, unfold
 
 
 def contradictions(analysis: Analysis, simulation: Simulation) -> Iterator[str]:
@@ -44,7 +45,7 @@ def _has_alternatives(analysis: Analysis, chain: str) -> bool:
     system = analysis.solution.context.system
     try:
         unfolded, _ = unfold(system.chains[chain], system)
-    except UnfoldError:
+    except UnknownError:
         return False
     return any(fork.needed < len(fork.branches) for fork in forks(unfolded))
 

@@ -9,14 +9,15 @@ from amalthea_uros._internal.failures import failure
 from amalthea_uros.analyze.chains.job_chains import TOO_MANY_JOBS, JobBudget
 from amalthea_uros.analyze.chains.read_write_times import TimedStage
 from amalthea_uros.analyze.chains.route_latencies import RouteLatencies
-from amalthea_uros.analyze.chains.stage_timing import StageTiming, UnboundedStageError
+from amalthea_uros.analyze.chains.stage_timing import StageTiming
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.results.chains import ChainResult, Quantity, Value
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.events import EventChain
 from amalthea_uros.timing.activation.phases import Occurrence, unknown_phases
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.dataflow.chains import Unfolded, UnfoldError, combined, empty_sets, sequences, unfold
-from amalthea_uros.timing.dataflow.events import UnraisedError, UnresolvedError
+from amalthea_uros.timing.dataflow.chains import Unfolded, combined, empty_sets, sequences, unfold
+from amalthea_uros.timing.dataflow.events import UnraisedError
 from amalthea_uros.timing.dataflow.links import LinkKind
 from amalthea_uros.timing.dataflow.routes import Route, UnlinkedError, route_text, routes_of_ways
 from amalthea_uros.timing.dataflow.stages import Stage, common_communication, stages
@@ -57,7 +58,7 @@ class ChainEvaluator:
         try:
             unfolded, left_out = unfold(chain, self.context.system)
             paths = routes_of_ways(unfolded, self.context.dataflow)
-        except (UnfoldError, UnresolvedError) as error:
+        except UnknownError as error:
             self._note_unknown(chain, error)
             return ChainResult(name=chain.name, communication="", reason=str(error))
         every = [route for found in paths.values() for route in found]
@@ -100,7 +101,7 @@ class ChainEvaluator:
         """The routes of all paths through a chain; nothing if it cannot be evaluated."""
         try:
             paths = routes_of_ways(unfold(chain, self.context.system)[0], self.context.dataflow)
-        except (UnfoldError, UnresolvedError):
+        except UnknownError:
             return []
         return [route for found in paths.values() for route in found]
 
@@ -111,7 +112,7 @@ class ChainEvaluator:
             paths = sequences(unfold(chain, system)[0])
             found = (each.process.name for path in paths for name in path for each in events.of(system.events_by_name[name]))
             return list(dict.fromkeys(found))
-        except (UnfoldError, UnresolvedError):
+        except UnknownError:
             return []
 
     def _evaluated(self, paths: Mapping[tuple[str, ...], Sequence[Route]]) -> _Evaluated:
@@ -121,7 +122,7 @@ class ChainEvaluator:
             try:
                 methods = [self.latencies(route) for route in found_routes]
                 values = [list(method.values()) for method in methods]
-            except UnboundedStageError as error:
+            except UnknownError as error:
                 found.reason = str(error)
                 found.values[events] = []
                 continue
@@ -135,7 +136,7 @@ class ChainEvaluator:
 
         Raises
         ------
-        UnboundedStageError : there are no values.
+        UnknownError : there are no values.
         """
         return _tightest(_worst_of([list(self.latencies(route).values()) for route in found]))
 
@@ -151,7 +152,7 @@ class ChainEvaluator:
             message = f"the event set {name!r} of the chain {chain.name!r} is empty and is skipped"
             notes.warning("CHN008", message, chain)
 
-    def _note_unknown(self, chain: EventChain, error: UnfoldError | UnresolvedError) -> None:
+    def _note_unknown(self, chain: EventChain, error: UnknownError) -> None:
         """Report why a chain is not evaluated."""
         notes = self.context.notes
         match error:
@@ -184,11 +185,11 @@ class ChainEvaluator:
 
         Raises
         ------
-        UnboundedStageError : there is no bound.
+        UnknownError : there is no bound.
         """
         for link in route.links:
             if link.kind is LinkKind.MESSAGE:
-                raise UnboundedStageError(
+                raise UnknownError(
                     f"the message {link.names[0]!r} leaves the system and comes back, and nobody stated how long that takes"
                 )
             if link.kind is LinkKind.DATA:
@@ -208,7 +209,7 @@ class ChainEvaluator:
         for label in labels:
             for name in self.context.touching.writers(label):
                 if name in self.solution.reasons:
-                    raise UnboundedStageError(f"{name!r}, which could not be analysed, writes {label!r}")
+                    raise UnknownError(f"{name!r}, which could not be analysed, writes {label!r}")
 
     def controller(self, process: str) -> str:
         """The controller of a process; "" if it is unknown."""

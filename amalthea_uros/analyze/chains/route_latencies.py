@@ -11,8 +11,9 @@ from amalthea_uros.analyze.chains import job_chains
 from amalthea_uros.analyze.chains.bounds import becker, bi, davare, duerr, hamann, kloda
 from amalthea_uros.analyze.chains.bounds.chain_task import ChainTask
 from amalthea_uros.analyze.chains.read_write_times import TimedStage
-from amalthea_uros.analyze.chains.stage_timing import UnboundedStageError, in_picoseconds
+from amalthea_uros.analyze.chains.stage_timing import in_picoseconds
 from amalthea_uros.analyze.results.chains import Quantity, Value
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.timing.response import Claim
 from amalthea_uros.units import Time
 
@@ -81,14 +82,14 @@ class RouteLatencies:
 
         Raises
         ------
-        UnboundedStageError : a maximum is negative or below a minimum, so that a response can come before its stimulus.
+        UnknownError : a maximum is negative or below a minimum, so that a response can come before its stimulus.
         """
         found = self._for_all_stimuli(list(self._values()))
         for minimum, maximum in _RANGES:
             lowest = max((value.value or 0 for value in found if value.quantity is minimum), default=0)
             highest = min((value.value or 0 for value in found if value.quantity is maximum), default=lowest)
             if not 0 <= lowest <= highest:
-                raise UnboundedStageError("a response of the chain can come before its stimulus, which is not evaluated")
+                raise UnknownError("a response of the chain can come before its stimulus, which is not evaluated")
         yield from found
 
     def _for_all_stimuli(self, found: Sequence[Value]) -> list[Value]:

@@ -23,6 +23,7 @@ from amalthea_uros.analyze.response_times.blocking import Blocking
 from amalthea_uros.analyze.response_times.core_schedule import CoreSchedules
 from amalthea_uros.analyze.response_times.schedule import MAX_JOBS
 from amalthea_uros.analyze.response_times.solution import Solution
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import Communication, Trigger
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Counter, EventTriggered, InterProcess, Periodic
@@ -41,10 +42,6 @@ from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
     from amalthea_uros.analyze.response_times.kernel import Numbers
-
-
-class UnboundedStageError(Exception):
-    """There is no bound on when the jobs of a stage execute; the text says why."""
 
 
 @dataclass(slots=True)
@@ -76,7 +73,7 @@ class StageTiming:
 
         Raises
         ------
-        UnboundedStageError : a response time in it is unbounded or unknown.
+        UnknownError : a response time in it is unbounded or unknown.
         """
         return replace(
             self._group(stages, follower),
@@ -89,7 +86,7 @@ class StageTiming:
 
         Raises
         ------
-        UnboundedStageError : a response time is unbounded or unknown.
+        UnknownError : a response time is unbounded or unknown.
         """
         begin, end = (At(occurrence, Communication.IMPLICIT, is_end=is_end) for is_end in (False, True))
         positions = () if occurrence.position is None else (occurrence.position,)
@@ -140,7 +137,7 @@ class StageTiming:
         base, triggered = stages[0], stages[1:]
         for stage in triggered:
             if is_logical(stage.leave):
-                raise UnboundedStageError(
+                raise UnknownError(
                     f"{stage.process.name!r} is triggered, so that it has no period, as LET communication requires"
                 )
         max_delay = sum(self._windows(stage).latest(stage.leave) for stage in triggered)
@@ -199,15 +196,15 @@ class StageTiming:
         response = self.solution.responses.get(process.name)
         if response is None:
             reason = self.solution.reasons.get(process.name, "it was not analysed")
-            raise UnboundedStageError(f"the response time of {process.name!r} is unknown: {reason}")
+            raise UnknownError(f"the response time of {process.name!r} is unknown: {reason}")
         return response
 
     def _worst(self, process: Process) -> Time:
         response = self._response(process)
         if response.worst is not None and self.solution.depends_on_losses(process.name):
-            raise UnboundedStageError(f"{process.name!r}, or a process that precedes it, can lose activations")
+            raise UnknownError(f"{process.name!r}, or a process that precedes it, can lose activations")
         if response.worst is None:
-            raise UnboundedStageError(f"the response time of {process.name!r} is unbounded: {response.reason}")
+            raise UnknownError(f"the response time of {process.name!r} is unbounded: {response.reason}")
         return response.worst * self.unit
 
     def _windows(self, stage: Stage, period: Time = 0) -> BoundaryWindows:
@@ -220,14 +217,14 @@ class StageTiming:
         for stage, then in pairwise(stages):
             assert isinstance(stage.leave, Fire)
             for flaw in filter(None, map(self.context.activations.flaws.of_stimulus, then.process.stimuli)):
-                raise UnboundedStageError(flaw)
+                raise UnknownError(flaw)
             fired = stage.leave.position
             if fired is not None and isinstance(fired.activity, Trigger):
                 found = composed(found, fired.activity.counter or ALWAYS)
             of_stimuli = [self._counter_of(name) for name in then.process.stimuli]
             others = [counter for counter in (*of_stimuli, then.counter or ALWAYS) if not is_always(counter)]
             if others and not self._is_only_cause(fired, then.process):
-                raise UnboundedStageError(f"a counter of {then.process.name!r} also counts activations by others")
+                raise UnknownError(f"a counter of {then.process.name!r} also counts activations by others")
             found = reduce(composed, others, found)
         return found
 
@@ -300,9 +297,9 @@ class StageTiming:
         if is_logical(base.leave):
             name, period = base.process.name, _period(base.process, self.context.system)
             if period is None:
-                raise UnboundedStageError(f"{name!r} has no period, as LET communication requires")
+                raise UnknownError(f"{name!r} has no period, as LET communication requires")
             if worst > period * self.unit:
-                raise UnboundedStageError(f"{name!r} does not always end within its period, as LET communication requires")
+                raise UnknownError(f"{name!r} does not always end within its period, as LET communication requires")
             return period * self.unit
         if read_write is None:
             return self._windows(base).latest(base.leave)

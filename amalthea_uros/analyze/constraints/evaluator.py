@@ -17,7 +17,6 @@ import numpy as np
 
 from amalthea_uros._internal.failures import failure
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
-from amalthea_uros.analyze.chains.stage_timing import UnboundedStageError
 from amalthea_uros.analyze.constraints.events import EventWindows, exact_delays
 from amalthea_uros.analyze.constraints.plausibility import note_implausible
 from amalthea_uros.analyze.constraints.runnable_orders import holds_across, holds_in_each_job
@@ -42,7 +41,6 @@ from amalthea_uros.perf.constraints import (
 from amalthea_uros.perf.events import EventChain, LabelChange, LabelEvent
 from amalthea_uros.timing.activation.releases import known_releases
 from amalthea_uros.timing.basics.quantities import jitter_of
-from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.links import LinkKind
 from amalthea_uros.timing.dataflow.routes import Route, corresponding, routes
 from amalthea_uros.timing.dataflow.runnable_order import are_activated_together, has_counted_effect, order_scope
@@ -80,7 +78,7 @@ class ConstraintEvaluator:
                 # What limits nothing is not met.
                 nothing = "it states no limit, or nothing in the model is limited by it"
                 yield from found or _unknown(constraint, limits, nothing)
-            except (UnknownError, UnresolvedError, UnboundedStageError) as error:
+            except UnknownError as error:
                 yield from _unknown(constraint, limits, str(error))
             except Exception as error:
                 # An error of this program leaves one constraint unknown, not all.

@@ -11,13 +11,12 @@ import numpy as np
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.chains.job_chains import MAX_JOBS
 from amalthea_uros.analyze.chains.read_write_times import ReadWriteBounds
-from amalthea_uros.analyze.chains.stage_timing import UnboundedStageError
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.judge.evidence import Ends
 from amalthea_uros.perf.constraints import DelayConstraint
 from amalthea_uros.perf.events import Event, EventSet
 from amalthea_uros.timing.activation.releases import known_releases
-from amalthea_uros.timing.dataflow.events import EventOccurrence, JobPhase, UnresolvedError
+from amalthea_uros.timing.dataflow.events import EventOccurrence, JobPhase
 from amalthea_uros.timing.jobs.counters import is_always
 from amalthea_uros.timing.jobs.positions import can_be_skipped
 from amalthea_uros.units import Time
@@ -109,7 +108,7 @@ def exact_delays(constraint: DelayConstraint, windows: EventWindows) -> tuple[Ti
     try:
         ends = [windows.occurrence(name) for name in (constraint.source, constraint.target)]
         source, target = (evaluation.timing.exact_times(end) for end in ends)
-    except (UnknownError, UnresolvedError, UnboundedStageError):
+    except UnknownError:
         return None
     if source is None or target is None or len({evaluation.controller(end.process.name) for end in ends}) > 1:
         return None  # the clocks of controllers are not synchronized

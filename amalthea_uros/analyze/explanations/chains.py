@@ -16,12 +16,13 @@ from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.chains.job_chains import JobBudget, backward, forward
 from amalthea_uros.analyze.chains.read_write_times import ReadWriteTimes, TimedStage, reach
 from amalthea_uros.analyze.chains.route_latencies import RouteLatencies
-from amalthea_uros.analyze.chains.stage_timing import StageTiming, UnboundedStageError
+from amalthea_uros.analyze.chains.stage_timing import StageTiming
 from amalthea_uros.analyze.explanations.hop_causes import Cause, CauseKind, Execution, HopReasons, cause
 from amalthea_uros.analyze.phases.merged import Phases
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import ChainResult, Quantity, Value
 from amalthea_uros.analyze.results.requirements import RequirementResult
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.constraints import LatencyConstraint
 from amalthea_uros.perf.events import EventChain
 from amalthea_uros.timing.activation.phases import unknown_phases
@@ -176,7 +177,7 @@ class _RouteExplanation:
         """The hops, and the time until the output is overwritten; None if they do not add up to the value."""
         try:
             latencies = self.evaluator.latencies(self.route)
-        except UnboundedStageError:
+        except UnknownError:
             return None
         if not any(self._is_value(found) for found in latencies.values()):
             return None

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import Activity, Call, Execute, ExecutionNeed, Group, LabelAccess
 from amalthea_uros.perf.stimuli import Counter
-from amalthea_uros.timing.basics.notes import UnknownDemandError
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.units import Time
 
@@ -52,7 +52,7 @@ def execution_shares(context: TimingContext, name: str) -> list[ExecutionShare]:
         try:
             executed += context.demand_model.of_activities(scheduled.process, activities, scheduled.core).worst
             time = -(-executed // time_base) - before
-        except UnknownDemandError as error:
+        except UnknownError as error:
             reason = str(error)
         if time != 0:
             found.append(

@@ -16,10 +16,10 @@ from dataclasses import dataclass, field, replace
 from amalthea_uros.analyze.response_times.critical_instant import certain_response, keep_off_alike
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.judge.verdict import FAILURES, Verdict
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.activation.activations import UnknownActivationError
 from amalthea_uros.timing.activation.releases import known_releases
 from amalthea_uros.timing.blocking.critical_sections import Protection
 from amalthea_uros.timing.context import TimingContext
@@ -211,7 +211,7 @@ class PriorityOrders:
         """The activations of a process, if all response times were zero; None if they are unknown."""
         try:
             return self.context.activations.of(process)
-        except UnknownActivationError:
+        except UnknownError:
             return None
 
     def _keeps_off_others(self, item: ScheduledProcess) -> bool:

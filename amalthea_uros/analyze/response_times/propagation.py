@@ -14,13 +14,13 @@ from amalthea_uros.analyze.response_times.constant_schedule import constant_resp
 from amalthea_uros.analyze.response_times.core import responses_on
 from amalthea_uros.analyze.response_times.known_offsets import tightened
 from amalthea_uros.analyze.response_times.solution import Solution
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.semantics.loops import sleep_of, why_dense, workload
 from amalthea_uros.perf.activities import Trigger
 from amalthea_uros.perf.software import Process
-from amalthea_uros.timing.activation.activations import Output, UnknownActivationError
+from amalthea_uros.timing.activation.activations import Output
 from amalthea_uros.timing.basics.limits import MAX_INPUT
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.event_models import Delayed, EventModel, OutputEventModel, Periodic
 from amalthea_uros.timing.response import Response
 from amalthea_uros.timing.scheduling.ranks import ScheduledProcess
@@ -99,9 +99,9 @@ def _event_models(solution: Solution, diverging: set[str], responses: Mapping[st
             _require_known_iterations(name, context)
             events = _workload(scheduled, context.activations.of(scheduled.process, output), context)
             if isinstance(events, Periodic) and events.jitter * context.time_base(name) > MAX_INPUT:
-                raise UnknownActivationError("its jitter exceeds the supported range of times")
+                raise UnknownError("its jitter exceeds the supported range of times")
             found[name] = events
-        except UnknownActivationError as error:
+        except UnknownError as error:
             context.notes.warning("ANA005", f"the activation pattern of {name!r} is unknown: {error}", scheduled.process)
             solution.mark_unknown(name, str(error))
     return found
@@ -123,7 +123,7 @@ def _require_known_iterations(name: str, context: TimingContext) -> None:
         return
     reason = why_dense(executor, context.system.executors, -(-demand.worst // context.time_base(name)))
     if reason and (_is_above_others(item, context) or _triggers_others(item, context)):
-        raise UnknownActivationError(reason)
+        raise UnknownError(reason)
 
 
 def _is_above_others(item: ScheduledProcess, context: TimingContext) -> bool:
@@ -135,7 +135,7 @@ def _triggers_others(item: ScheduledProcess, context: TimingContext) -> bool:
     """Whether a process activates others."""
     try:
         positions = context.dataflow.events.positions(item.name)
-    except UnresolvedError:
+    except UnknownError:
         return True
     return any(isinstance(position.activity, Trigger) for position in positions)
 
@@ -146,7 +146,7 @@ def _output(solution: Solution, responses: Mapping[str, Response]) -> Output:
 
     def output(process: Process, activations: Callable[[], EventModel]) -> EventModel:
         if process.name in solution.reasons:
-            raise UnknownActivationError(f"it is triggered by {process.name!r}, which could not be analysed")
+            raise UnknownError(f"it is triggered by {process.name!r}, which could not be analysed")
         events = activations()
         executor = context.system.executor_of_task.get(process.name)
         if executor is not None and sleep_of(executor).lower:
@@ -156,7 +156,7 @@ def _output(solution: Solution, responses: Mapping[str, Response]) -> Output:
         if response is None:
             return events
         if response.worst is None:
-            raise UnknownActivationError(f"it is triggered by {process.name!r}, which has no bounded response time")
+            raise UnknownError(f"it is triggered by {process.name!r}, which has no bounded response time")
         return completions(events, response, solution.bcet(process.name))
 
     return output

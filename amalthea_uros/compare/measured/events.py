@@ -7,11 +7,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.measure.series import Measurement
 from amalthea_uros.measure.window import MeasurementWindow
 from amalthea_uros.perf.events import Event, ProcessChange, ProcessEvent, RunnableChange, RunnableEvent
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.dataflow.chains import UnfoldError, sequences, unfold
+from amalthea_uros.timing.dataflow.chains import sequences, unfold
 from amalthea_uros.trace.readers import format_of, open_trace
 from amalthea_uros.trace.table import EventKind
 
@@ -31,7 +32,7 @@ def chain_starts(system: System) -> dict[str, EventKind | None]:
             routes = [
                 (system.events_by_name[way[0]], system.events_by_name[way[-1]]) for way in sequences(unfold(chain, system)[0])
             ]
-        except UnfoldError:
+        except UnknownError:
             continue
         begins = {_begin(first) for first, _ in routes}
         is_shown = len(begins) == 1 and all(_ends_with_its_step(last) for _, last in routes)

@@ -23,7 +23,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.bounds.backlog import acknowledged, backlog_age, has_unacknowledged, max_heartbeats
 from amalthea_uros.executors.bounds.solved_system import SolvedSystem, ThreadProcessor
 from amalthea_uros.executors.semantics.demand import IterationDemand
@@ -46,7 +45,6 @@ from amalthea_uros.executors.semantics.readiness import (
 from amalthea_uros.executors.semantics.suspension import NONE, Suspension, in_sequence, longest_of, suspension_of
 from amalthea_uros.perf.executors import Executor, Handle, LoopKind
 from amalthea_uros.perf.network import Span
-from amalthea_uros.timing.basics.notes import UnknownDemandError
 from amalthea_uros.units import Time
 
 #: After which the number of heartbeats in a wait is considered unbounded.
@@ -98,10 +96,7 @@ class Cycle:
         UnknownError : its execution demand, or what can preempt it, is unknown.
         """
         processor = solved.processor(executor.task)
-        try:
-            demand = IterationDemand.of(executor, solved.context)
-        except UnknownDemandError as error:
-            raise UnknownError(str(error)) from None
+        demand = IterationDemand.of(executor, solved.context)
         takes_one = takes_one_message(executor, solved.context.system.executors)
         return cls(executor, solved, processor, demand, sending, takes_one)._consistent()
 

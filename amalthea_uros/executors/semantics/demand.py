@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import Activity, Call
 from amalthea_uros.perf.executors import Executor, Handle
-from amalthea_uros.timing.basics.notes import UnknownDemandError
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.units import Interval, Time
 
@@ -38,11 +38,11 @@ class IterationDemand:
 
         Raises
         ------
-        UnknownDemandError : some demand is unknown; the text says why.
+        UnknownError : some demand is unknown; the text says why.
         """
         scheduled = context.scheduled.get(executor.task)
         if scheduled is None:
-            raise UnknownDemandError(
+            raise UnknownError(
                 context.reasons.get(executor.task, f"its task {executor.task!r} is not allocated to a scheduler")
             )
         process, core = scheduled.process, scheduled.core

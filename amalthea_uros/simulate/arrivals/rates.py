@@ -28,7 +28,7 @@ from amalthea_uros.simulate.arrivals.occurrences import LONGEST, OccurrenceBlock
 from amalthea_uros.simulate.options import SimulationMode
 from amalthea_uros.simulate.sampling.streams import ValueStream, values
 from amalthea_uros.simulate.sampling.words import RandomSource
-from amalthea_uros.timing.event_models.clock_areas import ClockArea, UnknownClockError, clock_area
+from amalthea_uros.timing.event_models.clock_areas import ClockArea, clock_area
 
 #: Rates are whole numbers of fractions of an occurrence; products of two of them fit into 64 bits.
 _RATE_BITS = 31
@@ -134,10 +134,7 @@ def scenario(driven: Scenario, system: System, time_base: int) -> OccurrenceBloc
         raise UnknownError(f"the clock {driven.clock!r} is not defined in the model")
     if not isfinite(driven.offset) or not isfinite(driven.recurrence) or driven.recurrence <= 0:
         raise UnknownError("the recurrence of its scenario is not greater than zero, or its offset is not finite")
-    try:
-        return _crossings(clock_area(clock), Fraction(driven.offset), Fraction(driven.recurrence), time_base)
-    except UnknownClockError as error:
-        raise UnknownError(str(error)) from None
+    return _crossings(clock_area(clock), Fraction(driven.offset), Fraction(driven.recurrence), time_base)
 
 
 def _crossings(clock: ClockArea, offset: Fraction, recurrence: Fraction, time_base: int) -> OccurrenceBlocks:

@@ -21,7 +21,6 @@ from amalthea_uros.simulate.program.image import Code, JumpLabel, Operation, Pro
 from amalthea_uros.simulate.program.resources import Parts, Resources
 from amalthea_uros.simulate.program.watches import EventSource
 from amalthea_uros.simulate.sampling.streams import ValueStream
-from amalthea_uros.timing.basics.notes import UnknownDemandError
 from amalthea_uros.timing.basics.settings import Memory
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.demand.multiframe import Frame
@@ -223,10 +222,7 @@ def process_code(
     ------
     UnknownError : something in it cannot be simulated.
     """
-    try:
-        return _process_code(Body(parts, process, core, hooks, in_group), process, scheduler)
-    except UnknownDemandError as error:
-        raise UnknownError(str(error)) from None
+    return _process_code(Body(parts, process, core, hooks, in_group), process, scheduler)
 
 
 def _process_code(body: Body, process: Process, scheduler: Scheduler | None) -> Code:
@@ -257,10 +253,7 @@ def _process_code(body: Body, process: Process, scheduler: Scheduler | None) -> 
 def decision_code(parts: Parts, scheduler: Scheduler, core: str) -> Code:
     """The program of a decision of a scheduler; raises as `process_code`."""
     body = Body(parts, None, core, ProgramHooks(), in_group=False)
-    try:
-        body.activities(scheduler.overhead)
-    except UnknownDemandError as error:
-        raise UnknownError(str(error)) from None
+    body.activities(scheduler.overhead)
     if parts.is_noted:
         body.code.add(
             operations.NOTE, int(EventKind.SCHEDULE), parts.resources.entities.number(EntityKind.SCHEDULER, scheduler.name)

@@ -12,8 +12,8 @@ from amalthea_uros.perf.software import Process
 from amalthea_uros.simulate.kernel import layout, operations
 from amalthea_uros.simulate.program.image import Operation, ProgramHooks
 from amalthea_uros.simulate.program.resources import Resources
-from amalthea_uros.timing.dataflow.chains import UnfoldError, unfold
-from amalthea_uros.timing.dataflow.events import JobPhase, UnresolvedError
+from amalthea_uros.timing.dataflow.chains import unfold
+from amalthea_uros.timing.dataflow.events import JobPhase
 from amalthea_uros.timing.dataflow.links import LinkKind
 from amalthea_uros.timing.dataflow.routes import Route, crosses, route_text, routes_of_ways
 from amalthea_uros.timing.dataflow.stages import At, Fire, Pass, Read, Stage, Write, stages
@@ -75,7 +75,7 @@ class ChainCompiler:
             for events, found in ways.items():
                 for route in found:
                     self._route(chain, " -> ".join(events) if len(found) == 1 else route_text(route), route)
-        except (UnfoldError, UnresolvedError, UnknownError) as error:
+        except UnknownError as error:
             self.left_out[chain.name] = str(error)
 
     def _check(self, route: Route) -> None:

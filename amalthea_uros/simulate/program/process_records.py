@@ -14,7 +14,6 @@ from amalthea_uros.simulate.program.hardware import HardwareRecords
 from amalthea_uros.simulate.program.image import Image, ProgramHooks
 from amalthea_uros.simulate.program.resources import Parts, Resources
 from amalthea_uros.simulate.program.scheduling import Dispatched
-from amalthea_uros.timing.basics.notes import UnknownDemandError
 from amalthea_uros.timing.blocking.critical_sections import protection_of
 from amalthea_uros.timing.jobs.executed import states_execution_time
 from amalthea_uros.timing.scheduling.ranks import EqualPriority, preemption
@@ -60,10 +59,7 @@ class ProcessRecords:
         if not states_execution_time(process, context.system):
             raise UnknownError("it has no execution time, and neither have the runnables that it calls")
         core = item.cores[0]
-        try:
-            scheduler = context.deciding(item.name, core)
-        except UnknownDemandError as error:
-            raise UnknownError(str(error)) from None
+        scheduler = context.deciding(item.name, core)
         hooks = chains.hooks.get(item.name, ProgramHooks())
         code = process_code(self.parts, process, core, hooks, scheduler, in_group=scheduled.group is not None)
         captures, captures_end = self.image.items(chains.captures.get(item.name, ()))

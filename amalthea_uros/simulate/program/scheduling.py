@@ -14,7 +14,6 @@ from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.scheduling.allocation import allocated_cores
 from amalthea_uros.timing.scheduling.ranks import (
     EqualPriority,
-    NotSchedulableError,
     Rank,
     ScheduledProcess,
     Scheduling,
@@ -64,7 +63,7 @@ class Dispatching:
                 if counts[name] > 1:
                     raise UnknownError("it is allocated more than once")
                 self.processes[name] = self._dispatched(name, allocations.get(name))
-            except (UnknownError, NotSchedulableError) as error:
+            except UnknownError as error:
                 self.left_out[name] = str(error)
         paths = sorted({self.path(item.scheduled) for item in self.processes.values()})
         # Between two levels there is one for those that keep off everybody of the lower one.

@@ -17,7 +17,6 @@ from amalthea_uros.simulate.program.image import ProgramHooks
 from amalthea_uros.simulate.program.resources import Parts, Resources
 from amalthea_uros.simulate.program.watches import EventSource
 from amalthea_uros.simulate.sampling.words import RandomSource
-from amalthea_uros.timing.activation.activations import UnknownActivationError
 from amalthea_uros.trace.table import EntityKind
 
 
@@ -62,7 +61,7 @@ class StimulusRecords:
                 if not is_internal and (targets or stimulus.assignments or is_watched):
                     first = min((order[target] for target in targets), default=len(order))
                     external.append((first, record, self._occurrences(stimulus)))
-            except (UnknownError, UnknownActivationError) as error:
+            except UnknownError as error:
                 for target in targets:
                     self.left_out[target] = str(error)
         # Of simultaneous activations, that of the process comes first that is the first one of the model.

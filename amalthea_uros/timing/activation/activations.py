@@ -12,13 +12,13 @@ from fractions import Fraction
 from itertools import chain, groupby
 from typing import NamedTuple, TypeAlias
 
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import Trigger
 from amalthea_uros.perf.events import CustomEvent, Event, ModeLabelEvent, RunnableChange, RunnableEvent
 from amalthea_uros.perf.network import Purpose
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Counter, EventTriggered, InterProcess, Stimulus
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.timing.demand.job_paths import most_in_a_job
 from amalthea_uros.timing.event_models import Delayed, Downsampled, EventModel, Multiplied, aggregated, thinned
@@ -26,11 +26,6 @@ from amalthea_uros.timing.event_models.stimuli import event_model_of
 from amalthea_uros.timing.jobs.counters import CounterFlaws, is_always
 from amalthea_uros.timing.jobs.positions import ActivityPosition
 from amalthea_uros.units import Time
-
-
-class UnknownActivationError(Exception):
-    """The activation pattern of a process is unknown or unbounded; the text says why."""
-
 
 #: The event model of the completions of a process, given a function that computes that of its activations.
 Output: TypeAlias = Callable[[Process, Callable[[], EventModel]], EventModel]
@@ -98,7 +93,7 @@ class Activations:
         for name in self.system.processes:
             try:
                 positions = self.dataflow.events.positions(name)
-            except UnresolvedError as error:
+            except UnknownError as error:
                 self._incomplete = str(error)
                 continue
             for position in positions:
@@ -115,16 +110,16 @@ class Activations:
 
         Raises
         ------
-        UnknownActivationError : it is never activated, or its activations are unbounded.
+        UnknownError : it is never activated, or its activations are unbounded.
         """
         return self._of_process(process, output, ())
 
     def _of_process(self, process: Process, output: Output, above: tuple[str, ...]) -> EventModel:
         if process.name in above:
-            raise UnknownActivationError(f"it is triggered in a cycle: {' -> '.join((*above, process.name))}")
+            raise UnknownError(f"it is triggered in a cycle: {' -> '.join((*above, process.name))}")
         found = tuple(self._of_stimulus(name, output, (*above, process.name)) for name in process.stimuli)
         if not found:
-            raise UnknownActivationError(self._why_never(process))
+            raise UnknownError(self._why_never(process))
         return self._answered(process, aggregated(found))
 
     def _why_never(self, process: Process) -> str:
@@ -142,13 +137,13 @@ class Activations:
             return messages
         answer = transmission.agent
         if answer.most is None:
-            raise UnknownActivationError(f"how long {self.system.network.agent!r} takes to acknowledge a message is not stated")
+            raise UnknownError(f"how long {self.system.network.agent!r} takes to acknowledge a message is not stated")
         return Delayed(messages, answer.most - answer.least) if answer.most > answer.least else messages
 
     def _of_stimulus(self, name: str, output: Output, above: tuple[str, ...]) -> EventModel:
         stimulus = self.system.stimuli_by_name.get(name)
         if stimulus is None:
-            raise UnknownActivationError(f"the stimulus {name!r} is not defined in the model")
+            raise UnknownError(f"the stimulus {name!r} is not defined in the model")
         found = self._occurrences(stimulus, output, above)
         return found if stimulus.condition is None else thinned(found)
 
@@ -158,15 +153,15 @@ class Activations:
         if not isinstance(stimulus, InterProcess | EventTriggered):
             stated = event_model_of(stimulus, self.system)
             if stated is None:
-                raise UnknownActivationError(f"the rate of the stimulus {name!r} is unbounded")
+                raise UnknownError(f"the rate of the stimulus {name!r} is unbounded")
             return stated
         if self._incomplete:
-            raise UnknownActivationError(f"the processes that trigger {name!r} are unknown: {self._incomplete}")
+            raise UnknownError(f"the processes that trigger {name!r} are unknown: {self._incomplete}")
         causes = self.causes(stimulus)
         if not causes:
-            raise UnknownActivationError(f"no process triggers {name!r}")
+            raise UnknownError(f"no process triggers {name!r}")
         if flaw := self.flaws.of_stimulus(name):
-            raise UnknownActivationError(flaw)
+            raise UnknownError(flaw)
         by_process = groupby(sorted(causes, key=_process_name), key=_process_name)
         caused = (self._caused_by_process(list(group), output, above) for _, group in by_process)
         return _counted(aggregated(tuple(chain.from_iterable(caused))), stimulus.counter)
@@ -190,7 +185,7 @@ class Activations:
 
         Raises
         ------
-        UnknownActivationError : they can occur otherwise, too, or it is unknown where.
+        UnknownError : they can occur otherwise, too, or it is unknown where.
         """
         if isinstance(stimulus, InterProcess):
             return self._triggers.get(stimulus.name, [])
@@ -198,11 +193,11 @@ class Activations:
         for name in stimulus.events:
             event = self.system.events_by_name.get(name)
             if event is None:
-                raise UnknownActivationError(f"the event {name!r} is not defined in the model")
+                raise UnknownError(f"the event {name!r} is not defined in the model")
             self._check(event)
             causes = [Cause(position) for position in self.dataflow.events.raising(event) if position.times != 0]
             if not causes and isinstance(event, CustomEvent):
-                raise UnknownActivationError(f"no activity in the model raises the event {name!r}")
+                raise UnknownError(f"no activity in the model raises the event {name!r}")
             found += causes
         return found
 
@@ -212,7 +207,7 @@ class Activations:
             self._effects = {}
             for stimulus in self.system.stimuli.stimuli:
                 if isinstance(stimulus, InterProcess | EventTriggered):
-                    with suppress(UnknownActivationError):
+                    with suppress(UnknownError):
                         for cause in self.causes(stimulus):
                             self._triggering.setdefault(stimulus.name, {})[cause.process.name] = None
                             if self.flaws.of_stimulus(stimulus.name):
@@ -244,7 +239,7 @@ class Activations:
 
         Raises
         ------
-        UnknownActivationError : it is unbounded.
+        UnknownError : it is unbounded.
         """
         stimuli = [self.system.stimuli_by_name.get(name) for name in process.stimuli]
         names = [each.name for each in stimuli if each is not None and not isinstance(each, InterProcess | EventTriggered)]
@@ -253,19 +248,17 @@ class Activations:
     def _check(self, event: Event) -> None:
         """Refuse events that have other causes than activities of processes."""
         if isinstance(event, RunnableEvent) and event.change not in (RunnableChange.START, RunnableChange.TERMINATE):
-            raise UnknownActivationError(f"the rate of the event {event.name!r} is unbounded")
+            raise UnknownError(f"the rate of the event {event.name!r} is unbounded")
         if isinstance(event, ModeLabelEvent):
             assigned = {mode.label for stimulus in self.system.stimuli.stimuli for mode in stimulus.assignments}
             if event.label is None or event.label in assigned:
-                raise UnknownActivationError(f"stimuli also raise the event {event.name!r}")
+                raise UnknownError(f"stimuli also raise the event {event.name!r}")
 
     def _caused_by(self, cause: Cause, output: Output, above: tuple[str, ...]) -> EventModel:
         """The events that a process causes between its start and its end."""
         times = cause.position.times
         if times is None:
-            raise UnknownActivationError(
-                f"the maximum number of times that a job of {cause.process.name!r} triggers it is unknown"
-            )
+            raise UnknownError(f"the maximum number of times that a job of {cause.process.name!r} triggers it is unknown")
         found = _counted(output(cause.process, lambda: self._of_process(cause.process, output, above)), cause.position.counter)
         return _counted(found if times == 1 else Multiplied(found, times), cause.counter)
 

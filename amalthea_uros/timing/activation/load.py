@@ -7,10 +7,10 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from fractions import Fraction
 
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import Activity
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.activation.activations import Activations, Effect, UnknownActivationError
-from amalthea_uros.timing.basics.notes import UnknownDemandError
+from amalthea_uros.timing.activation.activations import Activations, Effect
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.timing.demand.job_paths import NOTHING, JobDemand, JobPaths, total
 from amalthea_uros.timing.demand.model import DemandModel
@@ -21,7 +21,7 @@ def activation_rates(system: System, activations: Activations) -> Mapping[str, F
     """Maximum number of activations per picosecond of each process, in the long run; processes without a bound are left out."""
     found: dict[str, Fraction] = {}
     for process in system.processes.values():
-        with suppress(UnknownActivationError):
+        with suppress(UnknownError):
             found[process.name] = activations.of(process).rate
     return found
 
@@ -30,7 +30,7 @@ def suppressible(system: System, activations: Activations) -> frozenset[str]:
     """The processes of which conditions of stimuli may suppress activations."""
     found = set()
     for process in system.processes.values():
-        with suppress(UnknownActivationError):
+        with suppress(UnknownError):
             if activations.of(process).can_be_suppressed:
                 found.add(process.name)
     return frozenset(found)
@@ -134,7 +134,7 @@ def certain_loads(
         activations = Activations(demand_model.system, Dataflow(demand_model.system))
     rates: dict[str, Fraction] = {}
     for process in demand_model.system.processes.values():
-        with suppress(UnknownActivationError):
+        with suppress(UnknownError):
             rates[process.name] = activations.external_rate(process)
     return {
         core: CoreLoad(core, demands, activations, demand_model).load(rates).certain
@@ -152,6 +152,6 @@ def _demands(
         if process is None or len(allowed) > 1 or name in uncertain:
             continue
         (core,) = allowed
-        with suppress(UnknownDemandError):
+        with suppress(UnknownError):
             found.setdefault(core, {})[name] = demand_model.of_process(process, core)
     return found

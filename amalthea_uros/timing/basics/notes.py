@@ -8,10 +8,6 @@ from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.perf.named import Named
 
 
-class UnknownDemandError(Exception):
-    """The execution demand of a process is unknown; the text says why."""
-
-
 @dataclass(slots=True)
 class Notes:
     """Collects findings and assumptions, each of them once."""

@@ -15,6 +15,7 @@ from dataclasses import dataclass, field
 from functools import reduce
 from typing import TypeAlias
 
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import (
     Activity,
     Call,
@@ -39,10 +40,6 @@ Held: TypeAlias = frozenset[str]
 #: The maximum demand of one activity, and the branches of a switch that can be taken.
 DemandOf: TypeAlias = Callable[[Activity], Time]
 Branches: TypeAlias = Callable[[Switch], Sequence[tuple[Activity, ...]]]
-
-
-class UnclearLocksError(Exception):
-    """It is unknown where a job holds a semaphore; the text says why."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -174,11 +171,11 @@ class StretchWalk:
 
         Raises
         ------
-        UnclearLocksError : it does not release what it requests on every way, or requests what it holds.
+        UnknownError : it does not release what it requests on every way, or requests what it holds.
         """
         found, held = self._through(activities, frozenset(), False, ())
         if held:
-            raise UnclearLocksError(f"it does not release the semaphore {min(held)!r}")
+            raise UnknownError(f"it does not release the semaphore {min(held)!r}")
         return found
 
     def _is_kept_off(self, held: Held, inside: bool) -> bool:
@@ -229,7 +226,7 @@ class StretchWalk:
             case SchedulePoint() if self.kept_off.throughout:
                 return self._executed(activity, held, inside).then(self._point(held, inside)), held
             case Terminate() if held:
-                raise UnclearLocksError(f"it terminates while it holds the semaphore {min(held)!r}")
+                raise UnknownError(f"it terminates while it holds the semaphore {min(held)!r}")
         return self._executed(activity, held, inside), held
 
     def _executed(self, activity: Activity, held: Held, inside: bool) -> Stretches:
@@ -245,7 +242,7 @@ class StretchWalk:
         """The stretches of activities that may be skipped or repeated, which must release what they request."""
         found, after = self._through(activities, held, inside, above)
         if after != held:
-            raise UnclearLocksError(f"{where} requests or releases the semaphore {min(after ^ held)!r} only")
+            raise UnknownError(f"{where} requests or releases the semaphore {min(after ^ held)!r} only")
         return found, held
 
     def _one_of(
@@ -257,9 +254,7 @@ class StretchWalk:
         after = found[0][1]
         for _, other in found:
             if other != after:
-                raise UnclearLocksError(
-                    f"only some branches of a switch request or release the semaphore {min(other ^ after)!r}"
-                )
+                raise UnknownError(f"only some branches of a switch request or release the semaphore {min(other ^ after)!r}")
         return reduce(Stretches.either, (stretches for stretches, _ in found)), after
 
     def _in_any_order(self, activities: Sequence[Activity], held: Held, inside: bool, above: tuple[str, ...]) -> Stretches:
@@ -300,7 +295,7 @@ class StretchWalk:
                 found = found.repeated(self.demand_of(call))
         if is_conditional and after != held:
             name = min(after ^ held)
-            raise UnclearLocksError(f"only some jobs call {runnable.name!r}, which requests or releases the semaphore {name!r}")
+            raise UnknownError(f"only some jobs call {runnable.name!r}, which requests or releases the semaphore {name!r}")
         if yields and not self._is_kept_off(after, inside):
             found = found.then(AFTER_CALL)
         return (NOTHING.either(found) if is_conditional else found), after
@@ -328,10 +323,10 @@ class StretchWalk:
 def _held_after(access: SemaphoreAccess, held: Held) -> Held:
     if access.operation is SemaphoreOperation.RELEASE:
         if access.semaphore not in held:
-            raise UnclearLocksError(f"it releases the semaphore {access.semaphore!r}, which it does not hold")
+            raise UnknownError(f"it releases the semaphore {access.semaphore!r}, which it does not hold")
         return held - {access.semaphore}
     if access.semaphore in held:
-        raise UnclearLocksError(f"it requests the semaphore {access.semaphore!r}, which it holds already")
+        raise UnknownError(f"it requests the semaphore {access.semaphore!r}, which it holds already")
     return held | {access.semaphore}
 
 

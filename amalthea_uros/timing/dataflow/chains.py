@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise
 
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.events import ChainReference, EventChain, EventSet, Parallel, Segment
 from amalthea_uros.perf.events import Sequence as InSequence
 from amalthea_uros.perf.system import System
@@ -18,10 +19,6 @@ from amalthea_uros.perf.system import System
 #: A chain with more routes, or with more events in all its branches, is not evaluated.
 MAX_ROUTES = 256
 MAX_EVENTS = 10_000
-
-
-class UnfoldError(Exception):
-    """A chain cannot be made a sequence of events; the text says why."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,16 +46,16 @@ def unfold(chain: EventChain, system: System) -> tuple[Unfolded, tuple[str, ...]
 
     Raises
     ------
-    UnfoldError : it is part of itself, refers to something missing, or has less than two events.
+    UnknownError : it is part of itself, refers to something missing, or has less than two events.
     """
     unfolding = _Unfolding(system)
     for part in _parts_first(chain, system):
         unfolding.unfolded[part.name] = unfolding.item(part)
     found = unfolding.unfolded[chain.name]
     if routes(found) > MAX_ROUTES:
-        raise UnfoldError(f"it has more than {MAX_ROUTES} routes")
+        raise UnknownError(f"it has more than {MAX_ROUTES} routes")
     if any(len(events) < 2 for events in sequences(found)):
-        raise UnfoldError("it has no stimulus or no response, and no segment that defines one")
+        raise UnknownError("it has no stimulus or no response, and no segment that defines one")
     return found, tuple(dict.fromkeys(unfolding.left_out))
 
 
@@ -76,9 +73,9 @@ def _parts_first(chain: EventChain, system: System) -> list[EventChain]:
         elif reference in path:
             above = list(path)
             cycle = " -> ".join((*above[above.index(reference) :], reference))
-            raise UnfoldError(f"it contains itself: {cycle}")
+            raise UnknownError(f"it contains itself: {cycle}")
         elif reference not in chains:
-            raise UnfoldError(f"its part {reference!r} is not defined in the model")
+            raise UnknownError(f"its part {reference!r} is not defined in the model")
         else:
             path[reference] = _references(chains[reference])
     return list(found.values())
@@ -146,7 +143,7 @@ class _Unfolding:
             part = self.item(item) if isinstance(item, Segment) else self.unfolded[item.chain]
             size += _size(part)
             if size > MAX_EVENTS:
-                raise UnfoldError(f"it has more than {MAX_EVENTS:,} events in all its branches")
+                raise UnknownError(f"it has more than {MAX_EVENTS:,} events in all its branches")
             yield part
 
     def _event(self, name: str | None) -> Unfolded:
@@ -154,7 +151,7 @@ class _Unfolding:
             return ()
         event = self.system.events_by_name.get(name)
         if event is None:
-            raise UnfoldError(f"the event {name!r} is not defined in the model")
+            raise UnknownError(f"the event {name!r} is not defined in the model")
         if not isinstance(event, EventSet):
             return (name,)
         parts = tuple(self._event(inner) for inner in event.events)

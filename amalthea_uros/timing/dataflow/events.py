@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import TypeAlias
 
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import (
     AccessKind,
     Activity,
@@ -41,17 +42,13 @@ from amalthea_uros.perf.events import (
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.jobs.counters import CallSites
-from amalthea_uros.timing.jobs.positions import ActivityPosition, TooComplexError, positions
+from amalthea_uros.timing.jobs.positions import ActivityPosition, positions
 
 #: The class of the events that an activity can raise, and the name of the object that it accesses.
 _Accessed: TypeAlias = tuple[type[Event], str]
 
 
-class UnresolvedError(Exception):
-    """An event cannot be located in a process; the text says why."""
-
-
-class UnraisedError(UnresolvedError):
+class UnraisedError(UnknownError):
     """No activity of the model raises an event, so that it is unknown when it occurs."""
 
 
@@ -108,17 +105,17 @@ class EventLocator:
 
         Raises
         ------
-        UnresolvedError : it executes too many activities.
+        UnknownError : it executes too many activities.
         """
         found = self._positions.get(process)
         if found is None:
             try:
                 found = positions(self.system.processes[process], self.system, self.sites)
-            except TooComplexError as error:
+            except UnknownError as error:
                 found = str(error)
             self._positions[process] = found
         if isinstance(found, str):
-            raise UnresolvedError(found)
+            raise UnknownError(found)
         return found
 
     def all_positions(self) -> Iterator[ActivityPosition]:
@@ -131,7 +128,7 @@ class EventLocator:
 
         Raises
         ------
-        UnresolvedError : a process in which it could occur executes too many activities.
+        UnknownError : a process in which it could occur executes too many activities.
         """
         process = None if isinstance(event, CustomEvent) else getattr(event, "process", None)
         if process is not None and process not in self.system.processes:
@@ -171,7 +168,7 @@ class EventLocator:
 
         Raises
         ------
-        UnresolvedError : it does not occur in a process, or cannot be analysed.
+        UnknownError : it does not occur in a process, or cannot be analysed.
         """
         found = list(self._occurrences(event))
         if not found:
@@ -183,23 +180,23 @@ class EventLocator:
             case ProcessEvent():
                 when = _PROCESS_PHASES.get(event.change) if event.change else None
                 if when is None:
-                    raise UnresolvedError(_no_single_time(event))
+                    raise UnknownError(_no_single_time(event))
                 return [EventOccurrence(process, when) for process in self._processes(event.process)]
             case StimulusEvent():
                 activated = [p for p in self.system.processes.values() if event.stimulus in p.stimuli]
                 return [EventOccurrence(process, JobPhase.ACTIVATION) for process in activated]
             case RunnableEvent():
                 if event.change not in (RunnableChange.START, RunnableChange.TERMINATE):
-                    raise UnresolvedError(_no_single_time(event))
+                    raise UnknownError(_no_single_time(event))
                 when = JobPhase.BEFORE if event.change is RunnableChange.START else JobPhase.AFTER
                 return [EventOccurrence(p.process, when, p) for p in self.raising(event)]
             case CustomEvent() | LabelEvent() | ModeLabelEvent() | ChannelEvent() | SemaphoreEvent():
                 return [EventOccurrence(p.process, JobPhase.AFTER, p) for p in self.raising(event)]
-        raise UnresolvedError(f"the kind of the event {event.name!r} cannot be analysed")
+        raise UnknownError(f"the kind of the event {event.name!r} cannot be analysed")
 
     def _processes(self, name: str | None) -> list[Process]:
         if name is None:
-            raise UnresolvedError("an event has no process")
+            raise UnknownError("an event has no process")
         return [self.system.processes[name]] if name in self.system.processes else []
 
 

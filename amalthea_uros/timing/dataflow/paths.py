@@ -8,6 +8,7 @@ from itertools import pairwise, product
 
 import networkx as nx
 
+from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.activities import Call
 from amalthea_uros.perf.events import (
     Event,
@@ -29,10 +30,6 @@ MAX_PATHS = 100
 MAX_PROCESSES = 12
 #: More ways through processes are not examined.
 MAX_WAYS = 10_000
-
-
-class UnknownEndError(Exception):
-    """A path cannot start or end at a name, because it is undefined."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,8 +80,8 @@ def paths(system: System, start: str, end: str) -> Paths:
 
     Raises
     ------
-    UnknownEndError : there is no process, runnable or label of a name.
-    UnresolvedError : a process executes too many activities to be followed.
+    InvalidArgumentError : there is no process, runnable or label of a name.
+    UnknownError : a process executes too many activities to be followed.
     """
     dataflow = Dataflow(system)
     graph = _graph(dataflow)
@@ -183,7 +180,7 @@ def _ends(name: str, dataflow: Dataflow, accesses: NamesOf) -> list[tuple[str, s
         return [(process, name) for process in dict.fromkeys(calling)]
     if name in system.labels:
         return list(dict.fromkeys((p.process.name, None) for p in everywhere if name in accesses(p)))
-    raise UnknownEndError(f"there is no process, runnable or label {name!r}")
+    raise InvalidArgumentError(f"there is no process, runnable or label {name!r}")
 
 
 def _graph(dataflow: Dataflow) -> nx.DiGraph:

@@ -12,16 +12,17 @@ from dataclasses import dataclass
 from itertools import pairwise, product
 from math import prod
 
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.events import Event, EventChain
-from amalthea_uros.timing.dataflow.chains import MAX_ROUTES, Unfolded, UnfoldError, sequences, unfold
-from amalthea_uros.timing.dataflow.events import EventOccurrence, UnresolvedError
+from amalthea_uros.timing.dataflow.chains import MAX_ROUTES, Unfolded, sequences, unfold
+from amalthea_uros.timing.dataflow.events import EventOccurrence
 from amalthea_uros.timing.dataflow.links import GAPS, UNTIMED, Dataflow, Link, LinkKind
 
 #: More combinations of occurrences of the events of one sequence are not tried.
 MAX_CANDIDATES = 10_000
 
 
-class UnlinkedError(UnresolvedError):
+class UnlinkedError(UnknownError):
     """Nothing takes the effect from an event of a chain to the next one.
 
     Attributes
@@ -60,7 +61,7 @@ def is_linked(first: Event, then: Event, dataflow: Dataflow) -> bool:
         routes([first, then], dataflow)
     except UnlinkedError:
         return False
-    except UnresolvedError:
+    except UnknownError:
         return True
     return True
 
@@ -70,7 +71,7 @@ def routes(events: Sequence[Event], dataflow: Dataflow) -> list[Route]:
 
     Raises
     ------
-    UnresolvedError : an event cannot be located, nothing links it to the next one, or there are too many routes.
+    UnknownError : an event cannot be located, nothing links it to the next one, or there are too many routes.
     """
     found = _least_gaps(events, dataflow)
     gaps = dict.fromkeys(gap for route in found for gap in route.gaps)
@@ -84,7 +85,7 @@ def routes_of_ways(unfolded: Unfolded, dataflow: Dataflow) -> dict[tuple[str, ..
 
     Raises
     ------
-    UnresolvedError : an event cannot be located, nothing links it to the next one, or there are too many routes.
+    UnknownError : an event cannot be located, nothing links it to the next one, or there are too many routes.
     """
     events = dataflow.system.events_by_name
     found: dict[tuple[str, ...], list[Route]] = {}
@@ -106,7 +107,7 @@ def corresponding(first: Event, then: Event, dataflow: Dataflow) -> list[Route]:
 
     Raises
     ------
-    UnresolvedError : an event cannot be located, or there are too many routes.
+    UnknownError : an event cannot be located, or there are too many routes.
     """
     found = _least_gaps([first, then], dataflow)
     one_to_one = [route for route in found if route.links[0].kind in (LinkKind.JOB, LinkKind.TRIGGER)]
@@ -117,11 +118,11 @@ def _least_gaps(events: Sequence[Event], dataflow: Dataflow) -> list[Route]:
     """The routes with the fewest events that are not linked to the next one."""
     choices = [dataflow.events.of(event) for event in events]
     if prod(map(len, choices)) > MAX_CANDIDATES:
-        raise UnresolvedError("its events occur in too many processes; set the process of each event")
+        raise UnknownError("its events occur in too many processes; set the process of each event")
     found = _occurrences_with_least_gaps(choices, dataflow)
     # Occurrences alone can be more.
     if sum(prod(map(len, links)) for _, links in found) > max(MAX_ROUTES, len(found)):
-        raise UnresolvedError(f"it has more than {MAX_ROUTES} routes, as several links can take the effect on")
+        raise UnknownError(f"it has more than {MAX_ROUTES} routes, as several links can take the effect on")
     names = tuple(event.name for event in events)
     return [Route(names, occurrences, links) for occurrences, alternatives in found for links in product(*alternatives)]
 
@@ -155,7 +156,7 @@ def crosses(chain: EventChain, dataflow: Dataflow) -> bool:
     try:
         unfolded = unfold(chain, system)[0]
         names = {name for way in sequences(unfolded) for name in way}
-    except UnfoldError:
+    except UnknownError:
         return False  # the analysis of chains reports it
     return any(
         process in system.transmissions or process in system.executor_of_task
@@ -168,5 +169,5 @@ def _processes(event: Event, dataflow: Dataflow) -> set[str]:
     """The processes in which an event can occur."""
     try:
         return {occurrence.process.name for occurrence in dataflow.events.of(event)}
-    except UnresolvedError:
+    except UnknownError:
         return set()

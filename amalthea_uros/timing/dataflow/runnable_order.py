@@ -10,11 +10,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import Call, Group, Trigger
 from amalthea_uros.perf.constraints import OrderConstraint, Ordering
 from amalthea_uros.perf.stimuli import InterProcess, Periodic
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.dataflow.events import EventLocator, UnresolvedError
+from amalthea_uros.timing.dataflow.events import EventLocator
 from amalthea_uros.timing.jobs.counters import is_always
 from amalthea_uros.timing.jobs.positions import ActivityPosition, can_be_skipped, ends_early
 
@@ -41,15 +42,11 @@ class OrderScope:
         return tuple(dict.fromkeys(position.process.name for position in self.together.values()))
 
 
-class _OpenError(Exception):
-    """It is unknown which executions belong together; the text says why."""
-
-
 def order_scope(constraint: OrderConstraint, system: System, events: EventLocator) -> OrderScope:
     """Where an order constraint holds."""
     try:
         return _scope(constraint, system, events)
-    except (_OpenError, UnresolvedError) as error:
+    except UnknownError as error:
         return OrderScope(reason=str(error))
 
 
@@ -61,7 +58,7 @@ def _scope(constraint: OrderConstraint, system: System, events: EventLocator) ->
     everywhere = set().union(*callers.values())
     elsewhere = [name for name in sorted(wanted - everywhere) for other in system.processes if _calls(other, {name}, events)]
     if callers and elsewhere:
-        raise _OpenError(f"{elsewhere[0]!r} is only called by processes outside of the scope")
+        raise UnknownError(f"{elsewhere[0]!r} is only called by processes outside of the scope")
     if everywhere < wanted or all(names == wanted for names in callers.values()):
         for call in (call for found in calls.values() for call in found):
             _require_direct(call)
@@ -104,7 +101,7 @@ def called_runnable(call: ActivityPosition) -> str:
 def _require_direct(call: ActivityPosition) -> None:
     """Refuse a call within a runnable: what is in between then is not stated, and neither is what ends first."""
     if call.runnable is not None:
-        raise _OpenError(f"{called_runnable(call)!r} is called by the runnable {call.runnable!r}, and not by a process")
+        raise UnknownError(f"{called_runnable(call)!r} is called by the runnable {call.runnable!r}, and not by a process")
 
 
 def _together(calls: Sequence[ActivityPosition], system: System, events: EventLocator) -> Mapping[str, ActivityPosition]:
@@ -113,16 +110,16 @@ def _together(calls: Sequence[ActivityPosition], system: System, events: EventLo
         name = called_runnable(call)
         _require_direct(call)
         if name in found:
-            raise _OpenError(
+            raise UnknownError(
                 f"{name!r} is called at several positions, so it is unknown which of its executions belong to the others"
             )
         if not is_once_per_job(call, system) or any(map(ends_early, events.positions(call.process.name))):
-            raise _OpenError(f"jobs of {call.process.name!r} need not execute {name!r} exactly once")
+            raise UnknownError(f"jobs of {call.process.name!r} need not execute {name!r} exactly once")
         found[name] = call
     sources = {_source(call.process.name, system, events): call.process.name for call in found.values()}
     if len(sources) > 1:
         one, other = list(sources.values())[:2]
-        raise _OpenError(f"{one!r} and {other!r} are not activated equally often, so their executions do not correspond")
+        raise UnknownError(f"{one!r} and {other!r} are not activated equally often, so their executions do not correspond")
     return found
 
 
@@ -130,7 +127,7 @@ def are_activated_together(one: str, other: str, system: System, events: EventLo
     """Whether it is certain that two processes are activated equally often."""
     try:
         return one == other or _source(one, system, events) == _source(other, system, events)
-    except _OpenError:
+    except UnknownError:
         return False
 
 
@@ -167,5 +164,5 @@ def _source(process: str, system: System, events: EventLocator, above: frozenset
             if len(fired) == 1 and is_once_per_job(fired[0], system):
                 return _source(fired[0].process.name, system, events, above | {process})
     if stimulus is None:
-        raise _OpenError(f"{process!r} is not activated by a single stimulus, so its executions do not correspond to others")
+        raise UnknownError(f"{process!r} is not activated by a single stimulus, so its executions do not correspond to others")
     return stimulus.name

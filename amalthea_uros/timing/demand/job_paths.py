@@ -14,9 +14,9 @@ from functools import reduce
 from operator import add
 from types import MappingProxyType
 
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import Activity, Call, Loop, ProbabilitySwitch, Switch, inner_activities
 from amalthea_uros.perf.stimuli import Counter
-from amalthea_uros.timing.basics.notes import UnknownDemandError
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.jobs.counters import ALWAYS
 from amalthea_uros.timing.jobs.counts import bounds_of, count_of
@@ -192,7 +192,7 @@ def _counted(found: JobDemand, position: ActivityPosition, counter: Counter, rea
 def _repeated(found: JobDemand, call: Call) -> JobDemand:
     try:
         _, average, _ = count_of(call.times)
-    except UnknownDemandError:
+    except UnknownError:
         return NOTHING
     least, most = bounds_of(call.times)
     # Without a maximum, the demand of the process is unknown.

@@ -13,12 +13,13 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from math import ceil, floor
 
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import AccessKind
 from amalthea_uros.perf.distributions import Distribution, highest, lowest
 from amalthea_uros.perf.hardware import Access, Cache, Connection, Interconnect, Latency, Memory
 from amalthea_uros.perf.named import Named
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.basics.notes import Notes, UnknownDemandError
+from amalthea_uros.timing.basics.notes import Notes
 from amalthea_uros.timing.demand.means import mean
 from amalthea_uros.timing.demand.multiframe import Frame
 from amalthea_uros.timing.scheduling.allocation import frequency_of
@@ -56,7 +57,7 @@ class MemoryAccess:
 
         Raises
         ------
-        UnknownDemandError : the latency is unknown.
+        UnknownError : the latency is unknown.
         """
         memory = self.system.memories.get(self.system.memory_of.get(label) or "")
         if memory is None:
@@ -84,10 +85,10 @@ class MemoryAccess:
         path = (min(times[0] for times in paths), max(paths, key=lambda times: times[2])[1], max(times[2] for times in paths))
         return _sum(path, _cycles(memory.latency, self._clock(memory.clock), memory.name))
 
-    def _unknown(self, reason: str, item: Named | None) -> UnknownDemandError:
+    def _unknown(self, reason: str, item: Named | None) -> UnknownError:
         """An error, which is also a finding about an object."""
         self.notes.warning("ANA008", reason, item)
-        return UnknownDemandError(reason)
+        return UnknownError(reason)
 
     def _size(self, name: str) -> int | None:
         """The size of a label, or of an element of a channel."""
@@ -120,9 +121,9 @@ def _latency(latency: Latency, kind: AccessKind, frequency: Frequency | None, si
     cycles = latency.read if kind is AccessKind.READ else latency.write
     if cycles is None and latency.rate:
         if size is None or size < 0:
-            raise UnknownDemandError(f"the size of data that pass {where!r} is {'unknown' if size is None else 'negative'}")
+            raise UnknownError(f"the size of data that pass {where!r} is {'unknown' if size is None else 'negative'}")
         if latency.rate < 0:
-            raise UnknownDemandError(f"the data rate of {where!r} is negative")
+            raise UnknownError(f"the data rate of {where!r} is negative")
         time = Fraction(size * SECOND, latency.rate)
         return (time, time, time)
     return _cycles(cycles, frequency, where)
@@ -132,12 +133,12 @@ def _cycles(cycles: Distribution[int] | None, frequency: Frequency | None, where
     if cycles is None:
         return ZERO
     if frequency is None:
-        raise UnknownDemandError(f"the clock frequency of {where!r} is unknown")
+        raise UnknownError(f"the clock frequency of {where!r} is unknown")
     minimum, maximum = lowest(cycles), highest(cycles)
     if minimum is None or maximum is None:
-        raise UnknownDemandError(f"the memory latency of {where!r} has no bounds")
+        raise UnknownError(f"the memory latency of {where!r} has no bounds")
     if not 0 <= minimum <= maximum:
-        raise UnknownDemandError(f"the memory latency of {where!r} is negative, or its bounds are in the wrong order")
+        raise UnknownError(f"the memory latency of {where!r} is negative, or its bounds are in the wrong order")
     one = time_of_ticks(1, frequency)
     return (minimum * one, mean(cycles) * one, maximum * one)
 

@@ -15,6 +15,7 @@ from fractions import Fraction
 from math import ceil, floor, inf
 
 from amalthea_uros._internal.graphs import bottom_up
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import (
     AccessKind,
     Activity,
@@ -45,17 +46,17 @@ from amalthea_uros.perf.software import Isr, Process, Runnable
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.limits import LIMIT
-from amalthea_uros.timing.basics.notes import Notes, UnknownDemandError
+from amalthea_uros.timing.basics.notes import Notes
 from amalthea_uros.timing.basics.settings import Memory, Settings
 from amalthea_uros.timing.demand.means import exact_sum, mean
 from amalthea_uros.timing.demand.memory import MemoryAccess
 from amalthea_uros.timing.demand.multiframe import Frame, MultiframeDemand
 from amalthea_uros.timing.demand.overheads import Overheads
-from amalthea_uros.timing.jobs.counters import CallSites, CounterFlaws, UncountableError, first_effect, is_always
+from amalthea_uros.timing.jobs.counters import CallSites, CounterFlaws, first_effect, is_always
 from amalthea_uros.timing.jobs.counts import count_of, is_average
 from amalthea_uros.timing.jobs.executed import MAX_CALL_DEPTH
 from amalthea_uros.timing.jobs.modes import holds
-from amalthea_uros.timing.jobs.positions import ActivityPosition, TooComplexError, ends_early, positions
+from amalthea_uros.timing.jobs.positions import ActivityPosition, ends_early, positions
 from amalthea_uros.timing.jobs.server_calls import obstacle, servers, with_direct_calls
 from amalthea_uros.timing.scheduling.allocation import frequency_of
 from amalthea_uros.units import Frequency, Time, time_of_ticks
@@ -107,12 +108,12 @@ class DemandModel:
 
         Raises
         ------
-        UnknownDemandError : some demand is unbounded, or the frequency of the core is unknown.
+        UnknownError : some demand is unbounded, or the frequency of the core is unknown.
         """
         if flaw := self.flaws.of_process(process):
-            raise UnknownDemandError(flaw)
+            raise UnknownError(flaw)
         if Terminate in self.system.activity_classes and any(map(ends_early, self._positions(process))):
-            raise UnknownDemandError("it can terminate before its last activity, which cannot be analysed")
+            raise UnknownError("it can terminate before its last activity, which cannot be analysed")
         frames = self._frames(process.activities, core, ())
         if self.settings.memory is Memory.IMPLICIT:
             frames += [frame for _, frame in self.copies(process, core)]
@@ -174,10 +175,7 @@ class DemandModel:
 
     def _positions(self, process: Process) -> Sequence[ActivityPosition]:
         """Everything that the jobs of a process do."""
-        try:
-            return positions(process, self.system, self.sites)
-        except TooComplexError as error:
-            raise UnknownDemandError(str(error)) from None
+        return positions(process, self.system, self.sites)
 
     def _frames(self, activities: Iterable[Activity], core: str, above: tuple[str, ...]) -> list[Frame]:
         # Most activities are accesses.
@@ -225,17 +223,17 @@ class DemandModel:
             case Loop(condition=condition):
                 if holds(condition, self.settings.modes) is False:
                     return []
-                raise UnknownDemandError("it contains a loop without an upper bound on the number of iterations")
+                raise UnknownError("it contains a loop without an upper bound on the number of iterations")
             case ServerCall() | SenderReceiverAccess() if reason := self._obstacle(activity):
-                raise UnknownDemandError(reason)
+                raise UnknownError(reason)
             case SenderReceiverAccess(label=label, kind=kind) if self.settings.memory is not Memory.NONE:
                 return [self.access(core, label, kind, None)]
             case WaitEvent():
-                raise UnknownDemandError("it waits for events without a timeout, so there is no upper bound")
+                raise UnknownError("it waits for events without a timeout, so there is no upper bound")
             case Incomplete(reason=reason, is_access=is_access) if not is_access or self.settings.memory is not Memory.NONE:
-                raise UnknownDemandError(f"it contains {reason}")
+                raise UnknownError(f"it contains {reason}")
             case Migrate():
-                raise UnknownDemandError("it migrates to another scheduler, which cannot be analysed")
+                raise UnknownError("it migrates to another scheduler, which cannot be analysed")
         return []
 
     def _obstacle(self, activity: ServerCall | SenderReceiverAccess) -> str:
@@ -262,17 +260,17 @@ class DemandModel:
         """The ticks of a demand on a core; raises as `of_process`."""
         ticks = dict(demand.by_core_type).get(self.system.cores[core].type or "", demand.ticks)
         if ticks is None:
-            raise UnknownDemandError(f"ticks have no value for the core {core!r}")
+            raise UnknownError(f"ticks have no value for the core {core!r}")
         return ticks
 
     def _call(self, call: Call, core: str, above: tuple[str, ...]) -> Sequence[Frame]:
         runnable = self.system.runnables.get(call.runnable)
         if runnable is None:
-            raise UnknownDemandError(f"the runnable {call.runnable!r} is not defined in the model")
+            raise UnknownError(f"the runnable {call.runnable!r} is not defined in the model")
         if runnable.name in above:
-            raise UnknownDemandError(f"the runnable {runnable.name!r} calls itself")
+            raise UnknownError(f"the runnable {runnable.name!r} calls itself")
         if len(above) > MAX_CALL_DEPTH:
-            raise UnknownDemandError(f"calls are nested deeper than {MAX_CALL_DEPTH} levels")
+            raise UnknownError(f"calls are nested deeper than {MAX_CALL_DEPTH} levels")
         frames = self._runnable(runnable, core, above)
         match runnable.condition and holds(runnable.condition, self.settings.modes):
             case False:
@@ -287,7 +285,7 @@ class DemandModel:
     def _require_maximum(self, times: Count | float | None) -> None:
         """Check that the maximum of a number of calls or accesses is known; raises as `of_process`."""
         if is_average(times):
-            raise UnknownDemandError(f"a number of calls or accesses, {times:g}, is an average without a maximum")
+            raise UnknownError(f"a number of calls or accesses, {times:g}, is an average without a maximum")
         if isinstance(times, float):
             self.notes.assume("a single whole number of calls or accesses is exact")
 
@@ -308,7 +306,7 @@ class DemandModel:
         inner = Counter(prescaler=frame.prescaler, offset=frame.offset, is_phase_known=frame.is_certain)
         try:
             counter = self.sites.lifted(call, inner)
-        except UncountableError:
+        except UnknownError:
             prescaler = frame.prescaler * (call.counter.prescaler if call.counter else 1)
             return Frame(worst=frame.worst, best=0, average=frame.average / prescaler, is_certain=False, least=frame.least)
         if counter is None:
@@ -330,7 +328,7 @@ class DemandModel:
         self._in_preparation.add(core)
         for name in bottom_up([runnable.name], self._called)[:-1]:
             if (name, core) not in self._of_runnables:
-                with suppress(UnknownDemandError):
+                with suppress(UnknownError):
                     frames = self._frames(self.system.runnables[name].activities, core, (name,))
                     self._of_runnables[name, core] = _summed(frames)
         self._in_preparation.remove(core)
@@ -346,14 +344,14 @@ class DemandModel:
         tick = self.time_of_tick(factor, core)
         worst, best = highest(ticks), lowest(ticks)
         if worst is None or best is None:
-            raise UnknownDemandError("a distribution of ticks has no bounds")
+            raise UnknownError("a distribution of ticks has no bounds")
         # What an invalid value stands for is unknown.
         if best < 0:
-            raise UnknownDemandError("a number of ticks is negative")
+            raise UnknownError("a number of ticks is negative")
         if best > worst:
-            raise UnknownDemandError("the minimum of a number of ticks is greater than the maximum")
+            raise UnknownError("the minimum of a number of ticks is greater than the maximum")
         if worst * tick > LIMIT:
-            raise UnknownDemandError("an execution time exceeds 13 days")
+            raise UnknownError("an execution time exceeds 13 days")
         return Frame(worst=ceil(worst * tick), best=floor(best * tick), average=mean(ticks) * tick)
 
     def time_of_tick(self, factor: Fraction, core: str) -> int | Fraction:
@@ -361,13 +359,13 @@ class DemandModel:
 
         Raises
         ------
-        UnknownDemandError : the frequency of the core is unknown.
+        UnknownError : the frequency of the core is unknown.
         """
         key = (core, factor)
         if key not in self._times_of_ticks:
             frequency = self.frequency(core)
             if frequency is None:
-                raise UnknownDemandError(f"the clock frequency of the core {core!r} is unknown")
+                raise UnknownError(f"the clock frequency of the core {core!r} is unknown")
             found = time_of_ticks(1, frequency) * factor * self.time_base(core)
             self._times_of_ticks[key] = int(found) if found.denominator == 1 else found
         return self._times_of_ticks[key]
@@ -377,19 +375,19 @@ class DemandModel:
 
         Raises
         ------
-        UnknownDemandError : the type of the core does not define them.
+        UnknownError : the type of the core does not define them.
         """
         kind = next((t for t in self.system.hardware.core_types if t.name == self.system.cores[core].type), None)
         for feature in kind.features if kind else ():
             if feature.category == need:
                 if not 0 < feature.value < inf:
-                    raise UnknownDemandError(f"{feature.name!r} of the type of the core {core!r} is not positive and finite")
+                    raise UnknownError(f"{feature.name!r} of the type of the core {core!r} is not positive and finite")
                 is_rate = feature.name.startswith("IPC")
                 return 1 / Fraction(feature.value) if is_rate else Fraction(feature.value)
         if need == "Instructions":
             self.notes.assume("an instruction takes one tick unless the core type specifies it")
             return Fraction(1)
-        raise UnknownDemandError(f"the type of the core {core!r} does not define the ticks for {need!r}")
+        raise UnknownError(f"the type of the core {core!r} does not define the ticks for {need!r}")
 
 
 def _summed(frames: Sequence[Frame]) -> tuple[Frame, ...]:

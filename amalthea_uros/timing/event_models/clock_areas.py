@@ -13,16 +13,13 @@ from fractions import Fraction
 from itertools import count
 from math import ceil
 
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.stimuli import Clock, ClockFunction, ClockSteps, Curve
 from amalthea_uros.units import SECOND, Time
 
 _PI = Fraction("3.14159265358979323846264338327950288419716939937510")
 #: Unit of the fixed-point numbers in which the cosine is calculated.
 _ONE = 2**140
-
-
-class UnknownClockError(Exception):
-    """The frequency of a clock is invalid; the text says why."""
 
 
 class ClockArea(ABC):
@@ -136,16 +133,16 @@ def clock_area(clock: Clock) -> ClockArea:
 
     Raises
     ------
-    UnknownClockError : the period is not positive, or a frequency is negative.
+    UnknownError : the period is not positive, or a frequency is negative.
     """
     if clock.period is not None and clock.period <= 0:
-        raise UnknownClockError(f"the period of the clock {clock.name!r} is not positive")
+        raise UnknownError(f"the period of the clock {clock.name!r} is not positive")
     match clock:
         case ClockSteps():
             return _steps(clock)
         case ClockFunction(lowest=lowest, swing=swing, curve=curve):
             if lowest < 0 or swing < 0:
-                raise UnknownClockError(f"a frequency of the clock {clock.name!r} is negative")
+                raise UnknownError(f"a frequency of the clock {clock.name!r} is negative")
             return CurveArea(clock.period, _sine(clock) if curve is Curve.SINE else _triangle(clock))
 
 
@@ -154,7 +151,7 @@ def _steps(clock: ClockSteps) -> ClockArea:
     times, areas, frequencies = [0], [Fraction(0)], [Fraction(0)]
     for step in sorted(clock.steps, key=lambda step: step.time):
         if step.frequency < 0:
-            raise UnknownClockError(f"a frequency of the clock {clock.name!r} is negative")
+            raise UnknownError(f"a frequency of the clock {clock.name!r} is negative")
         if clock.period is not None and step.time >= clock.period:
             break
         start = max(0, step.time)

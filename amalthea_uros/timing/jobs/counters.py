@@ -15,6 +15,7 @@ from math import gcd
 from typing import TypeAlias
 
 from amalthea_uros._internal.graphs import bottom_up
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import (
     WITH_PARTS,
     Activity,
@@ -36,10 +37,6 @@ ALWAYS = Counter(prescaler=1, offset=1)
 
 #: A process or a runnable: whether it is a process, and its name.
 _Caller: TypeAlias = tuple[bool, str]
-
-
-class UncountableError(Exception):
-    """It is unknown in which executions of its caller something is executed."""
 
 
 def first_effect(counter: Counter) -> int:
@@ -133,21 +130,21 @@ class CallSites:
 
         Raises
         ------
-        UncountableError : the call is not reached exactly once in each execution, or the executions by others count, too.
+        UnknownError : the call is not reached exactly once in each execution, or the executions by others count, too.
         """
         if is_always(inner) and call.counter is None:
             return ALWAYS
         if call.counter is not None and call.counter.prescaler < 1:
-            raise UncountableError
+            raise UnknownError("which executions it counts is unknown")
         here = self._of_calls.get(id(call), [])
         if len(here) != 1 or not here[0].is_certain:
-            raise UncountableError
+            raise UnknownError("which executions it counts is unknown")
         (site,) = here
         every = self._of_runnables[call.runnable]
         if is_always(inner) or len(every) == 1:
             return composed(call.counter or ALWAYS, inner)
         if not all(other.caller == site.caller and other.is_ordered and _is_uncounted(other) for other in every):
-            raise UncountableError
+            raise UnknownError("which executions it counts is unknown")
         return of_one_in(inner, every.index(site) + 1, len(every))
 
     @cached_property

@@ -6,8 +6,8 @@ from fractions import Fraction
 from functools import lru_cache
 from math import isfinite
 
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import Count
-from amalthea_uros.timing.basics.notes import UnknownDemandError
 from amalthea_uros.units import down, up
 
 #: Minimum, mean and maximum number of a single execution.
@@ -19,7 +19,7 @@ def count_of(times: Count | float | None) -> tuple[int, Fraction, int]:
 
     Raises
     ------
-    UnknownDemandError : they are negative or in the wrong order, as if only a mean is stated and the maximum is 0.
+    UnknownError : they are negative or in the wrong order, as if only a mean is stated and the maximum is 0.
     """
     if times is None:
         return _ONCE
@@ -29,11 +29,9 @@ def count_of(times: Count | float | None) -> tuple[int, Fraction, int]:
             (times.least, Fraction(times.mean), times.most) if isinstance(times, Count) else (down(number), number, up(number))
         )
     except (ValueError, OverflowError):
-        raise UnknownDemandError("a number of calls or accesses is not finite") from None
+        raise UnknownError("a number of calls or accesses is not finite") from None
     if not 0 <= found[0] <= found[1] <= found[2]:
-        raise UnknownDemandError(
-            "a number of calls or accesses is negative, or its mean is not between its minimum and maximum"
-        )
+        raise UnknownError("a number of calls or accesses is negative, or its mean is not between its minimum and maximum")
     return found
 
 
@@ -49,6 +47,6 @@ def bounds_of(times: Count | float | None) -> tuple[int, int | None]:
         return 1, 1
     try:
         least, _, most = count_of(times)
-    except UnknownDemandError:
+    except UnknownError:
         return 0, None
     return (0, None) if is_average(times) else (least, most)

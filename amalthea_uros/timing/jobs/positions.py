@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple, TypeAlias
 
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import (
     WITH_PARTS,
     Activity,
@@ -23,7 +24,7 @@ from amalthea_uros.perf.conditions import Condition
 from amalthea_uros.perf.software import Process, Runnable
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.jobs.counters import ALWAYS, CallSites, UncountableError, reached
+from amalthea_uros.timing.jobs.counters import ALWAYS, CallSites, reached
 from amalthea_uros.timing.jobs.counts import bounds_of
 from amalthea_uros.timing.jobs.executed import MAX_CALL_DEPTH
 from amalthea_uros.timing.jobs.modes import holds
@@ -36,10 +37,6 @@ _WITH_CONDITIONS = (Call, Loop, Switch)
 
 #: Lists of activities, from the process inwards, each with an index into it.
 Nesting: TypeAlias = tuple[tuple[tuple[Activity, ...], int], ...]
-
-
-class TooComplexError(Exception):
-    """A process executes too many activities to be analysed; the text says which."""
 
 
 class ActivityPosition(NamedTuple):
@@ -78,7 +75,7 @@ def positions(process: Process, system: System, sites: CallSites) -> list[Activi
 
     Raises
     ------
-    TooComplexError : it has more than `MAX_POSITIONS` activities, or calls nested deeper than `MAX_CALL_DEPTH`.
+    UnknownError : it has more than `MAX_POSITIONS` activities, or calls nested deeper than `MAX_CALL_DEPTH`.
     """
     if reached(process.activities, sites.sizes) > MAX_POSITIONS:
         raise _too_complex(process)
@@ -163,7 +160,7 @@ class _Walk:
         for call in reversed(calls):
             try:
                 found = self.sites.lifted(call, counter)
-            except UncountableError:
+            except UnknownError:
                 return None
             if found is None:
                 return None
@@ -171,8 +168,8 @@ class _Walk:
         return counter
 
 
-def _too_complex(process: Process) -> TooComplexError:
-    return TooComplexError(f"{process.name!r} has too many calls, or too deeply nested calls, to be analysed")
+def _too_complex(process: Process) -> UnknownError:
+    return UnknownError(f"{process.name!r} has too many calls, or too deeply nested calls, to be analysed")
 
 
 def _of_call(

@@ -13,6 +13,7 @@ from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from functools import partial
 
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.mapping import TaskAllocation
 from amalthea_uros.perf.os import SERVERS, Duration, Parameter, ParameterValue, Policy, Scheduler
 from amalthea_uros.perf.software import Preemption, Process, Task
@@ -119,10 +120,6 @@ class Server(SchedulingContext):
         return self.scheduler.name
 
 
-class NotSchedulableError(Exception):
-    """The scheduling of a process is unknown or cannot be analysed; the text says why."""
-
-
 @dataclass(frozen=True, slots=True)
 class _Parameters:
     """The parameters of a process or scheduler for the scheduler above it.
@@ -141,7 +138,7 @@ class _Parameters:
     def required(self, value: int | None, what: str) -> int:
         """A value that must be set; times must be greater than 0."""
         if value is None or (what != "priority" and value <= 0):
-            raise NotSchedulableError(f"{self.owner} has no {what}")
+            raise UnknownError(f"{self.owner} has no {what}")
         return value
 
     def of(self, scheduler: Scheduler, *names: str) -> ParameterValue | None:
@@ -176,7 +173,7 @@ class Scheduling:
 
         Raises
         ------
-        NotSchedulableError : its scheduling cannot be analysed.
+        UnknownError : its scheduling cannot be analysed.
         """
         found = self.on_any_core(allocation)
         return replace(found, core=self._core(self.system.schedulers[allocation.scheduler], allocation.cores))
@@ -186,7 +183,7 @@ class Scheduling:
         process = self.system.processes.get(allocation.task)
         scheduler = self.system.schedulers.get(allocation.scheduler)
         if process is None or scheduler is None:
-            raise NotSchedulableError(f"the scheduler {allocation.scheduler!r} is not defined, or was left out when reading")
+            raise UnknownError(f"the scheduler {allocation.scheduler!r} is not defined, or was left out when reading")
         deadline = self.limits.get(process.name) if allocation.deadline is None else allocation.deadline
         # A limit is what is wished for; the scheduler knows only the deadline that the allocation states.
         parameters = _Parameters("it", allocation.priority, allocation.deadline, self._period(process), allocation.parameters)
@@ -210,7 +207,7 @@ class Scheduling:
     def _under(self, scheduler: Scheduler, parameters: _Parameters, above: tuple[str, ...]) -> SchedulingContext:
         """The scheduling of a task or child scheduler of a scheduler."""
         if scheduler.name in above:
-            raise NotSchedulableError("its schedulers are nested in a cycle")
+            raise UnknownError("its schedulers are nested in a cycle")
         above = (*above, scheduler.name)
         policy = self._policy(scheduler)
         if policy == Policy.GROUPING:
@@ -221,11 +218,11 @@ class Scheduling:
         if base.equal_priority is not EqualPriority.FIFO:
             message = f"{scheduler.name!r} cannot be analysed: its parent schedules by {base.equal_priority}"
             self.notes.warning("ANA002", message, scheduler)
-            raise NotSchedulableError(f"the parent of its scheduler {scheduler.name!r} schedules by {base.equal_priority}")
+            raise UnknownError(f"the parent of its scheduler {scheduler.name!r} schedules by {base.equal_priority}")
         if policy is None:
             message = f"the scheduler {scheduler.name!r} has no policy, so its tasks are not analysed"
             self.notes.warning("ANA001", message, scheduler)
-            raise NotSchedulableError(f"its scheduler {scheduler.name!r} has no policy")
+            raise UnknownError(f"its scheduler {scheduler.name!r} has no policy")
         if policy in _NEEDING_PRIORITY and parameters.priority is None and self._serves_one(scheduler):
             # Nothing competes with what is alone.
             parameters = replace(parameters, priority=0)
@@ -233,7 +230,7 @@ class Scheduling:
         if by_policy is None:
             message = f"the policy {policy!r} of the scheduler {scheduler.name!r} cannot be analysed"
             self.notes.warning("ANA002", message, scheduler)
-            raise NotSchedulableError(f"there is no analysis for the policy {policy} of its scheduler {scheduler.name!r}")
+            raise UnknownError(f"there is no analysis for the policy {policy} of its scheduler {scheduler.name!r}")
         if policy in _NEEDING_PRIORITY and self._lacks_priorities(scheduler):
             return replace(base, rank=(*base.rank, 0), equal_priority=EqualPriority.UNKNOWN)
         if policy == Policy.OSEK and parameters.of(scheduler, _GROUP) == _NO_GROUP:
@@ -301,7 +298,7 @@ class Scheduling:
     def _in_group(self, scheduler: Scheduler, parameters: _Parameters, above: tuple[str, ...]) -> SchedulingContext:
         """The scheduling in a grouping: its parent decides, by the parameters of the process, or else of the group."""
         if scheduler.parent is None:
-            raise NotSchedulableError(f"the grouping {scheduler.name!r} has no parent scheduler")
+            raise UnknownError(f"the grouping {scheduler.name!r} has no parent scheduler")
         parent, of_group = self._parent(scheduler)
         merged = _Parameters(
             owner=parameters.owner,
@@ -320,14 +317,14 @@ class Scheduling:
         if scheduler.policy not in SERVERS and self._is_shared(parent, parameters.priority):
             message = f"{scheduler.name!r} shares its priority in {parent.name!r} with others"
             self.notes.warning("ANA002", message, scheduler)
-            raise NotSchedulableError(f"its scheduler {scheduler.name!r} shares its priority in {parent.name!r} with others")
+            raise UnknownError(f"its scheduler {scheduler.name!r} shares its priority in {parent.name!r} with others")
         return self._under(parent, parameters, above)
 
     def _parent(self, scheduler: Scheduler) -> tuple[Scheduler, _Parameters]:
         assert scheduler.parent is not None
         parent = self.system.schedulers.get(scheduler.parent.scheduler)
         if parent is None:
-            raise NotSchedulableError(f"the parent scheduler of {scheduler.name!r} is not defined in the model")
+            raise UnknownError(f"the parent scheduler of {scheduler.name!r} is not defined in the model")
         association = scheduler.parent
         period = _time(_of(scheduler, association.parameters, *PERIOD))
         deadline = period if association.deadline is None else association.deadline
@@ -371,12 +368,12 @@ class Scheduling:
         if len(cores) != 1:
             reason = _no_single_core(scheduler, served, wanted, cores)
             self.notes.warning("ANA002", f"tasks of the scheduler {scheduler.name!r} are not analysed: {reason}", scheduler)
-            raise NotSchedulableError(reason)
+            raise UnknownError(reason)
         others = [name for name in self._roots().get(cores[0], ()) if name != root.name]
         if others:
             message = f"the core {cores[0]!r} is shared by the schedulers {root.name!r} and {others[0]!r}"
             self.notes.warning("ANA002", message, scheduler)
-            raise NotSchedulableError(f"its core {cores[0]!r} is shared by the schedulers {root.name!r} and {others[0]!r}")
+            raise UnknownError(f"its core {cores[0]!r} is shared by the schedulers {root.name!r} and {others[0]!r}")
         return cores[0]
 
     def _roots(self) -> Mapping[str, Sequence[str]]:
@@ -392,16 +389,12 @@ class Scheduling:
         process = self.system.processes.get(name)
         controller = self.system.interrupt_controllers.get(controller_name)
         if process is None or controller is None:
-            raise NotSchedulableError(
-                f"the interrupt controller {controller_name!r} is not defined, or was left out when reading"
-            )
+            raise UnknownError(f"the interrupt controller {controller_name!r} is not defined, or was left out when reading")
         if len(controller.cores) != 1:
             cores = f"several cores can execute it: {', '.join(controller.cores)}"
-            raise NotSchedulableError(cores if controller.cores else f"{controller_name!r} is not responsible for a core")
+            raise UnknownError(cores if controller.cores else f"{controller_name!r} is not responsible for a core")
         if controller.overhead:
-            raise NotSchedulableError(
-                f"{controller_name!r} executes work of its own at each interrupt, which cannot be analysed"
-            )
+            raise UnknownError(f"{controller_name!r} executes work of its own at each interrupt, which cannot be analysed")
         rank = (1, priority or 0)
         return ScheduledProcess(process=process, core=controller.cores[0], is_isr=True, priority=priority, rank=rank)
 

@@ -34,7 +34,6 @@ from amalthea_uros.perf.constraints import LatencyConstraint
 from amalthea_uros.perf.events import EventChain, LabelEvent
 from amalthea_uros.perf.network import Direction, Span, Transmission
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.routes import crosses
 from amalthea_uros.timing.response import Claim
 from amalthea_uros.units import Time
@@ -116,7 +115,7 @@ class MessageChains:
             written = end.label or "" if isinstance(end, LabelEvent) else ""
             if written and isinstance(last, CallbackSegment):
                 hops[-1] = self._until_written(last, hops[-1])
-        except (UnknownError, UnresolvedError) as error:
+        except UnknownError as error:
             return _result(chain, chain.stimulus or "", chain.response or "", (), reason=str(error))
         unknown = next((hop for hop in hops if hop.worst is None), None)
         return _result(

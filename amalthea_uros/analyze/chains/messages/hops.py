@@ -20,13 +20,12 @@ from amalthea_uros._internal.by_name import Results
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.chains.messages.segments import CallbackSegment, EntryKind, TaskSegment
 from amalthea_uros.analyze.chains.route_latencies import RouteLatencies
-from amalthea_uros.analyze.chains.stage_timing import UnboundedStageError
 from amalthea_uros.analyze.results.chains import Quantity, Value
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.results import ExecutorResult, HandleResult, Hop, HopKind, TimePart
 from amalthea_uros.perf.events import Event, ProcessChange, ProcessEvent
 from amalthea_uros.perf.executors import HandleKind
 from amalthea_uros.timing.awaited import awaited
-from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.dataflow.links import UNTIMED
 from amalthea_uros.timing.dataflow.routes import routes
 from amalthea_uros.units import Time
@@ -134,7 +133,7 @@ def task_hop(segment: TaskSegment, entry: EntryKind, is_last: bool, evaluator: C
         )
     try:
         bounds = _bounds(_events(segment, entry, is_last), entry, evaluator)
-    except (UnboundedStageError, UnresolvedError) as error:
+    except UnknownError as error:
         return _unknown(entry, name, str(error), f"See the results of {name!r}.")
     if bounds is None:
         reason = f"the maximum time between two activations of {segment.processes[0]!r} is unknown"
@@ -161,11 +160,11 @@ def _bounds(events: Sequence[Event], entry: EntryKind, evaluator: ChainEvaluator
     for route in routes(events, evaluator.context.dataflow):
         for link, first, then in zip(route.links, route.events, route.events[1:], strict=False):
             if link.kind in UNTIMED:
-                raise UnboundedStageError(f"nothing of known time connects {first!r} to {then!r}")
+                raise UnknownError(f"nothing of known time connects {first!r} to {then!r}")
         latencies = evaluator.latencies(route)
         best = _tightest(latencies, quantity)
         if best is None:
-            raise UnboundedStageError(latencies.why_unbounded or "no method bounds it")
+            raise UnknownError(latencies.why_unbounded or "no method bounds it")
         bounds.append(best)
     value = max(bounds, key=lambda each: each.value or 0)
     if entry is not EntryKind.POLLING:

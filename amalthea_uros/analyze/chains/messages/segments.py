@@ -12,8 +12,8 @@ from amalthea_uros.perf.events import CustomEvent, Event, EventChain, RunnableCh
 from amalthea_uros.perf.executors import Executor, Handle
 from amalthea_uros.perf.network import Transmission
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.dataflow.chains import UnfoldError, sequences, unfold
-from amalthea_uros.timing.dataflow.events import EventOccurrence, UnresolvedError
+from amalthea_uros.timing.dataflow.chains import sequences, unfold
+from amalthea_uros.timing.dataflow.events import EventOccurrence
 from amalthea_uros.timing.dataflow.links import LinkKind
 from amalthea_uros.timing.jobs.positions import ActivityPosition
 
@@ -78,10 +78,7 @@ class Segments:
         ------
         UnknownError : it has branches, or one of its events has no place of its own.
         """
-        try:
-            paths = sequences(unfold(chain, self.context.system)[0])
-        except UnfoldError as error:
-            raise UnknownError(str(error)) from None
+        paths = sequences(unfold(chain, self.context.system)[0])
         if len(paths) != 1:
             raise UnknownError("it has parallel paths, whose latency over wires and executors is not computed; split the chain")
         segments: list[ChainSegment] = []
@@ -98,7 +95,7 @@ class Segments:
         """Where an event occurs; if that can be in several places, the segment before it if it is one of these."""
         try:
             occurrences = self.context.dataflow.events.of(event)
-        except UnresolvedError as error:
+        except UnknownError as error:
             if isinstance(event, CustomEvent):
                 what = "describe 'transport' and 'agent' of the middleware"
                 raise UnknownError(f"{event.name!r} occurs outside the model: {what}") from None

@@ -69,6 +69,6 @@ def compile_activity(body: Body, activity: perf.Activity) -> None:
     Raises
     ------
     UnknownError : it cannot be simulated.
-    UnknownDemandError : a demand in it is not known.
+    UnknownError : a demand in it is not known.
     """
     _COMPILERS[type(activity)](body, activity)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.events import EventSet
 from amalthea_uros.timing.dataflow.chains import events_of
-from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.validate.rule import Problem, SystemRule
 from amalthea_uros.validate.system_context import SystemContext
 from amalthea_uros.validate.wording import joined
@@ -29,7 +29,7 @@ def _controller(name: str, context: SystemContext) -> str | None:
         return None
     try:
         processes = {occurrence.process.name for occurrence in context.dataflow.events.of(event)}
-    except UnresolvedError:
+    except UnknownError:
         return None
     found = {context.controllers.get(core) for process in processes for core in context.cores.get(process, ())}
     return found.pop() if len(found) == 1 else None

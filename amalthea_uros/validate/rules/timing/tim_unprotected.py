@@ -7,10 +7,10 @@ from itertools import combinations_with_replacement
 from typing import NamedTuple
 
 from amalthea_uros.diagnostics import Severity
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import AccessKind, Communication, LabelAccess, Protection, SenderReceiverAccess
 from amalthea_uros.perf.software import Label
 from amalthea_uros.timing.blocking.critical_sections import exclusively_held
-from amalthea_uros.timing.dataflow.events import UnresolvedError
 from amalthea_uros.timing.jobs.positions import ActivityPosition
 from amalthea_uros.timing.scheduling.allocation import operating_system_of
 from amalthea_uros.validate.rule import Problem, SystemRule
@@ -51,7 +51,7 @@ def _writings(context: SystemContext) -> dict[str, list[_Writing]]:
             continue
         try:
             positions = context.dataflow.events.positions(process)
-        except UnresolvedError:
+        except UnknownError:
             continue
         for position, held in zip(positions, exclusively_held(positions, context.system), strict=True):
             access = position.activity
