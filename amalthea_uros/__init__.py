@@ -47,8 +47,8 @@ if TYPE_CHECKING:
     from amalthea_uros.analyze.priorities.assignment import propose_priorities as propose_priorities
     from amalthea_uros.analyze.results.analysis import Analysis as Analysis
     from amalthea_uros.analyze.results.chains import ChainResult as ChainResult
-    from amalthea_uros.analyze.results.chains import Quantity as Quantity
-    from amalthea_uros.analyze.results.chains import Value as Value
+    from amalthea_uros.analyze.results.chains import LatencyQuantity as LatencyQuantity
+    from amalthea_uros.analyze.results.chains import LatencyValue as LatencyValue
     from amalthea_uros.analyze.results.processes import CallbackResult as CallbackResult
     from amalthea_uros.analyze.results.processes import Metric as Metric
     from amalthea_uros.analyze.results.processes import ProcessorResult as ProcessorResult
@@ -150,7 +150,7 @@ if TYPE_CHECKING:
     from amalthea_uros.simulate.options import Options as Options
     from amalthea_uros.simulate.results import Simulation as Simulation
     from amalthea_uros.timing.basics.quantities import JobMetric as JobMetric
-    from amalthea_uros.timing.basics.settings import Memory as Memory
+    from amalthea_uros.timing.basics.settings import MemoryModel as MemoryModel
     from amalthea_uros.timing.basics.settings import Settings as Settings
     from amalthea_uros.timing.dataflow.paths import paths as paths
     from amalthea_uros.timing.response import Claim as Claim
@@ -172,8 +172,8 @@ _NAMES = {
     "analyze.results.analysis": ("Analysis",),
     "analyze.results.chains": (
         "ChainResult",
-        "Quantity",
-        "Value",
+        "LatencyQuantity",
+        "LatencyValue",
     ),
     "analyze.results.processes": (
         "CallbackResult",
@@ -231,7 +231,7 @@ _NAMES = {
     "simulate.options": ("Mode", "Options"),
     "simulate.results": ("Simulation",),
     "timing.dataflow.paths": ("paths",),
-    "timing.basics.settings": ("Memory", "Settings"),
+    "timing.basics.settings": ("MemoryModel", "Settings"),
     "trace.table": ("Entity", "EntityKind", "EventKind", "EventTable"),
     "units": ("parse_time",),
     "uros.assemble": ("Assembly",),

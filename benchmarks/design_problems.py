@@ -25,7 +25,7 @@ from random_orders import all_orders, random_sets  # noqa: E402
 from thesis_designs import changes_of, choose_periods  # noqa: E402
 
 from amalthea_uros import extract, load  # noqa: E402
-from amalthea_uros.analyze.priorities.assignment import Outcome, propose_priorities  # noqa: E402
+from amalthea_uros.analyze.priorities.assignment import ProposalOutcome, propose_priorities  # noqa: E402
 from amalthea_uros.analyze.priorities.orders import with_priorities  # noqa: E402
 from amalthea_uros.analyze.results.analysis import Analysis  # noqa: E402
 from amalthea_uros.analyze.system import analyze_system  # noqa: E402
@@ -112,7 +112,7 @@ def random_orders(count: int) -> Iterator[str]:
         if proposal.priorities is not None:
             numbers = proposal.priorities
             yield "found" if tuple(sorted(numbers, key=lambda name: -numbers[name])) in existing else "WRONG"
-        elif proposal.outcome is Outcome.NONE:
+        elif proposal.outcome is ProposalOutcome.NONE:
             yield "WRONG" if existing else "refuted"
         else:
             yield "MISSED" if existing else "open"

@@ -15,27 +15,27 @@ from importlib.util import find_spec
 from random import Random
 
 from amalthea_uros.analyze.response_times import kernel, priority_levels
-from amalthea_uros.analyze.response_times.task import Task
+from amalthea_uros.analyze.response_times.task import AnalysedTask
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf import activities, mapping, os, software, stimuli
 from amalthea_uros.perf.distributions import Statistics
 from amalthea_uros.perf.hardware import Clock, Core, Hardware, Structure
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
-from amalthea_uros.timing.event_models import Periodic
+from amalthea_uros.timing.event_models import PeriodicEvents
 
 PERIODS = (1, 2, 5, 10, 20, 50, 100, 200, 1000)
 MILLISECOND = 10**9
 
 
-def task_set(count: int, load: float, random: Random, jitter: bool) -> list[Task]:
+def task_set(count: int, load: float, random: Random, jitter: bool) -> list[AnalysedTask]:
     """Periodic tasks with rate-monotonic priorities, and perhaps jitter of up to a tenth of the period."""
     shares = [random.random() for _ in range(count)]
     periods = sorted(random.choice(PERIODS) * MILLISECOND for _ in range(count))
     return [
-        Task(
+        AnalysedTask(
             name=f"T{index}",
-            events=Periodic(period, random.randrange(period // 10) if jitter else 0),
+            events=PeriodicEvents(period, random.randrange(period // 10) if jitter else 0),
             demand=MultiframeDemand.constant(max(1, int(period * load * share / sum(shares)))),
             priority=-index,
         )

@@ -213,7 +213,7 @@ def test_the_pictures_of_the_case_study(picture, model, log, folder):
 def test_a_better_design_is_proved_and_measured(calibrated, logs):
     found = amuros.optimize(calibrated["bounds"], limits=["factor-to-output.max_reduced_reaction_time<5ms"])
     (chain,) = found[0].analysis.chains
-    bound = chain.value(amuros.Quantity.MAX_REDUCED_REACTION_TIME).value
+    bound = chain.value(amuros.LatencyQuantity.MAX_REDUCED_REACTION_TIME).value
     assert [str(change) for change in found[0].changes] == ["Message_Factor.period=1ms"]
     assert bound < 5 * MS
     measured = logs["improved"].find("factor-to-output", "reduced_reaction_time").statistics

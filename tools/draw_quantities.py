@@ -15,7 +15,7 @@ from amalthea_uros.analyze.chains import job_chains
 from amalthea_uros.analyze.chains.read_write_times import ReadWriteTimes
 from amalthea_uros.analyze.response_times import schedule
 from amalthea_uros.analyze.response_times.schedule import PeriodicTask
-from amalthea_uros.analyze.results.chains import Quantity
+from amalthea_uros.analyze.results.chains import LatencyQuantity
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 
 TASKS = (
@@ -46,7 +46,7 @@ def chain_times() -> list[ReadWriteTimes]:
     ]
 
 
-def shown(quantity: Quantity, sensor: ReadWriteTimes, actuator: ReadWriteTimes) -> Shown:
+def shown(quantity: LatencyQuantity, sensor: ReadWriteTimes, actuator: ReadWriteTimes) -> Shown:
     """Where the quantity is measured, in the second cycle or after it."""
     cycle = sensor.cycle
     first = np.flatnonzero((sensor.reads >= cycle) & (sensor.reads < 2 * cycle))
@@ -57,21 +57,25 @@ def shown(quantity: Quantity, sensor: ReadWriteTimes, actuator: ReadWriteTimes) 
     inputs = inputs[(sensor.reads[inputs] >= cycle) & (sensor.reads[inputs] < 2 * cycle)]
     candidates: list[Shown] = []
     for k, m in zip(first.tolist(), reacts.tolist(), strict=True):
-        begin = sensor.reads[k - 1] if quantity is Quantity.MAX_REACTION_TIME else sensor.reads[k]
-        if quantity in (Quantity.MAX_REACTION_TIME, Quantity.MAX_REDUCED_REACTION_TIME, Quantity.MIN_FIRST_TO_FIRST):
+        begin = sensor.reads[k - 1] if quantity is LatencyQuantity.MAX_REACTION_TIME else sensor.reads[k]
+        if quantity in (
+            LatencyQuantity.MAX_REACTION_TIME,
+            LatencyQuantity.MAX_REDUCED_REACTION_TIME,
+            LatencyQuantity.MIN_FIRST_TO_FIRST,
+        ):
             candidates.append(Shown(int(begin), int(actuator.writes[m]), k, (m,)))
     for m, k in zip(last.tolist(), used.tolist(), strict=True):
-        if quantity is Quantity.MAX_DATA_AGE:
+        if quantity is LatencyQuantity.MAX_DATA_AGE:
             candidates.append(Shown(int(sensor.reads[k]), int(actuator.writes[m + 1]), k, (m, m + 1)))
-        if quantity in (Quantity.MAX_REDUCED_DATA_AGE, Quantity.MIN_LAST_TO_LAST):
+        if quantity in (LatencyQuantity.MAX_REDUCED_DATA_AGE, LatencyQuantity.MIN_LAST_TO_LAST):
             candidates.append(Shown(int(sensor.reads[k]), int(actuator.writes[m]), k, (m,)))
     everything = job_chains.backward([sensor, actuator], np.arange(len(actuator.reads) - 8))
     for k in inputs.tolist():
         outputs = np.flatnonzero(everything == k)
         before = sensor.reads[inputs[inputs < k][-1]] if (inputs < k).any() else None
-        if quantity in (Quantity.MAX_LAST_TO_FIRST, Quantity.MIN_LAST_TO_FIRST):
+        if quantity in (LatencyQuantity.MAX_LAST_TO_FIRST, LatencyQuantity.MIN_LAST_TO_FIRST):
             candidates.append(Shown(int(sensor.reads[k]), int(actuator.writes[outputs[0]]), k, (int(outputs[0]),)))
-        if quantity is Quantity.MAX_FIRST_TO_LAST and before is not None:
+        if quantity is LatencyQuantity.MAX_FIRST_TO_LAST and before is not None:
             candidates.append(Shown(int(before), int(actuator.writes[outputs[-1]]), k, tuple(outputs.tolist())))
     pick = max if quantity.is_upper else min
     return pick(candidates, key=lambda each: each.end - each.start)
@@ -101,7 +105,7 @@ def jobs(name: str, row: int, times: ReadWriteTimes, used: set[int], origin: int
     return parts
 
 
-def draw(quantity: Quantity, sensor: ReadWriteTimes, actuator: ReadWriteTimes) -> str:
+def draw(quantity: LatencyQuantity, sensor: ReadWriteTimes, actuator: ReadWriteTimes) -> str:
     """The picture of a quantity."""
     found = shown(quantity, sensor, actuator)
     origin, end = found.start - 3, found.end + 3
@@ -109,7 +113,7 @@ def draw(quantity: Quantity, sensor: ReadWriteTimes, actuator: ReadWriteTimes) -
     parts += jobs("Actuator", 1, actuator, set(found.actuators), origin, end)
     written = sensor.writes[found.sensor]
     for number in found.actuators:
-        if quantity is Quantity.MAX_DATA_AGE and number == found.actuators[-1]:
+        if quantity is LatencyQuantity.MAX_DATA_AGE and number == found.actuators[-1]:
             continue  # it overwrites the output, with newer data
         read = actuator.reads[number]
         parts.append(
@@ -173,10 +177,10 @@ def picture(parts: list[str], width: float, height: float) -> str:
 def main() -> None:
     folder = Path(sys.argv[1])
     sensor, actuator = chain_times()
-    for quantity in Quantity:
+    for quantity in LatencyQuantity:
         if not quantity.is_mean:
             (folder / f"{quantity}.svg").write_text(draw(quantity, sensor, actuator))
-    (folder / f"{Quantity.MEAN_REACTION_TIME}.svg").write_text(draw_mean(sensor, actuator))
+    (folder / f"{LatencyQuantity.MEAN_REACTION_TIME}.svg").write_text(draw_mean(sensor, actuator))
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ from math import inf
 from pathlib import Path
 from typing import Generic, ParamSpec, TypeVar, cast
 
-from amalthea_uros._internal.machine_code import LOADING, Effort, is_available
+from amalthea_uros._internal.machine_code import LOADING, CompilationEffort, is_available
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -34,7 +34,7 @@ class Compiled(Generic[P, R]):
         self._function = function
         self._cost = cost
         name = function.__name__
-        self.effort = Effort(name, [Path(function.__code__.co_filename)], name, COMPILING)
+        self.effort = CompilationEffort(name, [Path(function.__code__.co_filename)], name, COMPILING)
         #: Seconds as Python after which machine code is considered.
         self._limit = LOADING
         self.is_compiled = False

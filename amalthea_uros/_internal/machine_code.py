@@ -20,7 +20,7 @@ def is_available() -> bool:
 
 
 @dataclass(slots=True)
-class Effort:
+class CompilationEffort:
     """What a function takes as Python, and what compiling it would take.
 
     Attributes

@@ -17,7 +17,7 @@ import numpy as np
 from amalthea_uros.analyze.executor_results import callback_results
 from amalthea_uros.analyze.response_times import metrics
 from amalthea_uros.analyze.response_times.core_schedule import CoreSchedule, CoreSchedules, times_of_completion
-from amalthea_uros.analyze.response_times.metrics import Span
+from amalthea_uros.analyze.response_times.metrics import JobInterval
 from amalthea_uros.analyze.response_times.schedule import demand_cycle, demand_table, demands_of_jobs
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.results.processes import CallbackResult, Metric
@@ -202,7 +202,7 @@ class _CallSite:
         if not self.is_simple:
             # Somewhere between the start and the end of the job.
             earliest = jobs[0].begins + self._demand([self.call]).best
-            anywhere = Span(releases, (earliest, jobs[1].ends)).metric(repeating, time_base, is_attained=False)
+            anywhere = JobInterval(releases, (earliest, jobs[1].ends)).metric(repeating, time_base, is_attained=False)
             return replace(anywhere, mean=None)
         count, counter = len(releases[0]), self.counter
         executed, others = self._until(), self._besides_activities(count)
@@ -218,7 +218,7 @@ class _CallSite:
                 is_attained = False
             else:
                 calling = np.array([takes_effect(counter, number) for number in range(1, count + 1)])
-        selected = Span(metrics.both(each[calling] for each in releases), metrics.both(each[calling] for each in ends))
+        selected = JobInterval(metrics.both(each[calling] for each in releases), metrics.both(each[calling] for each in ends))
         metric = selected.metric(int(calling[-repeating:].sum()), time_base, is_attained, found.has_idle_time)
         return metric if is_attained else replace(metric, mean=None)
 

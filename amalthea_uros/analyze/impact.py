@@ -16,7 +16,7 @@ from typing import TypeAlias
 
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.results.analysis import Analysis
-from amalthea_uros.analyze.results.chains import ChainResult, Quantity
+from amalthea_uros.analyze.results.chains import ChainResult, LatencyQuantity
 from amalthea_uros.analyze.results.processes import CallbackResult, ProcessorResult, ProcessResult
 from amalthea_uros.analyze.results.requirements import RequirementResult
 from amalthea_uros.judge.verdict import Failure, Verdict
@@ -26,7 +26,7 @@ from amalthea_uros.timing.response import Claim, Response
 Amount: TypeAlias = int | Fraction | StrEnum
 
 
-class Part(StrEnum):
+class ResultPart(StrEnum):
     """The part of the results that a figure belongs to."""
 
     SYSTEM = "system"
@@ -37,7 +37,7 @@ class Part(StrEnum):
     REQUIREMENT = "requirement"
 
 
-class Unit(StrEnum):
+class FigureUnit(StrEnum):
     """What the value of a figure is: picoseconds, a share of a core (1 is full), a number, or a word."""
 
     TIME = "time"
@@ -46,7 +46,7 @@ class Unit(StrEnum):
     VERDICT = "verdict"
 
 
-class Goal(StrEnum):
+class Preference(StrEnum):
     """Which figures are better."""
 
     LOW = "low"
@@ -73,7 +73,7 @@ class Effect(StrEnum):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Figure:
+class ComparedFigure:
     """A figure of an object.
 
     Attributes
@@ -88,12 +88,12 @@ class Figure:
     reason : why it is unknown
     """
 
-    part: Part
+    part: ResultPart
     object: str
     quantity: str
     value: Amount | None
-    unit: Unit = Unit.TIME
-    goal: Goal = Goal.NONE
+    unit: FigureUnit = FigureUnit.TIME
+    goal: Preference = Preference.NONE
     claim: Claim | None = None
     at_least: Fraction | None = None
     is_overload: bool = False
@@ -101,7 +101,7 @@ class Figure:
     about: str = ""
 
     @property
-    def key(self) -> tuple[Part, str, str, str]:
+    def key(self) -> tuple[ResultPart, str, str, str]:
         """What says that two figures are about the same."""
         return self.part, self.object, self.quantity, self.about
 
@@ -120,19 +120,19 @@ class ImpactRow:
     before, after : None if there is no such figure
     """
 
-    before: Figure | None
-    after: Figure | None
+    before: ComparedFigure | None
+    after: ComparedFigure | None
     effect: Effect
 
     @property
-    def figure(self) -> Figure:
+    def figure(self) -> ComparedFigure:
         """The figure after the change, or the one before it if there is none."""
         found = self.after or self.before
         assert found is not None
         return found
 
     @property
-    def part(self) -> Part:
+    def part(self) -> ResultPart:
         """The part of the results."""
         return self.figure.part
 
@@ -186,7 +186,7 @@ def impact(before: Analysis, after: Analysis) -> Impact:
     return compare(figures(before), figures(after))
 
 
-def compare(before: Iterable[Figure], after: Iterable[Figure]) -> Impact:
+def compare(before: Iterable[ComparedFigure], after: Iterable[ComparedFigure]) -> Impact:
     """Compare figures; those that only one side has are also part of the result."""
     old, new = _numbered(before), _numbered(after)
     pairs = [(old.get(key), new.get(key)) for key in (*new, *(key for key in old if key not in new))]
@@ -198,23 +198,23 @@ def compare(before: Iterable[Figure], after: Iterable[Figure]) -> Impact:
     return Impact(rows=rows, unchanged=len(pairs) - len(rows))
 
 
-def _numbered(given: Iterable[Figure]) -> dict[tuple[object, ...], Figure]:
+def _numbered(given: Iterable[ComparedFigure]) -> dict[tuple[object, ...], ComparedFigure]:
     """The figures by what they are about; several requirements may have one name."""
     counts: Counter[object] = Counter()
-    found: dict[tuple[object, ...], Figure] = {}
+    found: dict[tuple[object, ...], ComparedFigure] = {}
     for figure in given:
         found[*figure.key, counts[figure.key]] = figure
         counts[figure.key] += 1
     return found
 
 
-def _place(before: Figure | None, after: Figure | None) -> int:
+def _place(before: ComparedFigure | None, after: ComparedFigure | None) -> int:
     figure = after or before
     assert figure is not None
-    return tuple(Part).index(figure.part)
+    return tuple(ResultPart).index(figure.part)
 
 
-def _effect(before: Figure | None, after: Figure | None) -> Effect:
+def _effect(before: ComparedFigure | None, after: ComparedFigure | None) -> Effect:
     if before is None:
         return Effect.ADDED
     if after is None:
@@ -226,12 +226,12 @@ def _effect(before: Figure | None, after: Figure | None) -> Effect:
         return _effect_of_losing(before, after)
     if old is None:
         return Effect.BETTER if before.is_overload else Effect.UNKNOWN
-    if after.goal is Goal.NONE:
+    if after.goal is Preference.NONE:
         return Effect.CHANGED
-    return Effect.BETTER if (new < old) == (after.goal is Goal.LOW) else Effect.WORSE
+    return Effect.BETTER if (new < old) == (after.goal is Preference.LOW) else Effect.WORSE
 
 
-def _effect_of_losing(before: Figure, after: Figure) -> Effect:
+def _effect_of_losing(before: ComparedFigure, after: ComparedFigure) -> Effect:
     """The effect if the value is unknown afterwards."""
     if before.value is not None or (after.is_overload and not before.is_overload):
         return Effect.WORSE
@@ -261,10 +261,10 @@ def _rank(verdict: Amount | None) -> int:
     return 3 if verdict in _ENDLESS else 2
 
 
-def figures(analysis: Analysis) -> Iterator[Figure]:
+def figures(analysis: Analysis) -> Iterator[ComparedFigure]:
     """Everything that is compared."""
-    yield verdict_figure(Part.SYSTEM, "", analysis.summary.schedulable, quantity="schedulable")
-    sources: tuple[tuple[Iterable[object], Callable[..., Iterator[Figure]]], ...] = (
+    yield verdict_figure(ResultPart.SYSTEM, "", analysis.summary.schedulable, quantity="schedulable")
+    sources: tuple[tuple[Iterable[object], Callable[..., Iterator[ComparedFigure]]], ...] = (
         (analysis.processors, _of_core),
         (analysis.processes, _of_process),
         (analysis.callbacks, _of_callback),
@@ -276,45 +276,47 @@ def figures(analysis: Analysis) -> Iterator[Figure]:
             yield from figures_of(result)
 
 
-def verdict_figure(part: Part, name: str, verdict: StrEnum | None, reason: str = "", quantity: str = "verdict") -> Figure:
+def verdict_figure(
+    part: ResultPart, name: str, verdict: StrEnum | None, reason: str = "", quantity: str = "verdict"
+) -> ComparedFigure:
     """A verdict as a figure."""
-    return Figure(part=part, object=name, quantity=quantity, value=verdict, unit=Unit.VERDICT, reason=reason)
+    return ComparedFigure(part=part, object=name, quantity=quantity, value=verdict, unit=FigureUnit.VERDICT, reason=reason)
 
 
-def _of_core(core: ProcessorResult) -> Iterator[Figure]:
-    yield Figure(
-        part=Part.CORE,
+def _of_core(core: ProcessorResult) -> Iterator[ComparedFigure]:
+    yield ComparedFigure(
+        part=ResultPart.CORE,
         object=core.name,
         quantity="worst_case_load",
         value=core.worst,
-        unit=Unit.SHARE,
-        goal=Goal.LOW,
+        unit=FigureUnit.SHARE,
+        goal=Preference.LOW,
         claim=None if core.worst is None else Claim.BOUND,
         at_least=core.at_least if core.worst is None else None,
         is_overload=core.worst is None and core.is_overloaded,
     )
 
 
-def _of_process(process: ProcessResult) -> Iterator[Figure]:
-    yield _response(Part.PROCESS, process.name, process.response, process.reason)
+def _of_process(process: ProcessResult) -> Iterator[ComparedFigure]:
+    yield _response(ResultPart.PROCESS, process.name, process.response, process.reason)
     if process.deadline is not None:
-        yield Figure(part=Part.PROCESS, object=process.name, quantity="deadline", value=process.deadline)
-    yield verdict_figure(Part.PROCESS, process.name, process.failure or process.verdict, process.reason)
+        yield ComparedFigure(part=ResultPart.PROCESS, object=process.name, quantity="deadline", value=process.deadline)
+    yield verdict_figure(ResultPart.PROCESS, process.name, process.failure or process.verdict, process.reason)
 
 
-def _of_callback(callback: CallbackResult) -> Iterator[Figure]:
+def _of_callback(callback: CallbackResult) -> Iterator[ComparedFigure]:
     name = f"{callback.name} in {callback.process}"
-    yield _response(Part.CALLBACK, name, callback.response, callback.reason)
+    yield _response(ResultPart.CALLBACK, name, callback.response, callback.reason)
 
 
-def _response(part: Part, name: str, response: Response | None, reason: str) -> Figure:
+def _response(part: ResultPart, name: str, response: Response | None, reason: str) -> ComparedFigure:
     worst = response.worst if response else None
-    return Figure(
+    return ComparedFigure(
         part=part,
         object=name,
         quantity="worst_case_response_time",
         value=worst,
-        goal=Goal.LOW,
+        goal=Preference.LOW,
         claim=response.claim if response and worst is not None else None,
         is_overload=response is not None and response.is_overload,
         reason=reason if worst is None else "",
@@ -323,18 +325,18 @@ def _response(part: Part, name: str, response: Response | None, reason: str) -> 
 
 #: The headline latencies of a chain; the shortest one is neither good nor bad.
 _LATENCIES = {
-    Quantity.MIN_FIRST_TO_FIRST: Goal.NONE,
-    Quantity.MAX_REDUCED_REACTION_TIME: Goal.LOW,
-    Quantity.MAX_REDUCED_DATA_AGE: Goal.LOW,
+    LatencyQuantity.MIN_FIRST_TO_FIRST: Preference.NONE,
+    LatencyQuantity.MAX_REDUCED_REACTION_TIME: Preference.LOW,
+    LatencyQuantity.MAX_REDUCED_DATA_AGE: Preference.LOW,
 }
 
 
-def _of_chain(chain: ChainResult) -> Iterator[Figure]:
+def _of_chain(chain: ChainResult) -> Iterator[ComparedFigure]:
     for quantity, goal in _LATENCIES.items():
         found = chain.value(quantity)
         value = found.value if found else None
-        yield Figure(
-            part=Part.CHAIN,
+        yield ComparedFigure(
+            part=ResultPart.CHAIN,
             object=chain.name,
             quantity=quantity,
             value=value,
@@ -344,10 +346,13 @@ def _of_chain(chain: ChainResult) -> Iterator[Figure]:
         )
 
 
-def _of_requirement(requirement: RequirementResult) -> Iterator[Figure]:
+def _of_requirement(requirement: RequirementResult) -> Iterator[ComparedFigure]:
     bound = "maximum" if requirement.is_upper else "minimum"
     figure = partial(
-        Figure, part=Part.REQUIREMENT, object=requirement.name, about=f"{bound} {requirement.quantity} of {requirement.object}"
+        ComparedFigure,
+        part=ResultPart.REQUIREMENT,
+        object=requirement.name,
+        about=f"{bound} {requirement.quantity} of {requirement.object}",
     )
     if requirement.limit is not None:
         margin = None if requirement.verdict is Verdict.UNKNOWN else requirement.margin
@@ -355,9 +360,9 @@ def _of_requirement(requirement: RequirementResult) -> Iterator[Figure]:
         yield figure(
             quantity="margin",
             value=margin,
-            goal=Goal.HIGH,
+            goal=Preference.HIGH,
             claim=None if margin is None else Claim.EXACT if requirement.lower == requirement.upper else Claim.BOUND,
             is_overload=requirement.verdict is Verdict.UNBOUNDED,
             reason=requirement.reason,
         )
-    yield figure(quantity="verdict", value=requirement.verdict, unit=Unit.VERDICT, reason=requirement.reason)
+    yield figure(quantity="verdict", value=requirement.verdict, unit=FigureUnit.VERDICT, reason=requirement.reason)

@@ -36,7 +36,7 @@ from amalthea_uros.perf.stimuli import RelativePeriodic
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.activation.load import CoreLoad, certain_loads, suppressible
 from amalthea_uros.timing.activation.phases import (
-    Occurrence,
+    ExternalInput,
     phase_assumptions,
     unknown_phases,
     with_stated_phases,
@@ -82,7 +82,7 @@ def analyze_system(system: System, settings: Settings | None = None) -> Analysis
 
 
 def _of_all_phases(
-    solution: Solution, unknown: Sequence[Occurrence], executors: Results[ExecutorResult], crossing: Results[ChainResult]
+    solution: Solution, unknown: Sequence[ExternalInput], executors: Results[ExecutorResult], crossing: Results[ChainResult]
 ) -> Analysis | None:
     """The analysis over all combinations of unknown phases; None if there are too many."""
     phases = Phases.of(solution, unknown)

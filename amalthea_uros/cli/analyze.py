@@ -9,7 +9,7 @@ from pathlib import Path
 
 import click
 
-from amalthea_uros.analyze.results.chains import EXPLAINED, Quantity
+from amalthea_uros.analyze.results.chains import EXPLAINED, LatencyQuantity
 from amalthea_uros.cli.failing import FAILING, fail_on_option
 from amalthea_uros.cli.files import INPUT, OUTPUT_FILE
 from amalthea_uros.cli.output import (
@@ -61,7 +61,7 @@ from amalthea_uros.timing.basics.settings import Settings
 @click.option(
     "--quantity",
     type=click.Choice([str(quantity) for quantity in EXPLAINED]),
-    default=str(Quantity.MAX_REDUCED_REACTION_TIME),
+    default=str(LatencyQuantity.MAX_REDUCED_REACTION_TIME),
     show_default=True,
     help="With --explain of a chain: the latency.",
 )
@@ -112,7 +112,7 @@ def command(
     if explained is not None:
         from amalthea_uros.services.explain import explain
 
-        result = replace(result, explanation=explain(result, explained, Quantity(quantity)))
+        result = replace(result, explanation=explain(result, explained, LatencyQuantity(quantity)))
     as_text = result.explanation or (chain_detail(result, chain) if chain is not None else None)
     if target is not None:
         write_changed(paths, changes, settings, target)

@@ -13,7 +13,7 @@ import click
 from amalthea_uros.cli.parsed import Parsed
 from amalthea_uros.design.changes.change import EXAMPLE, FORM, parse_change
 from amalthea_uros.perf.activities import Communication
-from amalthea_uros.timing.basics.settings import Memory, Settings
+from amalthea_uros.timing.basics.settings import MemoryModel, Settings
 from amalthea_uros.units import Frequency, Time, parse_frequency, parse_time
 
 T = TypeVar("T")
@@ -72,8 +72,8 @@ _OPTIONS = (
     ),
     click.option(
         "--memory",
-        type=click.Choice([str(memory) for memory in Memory]),
-        default=str(Memory.NONE),
+        type=click.Choice([str(memory) for memory in MemoryModel]),
+        default=str(MemoryModel.NONE),
         show_default=True,
         help="Execution time of label accesses: none, latency of each access (explicit), or one copy per job (implicit).",
     ),
@@ -121,7 +121,7 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
         settings = Settings(
             dict(frequencies),
             Fraction(str(scale)),
-            memory=Memory(memory),
+            memory=MemoryModel(memory),
             communication=_COMMUNICATION.get(communication),
             phases=dict(phases),
         )

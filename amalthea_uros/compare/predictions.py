@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from amalthea_uros.analyze.response_times.metrics import merged
 from amalthea_uros.analyze.results.analysis import Analysis
-from amalthea_uros.analyze.results.chains import ChainResult, Quantity
+from amalthea_uros.analyze.results.chains import ChainResult, LatencyQuantity
 from amalthea_uros.analyze.results.processes import Metric
 from amalthea_uros.compare.agreement import Prediction, measured_values
 from amalthea_uros.compare.results import PredictionClaim, Statistic
@@ -32,21 +32,23 @@ Predictions = Mapping[Statistic, tuple[Prediction, ...]]
 class _Ends(NamedTuple):
     """The quantities of an analysis that are the minimum, the mean and the maximum of a measured one."""
 
-    minimum: Quantity | None = None
-    mean: Quantity | None = None
-    maximum: Quantity | None = None
+    minimum: LatencyQuantity | None = None
+    mean: LatencyQuantity | None = None
+    maximum: LatencyQuantity | None = None
 
 
-_FIRST_TO_FIRST = _Ends(Quantity.MIN_FIRST_TO_FIRST, Quantity.MEAN_FIRST_TO_FIRST, Quantity.MAX_REDUCED_REACTION_TIME)
-_LAST_TO_LAST = _Ends(Quantity.MIN_LAST_TO_LAST, Quantity.MEAN_LAST_TO_LAST, Quantity.MAX_REDUCED_DATA_AGE)
+_FIRST_TO_FIRST = _Ends(
+    LatencyQuantity.MIN_FIRST_TO_FIRST, LatencyQuantity.MEAN_FIRST_TO_FIRST, LatencyQuantity.MAX_REDUCED_REACTION_TIME
+)
+_LAST_TO_LAST = _Ends(LatencyQuantity.MIN_LAST_TO_LAST, LatencyQuantity.MEAN_LAST_TO_LAST, LatencyQuantity.MAX_REDUCED_DATA_AGE)
 _OF_CHAINS: Mapping[str, _Ends] = {
-    ChainQuantity.REACTION_TIME: _Ends(maximum=Quantity.MAX_REACTION_TIME),
+    ChainQuantity.REACTION_TIME: _Ends(maximum=LatencyQuantity.MAX_REACTION_TIME),
     ChainQuantity.REDUCED_REACTION_TIME: _FIRST_TO_FIRST,
-    ChainQuantity.DATA_AGE: _Ends(maximum=Quantity.MAX_DATA_AGE),
+    ChainQuantity.DATA_AGE: _Ends(maximum=LatencyQuantity.MAX_DATA_AGE),
     ChainQuantity.REDUCED_DATA_AGE: _LAST_TO_LAST,
     ChainQuantity.FIRST_TO_FIRST: _FIRST_TO_FIRST,
-    ChainQuantity.FIRST_TO_LAST: _Ends(maximum=Quantity.MAX_FIRST_TO_LAST),
-    ChainQuantity.LAST_TO_FIRST: _Ends(Quantity.MIN_LAST_TO_FIRST, None, Quantity.MAX_LAST_TO_FIRST),
+    ChainQuantity.FIRST_TO_LAST: _Ends(maximum=LatencyQuantity.MAX_FIRST_TO_LAST),
+    ChainQuantity.LAST_TO_FIRST: _Ends(LatencyQuantity.MIN_LAST_TO_FIRST, None, LatencyQuantity.MAX_LAST_TO_FIRST),
     ChainQuantity.LAST_TO_LAST: _LAST_TO_LAST,
 }
 #: The metrics to which an overhead is added: it is part of an execution, and not of the distance of two of them.

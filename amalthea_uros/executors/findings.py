@@ -12,7 +12,7 @@ from amalthea_uros.executors.semantics.loops import busy_polls, longest_wait, mi
 from amalthea_uros.executors.semantics.readiness import can_defer, has_backlog, messages, shares_session, timers
 from amalthea_uros.executors.semantics.suspension import SESSION_ASSUMPTION
 from amalthea_uros.perf.executors import Executor, HandleKind, LoopKind
-from amalthea_uros.timing.basics.notes import Notes
+from amalthea_uros.timing.basics.notes import AnalysisNotes
 from amalthea_uros.units import SECOND, Rounding, Time, rounded_time_text, time_text
 
 #: A timer is called late if the sleep of the loop is more than this part of its period.
@@ -32,7 +32,7 @@ def note_executors(results: Iterable[ExecutorResult], solved: SolvedSystem) -> N
             _note_handle(handle, executor, notes)
 
 
-def _assume(executor: Executor, others: Sequence[Executor], notes: Notes) -> None:
+def _assume(executor: Executor, others: Sequence[Executor], notes: AnalysisNotes) -> None:
     notes.assume("executors: the wait set is prepared before the first spin, which allocates memory and takes longer otherwise")
     notes.assume(
         "executors: the buffers of the driver and of the agent have room for all messages that wait; no call returns an error"
@@ -48,7 +48,7 @@ def _assume(executor: Executor, others: Sequence[Executor], notes: Notes) -> Non
         notes.assume(f"executors: {SESSION_ASSUMPTION}")
 
 
-def _note_loop(executor: Executor, executors: Sequence[Executor], result: ExecutorResult, notes: Notes) -> None:
+def _note_loop(executor: Executor, executors: Sequence[Executor], result: ExecutorResult, notes: AnalysisNotes) -> None:
     growing = next((handle for handle in result.handles if handle.response.is_overload), None)
     if growing is not None:
         age = "" if has_backlog(executor, executors) else _age_after(60 * SECOND, executor, result)
@@ -80,7 +80,7 @@ def _age_after(time: Time, executor: Executor, result: ExecutorResult) -> str:
     return f"; after {time_text(time)} they are at least {rounded_time_text(age, Rounding.DOWN)} old" if age > 0 else ""
 
 
-def _note_waiting(executor: Executor, others: Sequence[Executor], notes: Notes) -> None:
+def _note_waiting(executor: Executor, others: Sequence[Executor], notes: AnalysisNotes) -> None:
     waiting, wait = executor.waiting, time_text(longest_wait(executor))
     guards = [handle.name for handle in executor.handles if handle.kind is HandleKind.GUARD_CONDITION]
     if guards and not waiting.guard_conditions_end_wait and longest_wait(executor):
@@ -113,7 +113,7 @@ def _note_waiting(executor: Executor, others: Sequence[Executor], notes: Notes) 
             notes.warning("EXE022", message, executor)
 
 
-def _note_handle(handle: HandleResult, executor: Executor, notes: Notes) -> None:
+def _note_handle(handle: HandleResult, executor: Executor, notes: AnalysisNotes) -> None:
     lost = handle.lost
     model = next(each for each in executor.handles if each.name == handle.name)
     if lost is None:

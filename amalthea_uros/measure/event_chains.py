@@ -16,7 +16,7 @@ import numpy as np
 from amalthea_uros._internal.arrays import Flags, Numbers
 from amalthea_uros.measure.reactions import BY_NUMBER, LatencyLists, is_after_loss
 from amalthea_uros.measure.series import Counts, Series
-from amalthea_uros.timing.observed.chain_latencies import RouteLatencies
+from amalthea_uros.timing.observed.chain_latencies import ObservedRouteLatencies
 from amalthea_uros.trace.table import NO_NOTE, EventKind, EventTable
 
 if TYPE_CHECKING:
@@ -122,7 +122,7 @@ def _latencies(name: str, steps: _Steps, begin: EventKind) -> Iterator[Series]:
     order = np.argsort(steps.segment, kind="stable")
     for here in np.split(order, np.flatnonzero(np.diff(steps.segment[order])) + 1):
         is_response, stimulus = steps.is_response[here], steps.stimulus[here]
-        latencies = RouteLatencies(found.note)
+        latencies = ObservedRouteLatencies(found.note)
         latencies.add(is_response, steps.time[here], _in_order(is_response, stimulus))
         unanswered += latencies.stimuli - 1 - latencies.answered
     method = f"from the {BEGINS[begin]} of the job with the first step to the last step, by the number of the stimulus"

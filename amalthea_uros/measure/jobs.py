@@ -14,12 +14,17 @@ import numpy as np
 from amalthea_uros._internal.arrays import Flags, Numbers
 from amalthea_uros.measure.series import Counts, MeasuredKind, Series, statistics_of
 from amalthea_uros.timing.basics.quantities import JobMetric
-from amalthea_uros.timing.observed.job_times import BETWEEN, OWN, Job, own_times, times_between
+from amalthea_uros.timing.observed.job_times import BETWEEN, OWN, JobColumn, own_times, times_between
 from amalthea_uros.trace.table import EventKind, EventTable
 from amalthea_uros.trace.vocabulary import PROCESS
 
 #: What the states of a job count as; in READY no time is counted.
-_COLUMNS = {"running": Job.RUNNING, "waiting": Job.WAITING, "polling": Job.POLLING, "parking": Job.PARKING}
+_COLUMNS = {
+    "running": JobColumn.RUNNING,
+    "waiting": JobColumn.WAITING,
+    "polling": JobColumn.POLLING,
+    "parking": JobColumn.PARKING,
+}
 _STATES = {int(kind): (before, after) for kind, (before, after) in PROCESS.items()}
 _UNACTIVATED = -1
 #: Those that begin at the activation of the job.
@@ -254,21 +259,21 @@ def _series(kind: MeasuredKind, name: str, ended: _EndedJobs) -> Iterator[Series
         yield Series(kind=kind, name=name, quantity=JobMetric.RESPONSE_TIME, statistics=None, counts=counts)
         return
     jobs, follows = _table(ended)
-    is_activated = jobs[Job.ACTIVATION] != _UNACTIVATED
+    is_activated = jobs[JobColumn.ACTIVATION] != _UNACTIVATED
     for metric, values in zip(OWN, own_times(jobs), strict=True):
-        yield from _of_metric(kind, name, metric, values, jobs[Job.END], is_activated, counts)
+        yield from _of_metric(kind, name, metric, values, jobs[JobColumn.END], is_activated, counts)
     values = times_between(jobs[:, :-1], jobs[:, 1:])
     is_known = follows[1:]
     both = is_activated[1:] & is_activated[:-1]
     for metric, row in zip(BETWEEN, values, strict=True):
-        yield from _of_metric(kind, name, metric, row[is_known], jobs[Job.END, 1:][is_known], both[is_known], counts)
+        yield from _of_metric(kind, name, metric, row[is_known], jobs[JobColumn.END, 1:][is_known], both[is_known], counts)
 
 
 def _table(ended: _EndedJobs) -> tuple[Numbers, Flags]:
-    """A column for each job, a row for each of `Job`; and whether each follows the one before."""
+    """A column for each job, a row for each of `JobColumn`; and whether each follows the one before."""
     rows = np.array(ended.rows, np.int64).T
-    jobs = np.zeros((len(Job), rows.shape[1]), np.int64)
-    jobs[[Job.INSTANCE, Job.ACTIVATION, Job.START, Job.END, *_COLUMNS.values()]] = rows[:-1]
+    jobs = np.zeros((len(JobColumn), rows.shape[1]), np.int64)
+    jobs[[JobColumn.INSTANCE, JobColumn.ACTIVATION, JobColumn.START, JobColumn.END, *_COLUMNS.values()]] = rows[:-1]
     return jobs, rows[-1].astype(bool)
 
 

@@ -16,7 +16,7 @@ from amalthea_uros._internal.arrays import Flags, Numbers
 from amalthea_uros.measure.pairing import counted_on, lost_numbers
 from amalthea_uros.measure.series import Counts, MeasuredKind, Series, statistics_of
 from amalthea_uros.timing.basics.quantities import ChainQuantity
-from amalthea_uros.timing.observed.chain_latencies import SAME, RouteLatencies
+from amalthea_uros.timing.observed.chain_latencies import SAME, ObservedRouteLatencies
 
 #: What can be said where it is not known which stimulus a response shows.
 _BY_TIME = (ChainQuantity.REDUCED_REACTION_TIME, ChainQuantity.REDUCED_DATA_AGE)
@@ -85,7 +85,7 @@ def reactions(
     borders = [0, *(np.flatnonzero(np.diff(segment)) + 1).tolist(), len(segment)]
     for first, end in pairwise(borders if len(segment) else []):
         here = slice(first, end)
-        latencies = RouteLatencies(found.note)
+        latencies = ObservedRouteLatencies(found.note)
         kept, stamps, repeated = _stamped(is_response[here], None if number is None else number[here])
         duplicated += repeated
         latencies.add(is_response[here][kept], time[here][kept], stamps)

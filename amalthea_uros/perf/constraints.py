@@ -143,7 +143,7 @@ class DataGroup(Named):
 Constraint: TypeAlias = LatencyConstraint | DelayConstraint | RepetitionConstraint | EventSynchronization | ChainSynchronization
 
 
-class Severity(StrEnum):
+class RequirementSeverity(StrEnum):
     """How bad it is if a requirement is not met."""
 
     COSMETIC = "cosmetic"
@@ -298,7 +298,7 @@ class Requirement(Named):
     limit: Limit
     process: str | None = None
     runnable: str | None = None
-    severity: Severity | None = None
+    severity: RequirementSeverity | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.analyze.explanations.chains import ProcessHop
-from amalthea_uros.analyze.explanations.hop_causes import Cause, CauseKind
+from amalthea_uros.analyze.explanations.hop_causes import CauseKind, LatencyCause
 from amalthea_uros.units import time_text
 
 
-def cause_text(cause: Cause, hop: ProcessHop) -> str:
+def cause_text(cause: LatencyCause, hop: ProcessHop) -> str:
     """Why a part of a hop takes its time, said of its process: "waits for its next job, which runs every 20 ms"."""
     match cause.kind:
         case CauseKind.JUST_MISSED:

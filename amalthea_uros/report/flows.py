@@ -12,7 +12,7 @@ from amalthea_uros.perf.software import Isr, Process
 from amalthea_uros.perf.stimuli import EventTriggered, InterProcess, Periodic
 from amalthea_uros.perf.system import System
 from amalthea_uros.report.activation_text import activation_text
-from amalthea_uros.timing.context import Placement, TimingContext
+from amalthea_uros.timing.context import ProcessPlacement, TimingContext
 from amalthea_uros.timing.dataflow.chains import unfold
 from amalthea_uros.timing.dataflow.links import LinkKind, reads, writes
 from amalthea_uros.timing.dataflow.routes import routes_of_ways
@@ -82,7 +82,7 @@ class SystemFlows:
             found.setdefault(self.placement(process.name).core, []).append(process)
         return {core: tuple(sorted(own, key=self._urgency)) for core, own in found.items() if own}
 
-    def placement(self, process: str) -> Placement:
+    def placement(self, process: str) -> ProcessPlacement:
         """The core and the priority of a process."""
         return self.context.placement(process)
 

@@ -9,7 +9,7 @@ from math import inf
 from typing import TypeAlias
 
 from amalthea_uros.analyze.results.analysis import Analysis, Judged
-from amalthea_uros.analyze.results.chains import ChainResult, Quantity
+from amalthea_uros.analyze.results.chains import ChainResult, LatencyQuantity
 from amalthea_uros.analyze.results.processes import ProcessResult
 from amalthea_uros.analyze.results.requirements import RequirementResult
 from amalthea_uros.judge.causes import quantity_of
@@ -23,7 +23,7 @@ from amalthea_uros.units import Rounding, Time, number_text, rounded, rounded_ti
 _Rank: TypeAlias = tuple[int, Fraction | float]
 _LAST: _Rank = (len(WORST_FIRST), inf)
 #: The quantities of chains that limits of these names limit.
-LIMITED = {"reaction": Quantity.MAX_REDUCED_REACTION_TIME, "data age": Quantity.MAX_REDUCED_DATA_AGE}
+LIMITED = {"reaction": LatencyQuantity.MAX_REDUCED_REACTION_TIME, "data age": LatencyQuantity.MAX_REDUCED_DATA_AGE}
 #: With those whose jitter is limited.
 _CONCERNED = LIMITED | {jitter_name(name): quantity for name, quantity in LIMITED.items()}
 
@@ -165,7 +165,7 @@ def _ranks(requirements: Iterable[RequirementResult]) -> dict[str, _Rank]:
 
 
 def _reaction(chain: ChainResult) -> float:
-    value = chain.value(Quantity.MAX_REDUCED_REACTION_TIME)
+    value = chain.value(LatencyQuantity.MAX_REDUCED_REACTION_TIME)
     return inf if value is None or value.value is None else value.value
 
 
@@ -174,7 +174,7 @@ def requirements_of(chain: str, analysis: Analysis) -> Sequence[RequirementResul
     return sorted((each for each in analysis.requirements if each.object == chain and each.quantity in _CONCERNED), key=urgency)
 
 
-def decisive_quantity(chain: str, analysis: Analysis) -> Quantity:
+def decisive_quantity(chain: str, analysis: Analysis) -> LatencyQuantity:
     """The latency of a chain with the worst requirement; without one, its reaction time."""
     requirements = requirements_of(chain, analysis)
-    return _CONCERNED[requirements[0].quantity] if requirements else Quantity.MAX_REDUCED_REACTION_TIME
+    return _CONCERNED[requirements[0].quantity] if requirements else LatencyQuantity.MAX_REDUCED_REACTION_TIME

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from amalthea_uros.analyze.results.chains import ChainResult, Quantity, Value
+from amalthea_uros.analyze.results.chains import ChainResult, LatencyQuantity, LatencyValue
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.units import Rounding, rounded_time_text
 
 #: The headline quantities: `reaction` and `data age` are what the limits of these names are compared with.
 _COLUMNS = {
-    "min": Quantity.MIN_FIRST_TO_FIRST,
-    "mean": Quantity.MEAN_FIRST_TO_FIRST,
-    "reaction": Quantity.MAX_REDUCED_REACTION_TIME,
-    "data age": Quantity.MAX_REDUCED_DATA_AGE,
+    "min": LatencyQuantity.MIN_FIRST_TO_FIRST,
+    "mean": LatencyQuantity.MEAN_FIRST_TO_FIRST,
+    "reaction": LatencyQuantity.MAX_REDUCED_REACTION_TIME,
+    "data age": LatencyQuantity.MAX_REDUCED_DATA_AGE,
 }
 _NAMES = {quantity: column for column, quantity in _COLUMNS.items() if quantity.is_upper}
 HEADING = (
@@ -37,20 +37,20 @@ def cells(chain: ChainResult, columns: Iterable[str]) -> tuple[str, ...]:
     return (*map(value_text, values), chain.reason or ", ".join(claims))
 
 
-def value_text(value: Value | None) -> str:
+def value_text(value: LatencyValue | None) -> str:
     """A latency that is still a bound when it has lost digits, or a dash."""
     if value is None or value.value is None:
         return "-"
     return rounded_time_text(value.value, _rounding(value.quantity))
 
 
-def _rounding(quantity: Quantity) -> Rounding:
+def _rounding(quantity: LatencyQuantity) -> Rounding:
     if quantity.is_mean:
         return Rounding.NEAREST
     return Rounding.UP if quantity.is_upper else Rounding.DOWN
 
 
-def quantity_text(quantity: Quantity) -> str:
+def quantity_text(quantity: LatencyQuantity) -> str:
     """The full name of a quantity, with the short one of the tables and limits if it has one."""
     name = quantity.replace("_", " ")
     return f"{name} ({_NAMES[quantity]})" if quantity in _NAMES else name

@@ -26,7 +26,7 @@ from amalthea_uros.services.design_structures import DescribedCallbacks
 from amalthea_uros.services.inputs import SystemInput
 from amalthea_uros.services.subject import Subject
 from amalthea_uros.timing.activation.releases import known_releases
-from amalthea_uros.timing.basics.settings import Memory
+from amalthea_uros.timing.basics.settings import MemoryModel
 from amalthea_uros.timing.jobs.executed import executed
 from amalthea_uros.timing.scheduling.allocation import allocated_cores, scheduler_cores
 from amalthea_uros.timing.scheduling.ranks import is_by_priority
@@ -246,7 +246,7 @@ class _Builder:
 
     def _memories(self) -> Iterator[Choice]:
         """Other memories with known space, which all cores that need a label can access; no flash for what is written."""
-        if self.present.settings.memory is Memory.NONE:
+        if self.present.settings.memory is MemoryModel.NONE:
             raise InvalidArgumentError(
                 "the memory of a label has no effect without memory latencies; add --memory explicit or implicit"
             )

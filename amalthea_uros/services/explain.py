@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from amalthea_uros.analyze.explanations.chains import explain_chain
 from amalthea_uros.analyze.explanations.processes import explain_callback, explain_process
-from amalthea_uros.analyze.results.chains import Quantity
+from amalthea_uros.analyze.results.chains import LatencyQuantity
 from amalthea_uros.names import require
 from amalthea_uros.services.analyze import Analyzed, Explanation, analysis_result
 from amalthea_uros.services.improvements import check_explained, improvements_of
 from amalthea_uros.uros.application.callbacks import body_name
 
 
-def explain(analyzed: Analyzed, name: str, quantity: Quantity = Quantity.MAX_REDUCED_REACTION_TIME) -> Explanation:
+def explain(
+    analyzed: Analyzed, name: str, quantity: LatencyQuantity = LatencyQuantity.MAX_REDUCED_REACTION_TIME
+) -> Explanation:
     """Explain the response time of a process or callback, or a maximum latency of a chain: why is it so long?
 
     >>> print(explain("app.yaml", "factor-to-output"))  # doctest: +SKIP

@@ -7,7 +7,7 @@ from enum import StrEnum
 from fractions import Fraction
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.analyze.impact import Effect, Figure, Goal, Impact, ImpactRow, Unit
+from amalthea_uros.analyze.impact import ComparedFigure, Effect, FigureUnit, Impact, ImpactRow, Preference
 from amalthea_uros.units import Rounding, number_text, percent_text, rounded_time_text
 
 HEADINGS = ("object", "quantity", "before", "after", "effect", "claim")
@@ -63,7 +63,7 @@ def _claim(row: ImpactRow) -> str:
     return row.after.reason if row.after is not None and is_lost and row.after.reason else " -> ".join(claims)
 
 
-def _text(figure: Figure | None, other: Figure | None) -> str:
+def _text(figure: ComparedFigure | None, other: ComparedFigure | None) -> str:
     """The value of a figure, with as many digits as it takes to differ from the other one."""
     if figure is None:
         return "-"
@@ -76,23 +76,23 @@ def _text(figure: Figure | None, other: Figure | None) -> str:
     return _number(figure, Fraction(figure.value), against)
 
 
-def _open_text(figure: Figure) -> str:
-    if figure.unit is Unit.VERDICT:
+def _open_text(figure: ComparedFigure) -> str:
+    if figure.unit is FigureUnit.VERDICT:
         return "not judged"
     if figure.at_least:
-        return f"at least {_percent(figure.at_least, Goal.HIGH)}"
+        return f"at least {_percent(figure.at_least, Preference.HIGH)}"
     return "unbounded" if figure.is_overload else "unknown"
 
 
-def _number(figure: Figure, value: Fraction, other: int | Fraction | None) -> str:
+def _number(figure: ComparedFigure, value: Fraction, other: int | Fraction | None) -> str:
     match figure.unit:
-        case Unit.SHARE:
+        case FigureUnit.SHARE:
             return _percent(value, figure.goal)
-        case Unit.NUMBER:
+        case FigureUnit.NUMBER:
             return number_text(value)
-    return rounded_time_text(value, Rounding.UP if figure.goal is Goal.LOW else Rounding.DOWN, other)
+    return rounded_time_text(value, Rounding.UP if figure.goal is Preference.LOW else Rounding.DOWN, other)
 
 
-def _percent(load: Fraction, goal: Goal) -> str:
+def _percent(load: Fraction, goal: Preference) -> str:
     """A load in percent with three decimals, rounded to the safe side."""
-    return f"{percent_text(load, 3, Rounding.UP if goal is Goal.LOW else Rounding.DOWN)}%"
+    return f"{percent_text(load, 3, Rounding.UP if goal is Preference.LOW else Rounding.DOWN)}%"

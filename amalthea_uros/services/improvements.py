@@ -8,9 +8,9 @@ from itertools import islice
 
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.explanations.chains import ChainExplanation, explain_chain
-from amalthea_uros.analyze.impact import Amount, Effect, Figure, Part, Unit, impact
+from amalthea_uros.analyze.impact import Amount, ComparedFigure, Effect, FigureUnit, ResultPart, impact
 from amalthea_uros.analyze.results.analysis import Analysis
-from amalthea_uros.analyze.results.chains import EXPLAINED, Quantity
+from amalthea_uros.analyze.results.chains import EXPLAINED, LatencyQuantity
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.design.changes.apply import Difference, apply, describe
 from amalthea_uros.design.changes.key import Configuration
@@ -56,7 +56,7 @@ class Improvement:
     after: Time
     claim: Claim
     drawbacks: tuple[Drawback, ...] = ()
-    latencies: Mapping[Quantity, tuple[Time | None, Time | None]] = field(default_factory=dict)
+    latencies: Mapping[LatencyQuantity, tuple[Time | None, Time | None]] = field(default_factory=dict)
 
     @property
     def is_safe(self) -> bool:
@@ -76,7 +76,7 @@ class Improvements(Shown):
     """
 
     chain: str
-    quantity: Quantity
+    quantity: LatencyQuantity
     found: tuple[Improvement, ...]
     tried: int
     untried: int
@@ -94,7 +94,9 @@ class Improvements(Shown):
         return tuple(islice(different.values(), count))
 
 
-def improvements(analyzed: Analyzed, chain: str, quantity: Quantity = Quantity.MAX_REDUCED_REACTION_TIME) -> Improvements:
+def improvements(
+    analyzed: Analyzed, chain: str, quantity: LatencyQuantity = LatencyQuantity.MAX_REDUCED_REACTION_TIME
+) -> Improvements:
     """Try single changes of a system, and rank those that shorten a latency of a chain; see `improvements_of`.
 
     Parameters
@@ -172,7 +174,7 @@ def _improvement(
     candidate: Candidate,
     differences: tuple[Difference, ...],
     chain: str,
-    quantity: Quantity,
+    quantity: LatencyQuantity,
     before: Analysis,
     after: Analysis,
 ) -> Improvement | None:
@@ -192,18 +194,18 @@ def _improvement(
     )
 
 
-def _latency(analysis: Analysis, chain: str, quantity: Quantity) -> Time | None:
+def _latency(analysis: Analysis, chain: str, quantity: LatencyQuantity) -> Time | None:
     value = analysis.chains[chain].value(quantity)
     return None if value is None else value.value
 
 
 def _drawbacks(
-    chain: str, latencies: Mapping[Quantity, tuple[Time | None, Time | None]], before: Analysis, after: Analysis
+    chain: str, latencies: Mapping[LatencyQuantity, tuple[Time | None, Time | None]], before: Analysis, after: Analysis
 ) -> Iterator[Drawback]:
     """What gets worse: verdicts, cores that are overloaded now, and latencies of the chain and of others."""
     worse = [row for row in impact(before, after).rows if row.effect is Effect.WORSE]
     for row in worse:
-        if row.part in (Part.PROCESS, Part.REQUIREMENT) and row.figure.unit is Unit.VERDICT:
+        if row.part in (ResultPart.PROCESS, ResultPart.REQUIREMENT) and row.figure.unit is FigureUnit.VERDICT:
             yield Drawback(name=row.object, before=_verdict(row.before), after=_verdict(row.after), is_verdict=True)
     for core in after.processors:
         if core.is_overloaded and not before.processors[core.name].is_overloaded:
@@ -212,12 +214,12 @@ def _drawbacks(
         if then is not None and (now is None or now > then):
             yield Drawback(name=_words(quantity), before=_text(then), after=_text(now), is_verdict=False)
     for row in worse:
-        if row.part is Part.CHAIN and row.object != chain and row.before is not None and row.after is not None:
+        if row.part is ResultPart.CHAIN and row.object != chain and row.before is not None and row.after is not None:
             name = f"{_words(row.quantity)} of {row.object}"
             yield Drawback(name=name, before=_text(row.before.value), after=_text(row.after.value), is_verdict=False)
 
 
-def _verdict(figure: Figure | None) -> str:
+def _verdict(figure: ComparedFigure | None) -> str:
     return "no deadline" if figure is None or figure.value is None else str(figure.value)
 
 

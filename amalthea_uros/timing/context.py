@@ -16,10 +16,10 @@ from amalthea_uros.timing.activation.phases import arrival_assumptions, with_bou
 from amalthea_uros.timing.activation.releases import response_time_limits
 from amalthea_uros.timing.awaited import why_suspended
 from amalthea_uros.timing.basics.limits import MAX_INPUT
-from amalthea_uros.timing.basics.notes import Notes
-from amalthea_uros.timing.basics.settings import Memory, Settings
-from amalthea_uros.timing.blocking.critical_sections import Locks, Protection, spinlocks_of
-from amalthea_uros.timing.blocking.regions import KeptOff, ProcessStretches, StretchWalk
+from amalthea_uros.timing.basics.notes import AnalysisNotes
+from amalthea_uros.timing.basics.settings import MemoryModel, Settings
+from amalthea_uros.timing.blocking.critical_sections import Locks, LockUsage, spinlocks_of
+from amalthea_uros.timing.blocking.regions import ProcessRegions, RegionKind, RegionWalk
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.timing.demand.model import DemandModel
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
@@ -40,7 +40,7 @@ LENDING_SERVERS = (Policy.CONSTANT_BANDWIDTH_SERVER, Policy.CONSTANT_BANDWIDTH_S
 
 
 @dataclass(frozen=True, slots=True)
-class Placement:
+class ProcessPlacement:
     """The core and the priority of a process; None if it has none or several."""
 
     core: str | None = None
@@ -64,7 +64,7 @@ class TimingContext:
 
     system: System
     settings: Settings = field(default_factory=Settings)
-    notes: Notes = field(default_factory=Notes)
+    notes: AnalysisNotes = field(default_factory=AnalysisNotes)
     scheduled: dict[str, ScheduledProcess] = field(default_factory=dict)
     servers: dict[str, Server] = field(default_factory=dict)
     demands: dict[str, MultiframeDemand] = field(default_factory=dict)
@@ -110,9 +110,9 @@ class TimingContext:
         return DemandModel(self.system, self.notes, self.settings)
 
     @cached_property
-    def stretches(self) -> ProcessStretches:
+    def stretches(self) -> ProcessRegions:
         """The stretches of jobs in which others cannot preempt them."""
-        return ProcessStretches(self.demand_model)
+        return ProcessRegions(self.demand_model)
 
     @cached_property
     def dataflow(self) -> Dataflow:
@@ -138,15 +138,15 @@ class TimingContext:
         """Time units per picosecond on the core of a process."""
         return self.demand_model.time_base(self.scheduled[process].core)
 
-    def placement(self, process: str) -> Placement:
+    def placement(self, process: str) -> ProcessPlacement:
         """Where a process runs and with which priority, as far as it is known."""
         scheduled = self.scheduled.get(process)
         if scheduled is not None:
-            return Placement(scheduled.core, scheduled.priority)
-        return self._placements.get(process, Placement())
+            return ProcessPlacement(scheduled.core, scheduled.priority)
+        return self._placements.get(process, ProcessPlacement())
 
     @cached_property
-    def _placements(self) -> Mapping[str, Placement]:
+    def _placements(self) -> Mapping[str, ProcessPlacement]:
         """The same for all processes, also for those whose scheduling cannot be analysed."""
         cores, mapping = allocated_cores(self.system), self.system.mapping
         priorities: dict[str, set[int | None]] = {}
@@ -154,7 +154,7 @@ class TimingContext:
             priorities.setdefault(task.task, set()).add(effective_priority(task, self.system))
         for isr in mapping.isrs:
             priorities.setdefault(isr.isr, set()).add(isr.priority)
-        return {name: Placement(_only(cores.get(name, ())), _only(found)) for name, found in priorities.items()}
+        return {name: ProcessPlacement(_only(cores.get(name, ())), _only(found)) for name, found in priorities.items()}
 
     def stated_demand(self, process: str) -> MultiframeDemand | None:
         """The demand of a process on its core, also if its scheduling cannot be analysed; None if it is unknown."""
@@ -229,7 +229,7 @@ class TimingContext:
             notes.assume(f"the worst-case execution times of {name} are multiplied by {float(factor):g}")
         for label, value in settings.modes.items():
             notes.assume(f"the mode {label} is always {value}")
-        if settings.memory is not Memory.NONE:
+        if settings.memory is not MemoryModel.NONE:
             notes.assume("memory accesses do not wait for those of other cores")
 
     def _schedule(self) -> None:
@@ -309,7 +309,7 @@ class TimingContext:
         return scheduler
 
     @cached_property
-    def protection(self) -> dict[str, Protection]:
+    def protection(self) -> dict[str, LockUsage]:
         """What each process uses to keep others off."""
         return {name: self.touching.protection[name] for name in self.scheduled}
 
@@ -318,7 +318,7 @@ class TimingContext:
         requests: dict[str, set[str]] = {}
         for name, uses in self.protection.items():
             if uses.semaphores and name in self.demands:
-                walk = StretchWalk(self.system, KeptOff(), lambda _: 0, self.demand_model.possible_branches, requests)
+                walk = RegionWalk(self.system, RegionKind(), lambda _: 0, self.demand_model.possible_branches, requests)
                 try:
                     walk.of(self.scheduled[name].process.activities)
                 except UnknownError as error:

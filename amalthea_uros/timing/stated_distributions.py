@@ -47,7 +47,7 @@ from amalthea_uros.perf.stimuli import (
 )
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.quantities import JobMetric
-from amalthea_uros.timing.basics.settings import Memory, Settings
+from amalthea_uros.timing.basics.settings import MemoryModel, Settings
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.dataflow.chains import events_of
 from amalthea_uros.timing.scheduling.allocation import allocated_cores
@@ -309,7 +309,7 @@ class StatedDistributions:
                 found += self._varying([scheduler.overhead], scheduler.name)
             for controller in operating_system.interrupt_controllers:
                 found += self._varying([controller.overhead], controller.name)
-        if self.settings.memory is not Memory.NONE:
+        if self.settings.memory is not MemoryModel.NONE:
             found += _of_distributions(self._latencies(), "the times of memory accesses")
         return tuple(dict.fromkeys(found))
 

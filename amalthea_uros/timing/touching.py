@@ -15,7 +15,7 @@ from amalthea_uros.perf.activities import Incomplete, Migrate
 from amalthea_uros.perf.conditions import read_by
 from amalthea_uros.perf.software import Isr
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.blocking.critical_sections import Protection, protection_of
+from amalthea_uros.timing.blocking.critical_sections import LockUsage, protection_of
 from amalthea_uros.timing.dataflow.links import Dataflow, DirectLink, LinkKind, reads, writes
 from amalthea_uros.timing.jobs.executed import executed
 from amalthea_uros.timing.scheduling.allocation import allocated_cores, scheduler_cores
@@ -136,7 +136,7 @@ class Touching:
     # Other processes.
 
     @cached_property
-    def protection(self) -> Mapping[str, Protection]:
+    def protection(self) -> Mapping[str, LockUsage]:
         """What each process uses to keep others off."""
         return {name: protection_of(process, self.system) for name, process in self.system.processes.items()}
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 
 from amalthea_uros.diagnostics import Location
-from amalthea_uros.perf.constraints import Bound, JitterLimit, Limit, Requirement, Severity, TimeLimit, TimeMetric
+from amalthea_uros.perf.constraints import Bound, JitterLimit, Limit, Requirement, RequirementSeverity, TimeLimit, TimeMetric
 from amalthea_uros.spec import requirements as spec
 from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.chain_elements import ChainElement
@@ -39,7 +39,7 @@ def _limits(section: spec.Requirement, element: ChainElement) -> Iterator[Requir
             process=element.process if element.runnable is None else None,
             runnable=element.runnable,
             limit=limit,
-            severity=Severity(section.severity) if section.severity else None,
+            severity=RequirementSeverity(section.severity) if section.severity else None,
             origin=origin,
         )
 

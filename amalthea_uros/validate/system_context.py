@@ -10,7 +10,7 @@ from functools import cached_property
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.activation.activations import Activations
 from amalthea_uros.timing.activation.load import activation_rates, certain_loads, loads, suppressible
-from amalthea_uros.timing.basics.notes import Notes
+from amalthea_uros.timing.basics.notes import AnalysisNotes
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.timing.demand.model import DemandModel
 from amalthea_uros.timing.scheduling.allocation import allocated_cores, controller_of_core
@@ -60,7 +60,7 @@ class SystemContext:
 
     @cached_property
     def _demand_model(self) -> DemandModel:
-        return DemandModel(self.system, Notes())
+        return DemandModel(self.system, AnalysisNotes())
 
     @cached_property
     def _uncertain(self) -> frozenset[str]:

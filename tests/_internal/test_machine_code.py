@@ -5,7 +5,7 @@ import os
 import pytest
 
 from amalthea_uros._internal import machine_code
-from amalthea_uros._internal.machine_code import LOADING, Effort
+from amalthea_uros._internal.machine_code import LOADING, CompilationEffort
 
 
 @pytest.fixture(autouse=True)
@@ -18,7 +18,7 @@ def numba_in(monkeypatch, tmp_path):
 def effort(tmp_path):
     source = tmp_path / "loop.py"
     source.touch()
-    return Effort("a loop", [source], "play_*", compiling=25)
+    return CompilationEffort("a loop", [source], "play_*", compiling=25)
 
 
 def keep(tmp_path, name="loop.play_a1b2-39.py311.nbi"):

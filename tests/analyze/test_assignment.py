@@ -13,10 +13,10 @@ from support import ROOT
 from test_system import system, ticks
 
 from amalthea_uros import describe
-from amalthea_uros.analyze.priorities.assignment import Outcome, propose_priorities
+from amalthea_uros.analyze.priorities.assignment import ProposalOutcome, propose_priorities
 from amalthea_uros.analyze.priorities.orders import lowest_first, with_priorities
 from amalthea_uros.analyze.response_times import priority_levels
-from amalthea_uros.analyze.response_times.task import Task as AnalysedTask
+from amalthea_uros.analyze.response_times.task import AnalysedTask
 from amalthea_uros.analyze.sensitivity import max_growth, sensitivity
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.activities import SemaphoreAccess, SemaphoreOperation, Trigger
@@ -26,7 +26,7 @@ from amalthea_uros.perf.software import Isr, Preemption, Task
 from amalthea_uros.perf.stimuli import InterProcess, Periodic
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
-from amalthea_uros.timing.event_models import Periodic as PeriodicEvents
+from amalthea_uros.timing.event_models import PeriodicEvents
 from amalthea_uros.units import MICROSECOND as US
 
 ROWS = st.lists(st.tuples(st.integers(4, 14), st.integers(0, 8), st.integers(1, 4), st.integers(2, 16)), min_size=1, max_size=4)
@@ -205,12 +205,12 @@ class TestOffsets:
         rows, present = drawn
         (proposal,) = propose_priorities(analyze_system(with_offsets(rows, present)))
         if proposal.priorities is None:
-            assert proposal.outcome is Outcome.NONE
+            assert proposal.outcome is ProposalOutcome.NONE
             assert not any(player(rows, order) for order in permutations(range(len(rows))))
         else:
             found = sorted(range(len(rows)), key=lambda i: proposal.priorities[f"T{i}"])
             assert player(rows, found)
-            assert (proposal.outcome is Outcome.KEPT) == player(rows, present)
+            assert (proposal.outcome is ProposalOutcome.KEPT) == player(rows, present)
 
     @given(sets_with_offsets())
     def test_with_blocking_a_proposal_holds_and_none_is_true(self, drawn):
@@ -219,20 +219,20 @@ class TestOffsets:
         (proposal,) = propose_priorities(analyze_system(built))
         if proposal.priorities is not None:
             assert player(rows, sorted(range(len(rows)), key=lambda i: proposal.priorities[f"T{i}"]), preemptive=False)
-        if proposal.outcome is Outcome.NONE:
+        if proposal.outcome is ProposalOutcome.NONE:
             assert not any(player(rows, order, preemptive=False) for order in permutations(range(len(rows))))
 
     def test_present_priorities_that_meet_all_deadlines_are_kept(self):
         # Released together, the lower one would take 8; but they are released 5 apart.
         rows = [(10, 0, 4, 4), (10, 5, 4, 4)]
         (proposal,) = propose_priorities(analyze_system(with_offsets(rows, [0, 1])))
-        assert (proposal.outcome, proposal.priorities) == (Outcome.KEPT, {"T0": 0, "T1": 1})
+        assert (proposal.outcome, proposal.priorities) == (ProposalOutcome.KEPT, {"T0": 0, "T1": 1})
 
     def test_an_order_that_is_not_deadline_monotonic(self):
         # T1 executes from 2 to 5 and has no time to spare. T0 is released at 4: above T1 it delays that to 6, below it ends at 6.
         rows = [(4, 0, 1, 2), (4, 2, 3, 3)]
         (proposal,) = propose_priorities(analyze_system(with_offsets(rows, [1, 0])))
-        assert (proposal.outcome, proposal.priorities) == (Outcome.PROPOSED, {"T0": 0, "T1": 1})
+        assert (proposal.outcome, proposal.priorities) == (ProposalOutcome.PROPOSED, {"T0": 0, "T1": 1})
 
 
 def test_a_proposal_that_would_spoil_another_core_is_not_made():
@@ -256,7 +256,7 @@ def test_a_proposal_that_would_spoil_another_core_is_not_made():
     analysis = analyze_system(built)
     assert [str(process.verdict) for process in analysis.processes] == ["met", "missed", "met"]
     on_a, on_b = propose_priorities(analysis)
-    assert (on_a.outcome, on_b.outcome) == (Outcome.NOT_FOUND, Outcome.KEPT)
+    assert (on_a.outcome, on_b.outcome) == (ProposalOutcome.NOT_FOUND, ProposalOutcome.KEPT)
     assert on_a.reason == "some priorities meet all deadlines on 'A', but 'Second' is then no longer met"
 
 
@@ -277,14 +277,14 @@ def test_tasks_that_share_a_lock_get_priorities_that_hold():
     analysis = analyze_system(built)
     assert analysis.summary.schedulable != "yes"
     (proposal,) = propose_priorities(analysis)
-    assert (proposal.outcome, proposal.priorities) == (Outcome.PROPOSED, {"Urgent": 1, "Slow": 0})
+    assert (proposal.outcome, proposal.priorities) == (ProposalOutcome.PROPOSED, {"Urgent": 1, "Slow": 0})
     changed = analyze_system(with_priorities(built, proposal.priorities))
     # Both are released together: Urgent comes first, and Slow has ended before it comes again.
     assert changed["Urgent"].response.worst == 5 * US
     assert changed.summary.schedulable == "yes"
 
 
-@pytest.mark.parametrize(("deadline", "outcome"), [(10, Outcome.PROPOSED), (9, Outcome.NONE)])
+@pytest.mark.parametrize(("deadline", "outcome"), [(10, ProposalOutcome.PROPOSED), (9, ProposalOutcome.NONE)])
 def test_priorities_below_an_interrupt(deadline, outcome):
     # The interrupt takes 0 to 5 of each 10. With T1 above T0, they execute from 5 to 7 and 7 to 10; with T0 above T1, T1 ends at 10,
     # 5 after its release.
@@ -299,4 +299,4 @@ def test_priorities_below_an_interrupt(deadline, outcome):
     )
     (proposal,) = propose_priorities(analyze_system(built))
     assert proposal.outcome is outcome
-    assert proposal.priorities == ({"T0": 0, "T1": 1} if outcome is Outcome.PROPOSED else None)
+    assert proposal.priorities == ({"T0": 0, "T1": 1} if outcome is ProposalOutcome.PROPOSED else None)

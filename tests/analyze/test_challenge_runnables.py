@@ -11,7 +11,7 @@ from lxml import etree
 from support import SHARED
 from test_system import system
 
-from amalthea_uros.analyze.results.chains import Quantity
+from amalthea_uros.analyze.results.chains import LatencyQuantity
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.activities import AccessKind, Call, Communication, Demand, Execute, LabelAccess
 from amalthea_uros.perf.distributions import Boundaries, Uniform
@@ -111,7 +111,7 @@ def test_response_times_of_all_tasks(figures, built, variant, clock):
 def test_an_explicit_chain_ends_with_the_access(built):
     settings = Settings(dict.fromkeys(built.cores, Fraction(300 * 10**6)), communication=Communication.EXPLICIT)
     (chain,) = analyze_system(built, settings).chains
-    reaction = chain.value(Quantity.MAX_REACTION_TIME)
+    reaction = chain.value(LatencyQuantity.MAX_REACTION_TIME)
     # From just after Runnable_100ms_7 has read until Runnable_2ms_8 has ended: at least the period that was just missed, at most the
     # bound that the University of Modena published for this chain.
     assert 100_000 * US < reaction.value <= 122_740 * US

@@ -8,7 +8,7 @@ import pytest
 from opponent.to_perf import to_perf
 
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.timing.blocking.regions import AFTER_CALL, NOTHING, POINT, Stretches
+from amalthea_uros.timing.blocking.regions import AFTER_CALL, NOTHING, POINT, NonPreemptiveRegions
 from amalthea_uros.units import MICROSECOND as US
 
 
@@ -274,7 +274,7 @@ class TestStretches:
     def of(parts):
         found = NOTHING
         for part in parts:
-            found = found.then(POINT if part is None else Stretches(through=part, uncounted=part, total=part))
+            found = found.then(POINT if part is None else NonPreemptiveRegions(through=part, uncounted=part, total=part))
         return found
 
     @pytest.mark.parametrize(

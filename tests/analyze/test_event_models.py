@@ -10,30 +10,30 @@ from support import SHARED
 
 from amalthea_uros.analyze.response_times import non_preemptive, priority_levels
 from amalthea_uros.analyze.response_times.propagation import completions
-from amalthea_uros.analyze.response_times.task import Task
+from amalthea_uros.analyze.response_times.task import AnalysedTask
 from amalthea_uros.perf import stimuli as perf
 from amalthea_uros.perf.distributions import Constant, Uniform
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.event_models import (
     AggregatedEventModel,
-    Curve,
     Delayed,
     Downsampled,
+    EventPattern,
+    MinimumDistances,
     Multiplied,
     OutputEventModel,
-    Pattern,
-    Periodic,
-    Single,
-    Sporadic,
+    PeriodicEvents,
+    SingleEvent,
+    SporadicEvents,
 )
 from amalthea_uros.timing.event_models.stimuli import event_model_of
 
-PERIODIC = st.builds(Periodic, st.integers(1, 30), st.integers(0, 80), st.integers(0, 5)).filter(
+PERIODIC = st.builds(PeriodicEvents, st.integers(1, 30), st.integers(0, 80), st.integers(0, 5)).filter(
     lambda p: p.min_interarrival <= p.period
 )
-PATTERN = st.lists(st.integers(0, 19), min_size=1, max_size=4).map(lambda times: Pattern(20, tuple(sorted(times))))
-SIMPLE = st.one_of(PERIODIC, PATTERN, st.just(Single()), st.just(Curve(((2, 3), (4, 20)))))
+PATTERN = st.lists(st.integers(0, 19), min_size=1, max_size=4).map(lambda times: EventPattern(20, tuple(sorted(times))))
+SIMPLE = st.one_of(PERIODIC, PATTERN, st.just(SingleEvent()), st.just(MinimumDistances(((2, 3), (4, 20)))))
 MODELS = st.one_of(
     SIMPLE,
     st.builds(Downsampled, SIMPLE, st.integers(1, 4)),
@@ -60,7 +60,7 @@ def test_delta_min_is_monotonic(model):
 @given(st.integers(1, 10), st.integers(0, 25), st.lists(st.integers(0, 25), min_size=12, max_size=12))
 def test_no_jittering_events_are_denser_than_their_model(period, jitter, delays):
     times = sorted(index * period + min(delay, jitter) for index, delay in enumerate(delays))
-    model = Periodic(period, jitter)
+    model = PeriodicEvents(period, jitter)
     for first in range(12):
         for last in range(first, 12):
             assert times[last] - times[first] >= model.delta_min(last - first + 1)
@@ -75,7 +75,7 @@ def test_a_pattern_is_as_dense_as_its_densest_place(pattern):
 
 
 def test_several_events_for_each_one():
-    repeated = Multiplied(Periodic(10), 3)
+    repeated = Multiplied(PeriodicEvents(10), 3)
     assert [repeated.delta_min(count) for count in range(1, 8)] == [0, 0, 0, 10, 10, 10, 20]
     assert (repeated.eta_plus(11), repeated.rate) == (6, Fraction(3, 10))
 
@@ -83,43 +83,43 @@ def test_several_events_for_each_one():
 @pytest.mark.parametrize(
     ("stimulus", "model"),
     [
-        (perf.Periodic(name="s", period=10, offset=3), Periodic(10)),
-        (perf.Periodic(name="s", period=10, jitter=Uniform(lower=-1, upper=3), min_distance=2), Periodic(10, 4, 2)),
-        (perf.RelativePeriodic(name="s", distance=Uniform(lower=5, upper=9)), Sporadic(5, longest=9)),
+        (perf.Periodic(name="s", period=10, offset=3), PeriodicEvents(10)),
+        (perf.Periodic(name="s", period=10, jitter=Uniform(lower=-1, upper=3), min_distance=2), PeriodicEvents(10, 4, 2)),
+        (perf.RelativePeriodic(name="s", distance=Uniform(lower=5, upper=9)), SporadicEvents(5, longest=9)),
         # Offset 5, period 10, length 5, distance 2, count 3: 5, 7, 9, 15, 17, 19 ...
-        (perf.Burst(name="s", offset=5, period=10, length=5, distance=2, count=3), Pattern(10, (0, 2, 4))),
+        (perf.Burst(name="s", offset=5, period=10, length=5, distance=2, count=3), EventPattern(10, (0, 2, 4))),
         # The fourth occurrence would be after the burst; the third one, at exactly its end, counts.
-        (perf.Burst(name="s", period=10, length=4, distance=2, count=4), Pattern(10, (0, 2, 4))),
-        (perf.Burst(name="s", period=10, length=0, distance=2, count=4), Pattern(10, (0,))),
-        (perf.Synthetic(name="s", period=10, times=(7, 1)), Pattern(10, (1, 7))),
-        (perf.Single(name="s", time=4), Single()),
+        (perf.Burst(name="s", period=10, length=4, distance=2, count=4), EventPattern(10, (0, 2, 4))),
+        (perf.Burst(name="s", period=10, length=0, distance=2, count=4), EventPattern(10, (0,))),
+        (perf.Synthetic(name="s", period=10, times=(7, 1)), EventPattern(10, (1, 7))),
+        (perf.Single(name="s", time=4), SingleEvent()),
         (
             perf.ArrivalCurve(
                 name="s", points=(perf.ArrivalCurvePoint(occurrences=2, lower=3), perf.ArrivalCurvePoint(occurrences=3))
             ),
-            Curve(((2, 3),)),
+            MinimumDistances(((2, 3),)),
         ),
         # At most 4 in each 10.
-        (perf.VariableRate(name="s", step=10, rate=Uniform(lower=1.0, upper=4.0)), Sporadic(2)),
+        (perf.VariableRate(name="s", step=10, rate=Uniform(lower=1.0, upper=4.0)), SporadicEvents(2)),
         # At 50 Hz at most, every second revolution: 40 ms.
         (
             perf.VariableRate(name="s", step=1, rate=Constant(1.0), scenario=perf.Scenario(clock="engine", recurrence=2.0)),
-            Sporadic(40 * 10**9),
+            SporadicEvents(40 * 10**9),
         ),
         (
             perf.VariableRate(name="s", step=1, rate=Constant(1.0), scenario=perf.Scenario(clock="steps")),
-            Sporadic(250 * 10**9),
+            SporadicEvents(250 * 10**9),
         ),
         # Numbers that no analysis could go through.
         (perf.ArrivalCurve(name="s", points=(perf.ArrivalCurvePoint(occurrences=2**40, lower=3),)), None),
         (perf.Burst(name="s", period=2**40, length=2**40, count=2**40), None),
-        (perf.Burst(name="s", period=10, length=4, distance=2, count=2**40), Pattern(10, (0, 2, 4))),
+        (perf.Burst(name="s", period=10, length=4, distance=2, count=2**40), EventPattern(10, (0, 2, 4))),
         (perf.RelativePeriodic(name="s", distance=Uniform(lower=0, upper=9)), None),
         # Values without a meaning leave the rate unknown.
         (perf.RelativePeriodic(name="s", distance=Uniform(lower=-5, upper=9)), None),
         (perf.RelativePeriodic(name="s", distance=Uniform(lower=9, upper=5)), None),
         (perf.Periodic(name="s", period=10, jitter=Uniform(lower=3, upper=1)), None),
-        (perf.Periodic(name="s", period=10, min_distance=-2), Periodic(10)),
+        (perf.Periodic(name="s", period=10, min_distance=-2), PeriodicEvents(10)),
         (perf.InterProcess(name="s"), None),
         (perf.Custom(name="s"), None),
     ],
@@ -138,7 +138,7 @@ def test_the_tutorial_of_compositional_analysis():
     if not path.exists():
         pytest.skip("the vectors are not at hand")
     case = json.loads(path.read_text())
-    events = {name: Periodic(source["P"], source["J"]) for name, source in case["sources"].items()}
+    events = {name: PeriodicEvents(source["P"], source["J"]) for name, source in case["sources"].items()}
     worst = {}
     for resource, analysis in (
         ("CPU1", priority_levels.response_times),
@@ -147,7 +147,7 @@ def test_the_tutorial_of_compositional_analysis():
     ):
         tasks = [
             # Lower numbers are more important there.
-            Task(
+            AnalysedTask(
                 name=t["name"],
                 events=events[t["name"]],
                 demand=MultiframeDemand.constant(t["wcet"], t["bcet"]),

@@ -26,7 +26,7 @@ from amalthea_uros.perf.os import OperatingSystem, Os, Policy, Scheduler
 from amalthea_uros.perf.software import Label, Runnable, Software, Task
 from amalthea_uros.perf.stimuli import EventTriggered, InterProcess, Periodic, Stimuli
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.basics.notes import Notes
+from amalthea_uros.timing.basics.notes import AnalysisNotes
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.dataflow import events as dataflow_events
 from amalthea_uros.timing.dataflow.events import EventLocator
@@ -148,7 +148,7 @@ def test_losses_of_other_tasks_are_found_by_core():
 
 def test_the_callbacks_of_a_requirement_are_found_by_name():
     def take(number):
-        limited, notes = limits(number), Notes()
+        limited, notes = limits(number), AnalysisNotes()
         callbacks = list(analyze_system(limited).callbacks)
         assert len(callbacks) == number
         return steps(lambda: list(evaluate_requirements(limited, Results(), callbacks, notes)))

@@ -6,7 +6,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from amalthea_uros.analyze.impact import Effect, Figure, Goal, Impact, Part, Unit, _of_requirement, compare, verdict_figure
+from amalthea_uros.analyze.impact import (
+    ComparedFigure,
+    Effect,
+    FigureUnit,
+    Impact,
+    Preference,
+    ResultPart,
+    _of_requirement,
+    compare,
+    verdict_figure,
+)
 from amalthea_uros.analyze.results.requirements import RequirementResult
 from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.judge.verdict import Failure, Verdict
@@ -17,8 +27,8 @@ OPEN = (Verdict.UNKNOWN, Schedulable.UNKNOWN, None)
 BAD = (Verdict.MISSED, Verdict.UNBOUNDED, Failure.LOST, Failure.OVERLOAD, Schedulable.NO)
 
 
-def figure(value, goal=Goal.LOW, **others):
-    return Figure(part=Part.PROCESS, object="A", quantity="q", value=value, goal=goal, **others)
+def figure(value, goal=Preference.LOW, **others):
+    return ComparedFigure(part=ResultPart.PROCESS, object="A", quantity="q", value=value, goal=goal, **others)
 
 
 def effect(before, after):
@@ -28,13 +38,13 @@ def effect(before, after):
 
 
 @pytest.mark.parametrize(
-    ("goal", "expected"), [(Goal.LOW, Effect.WORSE), (Goal.HIGH, Effect.BETTER), (Goal.NONE, Effect.CHANGED)]
+    ("goal", "expected"), [(Preference.LOW, Effect.WORSE), (Preference.HIGH, Effect.BETTER), (Preference.NONE, Effect.CHANGED)]
 )
 def test_the_goal_says_which_values_are_better(goal, expected):
     assert effect(figure(1, goal), figure(2, goal)) is expected
 
 
-@pytest.mark.parametrize("goal", Goal)
+@pytest.mark.parametrize("goal", Preference)
 def test_a_value_that_becomes_unknown_is_worse(goal):
     assert effect(figure(1, goal), figure(None, goal)) is Effect.WORSE
 
@@ -53,7 +63,7 @@ def test_any_value_is_better_than_an_overload_and_an_overload_is_worse_than_unkn
 @pytest.mark.parametrize("before", GOOD + OPEN + BAD)
 @pytest.mark.parametrize("after", GOOD + OPEN + BAD)
 def test_only_what_is_met_for_certain_is_better(before, after):
-    rows = compare([verdict_figure(Part.PROCESS, "A", before)], [verdict_figure(Part.PROCESS, "A", after)]).rows
+    rows = compare([verdict_figure(ResultPart.PROCESS, "A", before)], [verdict_figure(ResultPart.PROCESS, "A", after)]).rows
     if before == after:
         assert rows == ()
         return
@@ -74,7 +84,7 @@ def test_what_only_one_side_has_is_neither_better_nor_worse():
 
 
 def test_a_known_part_of_an_unknown_load_is_compared_too():
-    less, more = (figure(None, unit=Unit.SHARE, at_least=Fraction(part, 4)) for part in (1, 2))
+    less, more = (figure(None, unit=FigureUnit.SHARE, at_least=Fraction(part, 4)) for part in (1, 2))
     assert effect(less, more) is Effect.UNKNOWN
 
 
@@ -115,7 +125,9 @@ def test_requirements_of_one_name_about_different_objects_are_not_compared():
 
 
 VALUES = st.one_of(st.none(), st.integers(0, 9))
-SIDES = st.dictionaries(st.sampled_from("ABCDE"), st.builds(figure, VALUES, st.just(Goal.LOW), is_overload=st.just(False)))
+SIDES = st.dictionaries(
+    st.sampled_from("ABCDE"), st.builds(figure, VALUES, st.just(Preference.LOW), is_overload=st.just(False))
+)
 OPPOSITE = {
     Effect.BETTER: {Effect.WORSE},
     Effect.WORSE: {Effect.BETTER, Effect.UNKNOWN},
@@ -128,7 +140,7 @@ OPPOSITE = {
 
 def named(side):
     return [
-        Figure(part=each.part, object=name, quantity=each.quantity, value=each.value, goal=each.goal)
+        ComparedFigure(part=each.part, object=name, quantity=each.quantity, value=each.value, goal=each.goal)
         for name, each in side.items()
     ]
 

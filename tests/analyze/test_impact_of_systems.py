@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from support import ROOT
 from system_strategies import systems
 
-from amalthea_uros.analyze.impact import Effect, Part, impact
+from amalthea_uros.analyze.impact import Effect, ResultPart, impact
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.design.changes.apply import apply
 from amalthea_uros.design.changes.change import parse_change
@@ -22,21 +22,23 @@ def worst_times(analysis):
     """The guaranteed worst values by what they are about, None where there is none; a name that is there twice is left out."""
     found = {}
     for process in analysis.processes:
-        found[Part.PROCESS, process.name, "worst_case_response_time"] = process.response.worst if process.response else None
+        found[ResultPart.PROCESS, process.name, "worst_case_response_time"] = (
+            process.response.worst if process.response else None
+        )
     for chain in analysis.chains:
         values = {value.quantity: value.value for value in reversed(chain.values)}
-        found |= {(Part.CHAIN, chain.name, quantity): values.get(quantity) for quantity in LATENCIES}
+        found |= {(ResultPart.CHAIN, chain.name, quantity): values.get(quantity) for quantity in LATENCIES}
     return found
 
 
 def verdicts(analysis):
-    found = {(Part.SYSTEM, "", "schedulable", ""): str(analysis.summary.schedulable)}
+    found = {(ResultPart.SYSTEM, "", "schedulable", ""): str(analysis.summary.schedulable)}
     for process in analysis.processes:
-        found[Part.PROCESS, process.name, "verdict", ""] = str(process.verdict)
+        found[ResultPart.PROCESS, process.name, "verdict", ""] = str(process.verdict)
     requirements = {}
     for each in analysis.requirements:
         about = f"{'maximum' if each.is_upper else 'minimum'} {each.quantity} of {each.object}"
-        requirements.setdefault((Part.REQUIREMENT, each.name, "verdict", about), []).append(str(each.verdict))
+        requirements.setdefault((ResultPart.REQUIREMENT, each.name, "verdict", about), []).append(str(each.verdict))
     return found | {key: values[0] for key, values in requirements.items() if len(values) == 1}
 
 

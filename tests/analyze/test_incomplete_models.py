@@ -4,7 +4,7 @@ import pytest
 from support import MODEL
 
 from amalthea_uros import analyze_system, extract, load
-from amalthea_uros.timing.basics.settings import Memory, Settings
+from amalthea_uros.timing.basics.settings import MemoryModel, Settings
 from amalthea_uros.units import MICROSECOND as US
 
 TEXT = """
@@ -54,7 +54,7 @@ USUAL = {
 }
 
 
-def analyzed(tmp_path, memory=Memory.NONE, **values):
+def analyzed(tmp_path, memory=MemoryModel.NONE, **values):
     path = tmp_path / "model.amxmi"
     path.write_text(MODEL.format(TEXT.format(**USUAL | values)))
     extraction = extract(load(path))
@@ -103,7 +103,7 @@ def test_an_incomplete_activity_may_take_any_time(items, tmp_path):
 )
 def test_an_incomplete_access_takes_time_only_if_accesses_do(item, tmp_path):
     assert analyzed(tmp_path, items=item)[0].response.worst == 3 * US
-    assert analyzed(tmp_path, items=item, memory=Memory.EXPLICIT)[0].response is None
+    assert analyzed(tmp_path, items=item, memory=MemoryModel.EXPLICIT)[0].response is None
 
 
 @pytest.mark.parametrize(

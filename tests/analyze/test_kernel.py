@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from amalthea_uros._internal.compiled import Compiled, compiled
 from amalthea_uros.analyze.response_times import kernel, schedule
 from amalthea_uros.analyze.response_times.schedule import PeriodicTask
-from amalthea_uros.timing.demand.multiframe import Frame, MultiframeDemand
+from amalthea_uros.timing.demand.multiframe import DemandFrame, MultiframeDemand
 
 np = pytest.importorskip("numpy")
 pytest.importorskip("numba")
@@ -56,7 +56,9 @@ def test_the_same_schedule(rows):
             name=str(index),
             period=period,
             offset=offset,
-            demand=MultiframeDemand((Frame(worst=wcet, best=wcet), Frame(worst=1, best=0, prescaler=prescaler, offset=start))),
+            demand=MultiframeDemand(
+                (DemandFrame(worst=wcet, best=wcet), DemandFrame(worst=1, best=0, prescaler=prescaler, offset=start))
+            ),
             priority=-index // 2,
         )
         for index, (period, offset, wcet, prescaler, start) in enumerate(rows)

@@ -5,9 +5,9 @@ from effort import every
 
 from amalthea_uros.analyze.response_times import priority_levels
 from amalthea_uros.analyze.response_times.busy_window import Interference
-from amalthea_uros.analyze.response_times.task import Task
-from amalthea_uros.timing.demand.multiframe import Frame, MultiframeDemand
-from amalthea_uros.timing.event_models import Pattern, Periodic
+from amalthea_uros.analyze.response_times.task import AnalysedTask
+from amalthea_uros.timing.demand.multiframe import DemandFrame, MultiframeDemand
+from amalthea_uros.timing.event_models import EventPattern, PeriodicEvents
 
 LONGEST = 2**54
 
@@ -15,10 +15,10 @@ LONGEST = 2**54
 def seldom(distinct):
     """More than 2^64 together, though each job comes so seldom that the load is small."""
     return [
-        Task(
+        AnalysedTask(
             name=str(number),
-            events=Periodic(2**40 + distinct * number),
-            demand=MultiframeDemand((Frame(worst=LONGEST, best=LONGEST, prescaler=2**30),)),
+            events=PeriodicEvents(2**40 + distinct * number),
+            demand=MultiframeDemand((DemandFrame(worst=LONGEST, best=LONGEST, prescaler=2**30),)),
             priority=1 + number,
         )
         for number in range(1030)
@@ -37,12 +37,12 @@ def test_sums_of_a_window_do_not_wrap(distinct):
 @pytest.mark.parametrize("rows", every(2, list(ROWS)))
 def test_response_times_do_not_wrap(rows):
     tasks = seldom(ROWS[rows])
-    last = Task(name="last", events=Periodic(2**59), demand=MultiframeDemand.constant(1))
+    last = AnalysedTask(name="last", events=PeriodicEvents(2**59), demand=MultiframeDemand.constant(1))
     *_, response = priority_levels.response_times([*tasks, last])
     assert response.worst is None
     assert response.best == 1
 
 
 def test_a_fixed_demand_beyond_all_limits():
-    often = Task(name="often", events=Pattern(1, (0,)), demand=MultiframeDemand.constant(2**54))
+    often = AnalysedTask(name="often", events=EventPattern(1, (0,)), demand=MultiframeDemand.constant(2**54))
     assert Interference.of([often]).window(1, 2**40) is None

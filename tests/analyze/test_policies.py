@@ -41,7 +41,7 @@ from amalthea_uros.perf.software import Channel, Isr, IsrCategory, Label, Preemp
 from amalthea_uros.perf.stimuli import EventTriggered, Periodic, RelativePeriodic, Stimuli
 from amalthea_uros.perf.system import System
 from amalthea_uros.report.closing_line import closing_line
-from amalthea_uros.timing.basics.settings import Memory, Settings
+from amalthea_uros.timing.basics.settings import MemoryModel, Settings
 from amalthea_uros.units import MICROSECOND as US
 
 
@@ -357,10 +357,10 @@ class TestCosts:
     @pytest.mark.parametrize(
         ("memory", "expected"),
         [
-            (Memory.NONE, 1),
-            (Memory.EXPLICIT, 1 + 4 * 9 + 2),
+            (MemoryModel.NONE, 1),
+            (MemoryModel.EXPLICIT, 1 + 4 * 9 + 2),
             # Copies of both labels at the start, of the one that is written at the end, and the accesses to them.
-            (Memory.IMPLICIT, 1 + 4 * 9 + 2 + 9 + 2 + 2),
+            (MemoryModel.IMPLICIT, 1 + 4 * 9 + 2 + 9 + 2 + 2),
         ],
     )
     def test_memory(self, memory, expected):
@@ -433,7 +433,7 @@ class TestCosts:
             software=replace(built.software, labels=(Label(name="far", size=change.get("size")),)),
             mapping=change.get("mapping", built.mapping),
         )
-        assert worst(built, Settings(memory=Memory.EXPLICIT)) == {"T": reason}
+        assert worst(built, Settings(memory=MemoryModel.EXPLICIT)) == {"T": reason}
 
     def test_several_ways_to_a_memory(self):
         built = self.with_memory(LabelAccess(label="far", kind=AccessKind.READ), ticks(1))
@@ -442,7 +442,7 @@ class TestCosts:
         quick = hardware.Access(memory="global", latency=hardware.Latency(read=Constant(4)))
         structure = replace(structure, cores=(replace(core, accesses=(*core.accesses, quick)),))
         (process,) = analyze_system(
-            replace(built, hardware=replace(built.hardware, structures=(structure,))), Settings(memory=Memory.EXPLICIT)
+            replace(built, hardware=replace(built.hardware, structures=(structure,))), Settings(memory=MemoryModel.EXPLICIT)
         ).processes
         # 9 by the bus, 4 without it and 2 of the memory itself; 1 for the rest.
         assert (process.bcet // US, process.wcet // US) == (7, 10)
@@ -451,7 +451,7 @@ class TestCosts:
         body = (Send(channel="far", elements=3), Receive(channel="far", elements=2, at_least=1), ticks(1))
         built = self.with_memory(*body)
         built = replace(built, software=replace(built.software, labels=(), channels=(Channel(name="far", element_size=8),)))
-        (process,) = analyze_system(built, Settings(memory=Memory.EXPLICIT)).processes
+        (process,) = analyze_system(built, Settings(memory=MemoryModel.EXPLICIT)).processes
         assert (process.bcet // US, process.wcet // US) == ((3 + 1) * 9 + 1, (3 + 2) * 9 + 1)
         assert worst(built) == {"T": 1}
 
@@ -602,7 +602,7 @@ def test_periodic_releases_and_a_server_are_no_exact_schedule():
 
 
 @examples(36)
-@given(systems(), st.sampled_from(Memory))
+@given(systems(), st.sampled_from(MemoryModel))
 def test_no_system_is_too_strange(system, memory):
     analysis = analyze_system(system, Settings(memory=memory))
     for process in analysis.processes:

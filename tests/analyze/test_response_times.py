@@ -11,9 +11,9 @@ from support import SHARED
 
 from amalthea_uros.analyze.response_times import non_preemptive, priority_levels, schedule
 from amalthea_uros.analyze.response_times.schedule import PeriodicTask
-from amalthea_uros.analyze.response_times.task import Task
-from amalthea_uros.timing.demand.multiframe import Frame, MultiframeDemand
-from amalthea_uros.timing.event_models import Periodic
+from amalthea_uros.analyze.response_times.task import AnalysedTask
+from amalthea_uros.timing.demand.multiframe import DemandFrame, MultiframeDemand
+from amalthea_uros.timing.event_models import PeriodicEvents
 
 
 def vectors(name, accept=lambda case: True):
@@ -25,9 +25,9 @@ def vectors(name, accept=lambda case: True):
 
 def tasks_of(case):
     return [
-        Task(
+        AnalysedTask(
             name=task["name"],
-            events=Periodic(task["period"], task.get("jitter", 0)),
+            events=PeriodicEvents(task["period"], task.get("jitter", 0)),
             demand=MultiframeDemand.constant(task["wcet"]),
             priority=-task["priority"],
         )
@@ -58,7 +58,7 @@ def test_liu_and_layland_1973(case):
     wcets = [(then - first) for first, then in pairwise([*periods, 2 * periods[0]])]
     assert sum(wcet / period for wcet, period in zip(wcets, periods, strict=True)) == pytest.approx(bound, rel=1e-8)
     tasks = [
-        Task(name=f"t{index}", events=Periodic(period), demand=MultiframeDemand.constant(wcet), priority=-index)
+        AnalysedTask(name=f"t{index}", events=PeriodicEvents(period), demand=MultiframeDemand.constant(wcet), priority=-index)
         for index, (period, wcet) in enumerate(zip(periods, wcets, strict=True))
     ]
     responses = priority_levels.response_times(tasks)
@@ -66,8 +66,8 @@ def test_liu_and_layland_1973(case):
 
 
 def test_lehoczky_1990_has_its_worst_response_at_the_fifth_job():
-    t1 = Task(name="t1", events=Periodic(70), demand=MultiframeDemand.constant(26), priority=2)
-    t2 = Task(name="t2", events=Periodic(100), demand=MultiframeDemand.constant(62), priority=1)
+    t1 = AnalysedTask(name="t1", events=PeriodicEvents(70), demand=MultiframeDemand.constant(26), priority=2)
+    t2 = AnalysedTask(name="t2", events=PeriodicEvents(100), demand=MultiframeDemand.constant(62), priority=1)
     _, response = priority_levels.response_times([t1, t2])
     assert (response.worst, response.jobs) == (118, 7)
     assert response.terms["earlier arrival"] == -4 * 100
@@ -76,7 +76,7 @@ def test_lehoczky_1990_has_its_worst_response_at_the_fifth_job():
 def test_davis_2007_a_later_frame_waits_longest():
     # The example by which the older analysis is refuted, in bits of 1/125 of a millisecond: 1, 1, 1 ms every 2.5, 3.5, 3.5 ms.
     frames = [
-        Task(name=name, events=Periodic(period), demand=MultiframeDemand.constant(1000), priority=priority)
+        AnalysedTask(name=name, events=PeriodicEvents(period), demand=MultiframeDemand.constant(1000), priority=priority)
         for name, period, priority in (("A", 2500, 3), ("B", 3500, 2), ("C", 3500, 1))
     ]
     assert [response.worst for response in non_preemptive.response_times(frames)] == [2000, 3000, 3500]
@@ -100,8 +100,8 @@ def test_schedules_job_by_job(case):
 
 
 def test_overload_is_a_result_with_a_reason():
-    high = Task(name="high", events=Periodic(10), demand=MultiframeDemand.constant(6), priority=2)
-    low = Task(name="low", events=Periodic(10), demand=MultiframeDemand.constant(5), priority=1)
+    high = AnalysedTask(name="high", events=PeriodicEvents(10), demand=MultiframeDemand.constant(6), priority=2)
+    low = AnalysedTask(name="low", events=PeriodicEvents(10), demand=MultiframeDemand.constant(5), priority=1)
     first, second = priority_levels.response_times([high, low])
     assert first.worst == 6
     assert second.worst is None
@@ -110,8 +110,8 @@ def test_overload_is_a_result_with_a_reason():
 
 
 def test_a_processor_that_is_exactly_full():
-    high = Task(name="high", events=Periodic(4), demand=MultiframeDemand.constant(2), priority=2)
-    low = Task(name="low", events=Periodic(8), demand=MultiframeDemand.constant(4), priority=1)
+    high = AnalysedTask(name="high", events=PeriodicEvents(4), demand=MultiframeDemand.constant(2), priority=2)
+    low = AnalysedTask(name="low", events=PeriodicEvents(8), demand=MultiframeDemand.constant(4), priority=1)
     assert [response.worst for response in priority_levels.response_times([high, low])] == [2, 8]
 
 
@@ -120,9 +120,9 @@ TASKS = st.lists(st.tuples(st.sampled_from([4, 5, 6, 8, 10, 12]), st.integers(1,
 
 def drawn(rows, jitter=False):
     return [
-        Task(
+        AnalysedTask(
             name=str(index),
-            events=Periodic(period, jittered if jitter else 0),
+            events=PeriodicEvents(period, jittered if jitter else 0),
             demand=MultiframeDemand.constant(wcet, max(1, wcet - 1)),
             priority=-index,
         )
@@ -168,7 +168,7 @@ def test_offsets_never_make_it_worse_than_the_bound(rows, offsets):
 def test_more_load_never_shortens_a_response_time(rows):
     tasks = drawn(rows, jitter=True)
     more = [
-        Task(name=t.name, events=t.events, demand=MultiframeDemand.constant(t.demand.worst + 1), priority=t.priority)
+        AnalysedTask(name=t.name, events=t.events, demand=MultiframeDemand.constant(t.demand.worst + 1), priority=t.priority)
         for t in tasks
     ]
     for less, greater in zip(
@@ -218,7 +218,7 @@ def test_no_schedule_without_interruption_is_worse_than_its_bound(rows):
 class TestDemandThatIsNotTheSameInEachJob:
     """The executor that takes 12 us, and every 20th time 13 more."""
 
-    EXECUTOR = MultiframeDemand((Frame(worst=12, best=12), Frame(worst=13, best=13, prescaler=20)))
+    EXECUTOR = MultiframeDemand((DemandFrame(worst=12, best=12), DemandFrame(worst=13, best=13, prescaler=20)))
 
     def test_consecutive_jobs(self):
         assert [self.EXECUTOR.max_demand(count) for count in (1, 2, 20, 21)] == [25, 37, 12 * 20 + 13, 12 * 21 + 26]
@@ -238,15 +238,15 @@ class TestDemandThatIsNotTheSameInEachJob:
         assert (advanced.best, advanced.worst) == (16, 29)
 
     def test_it_is_not_a_25_us_task(self):
-        low = Task(name="low", events=Periodic(10_000), demand=MultiframeDemand.constant(1000), priority=1)
-        executor = Task(name="executor", events=Periodic(1000), demand=self.EXECUTOR, priority=2)
+        low = AnalysedTask(name="low", events=PeriodicEvents(10_000), demand=MultiframeDemand.constant(1000), priority=1)
+        executor = AnalysedTask(name="executor", events=PeriodicEvents(1000), demand=self.EXECUTOR, priority=2)
         _, response = priority_levels.response_times([executor, low])
         # Two activations in the window of 1,037 us, of which one takes a message.
         assert response.worst == 1000 + 2 * 12 + 13
 
     @given(st.integers(1, 6), st.integers(1, 5), st.integers(1, 60))
     def test_no_sequence_of_jobs_costs_more(self, prescaler, extra, count):
-        demand = MultiframeDemand((Frame(worst=3, best=2), Frame(worst=extra, best=extra, prescaler=prescaler)))
+        demand = MultiframeDemand((DemandFrame(worst=3, best=2), DemandFrame(worst=extra, best=extra, prescaler=prescaler)))
         windows = [range(first, first + count) for first in range(1, 2 * prescaler + 1)]
         assert max(sum(map(demand.worst_of, jobs)) for jobs in windows) == demand.max_demand(count)
         assert min(sum(map(demand.best_of, jobs)) for jobs in windows) == demand.min_demand(count)

@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 from amalthea_uros.analyze.response_times import priority_levels
 from amalthea_uros.analyze.response_times.busy_window import Interference
 from amalthea_uros.analyze.response_times.round_robin import response_time
-from amalthea_uros.analyze.response_times.task import Task
+from amalthea_uros.analyze.response_times.task import AnalysedTask
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
-from amalthea_uros.timing.event_models import AggregatedEventModel, Periodic
+from amalthea_uros.timing.event_models import AggregatedEventModel, PeriodicEvents
 from amalthea_uros.timing.scheduling.ranks import EqualPriority
 
 
@@ -97,9 +97,9 @@ class Player:
 
 def bounds(rows):
     tasks = [
-        Task(
+        AnalysedTask(
             name=str(number),
-            events=Periodic(row.period),
+            events=PeriodicEvents(row.period),
             demand=MultiframeDemand.constant(row.demand),
             priority=int(row.is_high),
             equal_priority=EqualPriority.ROUND_ROBIN,
@@ -152,7 +152,7 @@ def test_the_player_itself(reading):
 @pytest.mark.parametrize(("limit", "worst"), [(2, 3 + 3 + 1), (1, 3 + 1)])
 def test_each_waiting_job_may_have_a_slice_of_its_own(limit, worst):
     """Two jobs of the other task wait, each of 3 in a slice of 3, if its activation limit allows two; then comes the job of 1."""
-    twice = AggregatedEventModel((Periodic(100), Periodic(100)))
-    other = Task(name="other", events=twice, demand=MultiframeDemand.constant(3), slice=3, activation_limit=limit)
-    task = Task(name="task", events=Periodic(100), demand=MultiframeDemand.constant(1), slice=1)
+    twice = AggregatedEventModel((PeriodicEvents(100), PeriodicEvents(100)))
+    other = AnalysedTask(name="other", events=twice, demand=MultiframeDemand.constant(3), slice=3, activation_limit=limit)
+    task = AnalysedTask(name="task", events=PeriodicEvents(100), demand=MultiframeDemand.constant(1), slice=1)
     assert response_time(task, [other], Interference.of([])).worst == worst

@@ -8,22 +8,24 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from amalthea_uros.analyze.response_times import priority_levels
-from amalthea_uros.analyze.response_times.task import Budget, Task
+from amalthea_uros.analyze.response_times.task import AnalysedTask, Budget
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
-from amalthea_uros.timing.event_models import Periodic
+from amalthea_uros.timing.event_models import PeriodicEvents
 from amalthea_uros.timing.scheduling.ranks import EqualPriority
 
 
 def shared(equal_priority, rows, above=()):
     """Tasks of (period, wcet, deadline or slice) that share a priority, below others of (period, wcet)."""
     higher = [
-        Task(name=f"H{index}", events=Periodic(period), demand=MultiframeDemand.constant(wcet), priority=1 + index)
+        AnalysedTask(
+            name=f"H{index}", events=PeriodicEvents(period), demand=MultiframeDemand.constant(wcet), priority=1 + index
+        )
         for index, (period, wcet) in enumerate(above)
     ]
     lower = [
-        Task(
+        AnalysedTask(
             name=f"T{index}",
-            events=Periodic(period),
+            events=PeriodicEvents(period),
             demand=MultiframeDemand.constant(wcet),
             equal_priority=equal_priority,
             deadline=last if equal_priority is EqualPriority.EDF else 0,
@@ -106,7 +108,9 @@ def test_some_offsets_reach_the_bound(equal_priority, rows):
 def test_no_schedule_of_a_server_is_worse_than_the_bound(rows, offsets, budget, idle, phase):
     period = budget + idle
     tasks = [
-        Task(name=f"T{index}", events=Periodic(period * 3), demand=MultiframeDemand.constant(wcet), priority=-index)
+        AnalysedTask(
+            name=f"T{index}", events=PeriodicEvents(period * 3), demand=MultiframeDemand.constant(wcet), priority=-index
+        )
         for index, (period, wcet, _) in enumerate(rows)
     ]
     assume(load(tasks) < Fraction(budget, period))
@@ -126,7 +130,7 @@ def test_no_schedule_of_a_server_is_worse_than_the_bound(rows, offsets, budget, 
 
 def test_a_server_by_hand():
     # 2 in each 5: in the worst case nothing for 6, then 2, nothing for 3, 1 more: 6 + 2 + 3 + 1.
-    task = Task(name="T", events=Periodic(100), demand=MultiframeDemand.constant(3))
+    task = AnalysedTask(name="T", events=PeriodicEvents(100), demand=MultiframeDemand.constant(3))
     (response,) = priority_levels.response_times([task], supply=Budget(budget=2, period=5, wait=6))
     assert response.worst == 12
 

@@ -7,7 +7,7 @@ from fractions import Fraction
 from design_systems import system_of, with_chain
 
 from amalthea_uros.analyze.results.analysis import Analysis
-from amalthea_uros.analyze.results.chains import Quantity
+from amalthea_uros.analyze.results.chains import LatencyQuantity
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.design.changes.apply import apply
 from amalthea_uros.design.changes.key import Configuration
@@ -73,9 +73,9 @@ def orders_of(problem: Problem, found: SearchResult) -> set[tuple[str, ...]]:
 
 
 QUANTITIES = {
-    "mrt": Quantity.MAX_REACTION_TIME,
-    "mrrt": Quantity.MAX_REDUCED_REACTION_TIME,
-    "mrda": Quantity.MAX_REDUCED_DATA_AGE,
+    "mrt": LatencyQuantity.MAX_REACTION_TIME,
+    "mrrt": LatencyQuantity.MAX_REDUCED_REACTION_TIME,
+    "mrda": LatencyQuantity.MAX_REDUCED_DATA_AGE,
 }
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from support import ROOT
 
-from amalthea_uros import InvalidArgumentError, Quantity, analyze, parse_change
+from amalthea_uros import InvalidArgumentError, LatencyQuantity, analyze, parse_change
 from amalthea_uros.design.description.edit import edit_description
 from amalthea_uros.design.description.text_edits import newline_of, value_text, with_comment, with_value
 from amalthea_uros.services.build import describe_text
@@ -32,7 +32,7 @@ def test_a_subscription_that_runs_more_often_has_the_latency_that_the_change_pro
     # 10 ms - 1 ms + 1 ms + 16 us: the formula for harmonic periods, executor first.
     result = edited(ADVANCED, "Message_Factor.period=10ms")
     (chain,) = analyze(result.text).chains
-    assert chain.value(Quantity.MAX_REDUCED_REACTION_TIME).value == 10_016 * MICROSECOND
+    assert chain.value(LatencyQuantity.MAX_REDUCED_REACTION_TIME).value == 10_016 * MICROSECOND
     assert changed_lines(ADVANCED, result.text) == [
         "        - {name: Message_Factor, topic: factor, rate: 50 Hz, task_period: 10 ms, message_size: 4 B, buffer: memory_1, "
         "execution_time: 2 us, writes: [memory_2]}"

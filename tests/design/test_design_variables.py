@@ -3,10 +3,10 @@
 import pytest
 
 from amalthea_uros import InvalidArgumentError, Settings, analyze, build, diff, optimize
-from amalthea_uros.analyze.results.chains import Quantity
+from amalthea_uros.analyze.results.chains import LatencyQuantity
 from amalthea_uros.design.optimize.problem import Conclusion
 from amalthea_uros.services.optimized_model import write_proposal
-from amalthea_uros.timing.basics.settings import Memory
+from amalthea_uros.timing.basics.settings import MemoryModel
 from amalthea_uros.units import MICROSECOND as US
 
 HARDWARE = """
@@ -53,7 +53,7 @@ chains:
 
 def reaction(path):
     (chain,) = analyze(path).chains
-    return chain.value(Quantity.MAX_REDUCED_REACTION_TIME)
+    return chain.value(LatencyQuantity.MAX_REDUCED_REACTION_TIME)
 
 
 def write(tmp_path, text):
@@ -71,7 +71,7 @@ def test_the_order_of_callbacks_decides_about_a_whole_period(tmp_path):
     assert [str(each) for each in proposal.differences] == ["Executor.order: Control,Take -> Take,Control"]
     assert found.search.conclusion is Conclusion.OPTIMAL
     write_proposal(found, 1, target)
-    assert reaction(target) == proposal.analysis.chains["c"].value(Quantity.MAX_REDUCED_REACTION_TIME)
+    assert reaction(target) == proposal.analysis.chains["c"].value(LatencyQuantity.MAX_REDUCED_REACTION_TIME)
     # Take and Control one after the other.
     assert reaction(target).value == 140 * US
     assert "order: [Take, Control]" in target.read_text()
@@ -87,7 +87,7 @@ def test_a_callback_moves_to_a_task_of_its_own(suffix, tmp_path):
     assert best.analysis.processes["Executor"].response.worst == 30 * US
     assert {each.target for each in best.differences} == {"Take.runs_in", "Control.runs_in"}
     write_proposal(found, 1, target)
-    assert reaction(target) == best.analysis.chains["c"].value(Quantity.MAX_REDUCED_REACTION_TIME)
+    assert reaction(target) == best.analysis.chains["c"].value(LatencyQuantity.MAX_REDUCED_REACTION_TIME)
     assert {each.name for each in analyze(target).processes} == {"Executor", "Take", "Control"}
 
 
@@ -113,7 +113,7 @@ def test_too_many_orders_are_refused(tmp_path):
 
 def test_labels_move_to_the_memory_that_has_room(tmp_path):
     source, target = write(tmp_path, HARDWARE + TASKS), tmp_path / "better.yaml"
-    settings = Settings(memory=Memory.EXPLICIT)
+    settings = Settings(memory=MemoryModel.EXPLICIT)
     found = optimize(source, vary=["memory"], goals=["load"], settings=settings)
     # 4 B each, both fit into the 8 B. Flash would be faster still, but is no place for what is written.
     assert {str(change) for change in found[0].changes} == {"a.memory=Fast", "b.memory=Fast"}
@@ -139,7 +139,7 @@ def test_let_communication_is_written_into_a_model_and_not_into_a_description(tm
     # The value of the period [0, 10) is published at 10 ms, and read at 20 ms: with offsets of 0 always in the same way.
     assert [str(change) for change in let.changes] == ["a.communication=LET"]
     assert implicit.changes == ()
-    values = [each.analysis.chains["c"].value(Quantity.MAX_REDUCED_REACTION_TIME).value for each in (implicit, let)]
+    values = [each.analysis.chains["c"].value(LatencyQuantity.MAX_REDUCED_REACTION_TIME).value for each in (implicit, let)]
     assert values[0] < values[1]
     write_proposal(found, 2, target)
     assert reaction(target).value == values[1]

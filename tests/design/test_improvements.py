@@ -6,7 +6,7 @@ import pytest
 from effort import every
 from support import ROOT
 
-from amalthea_uros.analyze.results.chains import Quantity
+from amalthea_uros.analyze.results.chains import LatencyQuantity
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.design.changes.apply import apply
 from amalthea_uros.perf.activities import Communication
@@ -66,7 +66,7 @@ def test_a_longer_period_is_no_proposal(shorter):
     assert "Executor_Task.period" not in {change.target for change in changes}
 
 
-@pytest.mark.parametrize("quantity", [Quantity.MAX_REDUCED_REACTION_TIME, Quantity.MAX_DATA_AGE])
+@pytest.mark.parametrize("quantity", [LatencyQuantity.MAX_REDUCED_REACTION_TIME, LatencyQuantity.MAX_DATA_AGE])
 @pytest.mark.parametrize("chain", ["speed-to-torque", "height-to-log"])
 def test_each_value_is_that_of_a_separate_analysis(chain, quantity):
     result = analyze_files(SAMPLES / "drive-and-lift.yaml")

@@ -6,7 +6,7 @@ from design_systems import DESIGN, system_of
 from effort import IS_THOROUGH
 from random_orders import all_orders, random_sets
 
-from amalthea_uros.analyze.priorities.assignment import Outcome, propose_priorities
+from amalthea_uros.analyze.priorities.assignment import ProposalOutcome, propose_priorities
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.design.optimize.problem import Conclusion
 from amalthea_uros.design.optimize.solvers.priorities import solve_priorities
@@ -57,7 +57,7 @@ def test_an_order_is_proposed_if_and_only_if_one_of_all_orders_meets_all_deadlin
         if existing:
             assert tuple(sorted(proposal.priorities, key=lambda name: -proposal.priorities[name])) in existing, tasks
         else:
-            assert proposal.outcome in (Outcome.NONE, Outcome.NOT_FOUND), tasks
+            assert proposal.outcome in (ProposalOutcome.NONE, ProposalOutcome.NOT_FOUND), tasks
 
 
 # What is excluded, and what is not

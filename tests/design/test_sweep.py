@@ -17,7 +17,7 @@ def test_each_variant_is_an_analysis_with_its_changes():
     rows = amuros.sweep(YAML, PERIODS).to_records()
     for row, period in zip(rows, PERIODS["Message_Factor.period"], strict=True):
         chain = amuros.analyze(YAML, changes={"Message_Factor.period": period}).chains["factor-to-output"]
-        assert row[LATENCY] == chain.value(amuros.Quantity.MAX_REDUCED_REACTION_TIME).value
+        assert row[LATENCY] == chain.value(amuros.LatencyQuantity.MAX_REDUCED_REACTION_TIME).value
         assert row["schedulable"] == "yes"
     # S. R. Bappanadu's application: the period of Message_Factor less 1 ms, a period of the timer, and its response time.
     assert [row[LATENCY] for row in rows] == [5_016_000_000, 10_016_000_000, 20_029_000_000]

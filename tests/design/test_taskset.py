@@ -94,7 +94,7 @@ def chained(communication):
 def test_chains():
     # From the start of a job of A to the end of the first job of B that used its data. Implicit: B starts when A has ended, after 1 ms.
     # LET: A writes at the end of its period, 10 ms; the job of B that reads it waits 1 ms for A and takes 1 ms.
-    first, age = amuros.Quantity.MIN_FIRST_TO_FIRST, amuros.Quantity.MAX_REDUCED_DATA_AGE
+    first, age = amuros.LatencyQuantity.MIN_FIRST_TO_FIRST, amuros.LatencyQuantity.MAX_REDUCED_DATA_AGE
     assert chained("implicit").value(first).value == 2 * MS
     assert chained("LET").value(first).value == 12 * MS
     assert chained("implicit").value(age).value < chained("LET").value(age).value

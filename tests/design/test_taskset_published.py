@@ -14,10 +14,10 @@ import amalthea_uros as amuros
 NS = 1000
 FOLDER = SHARED / "vectors"
 LATENCIES = {
-    "mrt": amuros.Quantity.MAX_REACTION_TIME,
-    "mda": amuros.Quantity.MAX_DATA_AGE,
-    "mrda": amuros.Quantity.MAX_REDUCED_DATA_AGE,
-    "mrrt": amuros.Quantity.MAX_REDUCED_REACTION_TIME,
+    "mrt": amuros.LatencyQuantity.MAX_REACTION_TIME,
+    "mda": amuros.LatencyQuantity.MAX_DATA_AGE,
+    "mrda": amuros.LatencyQuantity.MAX_REDUCED_DATA_AGE,
+    "mrrt": amuros.LatencyQuantity.MAX_REDUCED_REACTION_TIME,
 }
 
 

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from support import ROOT
 
 import amalthea_uros as amuros
-from amalthea_uros.analyze.impact import Effect, Part, figures
+from amalthea_uros.analyze.impact import Effect, ResultPart, figures
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.design.changes.apply import apply
 from amalthea_uros.design.changes.change import Change, parse_change
@@ -37,7 +37,7 @@ def test_a_lower_priority_is_worse_for_one_and_better_for_the_others():
     responses = {
         row.object: (row.before.value, row.after.value, row.effect)
         for row in found.rows
-        if row.part is Part.PROCESS and row.quantity == "worst_case_response_time"
+        if row.part is ResultPart.PROCESS and row.quantity == "worst_case_response_time"
     }
     assert responses["Control_Function"] == (16 * US, 4 * US, Effect.BETTER)
     assert responses["Executor_Task"] == (12 * US, 18 * US, Effect.WORSE)

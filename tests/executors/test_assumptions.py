@@ -17,11 +17,11 @@ from amalthea_uros.executors.bounds.backlog import Arriving, max_backlog
 from amalthea_uros.perf.executors import Loop, LoopKind, TriggerCondition, TriggerKind
 from amalthea_uros.perf.network import Span
 from amalthea_uros.perf.software import Preemption
-from amalthea_uros.timing.event_models import Sporadic
+from amalthea_uros.timing.event_models import SporadicEvents
 
 # The receive backlog.
 
-ITEMS = Arriving(events=Sporadic(10), jitter=40)
+ITEMS = Arriving(events=SporadicEvents(10), jitter=40)
 LENGTH = 6
 #: All items that jitter can bring at once, and then one every 10.
 BURST = [0] * 5 + [*range(10, 200, 10)]
@@ -45,7 +45,7 @@ def backlog(arrivals, length, reads=lambda _: 1, newest_first=False):
 
 @given(st.integers(2, 12), st.integers(0, 60), st.integers(1, 2), st.integers(1, 11), st.randoms())
 def test_no_schedule_has_more_items_in_the_buffer(interval, jitter, parts, length, random):
-    most = max_backlog([Arriving(events=Sporadic(interval), jitter=jitter, parts=parts)], length)
+    most = max_backlog([Arriving(events=SporadicEvents(interval), jitter=jitter, parts=parts)], length)
     if most is None:
         return
     times = [number * interval + random.randint(0, jitter) for number in range(30)]

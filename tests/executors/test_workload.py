@@ -6,7 +6,7 @@ import pytest
 
 from amalthea_uros.executors.semantics.loops import lost_periods, next_expiration, workload
 from amalthea_uros.perf.executors import Executor, Loop, LoopKind
-from amalthea_uros.timing.event_models import Periodic
+from amalthea_uros.timing.event_models import PeriodicEvents
 
 LONGEST = 3
 
@@ -14,7 +14,7 @@ LONGEST = 3
 @pytest.mark.parametrize("sleep", [1, 2, 5])
 def test_no_rounds_demand_more_than_those_of_the_longest(sleep):
     executor = Executor(name="e", task="t", spin="s", loop=Loop(kind=LoopKind.SLEEPING, timeout=0, sleep=sleep))
-    model = workload(executor, Periodic(1), LONGEST)
+    model = workload(executor, PeriodicEvents(1), LONGEST)
     for lengths in product(range(LONGEST + 1), repeat=5):
         begin, demand = 0, 0
         for length in lengths:
@@ -26,7 +26,7 @@ def test_no_rounds_demand_more_than_those_of_the_longest(sleep):
 
 def test_without_a_sleep_it_is_what_begins_rounds():
     executor = Executor(name="e", task="t", spin="s", loop=Loop(kind=LoopKind.CONTINUOUS, timeout=5))
-    assert workload(executor, Periodic(7), LONGEST) == Periodic(7)
+    assert workload(executor, PeriodicEvents(7), LONGEST) == PeriodicEvents(7)
 
 
 @pytest.mark.parametrize(("called", "lost", "following"), [(30, 0, 40), (39, 0, 40), (40, 1, 50), (58, 2, 60)])

@@ -30,7 +30,7 @@ def test_saved_and_loaded_it_has_the_response_times_computed_by_hand(model, tmp_
     assert responses(loaded) == {"Control": 20 * US, "Slow": 1 * MS + 2 * 20 * US}
     analysis = amuros.analyze(loaded)
     assert analysis.requirements["Control_response_time"].limit == 1 * MS
-    assert analysis.chains["speed-used"].value(amuros.Quantity.MAX_REDUCED_REACTION_TIME).value is not None
+    assert analysis.chains["speed-used"].value(amuros.LatencyQuantity.MAX_REDUCED_REACTION_TIME).value is not None
 
 
 def test_it_has_no_errors_for_any_tool(model, tmp_path):

@@ -11,7 +11,7 @@ from opponent.systems import PlainSystem
 from opponent.to_perf import MICROSECOND, to_perf
 
 from amalthea_uros.simulate.options import Options
-from amalthea_uros.timing.observed.job_times import Job
+from amalthea_uros.timing.observed.job_times import JobColumn
 from amalthea_uros.trace.table import EntityKind, EventKind
 
 _BEGINS = (EventKind.START, EventKind.RESUME, EventKind.POLL_PARKING)
@@ -29,13 +29,16 @@ def _lost_time(run: Recording) -> Iterator[str]:
     """A job is always in one state; in READY for what is left by the others."""
     last: dict[int, list[int]] = {}
     for row in run.jobs:
-        states = sum(row[column] for column in (Job.RUNNING, Job.WAITING, Job.POLLING, Job.PARKING))
-        if not row[Job.ACTIVATION] <= row[Job.START] <= row[Job.END] or states > row[Job.END] - row[Job.START]:
+        states = sum(row[column] for column in (JobColumn.RUNNING, JobColumn.WAITING, JobColumn.POLLING, JobColumn.PARKING))
+        if (
+            not row[JobColumn.ACTIVATION] <= row[JobColumn.START] <= row[JobColumn.END]
+            or states > row[JobColumn.END] - row[JobColumn.START]
+        ):
             yield f"a job is in its states for {states}: {row}"
-        before = last.setdefault(row[Job.PROCESS], row)
-        if before is not row and row[Job.START] < before[Job.END]:
+        before = last.setdefault(row[JobColumn.PROCESS], row)
+        if before is not row and row[JobColumn.START] < before[JobColumn.END]:
             yield f"a job starts before the one before it ends: {row}"
-        last[row[Job.PROCESS]] = row
+        last[row[JobColumn.PROCESS]] = row
 
 
 def _shared_cores(run: Recording) -> Iterator[str]:

@@ -23,7 +23,7 @@ from amalthea_uros.simulate.observations import MetricObservation
 from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.simulate.program.build import KernelProgram, build_program
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.observed.job_times import Job as Column
+from amalthea_uros.timing.observed.job_times import JobColumn as Column
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

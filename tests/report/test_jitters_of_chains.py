@@ -3,7 +3,7 @@
 from support import ROOT
 
 import amalthea_uros as amuros
-from amalthea_uros.analyze.results.chains import Quantity
+from amalthea_uros.analyze.results.chains import LatencyQuantity
 from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.report.judged import decisive_quantity, judged_rows, requirements_of
 
@@ -16,7 +16,7 @@ def test_a_chain_is_not_met_if_its_jitter_is_unknown():
     jitter, reaction = requirements_of("factor-to-output", analysis)
     assert (jitter.quantity, jitter.verdict) == ("reaction jitter", Verdict.UNKNOWN)
     assert (reaction.quantity, reaction.verdict) == ("reaction", Verdict.MET)
-    assert decisive_quantity("factor-to-output", analysis) is Quantity.MAX_REDUCED_REACTION_TIME
+    assert decisive_quantity("factor-to-output", analysis) is LatencyQuantity.MAX_REDUCED_REACTION_TIME
 
 
 def test_the_jitter_of_an_exact_latency_can_be_a_bound():

@@ -79,8 +79,8 @@ def test_why_as_a_table():
     parts = amuros.explain(analysis, "factor-to-output").to_records()
     assert sum(part["time_ps"] for part in parts) == amuros.parse_time("20.029 ms")
     for quantity in ("max_data_age", "max_reaction_time"):
-        parts = amuros.explain(analysis, "factor-to-output", amuros.Quantity(quantity)).to_records()
-        assert sum(part["time_ps"] for part in parts) == analysis.chains[0].value(amuros.Quantity(quantity)).value
+        parts = amuros.explain(analysis, "factor-to-output", amuros.LatencyQuantity(quantity)).to_records()
+        assert sum(part["time_ps"] for part in parts) == analysis.chains[0].value(amuros.LatencyQuantity(quantity)).value
 
 
 def test_improvements_as_a_table(analysis):
@@ -96,7 +96,7 @@ def test_what_cannot_be_explained(analysis):
         with pytest.raises(
             amuros.InvalidArgumentError, match="cannot explain 'max_first_to_last'; expected one of max_reaction"
         ):
-            ask(analysis, "factor-to-output", amuros.Quantity.MAX_FIRST_TO_LAST)
+            ask(analysis, "factor-to-output", amuros.LatencyQuantity.MAX_FIRST_TO_LAST)
 
 
 def everything(analysis, simulation):

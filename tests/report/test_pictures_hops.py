@@ -7,7 +7,7 @@ import pytest
 from support import ROOT
 from svg_reading import SVG, assert_readable, parsed, scale, texts
 
-from amalthea_uros import Quantity, analyze_files
+from amalthea_uros import LatencyQuantity, analyze_files
 from amalthea_uros.analyze.explanations.chains import explain_chain
 from amalthea_uros.report.pictures.chain_hops import MOST_HOPS, draw_hops
 from amalthea_uros.units import MILLISECOND
@@ -16,7 +16,7 @@ MS = MILLISECOND
 NASTY = """<Task & "friends'>"""
 
 
-def explanation(sample, chain, quantity=Quantity.MAX_REDUCED_REACTION_TIME):
+def explanation(sample, chain, quantity=LatencyQuantity.MAX_REDUCED_REACTION_TIME):
     return explain_chain(analyze_files(ROOT / "samples" / sample).analysis, chain, quantity)
 
 
@@ -73,13 +73,13 @@ def test_a_limit_is_drawn_where_it_is(thesis):
 
 def test_data_that_get_old_until_they_are_overwritten_have_a_box():
     # The next output comes 1.013 ms later: 40.029 ms are the hops and this.
-    picture = draw_hops(explanation("bodas-test-advanced.yaml", "factor-to-output", Quantity.MAX_DATA_AGE))
+    picture = draw_hops(explanation("bodas-test-advanced.yaml", "factor-to-output", LatencyQuantity.MAX_DATA_AGE))
     assert "40.029 ms" in contents(picture)
     assert any(text.startswith("output is overwri") and text.endswith("after 1.013 ms") for text in contents(picture))
 
 
 @pytest.mark.parametrize("chain", ["speed-to-torque", "wheel-to-torque", "height-to-log", "wheels-to-odometry"])
-@pytest.mark.parametrize("quantity", [Quantity.MAX_REDUCED_REACTION_TIME, Quantity.MAX_DATA_AGE])
+@pytest.mark.parametrize("quantity", [LatencyQuantity.MAX_REDUCED_REACTION_TIME, LatencyQuantity.MAX_DATA_AGE])
 def test_all_chains_are_readable(chain, quantity):
     assert_readable(draw_hops(explanation("drive-and-lift.yaml", chain, quantity)))
 

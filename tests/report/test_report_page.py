@@ -12,7 +12,7 @@ from lxml import html
 from support import ROOT, analysis_of
 
 from amalthea_uros import am, load, report, save
-from amalthea_uros.analyze.results.chains import Quantity
+from amalthea_uros.analyze.results.chains import LatencyQuantity
 from amalthea_uros.perf.activities import Migrate
 from amalthea_uros.report.closing_line import closing_line
 from amalthea_uros.report.html.blocks import table
@@ -88,7 +88,7 @@ def test_every_chain_is_there_as_analysed(path):
     if chains:
         shown = rows(page_of(path), "requirements", "Latencies")
         for chain in chains:
-            value = chain.value(Quantity.MAX_REDUCED_REACTION_TIME)
+            value = chain.value(LatencyQuantity.MAX_REDUCED_REACTION_TIME)
             # Of a way, the page says in words that it is unknown.
             assert shown[chain.name]["reaction time"] in {value_text(value), *(["unknown"] if value is None else [])}
 

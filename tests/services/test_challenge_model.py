@@ -10,7 +10,7 @@ import older_forms
 import pytest
 from support import SHARED
 
-from amalthea_uros import Claim, Communication, Quantity, Settings, am, analyze_system, extract, load
+from amalthea_uros import Claim, Communication, LatencyQuantity, Settings, am, analyze_system, extract, load
 from amalthea_uros.units import MICROSECOND as US
 
 MODEL = SHARED / "corpus" / "WATERS_2017_v072.amxmi"
@@ -19,11 +19,11 @@ FIGURES = SHARED / "vectors" / "waters2017.json"
 pytestmark = pytest.mark.skipif(not (MODEL.exists() and FIGURES.exists()), reason="the challenge is not at hand")
 
 LATENCIES = {
-    "max_reaction": Quantity.MAX_REACTION_TIME,
-    "max_reaction_without_sampling": Quantity.MAX_REDUCED_REACTION_TIME,
-    "max_data_age_L2L": Quantity.MAX_REDUCED_DATA_AGE,
-    "max_data_age_until_replaced": Quantity.MAX_DATA_AGE,
-    "min_forward": Quantity.MIN_FIRST_TO_FIRST,
+    "max_reaction": LatencyQuantity.MAX_REACTION_TIME,
+    "max_reaction_without_sampling": LatencyQuantity.MAX_REDUCED_REACTION_TIME,
+    "max_data_age_L2L": LatencyQuantity.MAX_REDUCED_DATA_AGE,
+    "max_data_age_until_replaced": LatencyQuantity.MAX_DATA_AGE,
+    "min_forward": LatencyQuantity.MIN_FIRST_TO_FIRST,
 }
 
 CORES = ["CORE0", "CORE1", "CORE2", "CORE3"]

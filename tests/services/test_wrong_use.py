@@ -112,5 +112,5 @@ def test_a_name_that_is_elsewhere(name, advice):
 def test_the_tools_own_classes_are_not_hidden_by_those_of_amalthea():
     assert amuros.Severity.WARNING == "warning"
     assert amuros.System is amuros.perf.System is not am.System
-    assert amuros.Memory is not am.Memory
-    assert amuros.Value is not am.Value
+    assert amuros.MemoryModel is not am.Memory
+    assert amuros.LatencyValue is not am.Value

@@ -7,7 +7,7 @@ from opponent.simulation import Recording, record
 
 from amalthea_uros.perf.conditions import Condition
 from amalthea_uros.simulate.options import Options
-from amalthea_uros.timing.observed.job_times import Job
+from amalthea_uros.timing.observed.job_times import JobColumn
 from amalthea_uros.trace.table import EventKind
 from amalthea_uros.units import MICROSECOND as US
 
@@ -40,7 +40,7 @@ class Played:
     def column(self, process, column):
         """A column of the rows of the jobs of a process."""
         number = self.recording.program.processes.index(process)
-        return [row[column] for row in self.recording.jobs if row[Job.PROCESS] == number]
+        return [row[column] for row in self.recording.jobs if row[JobColumn.PROCESS] == number]
 
     def times(self, process, column):
         """The same in microseconds."""

@@ -14,7 +14,7 @@ from amalthea_uros.simulate.metrics.distributions import MAX_BINS, BinCounts, Di
 from amalthea_uros.simulate.metrics.jobs import JobMetrics, add_rows
 from amalthea_uros.simulate.observations import CountObservation
 from amalthea_uros.timing.basics.quantities import JobMetric
-from amalthea_uros.timing.observed.job_times import BETWEEN, OWN, Job
+from amalthea_uros.timing.observed.job_times import BETWEEN, OWN, JobColumn
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
 
@@ -26,7 +26,7 @@ def row(process, instance, activation, start, end, running, waiting=0, polling=0
 
 
 def array(rows):
-    return np.array(rows, np.int64).reshape(-1, len(Job))
+    return np.array(rows, np.int64).reshape(-1, len(JobColumn))
 
 
 def observed(rows, deadlines=(None,), base=1):
@@ -159,7 +159,7 @@ def jobs(draw):
         states = draw(st.tuples(times, times, times, times, times))
         start = activation + pending
         found.append(row(process, instance, activation, start, start + sum(states), *states[:4], draw(st.integers(0, 9))))
-    return sorted(found, key=lambda each: each[Job.END])
+    return sorted(found, key=lambda each: each[JobColumn.END])
 
 
 def literal(rows):
@@ -180,10 +180,10 @@ def literal(rows):
         ):
             found[metric].append(value)
     for one, other in pairwise(rows):
-        found[JobMetric.ACTIVATE_TO_ACTIVATE].append(other[Job.ACTIVATION] - one[Job.ACTIVATION])
-        found[JobMetric.START_TO_START].append(other[Job.START] - one[Job.START])
-        found[JobMetric.END_TO_END].append(other[Job.END] - one[Job.END])
-        found[JobMetric.END_TO_START].append(other[Job.START] - one[Job.END])
+        found[JobMetric.ACTIVATE_TO_ACTIVATE].append(other[JobColumn.ACTIVATION] - one[JobColumn.ACTIVATION])
+        found[JobMetric.START_TO_START].append(other[JobColumn.START] - one[JobColumn.START])
+        found[JobMetric.END_TO_END].append(other[JobColumn.END] - one[JobColumn.END])
+        found[JobMetric.END_TO_START].append(other[JobColumn.START] - one[JobColumn.END])
     return found
 
 
@@ -194,7 +194,7 @@ def test_all_metrics_are_as_defined_in_any_chunks(rows, cuts):
     for first, end in pairwise(edges):
         add_rows(array(rows[first:end]), metrics)
     for process, each in enumerate(metrics):
-        own = [job for job in rows if job[Job.PROCESS] == process]
+        own = [job for job in rows if job[JobColumn.PROCESS] == process]
         found = each.observations(None)
         for metric, values in literal(own).items():
             if not values:
@@ -205,7 +205,7 @@ def test_all_metrics_are_as_defined_in_any_chunks(rows, cuts):
             assert one.std == pytest.approx(pstdev(values), rel=1e-6)
             jobs_of_values = own[-len(values) :]
             first = jobs_of_values[values.index(max(values))]
-            assert (one.at_max.instance, one.at_max.time) == (first[Job.INSTANCE], first[Job.ACTIVATION])
+            assert (one.at_max.instance, one.at_max.time) == (first[JobColumn.INSTANCE], first[JobColumn.ACTIVATION])
 
 
 # Histograms

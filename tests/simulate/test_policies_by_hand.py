@@ -7,7 +7,7 @@ from by_hand import allocated, built, play
 from hand_made_systems import CORES, Proc, ticks
 
 from amalthea_uros.perf.os import Duration, Parameter, Parent, Policy, Scheduler
-from amalthea_uros.timing.observed.job_times import Job
+from amalthea_uros.timing.observed.job_times import JobColumn
 from amalthea_uros.trace.table import EventKind
 from amalthea_uros.units import MICROSECOND as US
 
@@ -53,7 +53,7 @@ def test_time_slices_of_different_lengths():
     slices = {name: {"parameters": (time("timeSliceLength", length),)} for name, length in (("a", 3), ("b", 2))}
     found = play(allocated(model, **slices), 100)
     assert (found["a"], found["b"]) == ([(0, 0, 11)], [(0, 3, 12)])
-    assert (found.column("a", Job.PREEMPTIONS), found.column("b", Job.PREEMPTIONS)) == ([2], [2])
+    assert (found.column("a", JobColumn.PREEMPTIONS), found.column("b", JobColumn.PREEMPTIONS)) == ([2], [2])
 
 
 def server(policy, capacity, period, priority=2):
@@ -152,9 +152,9 @@ def test_who_has_a_core_stays_there_if_somebody_else_has_to_give_way():
     high = Proc("high", (ticks(3),), 1000, 2, priority=3)
     found = play(built(mid, low, high, schedulers=GLOBAL), 100, traced=True)
     assert (found["mid"], found["high"], found["low"]) == ([(0, 0, 6)], [(2, 2, 5)], [(0, 0, 9)])
-    assert (found.column("mid", Job.PREEMPTIONS), found.column("mid", Job.MIGRATIONS)) == ([0], [0])
+    assert (found.column("mid", JobColumn.PREEMPTIONS), found.column("mid", JobColumn.MIGRATIONS)) == ([0], [0])
     assert found.events("high", EventKind.START) == [(2, EventKind.START, "c1", 0)]
-    assert found.column("low", Job.MIGRATIONS) == [0]
+    assert found.column("low", JobColumn.MIGRATIONS) == [0]
 
 
 def test_a_job_resumes_on_another_core_and_that_is_counted():
@@ -163,7 +163,7 @@ def test_a_job_resumes_on_another_core_and_that_is_counted():
     high = Proc("high", (ticks(9),), 1000, 2, priority=3)
     found = play(built(mid, low, high, schedulers=GLOBAL), 100, traced=True)
     assert found["low"] == [(0, 0, 8)]
-    assert found.column("low", Job.MIGRATIONS) == [1]
+    assert found.column("low", JobColumn.MIGRATIONS) == [1]
     assert found.events("low", EventKind.RESUME) == [(4, EventKind.RESUME, "c0", 0)]
 
 

@@ -8,7 +8,7 @@ from amalthea_uros.perf.activities import Call, Group, SchedulePoint, Terminate
 from amalthea_uros.perf.os import Parameter, Policy, Scheduler
 from amalthea_uros.perf.software import Preemption, Runnable
 from amalthea_uros.perf.stimuli import Counter
-from amalthea_uros.timing.observed.job_times import Job
+from amalthea_uros.timing.observed.job_times import JobColumn
 from amalthea_uros.trace.table import EventKind
 
 COOPERATIVE = {"preemption": Preemption.COOPERATIVE}
@@ -59,7 +59,7 @@ def test_activations_beyond_the_limit_are_lost_and_keep_their_numbers(limit, job
     model = built(Proc("T", (ticks(12),), 5, priority=1, task={"activation_limit": limit}))
     found = play(model, 28, traced=True)
     assert found["T"] == jobs
-    assert found.column("T", Job.INSTANCE) == numbers
+    assert found.column("T", JobColumn.INSTANCE) == numbers
     assert [(time, number) for time, _, _, number in found.events("T", EventKind.ACTIVATION_LOST)] == lost
 
 

@@ -5,7 +5,7 @@ from hand_made_systems import Proc, locked, release, request, ticks
 
 from amalthea_uros.perf.activities import Waiting
 from amalthea_uros.perf.os import Semaphore, SemaphoreKind
-from amalthea_uros.timing.observed.job_times import Job
+from amalthea_uros.timing.observed.job_times import JobColumn
 
 
 def test_two_users_at_a_time():
@@ -15,7 +15,7 @@ def test_two_users_at_a_time():
     c = Proc("c", locked("s", 2), 1000, 2, priority=2)
     found = play(built(a, b, c, semaphores=(Semaphore(name="s", users=2),)), 100)
     assert (found["a"], found["b"], found["c"]) == ([(0, 0, 12)], [(0, 0, 6)], [(2, 2, 8)])
-    assert found.times("c", Job.WAITING) == [4]
+    assert found.times("c", JobColumn.WAITING) == [4]
 
 
 def test_exclusive_use_waits_until_nobody_else_holds_it_and_keeps_everybody_off():
@@ -69,7 +69,7 @@ def test_who_polls_for_a_spinlock_keeps_its_core_and_is_parked_while_preempted()
     high, low = Proc("high", (ticks(2),), 1000, 4, priority=3), Proc("low", (ticks(1),), 1000, priority=1)
     found = play(built(holds, polls, high, low, semaphores=(Semaphore(name="s", kind=SemaphoreKind.SPINLOCK),)), 100)
     assert (found["polls"], found["high"], found["low"]) == ([(0, 0, 12)], [(4, 4, 6)], [(0, 12, 13)])
-    assert (found.times("polls", Job.POLLING), found.times("polls", Job.PARKING)) == ([7], [2])
+    assert (found.times("polls", JobColumn.POLLING), found.times("polls", JobColumn.PARKING)) == ([7], [2])
 
 
 def test_who_is_parked_gets_a_spinlock_and_is_ready():
@@ -80,7 +80,7 @@ def test_who_is_parked_gets_a_spinlock_and_is_ready():
     late = Proc("late", (request("s", Waiting.ACTIVE), ticks(1), release("s")), 1000, 11, priority=1, scheduler="s1")
     found = play(built(holds, polls, high, late, semaphores=(Semaphore(name="s", kind=SemaphoreKind.SPINLOCK),)), 100)
     assert (found["polls"], found["late"]) == ([(0, 0, 16)], [(11, 11, 17)])
-    assert (found.times("polls", Job.POLLING), found.times("polls", Job.PARKING)) == ([3], [6])
+    assert (found.times("polls", JobColumn.POLLING), found.times("polls", JobColumn.PARKING)) == ([3], [6])
 
 
 def test_a_ceiling_is_the_priority_of_the_most_urgent_user_also_of_one_on_another_core():

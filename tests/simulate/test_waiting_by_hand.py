@@ -6,7 +6,7 @@ from hand_made_systems import Proc, ticks
 
 from amalthea_uros.perf.activities import Call, ClearEvent, ServerCall, ServerCallKind, SetEvent, WaitEvent, Waiting
 from amalthea_uros.perf.software import OsEvent, Runnable
-from amalthea_uros.timing.observed.job_times import Job
+from amalthea_uros.timing.observed.job_times import JobColumn
 
 A_AND_B = (OsEvent(name="a"), OsEvent(name="b"))
 
@@ -42,7 +42,7 @@ def test_waiting_does_not_clear_an_event_but_clearing_does():
     assert found["keeps"][:3] == [(0, 0, 6), (20, 20, 21), (40, 40, 41)]
     # `clears` follows `keeps` at 5, and has to wait for it at 20 before it starts. Its activations at 40, 60, 80 and 100 are lost.
     assert found["clears"] == [(0, 0, 7), (20, 21, 106)]
-    assert found.column("clears", Job.INSTANCE) == [0, 1]
+    assert found.column("clears", JobColumn.INSTANCE) == [0, 1]
 
 
 def test_one_process_clears_its_own_events_only():
@@ -63,7 +63,7 @@ def test_who_polls_keeps_its_core_and_who_waits_gives_it_away(waiting, low, poll
     found = play(built(high, rest, sets("setter", "a", 6), os_events=A_AND_B), 100)
     assert found["high"] == [(0, 0, 7)]
     assert found["low"] == [low]
-    assert (found.times("high", Job.POLLING), found.times("high", Job.WAITING)) == ([polling], [waited])
+    assert (found.times("high", JobColumn.POLLING), found.times("high", JobColumn.WAITING)) == ([polling], [waited])
 
 
 def call(kind=ServerCallKind.SYNCHRONOUS, runnable="serve", **more):
@@ -89,7 +89,7 @@ def test_a_request_during_an_execution_is_answered_by_the_next_one():
     server = Proc("server", (Call(runnable="serve"),), 20, priority=1, scheduler="s1")
     found = play(built(client, server, runnables=(SERVE,)), 100)
     assert found["client"] == [(0, 0, 24)]
-    assert found.times("client", Job.POLLING) == [22]
+    assert found.times("client", JobColumn.POLLING) == [22]
 
 
 def test_an_asynchronous_call_does_not_wait_and_its_result_is_fetched_later():
@@ -108,7 +108,7 @@ def test_an_asynchronous_call_does_not_wait_and_its_result_is_fetched_later():
     found = play(built(early, late, server, runnables=(SERVE,)), 100)
     assert (found["early"], found["late"]) == ([(0, 0, 14)], [(0, 0, 17)])
     # `early` polls 4..10; then the server preempts it.
-    assert (found.times("early", Job.POLLING), found.times("early", Job.PARKING)) == ([6], [3])
+    assert (found.times("early", JobColumn.POLLING), found.times("early", JobColumn.PARKING)) == ([6], [3])
 
 
 @pytest.mark.parametrize("calls_between", [1, 3])

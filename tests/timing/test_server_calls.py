@@ -6,7 +6,7 @@ from fractions import Fraction
 import pytest
 
 from amalthea_uros import analyze_system
-from amalthea_uros.analyze.results.chains import Quantity
+from amalthea_uros.analyze.results.chains import LatencyQuantity
 from amalthea_uros.perf.activities import (
     AccessKind,
     Call,
@@ -28,7 +28,7 @@ from amalthea_uros.perf.os import OperatingSystem, Os, Overhead, Policy, Schedul
 from amalthea_uros.perf.software import Label, Runnable, Software, Task
 from amalthea_uros.perf.stimuli import InterProcess, Periodic, Stimuli
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.basics.settings import Memory as MemoryMode
+from amalthea_uros.timing.basics.settings import MemoryModel as MemoryMode
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import MICROSECOND as US
 
@@ -198,5 +198,9 @@ def test_what_the_server_runnable_does_is_carried_on():
     # The client starts it at 3; the last task always ends at 12, after all of the client (10) and of the server (1).
     # The data have no bound, since nobody states how long the last task is not triggered at most; what is claimed includes 9.
     claimed = {value.quantity: value.value for value in found.values}
-    assert claimed.get(Quantity.MIN_FIRST_TO_FIRST, 0) <= 9 * US <= claimed.get(Quantity.MAX_REDUCED_REACTION_TIME, 9 * US)
-    assert claimed[Quantity.MAX_REDUCED_DATA_AGE] >= 9 * US
+    assert (
+        claimed.get(LatencyQuantity.MIN_FIRST_TO_FIRST, 0)
+        <= 9 * US
+        <= claimed.get(LatencyQuantity.MAX_REDUCED_REACTION_TIME, 9 * US)
+    )
+    assert claimed[LatencyQuantity.MAX_REDUCED_DATA_AGE] >= 9 * US

@@ -5,7 +5,7 @@ import pytest
 from amalthea_uros import analyze
 from amalthea_uros.perf.os import Duration
 from amalthea_uros.spec.os import Os, SleepTicks
-from amalthea_uros.timing.basics.settings import Memory, Settings
+from amalthea_uros.timing.basics.settings import MemoryModel, Settings
 from amalthea_uros.units import MICROSECOND, MILLISECOND
 from amalthea_uros.uros.assembly.rtos import slept
 
@@ -151,7 +151,7 @@ class TestMemoriesOfCores:
     )
     def test_an_access_costs_what_its_core_needs(self, author, memory, a, b):
         author.describe(MEMORIES.replace("MEMORY", memory))
-        analysis = analyze(author.path, Settings(memory=Memory.EXPLICIT))
+        analysis = analyze(author.path, Settings(memory=MemoryModel.EXPLICIT))
         responses = [analysis[name].response for name in ("A", "B")]
         assert [response and response.worst for response in responses] == [a, b]
 

@@ -11,10 +11,10 @@ from amalthea_uros.analyze.chains.read_write_times import TimedStage
 from amalthea_uros.analyze.chains.route_latencies import RouteLatencies
 from amalthea_uros.analyze.chains.stage_timing import StageTiming
 from amalthea_uros.analyze.response_times.solution import Solution
-from amalthea_uros.analyze.results.chains import ChainResult, Quantity, Value
+from amalthea_uros.analyze.results.chains import ChainResult, LatencyQuantity, LatencyValue
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.events import EventChain
-from amalthea_uros.timing.activation.phases import Occurrence, unknown_phases
+from amalthea_uros.timing.activation.phases import ExternalInput, unknown_phases
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.dataflow.chains import Unfolded, combined, empty_sets, sequences, unfold
 from amalthea_uros.timing.dataflow.events import UnraisedError
@@ -33,7 +33,7 @@ class ChainEvaluator:
     budget: JobBudget = field(default_factory=JobBudget)
     timing: StageTiming = field(init=False)
     controllers: Mapping[str, str] = field(init=False)
-    _unknown_phases: Mapping[Occurrence, int] = field(init=False)
+    _unknown_phases: Mapping[ExternalInput, int] = field(init=False)
 
     @property
     def context(self) -> TimingContext:
@@ -69,7 +69,7 @@ class ChainEvaluator:
             self.context.notes.assume(f"{TOO_MANY_JOBS}; the chains without them have bounds of other methods")
         all_values = _combine(unfolded, found.values)
         tightest = _tightest(all_values)
-        has_bound = any(value.quantity is Quantity.MAX_REDUCED_REACTION_TIME for value in tightest)
+        has_bound = any(value.quantity is LatencyQuantity.MAX_REDUCED_REACTION_TIME for value in tightest)
         reason = found.reason or ("" if has_bound else found.why_unbounded)
         if reason:
             self.context.notes.warning("CHN003", f"the chain {chain.name!r} has no finite bound: {reason}", chain)
@@ -83,13 +83,15 @@ class ChainEvaluator:
             reason=reason,
         )
 
-    def occurrences(self, chain: EventChain) -> tuple[Occurrence, ...]:
+    def occurrences(self, chain: EventChain) -> tuple[ExternalInput, ...]:
         """What comes from outside with an unknown phase and is taken by the jobs of a chain; nothing if it cannot be evaluated."""
         unknown = self._unknown_phases
         if not unknown:
             return ()
         found = {
-            Occurrence.of(stage.process.name, counter) for stage in self.stages(chain) if (counter := stage.counter) is not None
+            ExternalInput.of(stage.process.name, counter)
+            for stage in self.stages(chain)
+            if (counter := stage.counter) is not None
         }
         return tuple(sorted(filter(unknown.__contains__, found), key=unknown.__getitem__))
 
@@ -131,7 +133,7 @@ class ChainEvaluator:
             found.why_unbounded = found.why_unbounded or next((m.why_unbounded for m in methods if m.why_unbounded), "")
         return found
 
-    def worst(self, found: Iterable[Route]) -> tuple[Value, ...]:
+    def worst(self, found: Iterable[Route]) -> tuple[LatencyValue, ...]:
         """The tightest values over routes from one event to another, which need not be part of a chain.
 
         Raises
@@ -228,7 +230,7 @@ class _Evaluated:
     reason : why a path has no values
     """
 
-    values: dict[tuple[str, ...], list[Value]] = field(default_factory=dict)
+    values: dict[tuple[str, ...], list[LatencyValue]] = field(default_factory=dict)
     why: str = ""
     why_unbounded: str = ""
     reason: str = ""
@@ -255,7 +257,7 @@ def _why(found: Sequence[str]) -> str:
     return next((why for why in found if why.startswith("bounds")), found[0])
 
 
-def _worst_of(found: Sequence[Sequence[Value]]) -> list[Value]:
+def _worst_of(found: Sequence[Sequence[LatencyValue]]) -> list[LatencyValue]:
     """The worst values over the routes of one sequence of events: of each method that all of them have, and of the tightest ones."""
     if len(found) == 1:
         return list(found[0])
@@ -272,7 +274,7 @@ def _worst_of(found: Sequence[Sequence[Value]]) -> list[Value]:
     return result
 
 
-def _worst(values: Sequence[Value]) -> list[Value]:
+def _worst(values: Sequence[LatencyValue]) -> list[LatencyValue]:
     """The worst of some values of a quantity; there is no mean if they differ."""
     if values[0].quantity.is_mean:
         return [values[0]] if all(value == values[0] for value in values) else []
@@ -281,11 +283,11 @@ def _worst(values: Sequence[Value]) -> list[Value]:
     return [next((value for value in here if value.claim is Claim.EXACT), here[0])]
 
 
-def _same(value: Value, others: Iterable[Value]) -> Value | None:
+def _same(value: LatencyValue, others: Iterable[LatencyValue]) -> LatencyValue | None:
     return next((o for o in others if (o.quantity, o.method) == (value.quantity, value.method)), None)
 
 
-def _combine(unfolded: Unfolded, values: Mapping[tuple[str, ...], list[Value]]) -> list[Value]:
+def _combine(unfolded: Unfolded, values: Mapping[tuple[str, ...], list[LatencyValue]]) -> list[LatencyValue]:
     """The values of a chain from those of all paths through it."""
     if len(values) == 1:
         return next(iter(values.values()))
@@ -296,14 +298,14 @@ def _combine(unfolded: Unfolded, values: Mapping[tuple[str, ...], list[Value]]) 
         if None in each.values() or value.quantity.is_mean:
             continue
         times = {events: path.value for events, path in each.items() if path is not None}
-        reacts = value.quantity in (Quantity.MAX_REACTION_TIME, Quantity.MAX_REDUCED_REACTION_TIME)
+        reacts = value.quantity in (LatencyQuantity.MAX_REACTION_TIME, LatencyQuantity.MAX_REDUCED_REACTION_TIME)
         if reacts:
             time = combined(unfolded, times)
         else:
             finite = [time for time in times.values() if time is not None]
             time = (max if value.quantity.is_upper else min)(finite)
         found.append(
-            Value(
+            LatencyValue(
                 quantity=value.quantity,
                 value=time,
                 # The maximum of minima is not the minimum of maxima: for alternatives it is a bound.
@@ -317,10 +319,10 @@ def _combine(unfolded: Unfolded, values: Mapping[tuple[str, ...], list[Value]]) 
     return found
 
 
-def _tightest(values: Sequence[Value]) -> tuple[Value, ...]:
+def _tightest(values: Sequence[LatencyValue]) -> tuple[LatencyValue, ...]:
     """For each quantity the exact value, or else the tightest bound."""
     found = {}
-    for quantity in Quantity:
+    for quantity in LatencyQuantity:
         here = [value for value in values if value.quantity is quantity and value.value is not None]
         exact = [value for value in here if value.claim is Claim.EXACT]
         if exact or here:
@@ -328,8 +330,8 @@ def _tightest(values: Sequence[Value]) -> tuple[Value, ...]:
     return tuple(found.values())
 
 
-def _best(values: Sequence[Value], quantity: Quantity) -> Value:
-    def time(value: Value) -> int:
+def _best(values: Sequence[LatencyValue], quantity: LatencyQuantity) -> LatencyValue:
+    def time(value: LatencyValue) -> int:
         return value.value or 0
 
     return min(values, key=time) if quantity.is_upper else max(values, key=time)

@@ -78,7 +78,7 @@ class Inputs:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Latencies:
+class JobChainLatencies:
     """The job chains that start at jobs of the first task, and those that end at jobs of the last one.
 
     Attributes
@@ -120,7 +120,7 @@ class Latencies:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class JobChains(Latencies):
+class JobChains(JobChainLatencies):
     """The job chains in one cycle.
 
     Attributes
@@ -132,8 +132,8 @@ class JobChains(Latencies):
     """
 
     inputs: Inputs
-    before: Latencies
-    possible: Latencies
+    before: JobChainLatencies
+    possible: JobChainLatencies
 
     @property
     def mean_reaction_time(self) -> float:
@@ -141,7 +141,7 @@ class JobChains(Latencies):
         waits = (self.reads - self.previous_reads).astype(np.float64)
         return float(((self.ends - self.reads + waits / 2) * waits).sum() / waits.sum())
 
-    def from_start(self, is_exact: bool) -> Latencies:
+    def from_start(self, is_exact: bool) -> JobChainLatencies:
         """Those of the cycle and of all jobs before, from the start of the system on.
 
         Parameters
@@ -149,7 +149,7 @@ class JobChains(Latencies):
         is_exact : whether jobs read and write at these times, which are no bounds
         """
         every = [self.before, self] if is_exact else [self.before, self.possible, self]
-        return Latencies(**{name: np.concatenate([getattr(each, name) for each in every]) for name in _TIMES})
+        return JobChainLatencies(**{name: np.concatenate([getattr(each, name) for each in every]) for name in _TIMES})
 
     def has_times_of(self, other: JobChains) -> bool:
         """Whether all times are those of other job chains."""
@@ -163,7 +163,7 @@ class JobChains(Latencies):
 
 
 _PARTS = ("inputs", "before", "possible")
-_TIMES = tuple(each.name for each in fields(Latencies))
+_TIMES = tuple(each.name for each in fields(JobChainLatencies))
 
 
 def job_count(chain: Sequence[ReadWriteTimes], steady_state_start: Time) -> int:
@@ -205,10 +205,10 @@ def build_job_chains(chain: Sequence[ReadWriteTimes], steady_state_start: Time) 
     )
 
 
-def _latencies(chain: Sequence[ReadWriteTimes], begin: Numbers, end: Numbers) -> Latencies:
+def _latencies(chain: Sequence[ReadWriteTimes], begin: Numbers, end: Numbers) -> JobChainLatencies:
     """The job chains that start at jobs of the first task, and those that end at jobs of the last one."""
     first, last = chain[0], chain[-1]
-    return Latencies(
+    return JobChainLatencies(
         reads=first.reads[begin],
         # No job reads before the first one.
         previous_reads=first.reads[np.maximum(begin - 1, 0)],
@@ -219,7 +219,7 @@ def _latencies(chain: Sequence[ReadWriteTimes], begin: Numbers, end: Numbers) ->
     )
 
 
-def _possible(chain: Sequence[ReadWriteTimes], end: Numbers) -> Latencies:
+def _possible(chain: Sequence[ReadWriteTimes], end: Numbers) -> JobChainLatencies:
     """Jobs of the last task as if they used the output of the first job."""
     nothing, last = np.arange(0, dtype=np.int64), chain[-1]
     starts = np.full(len(end), chain[0].reads[0])

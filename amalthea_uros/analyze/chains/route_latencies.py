@@ -12,12 +12,12 @@ from amalthea_uros.analyze.chains.bounds import becker, bi, davare, duerr, haman
 from amalthea_uros.analyze.chains.bounds.chain_task import ChainTask
 from amalthea_uros.analyze.chains.read_write_times import TimedStage
 from amalthea_uros.analyze.chains.stage_timing import in_picoseconds
-from amalthea_uros.analyze.results.chains import Quantity, Value
+from amalthea_uros.analyze.results.chains import LatencyQuantity, LatencyValue
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.timing.response import Claim
 from amalthea_uros.units import Time
 
-_Make = Callable[[Quantity, "Time | float"], Value]
+_Make = Callable[[LatencyQuantity, "Time | float"], LatencyValue]
 
 if TYPE_CHECKING:
     from amalthea_uros.analyze.chains.job_chains import JobBudget, JobChains
@@ -29,8 +29,8 @@ SUMMED = "sum over controllers whose clocks are not synchronized"
 
 #: A minimum and the maximum of the same times.
 _RANGES = (
-    (Quantity.MIN_FIRST_TO_FIRST, Quantity.MAX_REDUCED_REACTION_TIME),
-    (Quantity.MIN_LAST_TO_LAST, Quantity.MAX_REDUCED_DATA_AGE),
+    (LatencyQuantity.MIN_FIRST_TO_FIRST, LatencyQuantity.MAX_REDUCED_REACTION_TIME),
+    (LatencyQuantity.MIN_LAST_TO_LAST, LatencyQuantity.MAX_REDUCED_DATA_AGE),
 )
 
 
@@ -51,7 +51,7 @@ class RouteLatencies:
     is_certain: bool
     budget: JobBudget
 
-    def why(self, values: Iterable[Value]) -> str:
+    def why(self, values: Iterable[LatencyValue]) -> str:
         """Why the tightest of the values are exact, or only bounds."""
         everything = [timed for part in self.parts for timed in part]
         reason = next((timed.reason for timed in everything if timed.reason), "")
@@ -77,7 +77,7 @@ class RouteLatencies:
         """Why there is no bound of the reaction time; "" if there is one."""
         return next((timed.why_irregular for part in self.parts for timed in part if timed.why_irregular), "")
 
-    def values(self) -> Iterator[Value]:
+    def values(self) -> Iterator[LatencyValue]:
         """The values of all methods.
 
         Raises
@@ -92,21 +92,23 @@ class RouteLatencies:
                 raise UnknownError("a response of the chain can come before its stimulus, which is not evaluated")
         yield from found
 
-    def _for_all_stimuli(self, found: Sequence[Value]) -> list[Value]:
+    def _for_all_stimuli(self, found: Sequence[LatencyValue]) -> list[LatencyValue]:
         """The values, also for stimuli of which a counter of a trigger lets none have an effect: the next ones are answered first."""
         wait = self.parts[0][0].stimulus_wait
         if wait == 0:
             return list(found)
         kept = [
-            value for value in found if not value.quantity.is_mean and value.quantity is not Quantity.MAX_REDUCED_REACTION_TIME
+            value
+            for value in found
+            if not value.quantity.is_mean and value.quantity is not LatencyQuantity.MAX_REDUCED_REACTION_TIME
         ]
         if wait is None:
             return kept
         longer = in_picoseconds(wait, self.unit, is_upper=True)
-        reduced = [value for value in found if value.quantity is Quantity.MAX_REDUCED_REACTION_TIME]
+        reduced = [value for value in found if value.quantity is LatencyQuantity.MAX_REDUCED_REACTION_TIME]
         return [*kept, *(replace(value, value=(value.value or 0) + longer, claim=Claim.BOUND) for value in reduced)]
 
-    def _values(self) -> Iterator[Value]:
+    def _values(self) -> Iterator[LatencyValue]:
         is_answered_later = self._can_respond_before_stimulus()
         if not is_answered_later:
             yield from self._of_job_chains()
@@ -133,39 +135,39 @@ class RouteLatencies:
 
     # By job chains
 
-    def _of_job_chains(self) -> Iterator[Value]:
+    def _of_job_chains(self) -> Iterator[LatencyValue]:
         found = [self._job_chains(part, pessimistic=True) for part in self.parts]
         if len(found) == 1 and found[0] is not None:
             yield from self._of_single_clock(found[0])
         elif None not in found:
             yield from self._summed([each for each in found if each is not None])
 
-    def _of_single_clock(self, chains: JobChains) -> Iterator[Value]:
+    def _of_single_clock(self, chains: JobChains) -> Iterator[LatencyValue]:
         is_exact = self._is_exact(chains)
         claim, method = (Claim.EXACT, EXACT) if is_exact else (Claim.BOUND, BOUNDED)
 
-        def value(quantity: Quantity, time: Time | float) -> Value:
+        def value(quantity: LatencyQuantity, time: Time | float) -> LatencyValue:
             exactly = Fraction(time) / self.unit
             whole = round(exactly) if quantity.is_mean else in_picoseconds(exactly, 1, quantity.is_upper)
-            return Value(quantity=quantity, value=whole, claim=claim, method=method, source=job_chains.SOURCE)
+            return LatencyValue(quantity=quantity, value=whole, claim=claim, method=method, source=job_chains.SOURCE)
 
         # Maxima and minima are those of all jobs from the start of the system on, means those of the jobs that repeat.
         every = chains.from_start(is_exact)
-        yield value(Quantity.MAX_REACTION_TIME, every.reaction_time)
-        yield value(Quantity.MAX_REDUCED_REACTION_TIME, int(every.first_to_first.max()))
-        yield value(Quantity.MAX_DATA_AGE, every.data_age)
-        yield value(Quantity.MAX_REDUCED_DATA_AGE, int(every.last_to_last.max()))
+        yield value(LatencyQuantity.MAX_REACTION_TIME, every.reaction_time)
+        yield value(LatencyQuantity.MAX_REDUCED_REACTION_TIME, int(every.first_to_first.max()))
+        yield value(LatencyQuantity.MAX_DATA_AGE, every.data_age)
+        yield value(LatencyQuantity.MAX_REDUCED_DATA_AGE, int(every.last_to_last.max()))
         if not is_exact:
             yield from self._minima(value)
             return
-        yield value(Quantity.MAX_FIRST_TO_LAST, int(chains.inputs.first_to_last.max()))
-        yield value(Quantity.MAX_LAST_TO_FIRST, int(chains.inputs.last_to_first.max()))
-        yield value(Quantity.MIN_LAST_TO_FIRST, int(chains.inputs.last_to_first.min()))
-        yield value(Quantity.MIN_FIRST_TO_FIRST, int(every.first_to_first.min()))
-        yield value(Quantity.MIN_LAST_TO_LAST, int(every.last_to_last.min()))
-        yield value(Quantity.MEAN_REACTION_TIME, chains.mean_reaction_time)
-        yield value(Quantity.MEAN_FIRST_TO_FIRST, float(chains.first_to_first.mean()))
-        yield value(Quantity.MEAN_LAST_TO_LAST, float(chains.last_to_last.mean()))
+        yield value(LatencyQuantity.MAX_FIRST_TO_LAST, int(chains.inputs.first_to_last.max()))
+        yield value(LatencyQuantity.MAX_LAST_TO_FIRST, int(chains.inputs.last_to_first.max()))
+        yield value(LatencyQuantity.MIN_LAST_TO_FIRST, int(chains.inputs.last_to_first.min()))
+        yield value(LatencyQuantity.MIN_FIRST_TO_FIRST, int(every.first_to_first.min()))
+        yield value(LatencyQuantity.MIN_LAST_TO_LAST, int(every.last_to_last.min()))
+        yield value(LatencyQuantity.MEAN_REACTION_TIME, chains.mean_reaction_time)
+        yield value(LatencyQuantity.MEAN_FIRST_TO_FIRST, float(chains.first_to_first.mean()))
+        yield value(LatencyQuantity.MEAN_LAST_TO_LAST, float(chains.last_to_last.mean()))
 
     def _is_exact(self, chains: JobChains) -> bool:
         """Whether jobs read and write at these times, and no order of two accesses at one instant changes anything."""
@@ -177,15 +179,15 @@ class RouteLatencies:
         others = self._job_chains(part, pessimistic=False)
         return others is not None and chains.has_times_of(others)
 
-    def _minima(self, value: _Make) -> Iterator[Value]:
+    def _minima(self, value: _Make) -> Iterator[LatencyValue]:
         """Lower bounds by latest reads and earliest writes."""
         chains = self._job_chains(self.parts[0], pessimistic=False)
         if chains is None:
             return
         every = chains.from_start(is_exact=True)
         for quantity, times in (
-            (Quantity.MIN_FIRST_TO_FIRST, every.first_to_first),
-            (Quantity.MIN_LAST_TO_LAST, every.last_to_last),
+            (LatencyQuantity.MIN_FIRST_TO_FIRST, every.first_to_first),
+            (LatencyQuantity.MIN_LAST_TO_LAST, every.last_to_last),
         ):
             # With a long time between reading and writing, no job of the cycle has to pass anything on.
             if times.size:
@@ -198,38 +200,38 @@ class RouteLatencies:
             return None
         return self.budget.build(chain, max(each.steady_state_start for each in bounds))
 
-    def _summed(self, found: Sequence[JobChains]) -> Iterator[Value]:
+    def _summed(self, found: Sequence[JobChains]) -> Iterator[LatencyValue]:
         """The sum over controllers without a common clock (theorem 5.8 of RTAS 2021)."""
         every = [each.from_start(is_exact=False) for each in found]
         first, *others = every
         *before, last = every
         sums = {
-            Quantity.MAX_REACTION_TIME: sum(each.reaction_time for each in every),
-            Quantity.MAX_REDUCED_REACTION_TIME: int(first.first_to_first.max()) + sum(e.reaction_time for e in others),
-            Quantity.MAX_DATA_AGE: sum(each.data_age for each in every),
-            Quantity.MAX_REDUCED_DATA_AGE: sum(each.data_age for each in before) + int(last.last_to_last.max()),
+            LatencyQuantity.MAX_REACTION_TIME: sum(each.reaction_time for each in every),
+            LatencyQuantity.MAX_REDUCED_REACTION_TIME: int(first.first_to_first.max()) + sum(e.reaction_time for e in others),
+            LatencyQuantity.MAX_DATA_AGE: sum(each.data_age for each in every),
+            LatencyQuantity.MAX_REDUCED_DATA_AGE: sum(each.data_age for each in before) + int(last.last_to_last.max()),
         }
         for quantity, time in sums.items():
             yield self._bound(quantity, time, SUMMED, job_chains.SOURCE)
 
     # By periods and response times
 
-    def _bound(self, quantity: Quantity, time: Time, method: str, source: str) -> Value:
+    def _bound(self, quantity: LatencyQuantity, time: Time, method: str, source: str) -> LatencyValue:
         whole = in_picoseconds(time, self.unit, quantity.is_upper)
-        return Value(quantity=quantity, value=whole, claim=Claim.BOUND, method=method, source=source)
+        return LatencyValue(quantity=quantity, value=whole, claim=Claim.BOUND, method=method, source=source)
 
-    def _reactions(self, time: Time, tasks: Sequence[ChainTask], method: str, source: str) -> Iterator[Value]:
+    def _reactions(self, time: Time, tasks: Sequence[ChainTask], method: str, source: str) -> Iterator[LatencyValue]:
         """A bound of the reaction time, and the bounds of data age and reduced reaction time that follow from it."""
         first = tasks[0]
-        yield self._bound(Quantity.MAX_REACTION_TIME, time, method, source)
+        yield self._bound(LatencyQuantity.MAX_REACTION_TIME, time, method, source)
         yield self._bound(
-            Quantity.MAX_DATA_AGE, time, f"{method}; data age as reaction time", f"{source}; Günzel and others 2023"
+            LatencyQuantity.MAX_DATA_AGE, time, f"{method}; data age as reaction time", f"{source}; Günzel and others 2023"
         )
         yield self._bound(
-            Quantity.MAX_REDUCED_REACTION_TIME, time - first.period, f"{method}, without the first period", source
+            LatencyQuantity.MAX_REDUCED_REACTION_TIME, time - first.period, f"{method}, without the first period", source
         )
 
-    def _of_periods(self, tasks: Sequence[ChainTask]) -> Iterator[Value]:
+    def _of_periods(self, tasks: Sequence[ChainTask]) -> Iterator[LatencyValue]:
         """Bounds that need only maximum times between activations, and response times."""
         first, *others = tasks
         at_start = _wait_at_start(tasks)
@@ -238,16 +240,18 @@ class RouteLatencies:
             yield from self._reactions(davare.reaction_time(tasks) + at_start, tasks, method, davare.SOURCE)
         elif all(task.is_regular for task in others) and self.parts[0][0].is_certain:
             time = davare.reaction_time(tasks) + at_start - first.period
-            yield self._bound(Quantity.MAX_REDUCED_REACTION_TIME, time, f"{method}, without the first period", davare.SOURCE)
+            yield self._bound(
+                LatencyQuantity.MAX_REDUCED_REACTION_TIME, time, f"{method}, without the first period", davare.SOURCE
+            )
         if not all(task.is_regular for task in tasks[:-1]):
             return
         if all(task.response <= task.period for task in tasks if task.is_regular):
             if tasks[-1].is_regular:
                 yield from self._reactions(duerr.reaction_time(tasks) + at_start, tasks, "sporadic chains", duerr.SOURCE)
             time = duerr.reduced_data_age(tasks)
-            yield self._bound(Quantity.MAX_REDUCED_DATA_AGE, time, "sporadic chains", duerr.SOURCE)
+            yield self._bound(LatencyQuantity.MAX_REDUCED_DATA_AGE, time, "sporadic chains", duerr.SOURCE)
 
-    def _of_releases(self, tasks: Sequence[ChainTask]) -> Iterator[Value]:
+    def _of_releases(self, tasks: Sequence[ChainTask]) -> Iterator[LatencyValue]:
         """Bounds for periodic tasks with known releases."""
         if any(task.offset is None or not task.is_regular or task.response > task.period for task in tasks):
             return
@@ -256,10 +260,10 @@ class RouteLatencies:
             yield from self._reactions(reaction + _not_released(tasks), tasks, "next releases", kloda.SOURCE)
         age = becker.reduced_data_age(tasks)
         if age is not None:
-            yield self._bound(Quantity.MAX_REDUCED_DATA_AGE, age, "reachable jobs", becker.SOURCE)
+            yield self._bound(LatencyQuantity.MAX_REDUCED_DATA_AGE, age, "reachable jobs", becker.SOURCE)
         if len({task.offset for task in tasks}) == 1:
             age = bi.reduced_data_age(tasks)
-            yield self._bound(Quantity.MAX_REDUCED_DATA_AGE, age, "grid of releases", bi.SOURCE)
+            yield self._bound(LatencyQuantity.MAX_REDUCED_DATA_AGE, age, "grid of releases", bi.SOURCE)
 
 
 def _wait_at_start(tasks: Sequence[ChainTask]) -> Time:

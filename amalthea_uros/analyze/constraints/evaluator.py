@@ -20,7 +20,7 @@ from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.constraints.events import EventWindows, exact_delays
 from amalthea_uros.analyze.constraints.plausibility import note_implausible
 from amalthea_uros.analyze.constraints.runnable_orders import holds_across, holds_in_each_job
-from amalthea_uros.analyze.results.chains import ChainResult, Quantity, Value
+from amalthea_uros.analyze.results.chains import ChainResult, LatencyQuantity, LatencyValue
 from amalthea_uros.analyze.results.requirements import RequirementResult
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.judge.evidence import Ends
@@ -44,13 +44,13 @@ from amalthea_uros.timing.basics.quantities import jitter_of
 from amalthea_uros.timing.dataflow.links import LinkKind
 from amalthea_uros.timing.dataflow.routes import Route, corresponding, routes
 from amalthea_uros.timing.dataflow.runnable_order import are_activated_together, has_counted_effect, order_scope
-from amalthea_uros.timing.event_models import EventModel, Periodic, can_be_dense, is_strictly_periodic
+from amalthea_uros.timing.event_models import EventModel, PeriodicEvents, can_be_dense, is_strictly_periodic
 from amalthea_uros.timing.jobs.counters import is_always
 from amalthea_uros.timing.response import Claim
 from amalthea_uros.units import Time, time_text
 
-_REACTION = (Quantity.MIN_FIRST_TO_FIRST, Quantity.MAX_REDUCED_REACTION_TIME)
-_AGE = (Quantity.MIN_LAST_TO_LAST, Quantity.MAX_REDUCED_DATA_AGE)
+_REACTION = (LatencyQuantity.MIN_FIRST_TO_FIRST, LatencyQuantity.MAX_REDUCED_REACTION_TIME)
+_AGE = (LatencyQuantity.MIN_LAST_TO_LAST, LatencyQuantity.MAX_REDUCED_DATA_AGE)
 #: A limit, and the verdict on it.
 _Judged: TypeAlias = tuple[SystemLimit, Judgement]
 
@@ -267,9 +267,9 @@ class ConstraintEvaluator:
 class _Latencies:
     """Between which ends the maximum and the minimum of a latency lie."""
 
-    values: Sequence[Value]
-    minimum: Quantity
-    maximum: Quantity
+    values: Sequence[LatencyValue]
+    minimum: LatencyQuantity
+    maximum: LatencyQuantity
 
     @property
     def of_maximum(self) -> Ends:
@@ -305,7 +305,7 @@ class _Latencies:
         is_exact = greatest.lower == greatest.upper and least.lower == least.upper
         return Ends(upper if is_exact and is_one_run else 0, upper)
 
-    def _find(self, quantity: Quantity) -> Value | None:
+    def _find(self, quantity: LatencyQuantity) -> LatencyValue | None:
         return next((value for value in self.values if value.quantity is quantity), None)
 
 
@@ -328,7 +328,7 @@ def _unknown(constraint: EventConstraint, limits: Sequence[SystemLimit], reason:
     return (RequirementResult.of(limit, unknown(reason)) for limit in limits or [without_number(constraint)])
 
 
-def _time(value: Value | None) -> Time | None:
+def _time(value: LatencyValue | None) -> Time | None:
     return value.value if value is not None else None
 
 
@@ -355,7 +355,7 @@ def _moved(distance: Ends, by: Time) -> Ends:
 
 def _jitter(constraint: RepetitionConstraint, activations: EventModel, moves: Time) -> tuple[Ends, str]:
     """Between which ends the jitter of an event lies that follows strictly periodic activations, or why that is unknown."""
-    if not isinstance(activations, Periodic) or not is_strictly_periodic(activations):
+    if not isinstance(activations, PeriodicEvents) or not is_strictly_periodic(activations):
         return Ends(), "its activations are not strictly periodic"
     period, distance = activations.period, max(1, constraint.span) * activations.period
     if constraint.period not in (None, period):
@@ -389,6 +389,6 @@ def _distance(events: EventModel, count: int, is_upper: bool) -> Ends:
 
 def _longest(events: EventModel, count: int) -> Time | None:
     """The maximum time from an event to the one `count` after it."""
-    if isinstance(events, Periodic) and is_strictly_periodic(events):
+    if isinstance(events, PeriodicEvents) and is_strictly_periodic(events):
         return count * events.period + events.jitter
     return None if events.max_interarrival is None else count * events.max_interarrival

@@ -5,7 +5,7 @@ from __future__ import annotations
 from amalthea_uros.analyze.results.requirements import RequirementResult
 from amalthea_uros.perf.constraints import TimeMetric
 from amalthea_uros.perf.named import Named
-from amalthea_uros.timing.basics.notes import Notes
+from amalthea_uros.timing.basics.notes import AnalysisNotes
 from amalthea_uros.units import HOUR, time_text
 
 #: Longer limits are certainly mistakes in the unit: a year.
@@ -14,7 +14,7 @@ MAX_LIMIT = 365 * 24 * HOUR
 _SIGNED = (TimeMetric.LATENESS, TimeMetric.END_TO_START)
 
 
-def note_implausible(result: RequirementResult, item: Named, notes: Notes) -> None:
+def note_implausible(result: RequirementResult, item: Named, notes: AnalysisNotes) -> None:
     """Report a limit that is negative or longer than a year."""
     if result.limit is None:
         return

@@ -17,7 +17,7 @@ from amalthea_uros.judge.limits import SystemLimit, is_from_period, limits_of, n
 from amalthea_uros.judge.verdict import Verdict, prove, unknown
 from amalthea_uros.perf.constraints import Requirement, TimeMetric
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.basics.notes import Notes
+from amalthea_uros.timing.basics.notes import AnalysisNotes
 from amalthea_uros.timing.basics.quantities import JobMetric, jitter_of
 from amalthea_uros.units import Time
 
@@ -52,7 +52,7 @@ Holder: TypeAlias = ProcessResult | CallbackResult
 
 
 def evaluate_requirements(
-    system: System, processes: Results[ProcessResult], callbacks: Sequence[CallbackResult], notes: Notes
+    system: System, processes: Results[ProcessResult], callbacks: Sequence[CallbackResult], notes: AnalysisNotes
 ) -> Iterator[RequirementResult]:
     """The verdict on each time limit; other limits are not evaluated, so that their verdict is unknown."""
     by_name = {process.name: process for process in processes}

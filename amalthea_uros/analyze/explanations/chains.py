@@ -17,10 +17,10 @@ from amalthea_uros.analyze.chains.job_chains import JobBudget, backward, forward
 from amalthea_uros.analyze.chains.read_write_times import ReadWriteTimes, TimedStage, reach
 from amalthea_uros.analyze.chains.route_latencies import RouteLatencies
 from amalthea_uros.analyze.chains.stage_timing import StageTiming
-from amalthea_uros.analyze.explanations.hop_causes import Cause, CauseKind, Execution, HopReasons, cause
+from amalthea_uros.analyze.explanations.hop_causes import CauseKind, Execution, HopReasons, LatencyCause, cause
 from amalthea_uros.analyze.phases.merged import Phases
 from amalthea_uros.analyze.results.analysis import Analysis
-from amalthea_uros.analyze.results.chains import ChainResult, Quantity, Value
+from amalthea_uros.analyze.results.chains import ChainResult, LatencyQuantity, LatencyValue
 from amalthea_uros.analyze.results.requirements import RequirementResult
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.constraints import LatencyConstraint
@@ -32,7 +32,7 @@ from amalthea_uros.timing.dataflow.stages import Stage
 from amalthea_uros.timing.jobs.counters import ALWAYS
 from amalthea_uros.units import Time
 
-_REACTIONS = (Quantity.MAX_REACTION_TIME, Quantity.MAX_REDUCED_REACTION_TIME)
+_REACTIONS = (LatencyQuantity.MAX_REACTION_TIME, LatencyQuantity.MAX_REDUCED_REACTION_TIME)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -63,8 +63,8 @@ class ProcessHop:
     core: str | None = None
     period: Time | None = None
     one_in: int = 1
-    wait_causes: tuple[Cause, ...] = ()
-    run_causes: tuple[Cause, ...] = ()
+    wait_causes: tuple[LatencyCause, ...] = ()
+    run_causes: tuple[LatencyCause, ...] = ()
     executions: tuple[Execution, ...] = ()
 
 
@@ -82,8 +82,8 @@ class ChainExplanation:
     """
 
     chain: ChainResult
-    quantity: Quantity
-    value: Value | None = None
+    quantity: LatencyQuantity
+    value: LatencyValue | None = None
     route: str = ""
     hops: tuple[ProcessHop, ...] = ()
     overwritten: Time = 0
@@ -110,12 +110,14 @@ class _Step(NamedTuple):
     start: Time | None = None
     period: Time | None = None
     one_in: int = 1
-    wait_causes: tuple[Cause, ...] = ()
-    run_causes: tuple[Cause, ...] = ()
+    wait_causes: tuple[LatencyCause, ...] = ()
+    run_causes: tuple[LatencyCause, ...] = ()
     executions: tuple[Execution, ...] = ()
 
 
-def explain_chain(analysis: Analysis, name: str, quantity: Quantity = Quantity.MAX_REDUCED_REACTION_TIME) -> ChainExplanation:
+def explain_chain(
+    analysis: Analysis, name: str, quantity: LatencyQuantity = LatencyQuantity.MAX_REDUCED_REACTION_TIME
+) -> ChainExplanation:
     """Explain a maximum latency of a chain."""
     # A process can have the same name.
     limits = {
@@ -127,7 +129,7 @@ def explain_chain(analysis: Analysis, name: str, quantity: Quantity = Quantity.M
     return replace(_explained(analysis, name, quantity), requirements=verdicts)
 
 
-def _explained(analysis: Analysis, name: str, quantity: Quantity) -> ChainExplanation:
+def _explained(analysis: Analysis, name: str, quantity: LatencyQuantity) -> ChainExplanation:
     result = analysis.chains[name]
     value = result.value(quantity)
     if result.crosses_messages:
@@ -166,8 +168,8 @@ class _RouteExplanation:
 
     evaluator: ChainEvaluator
     route: Route
-    quantity: Quantity
-    value: Value
+    quantity: LatencyQuantity
+    value: LatencyValue
 
     @property
     def timing(self) -> StageTiming:
@@ -187,7 +189,7 @@ class _RouteExplanation:
             return None
         return self._placed(steps), self._picoseconds(total) - self._picoseconds(total - overwritten)
 
-    def _is_value(self, found: Value) -> bool:
+    def _is_value(self, found: LatencyValue) -> bool:
         # The value of all phases is that of one of them, and its method is named after that.
         same = (found.quantity, found.value) == (self.quantity, self.value.value)
         return same and self.value.method.startswith(found.method)
@@ -209,11 +211,11 @@ class _RouteExplanation:
             overwritten = path.overwritten
         return found, overwritten
 
-    def _of_part(self, number: int, count: int) -> Quantity:
+    def _of_part(self, number: int, count: int) -> LatencyQuantity:
         """The quantity of the part of the chain on one controller: data from another one arrive just after a read at worst."""
         if self.quantity in _REACTIONS:
-            return self.quantity if number == 0 else Quantity.MAX_REACTION_TIME
-        return self.quantity if number == count - 1 else Quantity.MAX_DATA_AGE
+            return self.quantity if number == 0 else LatencyQuantity.MAX_REACTION_TIME
+        return self.quantity if number == count - 1 else LatencyQuantity.MAX_DATA_AGE
 
     # By job chains
 
@@ -286,13 +288,13 @@ class _RouteExplanation:
     # By a bound
 
     def _of_bound(self, timed: Sequence[TimedStage], groups: Sequence[Sequence[Stage]]) -> list[_Step]:
-        table = terms.REDUCED_DATA_AGE if self.quantity is Quantity.MAX_REDUCED_DATA_AGE else terms.REACTION_TIME
+        table = terms.REDUCED_DATA_AGE if self.quantity is LatencyQuantity.MAX_REDUCED_DATA_AGE else terms.REACTION_TIME
         of_method = next((table[source] for source in table if self.value.source.startswith(source)), None)
         if of_method is None:
             return []
         found: list[_Step] = []
         for term, group, each in zip(of_method([each.task for each in timed]), groups, timed, strict=True):
-            is_reduced = self.quantity is Quantity.MAX_REDUCED_REACTION_TIME and not found
+            is_reduced = self.quantity is LatencyQuantity.MAX_REDUCED_REACTION_TIME and not found
             step, *triggered = self._with_triggered(
                 _Step(
                     group[0].process.name,
@@ -351,7 +353,7 @@ class _RouteExplanation:
         scheduled = self.evaluator.context.scheduled.get(process)
         return None if scheduled is None else scheduled.core
 
-    def _rounded(self, causes: Sequence[Cause], begin: Time) -> tuple[Cause, ...]:
+    def _rounded(self, causes: Sequence[LatencyCause], begin: Time) -> tuple[LatencyCause, ...]:
         """Causes in picoseconds, which add up to the time from the beginning of the first to the end of the last one."""
         ends = [self._picoseconds(end) for end in accumulate((each.time for each in causes), initial=begin)]
         return tuple(replace(each, time=end - start) for each, (start, end) in zip(causes, pairwise(ends), strict=True))
@@ -366,7 +368,7 @@ class _Path(NamedTuple):
     overwritten: Time
 
 
-def _worst_path(part: Sequence[TimedStage], quantity: Quantity) -> _Path | None:
+def _worst_path(part: Sequence[TimedStage], quantity: LatencyQuantity) -> _Path | None:
     """The job chain with the greatest latency; None if there are no job chains."""
     bounds = [timed.read_write for timed in part if timed.read_write is not None]
     chain = [each.pessimistic for each in bounds]
@@ -379,13 +381,13 @@ def _worst_path(part: Sequence[TimedStage], quantity: Quantity) -> _Path | None:
     until = int(max(found.ends.max(), found.next_writes.max())) + 2 * reach(chain)
     times = [task.extended(until) for task in chain]
     if quantity in _REACTIONS:
-        begins = found.previous_reads if quantity is Quantity.MAX_REACTION_TIME else found.reads
+        begins = found.previous_reads if quantity is LatencyQuantity.MAX_REACTION_TIME else found.reads
         worst = int((found.ends - begins).argmax())
         jobs = [int(np.searchsorted(times[0].reads, found.reads[worst]))]
         for writer, reader in pairwise(times):
             jobs.append(int(forward([writer, reader], np.array(jobs[-1:], dtype=np.int64))[0]))
         return _Path(times, jobs, int(begins[worst]), 0)
-    ends = found.next_writes if quantity is Quantity.MAX_DATA_AGE else found.writes
+    ends = found.next_writes if quantity is LatencyQuantity.MAX_DATA_AGE else found.writes
     worst = int((ends - found.starts).argmax())
     jobs = [int(np.searchsorted(times[-1].writes, found.writes[worst]))]
     for writer, reader in list(pairwise(times))[::-1]:

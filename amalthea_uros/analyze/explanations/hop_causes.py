@@ -50,7 +50,7 @@ class CauseKind(StrEnum):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Cause:
+class LatencyCause:
     """Why a part of a hop takes its time.
 
     Attributes
@@ -67,14 +67,14 @@ class Cause:
     terms: tuple[tuple[str, Time], ...] = ()
 
 
-def cause(kind: CauseKind, time: Time) -> tuple[Cause, ...]:
+def cause(kind: CauseKind, time: Time) -> tuple[LatencyCause, ...]:
     """A single cause; none if it takes no time."""
-    return (Cause(kind=kind, time=time),) if time > 0 else ()
+    return (LatencyCause(kind=kind, time=time),) if time > 0 else ()
 
 
 def of_executions(
     found: Iterable[Execution], process: str, length: Time, others: CauseKind, rest: CauseKind
-) -> tuple[Cause, ...]:
+) -> tuple[LatencyCause, ...]:
     """The causes of an interval in which a job of a process is pending.
 
     Parameters
@@ -90,7 +90,7 @@ def of_executions(
         jobs.setdefault(each.process, set()).add(each.job)
     own = times.pop(process, 0)
     interfering = [
-        Cause(kind=others, time=time, process=name, jobs=len(jobs[name]))
+        LatencyCause(kind=others, time=time, process=name, jobs=len(jobs[name]))
         for name, time in sorted(times.items(), key=lambda item: -item[1])
     ]
     remaining = length - own - sum(times.values())
@@ -121,7 +121,7 @@ class HopReasons:
 
     def of_job(
         self, previous: Time, release: Time, read: Time, write: Time
-    ) -> tuple[tuple[Cause, ...], tuple[Cause, ...], tuple[Execution, ...]]:
+    ) -> tuple[tuple[LatencyCause, ...], tuple[LatencyCause, ...], tuple[Execution, ...]]:
         """The causes of its wait and of its run, and what is executed from its release, with times relative to the read."""
         # Before its release, it waits for that; after it, for other jobs.
         pending = min(max(previous, release), read)
@@ -146,7 +146,7 @@ class HopReasons:
             tuple(replace(each, begin=each.begin - read, end=each.end - read) for each in (*before, *during)),
         )
 
-    def _bounded(self, time: Time) -> tuple[Cause, ...]:
+    def _bounded(self, time: Time) -> tuple[LatencyCause, ...]:
         """From the earliest read to the latest output."""
         return tuple(
             replace(each, terms=response_terms(self.timing, self.stage, time))

@@ -47,11 +47,11 @@ _REMEDIES = {
 
 def origins(solution: Solution, name: str) -> list[Origin]:
     """The processes from which it comes that the response time of a process has no bound; nothing if it has one."""
-    return list(_Search(solution, set()).of(name))
+    return list(_OriginSearch(solution, set()).of(name))
 
 
 @dataclass(frozen=True, slots=True)
-class _Search:
+class _OriginSearch:
     """Follows the dependencies of processes without a bound; each is visited once."""
 
     solution: Solution

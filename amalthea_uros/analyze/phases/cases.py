@@ -24,7 +24,7 @@ from amalthea_uros.perf.activities import Call, Trigger, walk
 from amalthea_uros.perf.constraints import LatencyConstraint
 from amalthea_uros.perf.events import EventChain
 from amalthea_uros.perf.stimuli import Counter, EventTriggered, InterProcess, Periodic
-from amalthea_uros.timing.activation.phases import Occurrence, own_counters
+from amalthea_uros.timing.activation.phases import ExternalInput, own_counters
 from amalthea_uros.timing.activation.releases import known_releases
 from amalthea_uros.timing.jobs.counters import first_effect
 from amalthea_uros.units import Time
@@ -46,7 +46,7 @@ class PhaseCases:
 
     solution: Solution
     first: Solution
-    combinations: Sequence[Mapping[Occurrence, int]]
+    combinations: Sequence[Mapping[ExternalInput, int]]
 
     def of_everything(self) -> Cases:
         """The cases of a whole system: combinations of one case can differ in no result."""
@@ -146,7 +146,7 @@ class PhaseCases:
         """The slots of some processes and all that precede them; None if slots affect each other, or if that is unknown."""
         context = self.first.context
         places = [context.scheduled.get(name) for name in names]
-        tasks: dict[str, _Task] = {}
+        tasks: dict[str, _SlotTask] = {}
         for place in places:
             if place is None or not self._is_exact(place.core):
                 return None
@@ -174,7 +174,7 @@ class PhaseCases:
         start = steady_state_start(tasks)
         return bool(tasks) and fits(tasks, start + 2 * hyperperiod(tasks)) and start == max(task.offset for task in tasks)
 
-    def _task(self, name: str) -> _Task | None:
+    def _task(self, name: str) -> _SlotTask | None:
         """A process; None if its jobs do not repeat from the start, or if their response times are unbounded."""
         system, response = self.solution.context.system, self.solution.responses.get(name)
         process = system.processes[name]
@@ -185,14 +185,14 @@ class PhaseCases:
             if counter.is_phase_known:
                 is_repeating = first_effect(counter) <= counter.prescaler
             else:
-                is_repeating = Occurrence.of(name, counter) in self.combinations[0]
+                is_repeating = ExternalInput.of(name, counter) in self.combinations[0]
             if not is_repeating:
                 return None
-        return _Task(name, releases, response.worst, counters)
+        return _SlotTask(name, releases, response.worst, counters)
 
 
 @dataclass(frozen=True, slots=True)
-class _Task:
+class _SlotTask:
     """A process with known releases, the bound of its response times for all phases, and what counts its jobs."""
 
     name: str
@@ -216,10 +216,11 @@ class _Task:
         each = zip(phases, self.counters, strict=True)
         return list(zip(*(_selected(phase, counter.prescaler, jobs) for phase, counter in each), strict=True))
 
-    def phases(self, combination: Mapping[Occurrence, int]) -> tuple[int, ...]:
+    def phases(self, combination: Mapping[ExternalInput, int]) -> tuple[int, ...]:
         """The first job that each counter selects."""
         return tuple(
-            first_effect(each) if each.is_phase_known else combination[Occurrence.of(self.name, each)] for each in self.counters
+            first_effect(each) if each.is_phase_known else combination[ExternalInput.of(self.name, each)]
+            for each in self.counters
         )
 
 
@@ -232,7 +233,7 @@ def _selected(phase: int, prescaler: int, jobs: int) -> tuple[bool, ...]:
 class _Slots:
     """The slots of some tasks over a cycle."""
 
-    def __init__(self, tasks: Mapping[str, _Task], length: Time) -> None:
+    def __init__(self, tasks: Mapping[str, _SlotTask], length: Time) -> None:
         self._tasks = tasks
         self._length = length
         self._cycle = lcm(length, *(task.cycle for task in tasks.values()))
@@ -241,7 +242,7 @@ class _Slots:
         self._contents: dict[tuple[Hashable, ...], int] = {}
         self._rows: dict[tuple[int, ...], tuple[int, ...]] = {}
 
-    def row(self, combination: Mapping[Occurrence, int], name: str | None = None) -> tuple[int, ...]:
+    def row(self, combination: Mapping[ExternalInput, int], name: str | None = None) -> tuple[int, ...]:
         """What happens in each slot, by numbers, from the first slot on that makes the row the least one.
 
         Parameters
@@ -260,12 +261,12 @@ class _Slots:
             self._rows[row] = row[start:] + row[:start]
         return self._rows[row]
 
-    def _slots_of(self, task: _Task) -> list[tuple[int, Time]]:
+    def _slots_of(self, task: _SlotTask) -> list[tuple[int, Time]]:
         """For each job of a cycle, the slot in which it is released, and when in the slot."""
         period, offset = task.releases.period, task.releases.offset
         return [divmod(offset + job * period, self._length) for job in range(self._cycle // period)]
 
-    def _jobs(self, task: _Task, combination: Mapping[Occurrence, int]) -> Sequence[tuple[bool, ...]]:
+    def _jobs(self, task: _SlotTask, combination: Mapping[ExternalInput, int]) -> Sequence[tuple[bool, ...]]:
         """What each job of a cycle does."""
         phases = task.phases(combination)
         key = (task.name, phases)

@@ -16,7 +16,7 @@ from amalthea_uros.analyze.response_times import metrics
 from amalthea_uros.analyze.response_times.propagation import solve
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.results.analysis import Analysis
-from amalthea_uros.analyze.results.chains import ChainResult, Value
+from amalthea_uros.analyze.results.chains import ChainResult, LatencyValue
 from amalthea_uros.analyze.results.processes import CallbackResult, ProcessResult
 from amalthea_uros.analyze.results.requirements import RequirementResult
 from amalthea_uros.executors.semantics.loops import timing_context
@@ -24,7 +24,7 @@ from amalthea_uros.judge.evidence import Ends
 from amalthea_uros.judge.limits import SystemLimit
 from amalthea_uros.judge.summary import summarize
 from amalthea_uros.judge.verdict import WORST_FIRST, prove
-from amalthea_uros.timing.activation.phases import Occurrence, phase_combinations, phase_count, with_phases
+from amalthea_uros.timing.activation.phases import ExternalInput, phase_combinations, phase_count, with_phases
 from amalthea_uros.timing.basics.quantities import jitter_of
 from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.units import Time
@@ -50,11 +50,11 @@ class Phases:
 
     solution: Solution
     first: Solution
-    combinations: Sequence[Mapping[Occurrence, int]]
+    combinations: Sequence[Mapping[ExternalInput, int]]
     cases: PhaseCases
 
     @classmethod
-    def of(cls, solution: Solution, unknown: Sequence[Occurrence]) -> Phases | None:
+    def of(cls, solution: Solution, unknown: Sequence[ExternalInput]) -> Phases | None:
         """The combinations of some unknown phases; None if there are none or too many."""
         count = phase_count(unknown)
         if not unknown or count > MAX_COMBINATIONS:
@@ -71,7 +71,7 @@ class Phases:
             yield number, _solution(self.solution, self.combinations[number]) if number else self.first
 
 
-def _solution(solution: Solution, combination: Mapping[Occurrence, int]) -> Solution:
+def _solution(solution: Solution, combination: Mapping[ExternalInput, int]) -> Solution:
     context = solution.context
     return solve(timing_context(with_phases(context.system, combination), context.settings))
 
@@ -174,13 +174,13 @@ def merged_chain(results: Sequence[ChainResult], counts: Sequence[int]) -> Chain
     )
 
 
-def _values(results: Sequence[Mapping[Any, Value]], counts: Sequence[int]) -> tuple[Value, ...]:
+def _values(results: Sequence[Mapping[Any, LatencyValue]], counts: Sequence[int]) -> tuple[LatencyValue, ...]:
     """Values by what they have in common, over all phases."""
     common = [key for key in results[0] if all(key in result for result in results)]
     return tuple(_worst([result[key] for result in results], counts) for key in common)
 
 
-def _worst(values: Sequence[Value], counts: Sequence[int]) -> Value:
+def _worst(values: Sequence[LatencyValue], counts: Sequence[int]) -> LatencyValue:
     first, *_ = values
     quantity, times = first.quantity, [value.value for value in values]
     finite = [time for time in times if time is not None]

@@ -24,7 +24,7 @@ NOT_ALL_TRIED = "no assignment was found that meets all deadlines; not all were 
 ONLY_BOUNDS = "no assignment of distinct priorities is proved to meet all deadlines; response times are bounds"
 
 
-class Outcome(StrEnum):
+class ProposalOutcome(StrEnum):
     """The result of a search: only `NONE` claims that no assignment of distinct priorities meets all deadlines."""
 
     KEPT = "kept"
@@ -45,7 +45,7 @@ class Proposal(Shown):
 
     core: str
     current: Mapping[str, int | None]
-    outcome: Outcome
+    outcome: ProposalOutcome
     priorities: Mapping[str, int] | None = None
     reason: str = ""
 
@@ -60,14 +60,14 @@ def propose_priorities(analysis: Analysis) -> list[Proposal]:
     for core in analysis.solution.context.system.cores:
         tasks = [item for item in analysis.solution.context.on_core(core) if not item.is_isr]
         if tasks:
-            search = _Search(PriorityOrders(core, tasks, analysis), analysis)
+            search = _AssignmentSearch(PriorityOrders(core, tasks, analysis), analysis)
             found.append(search.proposal())
             analysis = search.analysis
     return found
 
 
 @dataclass(slots=True)
-class _Search:
+class _AssignmentSearch:
     """The search for the priorities of the tasks of one core.
 
     Attributes
@@ -90,33 +90,33 @@ class _Search:
         current = {item.name: item.priority for item in self.tasks}
         core = self.orders.core
         if reason := self.orders.obstacle():
-            return Proposal(core=core, current=current, outcome=Outcome.EXCLUDED, reason=reason)
+            return Proposal(core=core, current=current, outcome=ProposalOutcome.EXCLUDED, reason=reason)
         if self._meets(self.analysis):
             kept = {name: number for name, number in current.items() if number is not None}
-            return Proposal(core=core, current=current, outcome=Outcome.KEPT, priorities=kept)
+            return Proposal(core=core, current=current, outcome=ProposalOutcome.KEPT, priorities=kept)
         found, outcome, reason = self._searched()
         priorities = {name: found[name] for name in current} if found is not None else None
         return Proposal(core=core, current=current, outcome=outcome, priorities=priorities, reason=reason)
 
-    def _searched(self) -> tuple[Mapping[str, int] | None, Outcome, str]:
+    def _searched(self) -> tuple[Mapping[str, int] | None, ProposalOutcome, str]:
         if overload := self.orders.overload():
-            return None, Outcome.NONE, overload
+            return None, ProposalOutcome.NONE, overload
         is_independent = self.orders.is_independent
         for order, unfitting in islice(self.orders.fitting(), MAX_ORDERS):
             if not unfitting and (found := self._confirmed(order)):
-                return found, Outcome.PROPOSED, ""
+                return found, ProposalOutcome.PROPOSED, ""
             if unfitting and is_independent:
                 return None, *self._conclusion(self.orders.dead_end(order, unfitting))
         if len(self.tasks) > MAX_PERMUTED:
-            return None, Outcome.NOT_FOUND, self.spoiled or NOT_ALL_TRIED
+            return None, ProposalOutcome.NOT_FOUND, self.spoiled or NOT_ALL_TRIED
         for order in map(list, permutations(self.orders.monotonic())):
             if all(self.orders.is_met(name, order) for name in order) and (found := self._confirmed(order)):
-                return found, Outcome.PROPOSED, ""
+                return found, ProposalOutcome.PROPOSED, ""
         every = permutations(self.orders.monotonic())
         is_missed = all(any(self.orders.missed_by(name, order) is not None for name in order) for order in every)
         return None, *self._conclusion(f"{factorial(len(self.tasks))} of them were tried" if is_missed else "")
 
-    def _conclusion(self, certificate: str) -> tuple[Outcome, str]:
+    def _conclusion(self, certificate: str) -> tuple[ProposalOutcome, str]:
         """The outcome if no order is proved to meet all deadlines.
 
         Parameters
@@ -124,10 +124,10 @@ class _Search:
         certificate : why each one misses some for certain; "" if that is not known
         """
         if self.spoiled:
-            return Outcome.NOT_FOUND, self.spoiled
+            return ProposalOutcome.NOT_FOUND, self.spoiled
         if certificate:
-            return Outcome.NONE, f"no assignment of distinct priorities meets all deadlines: {certificate}"
-        return Outcome.NOT_FOUND, ONLY_BOUNDS
+            return ProposalOutcome.NONE, f"no assignment of distinct priorities meets all deadlines: {certificate}"
+        return ProposalOutcome.NOT_FOUND, ONLY_BOUNDS
 
     def _confirmed(self, order: Order) -> Mapping[str, int] | None:
         """The priorities of an order with which the analysis of the whole system proves that the deadlines are met."""

@@ -21,7 +21,7 @@ from amalthea_uros.judge.verdict import FAILURES, Verdict
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.activation.releases import known_releases
-from amalthea_uros.timing.blocking.critical_sections import Protection
+from amalthea_uros.timing.blocking.critical_sections import LockUsage
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.event_models import EventModel
 from amalthea_uros.timing.response import Claim
@@ -215,7 +215,7 @@ class PriorityOrders:
             return None
 
     def _keeps_off_others(self, item: ScheduledProcess) -> bool:
-        return not is_preemptive(item) or self.context.protection[item.name] != Protection()
+        return not is_preemptive(item) or self.context.protection[item.name] != LockUsage()
 
     def _is_any_triggered(self) -> bool:
         return any(self._is_triggered(item.process) for item in self.context.on_core(self.core))

@@ -9,9 +9,9 @@ from amalthea_uros.analyze.response_times import edf, fixed_priority, non_preemp
 from amalthea_uros.analyze.response_times.blocking import Blocking
 from amalthea_uros.analyze.response_times.busy_window import Interference
 from amalthea_uros.analyze.response_times.fixed_priority import best_response
-from amalthea_uros.analyze.response_times.task import FULL, Supply, Task
+from amalthea_uros.analyze.response_times.task import FULL, AnalysedTask, Supply
 from amalthea_uros.perf.software import Preemption
-from amalthea_uros.timing.basics.notes import Notes
+from amalthea_uros.timing.basics.notes import AnalysisNotes
 from amalthea_uros.timing.response import Response
 from amalthea_uros.timing.scheduling.ranks import EqualPriority, Rank, ScheduledProcess, Server, is_preemptive, preemption
 from amalthea_uros.units import Time
@@ -28,11 +28,11 @@ class BlockedWindow:
     wait : blocking by processes below its level
     """
 
-    notes: Notes
+    notes: AnalysisNotes
     time_base: int
     blocking: Blocking
     items: Sequence[ScheduledProcess | Server]
-    tasks: Sequence[Task]
+    tasks: Sequence[AnalysedTask]
     wait: Time
     supply: Supply
 
@@ -73,7 +73,7 @@ class BlockedWindow:
         higher = Interference.of(self._of_level(index, level.rank), self.supply)
         return fixed_priority.response_time(self.tasks[index], higher, self.wait)[0]
 
-    def _of_level(self, index: int, rank: Rank) -> list[Task]:
+    def _of_level(self, index: int, rank: Rank) -> list[AnalysedTask]:
         """The other tasks of at least a rank, and the decisions of schedulers."""
         found = [self.tasks[number] for number, other in enumerate(self.items) if number != index and other.rank >= rank]
         return [*found, *self.tasks[len(self.items) :]]
@@ -113,7 +113,7 @@ class BlockedWindow:
             blocking_before=lambda deadline: by_deadline.before(deadline // self.time_base),
         )
 
-    def _non_preemptive(self, index: int, item: ScheduledProcess, higher: Sequence[Task]) -> Response:
+    def _non_preemptive(self, index: int, item: ScheduledProcess, higher: Sequence[AnalysedTask]) -> Response:
         """The response time of a task that only some tasks can preempt in its last region."""
         if preemption(item) is Preemption.COOPERATIVE:
             self.notes.assume(

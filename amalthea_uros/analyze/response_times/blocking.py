@@ -20,8 +20,8 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from amalthea_uros.perf.software import Preemption
-from amalthea_uros.timing.blocking.critical_sections import Protection
-from amalthea_uros.timing.blocking.regions import KeptOff, ProcessStretches, Stretches
+from amalthea_uros.timing.blocking.critical_sections import LockUsage
+from amalthea_uros.timing.blocking.regions import NonPreemptiveRegions, ProcessRegions, RegionKind
 from amalthea_uros.timing.demand.model import DemandModel
 from amalthea_uros.timing.scheduling.ranks import EqualPriority, Rank, ScheduledProcess, SchedulingContext, preemption
 from amalthea_uros.units import Time
@@ -74,8 +74,8 @@ class Blocking:
     """
 
     processes: Sequence[ScheduledProcess]
-    stretches: ProcessStretches
-    protection: Mapping[str, Protection]
+    stretches: ProcessRegions
+    protection: Mapping[str, LockUsage]
     unknown: frozenset[str] = frozenset()
     open_semaphores: frozenset[str] = frozenset()
     is_possible: bool = field(init=False)
@@ -218,7 +218,7 @@ class Blocking:
         throughout, uses = self._throughout(other, above), self.protection[other.name]
         if not (throughout or uses.semaphores or uses.has_non_interruptible_group):
             return 0
-        kept_off = KeptOff(
+        kept_off = RegionKind(
             frozenset(semaphores) - self.open_semaphores,
             throughout=throughout,
             yields_after_calls=not in_group and preemption(other) is Preemption.COOPERATIVE,
@@ -260,7 +260,7 @@ class Blocking:
         """The demand after the last point at which others of its kind can run, where that point is as late as possible."""
         if preemption(item) is Preemption.NON_PREEMPTIVE:
             return self.demand_model.of_process(item.process, item.core).worst
-        found = self._of(item, KeptOff(throughout=True, yields_after_calls=item.group is None))
+        found = self._of(item, RegionKind(throughout=True, yields_after_calls=item.group is None))
         return found.total if found.before_last is None else max(0, found.total - found.before_last)
 
     def under_deadlines(self, item: ScheduledProcess) -> BlockingByDeadline:
@@ -281,7 +281,7 @@ class Blocking:
             steps.append((deadline, stretches))
         return BlockingByDeadline(tuple(steps))
 
-    def _of(self, item: ScheduledProcess, kept_off: KeptOff) -> Stretches:
+    def _of(self, item: ScheduledProcess, kept_off: RegionKind) -> NonPreemptiveRegions:
         return self.stretches.of(item.process, item.core, kept_off)
 
 

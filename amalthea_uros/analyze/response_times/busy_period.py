@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from amalthea_uros.analyze.response_times.busy_window import Interference, demand_rate
-from amalthea_uros.analyze.response_times.task import Supply, Task
+from amalthea_uros.analyze.response_times.task import AnalysedTask, Supply
 from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.units import Time
 
@@ -19,7 +19,9 @@ METHOD = "longest busy period, of jobs that exclude each other the longest"
 SOURCE = "Lehoczky 1990"
 
 
-def response_time(task: Task, level: Sequence[Task], blocking: Time, supply: Supply, other: Response) -> Response:
+def response_time(
+    task: AnalysedTask, level: Sequence[AnalysedTask], blocking: Time, supply: Supply, other: Response
+) -> Response:
     """A bound of the response time of a task; if there is none, the result of another method.
 
     Parameters

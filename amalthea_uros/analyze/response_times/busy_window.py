@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from amalthea_uros.analyze.response_times.kernel import MAX_STEPS, demand_in, least_fixed_point
-from amalthea_uros.analyze.response_times.task import FULL, Supply, Task
+from amalthea_uros.analyze.response_times.task import FULL, AnalysedTask, Supply
 from amalthea_uros.timing.basics.limits import LIMIT
-from amalthea_uros.timing.event_models import Periodic, is_strictly_periodic
+from amalthea_uros.timing.event_models import PeriodicEvents, is_strictly_periodic
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
@@ -63,10 +63,10 @@ class Rows:
         return more
 
 
-def _rows(task: Task) -> list[tuple[tuple[int, int, int], int, int]]:
+def _rows(task: AnalysedTask) -> list[tuple[tuple[int, int, int], int, int]]:
     """((period, jitter, distance), worst-case demand, best-case demand) of each frame of a periodic task."""
     events = task.events
-    if not isinstance(events, Periodic):
+    if not isinstance(events, PeriodicEvents):
         return []
     is_certain = not events.jitter and is_strictly_periodic(events)
     return [
@@ -98,29 +98,29 @@ class Interference:
     supply : of the core or server
     """
 
-    all_tasks: Sequence[Task]
+    all_tasks: Sequence[AnalysedTask]
     task_count: int
     rows: Rows
     row_count: int
-    others: tuple[Task, ...]
+    others: tuple[AnalysedTask, ...]
     rate: float
     best_rate: float
     greatest: float = 0.0
     supply: Supply = FULL
 
     @property
-    def tasks(self) -> Sequence[Task]:
+    def tasks(self) -> Sequence[AnalysedTask]:
         """The interfering tasks."""
         return self.all_tasks[: self.task_count]
 
     @classmethod
-    def of(cls, tasks: Sequence[Task], supply: Supply = FULL) -> Interference:
+    def of(cls, tasks: Sequence[AnalysedTask], supply: Supply = FULL) -> Interference:
         """The interference of tasks."""
         *_, last = cls.of_first(tasks, supply)
         return last
 
     @classmethod
-    def of_first(cls, tasks: Sequence[Task], supply: Supply = FULL) -> list[Interference]:
+    def of_first(cls, tasks: Sequence[AnalysedTask], supply: Supply = FULL) -> list[Interference]:
         """The interference of no task, of the first one, of the first two, and so on; they share their rows."""
         parts = [_rows(task) for task in tasks]
         numbers: dict[tuple[int, int, int], int] = {}
@@ -128,7 +128,7 @@ class Interference:
             for key, _, _ in rows_of_task:
                 numbers.setdefault(key, len(numbers))
         rows, count, rate, best_rate, greatest = Rows.of(numbers), 0, 0.0, 0.0, 0.0
-        others: tuple[Task, ...] = ()
+        others: tuple[AnalysedTask, ...] = ()
         found = [cls(tasks, 0, rows, count, others, rate, best_rate, greatest, supply)]
         for number, (task, part) in enumerate(zip(tasks, parts, strict=True), start=1):
             for key, worst, best in part:
@@ -199,7 +199,7 @@ class Interference:
             window = reached
         return None
 
-    def overloads_with(self, task: Task) -> bool:
+    def overloads_with(self, task: AnalysedTask) -> bool:
         """Whether these tasks and another one demand more than the supply, exactly."""
         excess = self.rate + approximate_demand_rate(task) - float(self.supply.rate)
         if abs(excess) > 1e-6:
@@ -207,13 +207,13 @@ class Interference:
         return sum((demand_rate(other) for other in self.tasks), demand_rate(task)) > self.supply.rate
 
 
-def demand_rate(task: Task) -> Fraction:
+def demand_rate(task: AnalysedTask) -> Fraction:
     """Maximum demand of a task per time in the long run."""
     return task.demand.mean_worst * task.events.rate
 
 
-def approximate_demand_rate(task: Task) -> float:
+def approximate_demand_rate(task: AnalysedTask) -> float:
     """The demand rate as a float, which is faster."""
-    if isinstance(task.events, Periodic):
+    if isinstance(task.events, PeriodicEvents):
         return sum([frame.worst / frame.prescaler for frame in task.demand.frames]) / task.events.period
     return float(demand_rate(task))

@@ -17,7 +17,7 @@ from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.perf.activities import SchedulePoint
 from amalthea_uros.perf.software import Preemption, Task
 from amalthea_uros.timing.activation.releases import known_releases
-from amalthea_uros.timing.blocking.critical_sections import Protection
+from amalthea_uros.timing.blocking.critical_sections import LockUsage
 from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.timing.scheduling.ranks import ScheduledProcess, preemption
 from amalthea_uros.units import Time
@@ -32,7 +32,7 @@ MAX_JOBS = 20_000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Task:
+class _ConstantTask:
     """A task in the time base of its core; the highest rank is served first."""
 
     name: str
@@ -43,7 +43,7 @@ class _Task:
 
 
 @dataclass(frozen=True, slots=True, order=True)
-class _Job:
+class _WaitingJob:
     """A job that waits, ordered by its rank, then by its release.
 
     Attributes
@@ -78,7 +78,7 @@ def constant_responses(core: str, solution: Solution) -> Mapping[str, Response]:
     }
 
 
-def _tasks(core: str, solution: Solution) -> Sequence[_Task]:
+def _tasks(core: str, solution: Solution) -> Sequence[_ConstantTask]:
     """The tasks of a core of this kind, the most important one first; none for another one."""
     context = solution.context
     if context.decisions or context.has_loops(core) or not solution.is_closed(core):
@@ -86,13 +86,13 @@ def _tasks(core: str, solution: Solution) -> Sequence[_Task]:
     here = [item for item in context.served(core, None) if isinstance(item, ScheduledProcess)]
     if len({item.rank for item in here}) < len(context.served(core, None)) or SchedulePoint in context.system.activity_classes:
         return ()
-    time_base, found = context.demand_model.time_base(core), list[_Task]()
+    time_base, found = context.demand_model.time_base(core), list[_ConstantTask]()
     for place, item in enumerate(here):
         stimulus = known_releases(item.process, context.system)
         if stimulus is None or not _is_constant(item, solution):
             return ()
         found.append(
-            _Task(
+            _ConstantTask(
                 name=item.name,
                 rank=-place,
                 period=stimulus.period * time_base,
@@ -112,24 +112,24 @@ def _is_constant(item: ScheduledProcess, solution: Solution) -> bool:
         and response is not None
         and response.worst is not None
         and solution.is_analysable(item.name)
-        and solution.context.protection[item.name] == Protection()
+        and solution.context.protection[item.name] == LockUsage()
         and all(frame.is_always and frame.worst == frame.best for frame in solution.context.demands[item.name].frames)
     )
 
 
-def _may_lose(task: _Task, times: Sequence[tuple[Time, Time]], solution: Solution) -> bool:
+def _may_lose(task: _ConstantTask, times: Sequence[tuple[Time, Time]], solution: Solution) -> bool:
     """Whether more jobs of a task are pending than its activation limit allows."""
     process = solution.context.scheduled[task.name].process
     return isinstance(process, Task) and -(-max(times)[0] // task.period) > process.activation_limit
 
 
-def _played(tasks: Sequence[_Task]) -> Iterator[tuple[_Job, Time]]:
+def _played(tasks: Sequence[_ConstantTask]) -> Iterator[tuple[_WaitingJob, Time]]:
     """The jobs with their ends, until the schedule repeats."""
     hyperperiod = lcm(*(task.period for task in tasks))
     boundary = max(task.offset for task in tasks)
     releases = [(task.offset, number) for number, task in enumerate(tasks)]
     heapify(releases)
-    waiting: list[_Job] = []
+    waiting: list[_WaitingJob] = []
     now, running, seen = 0, None, set()
     while True:
         if not waiting:
@@ -137,7 +137,7 @@ def _played(tasks: Sequence[_Task]) -> Iterator[tuple[_Job, Time]]:
         while releases[0][0] <= now:
             release, number = heappop(releases)
             blocks = running is not None and tasks[running].rank < tasks[number].rank
-            heappush(waiting, _Job(-tasks[number].rank, release, number, now - release if blocks else 0))
+            heappush(waiting, _WaitingJob(-tasks[number].rank, release, number, now - release if blocks else 0))
             heappush(releases, (release + tasks[number].period, number))
         if now >= boundary:
             boundary += (now - boundary) // hyperperiod * hyperperiod
@@ -151,7 +151,7 @@ def _played(tasks: Sequence[_Task]) -> Iterator[tuple[_Job, Time]]:
         yield job, now
 
 
-def _response(task: _Task, times: Sequence[tuple[Time, Time]], bound: Response, time_base: int) -> Response:
+def _response(task: _ConstantTask, times: Sequence[tuple[Time, Time]], bound: Response, time_base: int) -> Response:
     worst, blocking = max(times)
     longest, own = -(-worst // time_base), -(-task.demand // time_base)
     blocked = min(-(-blocking // time_base), longest - own)

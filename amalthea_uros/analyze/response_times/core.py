@@ -10,13 +10,13 @@ from amalthea_uros.analyze.response_times import busy_period, priority_levels, s
 from amalthea_uros.analyze.response_times.blocked_window import BlockedWindow
 from amalthea_uros.analyze.response_times.blocking import Blocking
 from amalthea_uros.analyze.response_times.solution import Solution
-from amalthea_uros.analyze.response_times.task import FULL, Budget, Supply, Task
+from amalthea_uros.analyze.response_times.task import FULL, AnalysedTask, Budget, Supply
 from amalthea_uros.perf.os import Policy
 from amalthea_uros.perf.software import Preemption
 from amalthea_uros.timing.activation.releases import known_releases
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
-from amalthea_uros.timing.event_models import EventModel, Periodic, rescaled
+from amalthea_uros.timing.event_models import EventModel, PeriodicEvents, rescaled
 from amalthea_uros.timing.jobs.executed import ends_with_execution
 from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.timing.scheduling.ranks import EqualPriority, Rank, ScheduledProcess, Server, is_preemptive, preemption
@@ -245,7 +245,7 @@ class _CoreAnalysis:
         bounds = [replace(response, claim=Claim.BOUND) for response in found[: len(usable)]]
         return [self._without_iterations(item, response) for item, response in zip(usable, bounds, strict=True)]
 
-    def _with_longest_paths(self, tasks: Sequence[Task]) -> list[Task]:
+    def _with_longest_paths(self, tasks: Sequence[AnalysedTask]) -> list[AnalysedTask]:
         """The tasks, and for those that exclude each other one that takes as long as the longest path of the job that triggers them."""
         found = {task.name: task for task in tasks}
         for together in self.context.triggered_together:
@@ -267,17 +267,17 @@ class _CoreAnalysis:
             return replace(response, is_overload=False, reason=reason)
         return response
 
-    def _task(self, item: ScheduledProcess | Server, ranks: Sequence[Rank]) -> Task:
+    def _task(self, item: ScheduledProcess | Server, ranks: Sequence[Rank]) -> AnalysedTask:
         """A process or server as the methods see it; a job of a server uses its budget."""
         if isinstance(item, Server):
             # A deferred budget can be used at the end of one period and again at the start of the next one.
             jitter = item.period - item.budget if item.scheduler.policy == Policy.DEFERRABLE_SERVER else 0
-            events: EventModel = Periodic(item.period, jitter)
+            events: EventModel = PeriodicEvents(item.period, jitter)
             # It need not use its budget.
             demand = MultiframeDemand.constant(item.budget * self.time_base, best=0)
         else:
             events, demand = self.solution.event_models[item.name], self.context.demands[item.name]
-        return Task(
+        return AnalysedTask(
             name=item.name,
             events=rescaled(events, self.time_base),
             demand=demand,
@@ -288,10 +288,10 @@ class _CoreAnalysis:
             activation_limit=getattr(item.process, "activation_limit", 1) if isinstance(item, ScheduledProcess) else 1,
         )
 
-    def _decisions(self, priority: int) -> list[Task]:
+    def _decisions(self, priority: int) -> list[AnalysedTask]:
         """The decisions of schedulers at activations of tasks, which precede everything else."""
         return [
-            Task(
+            AnalysedTask(
                 name=f"decision for {scheduled.name}",
                 events=rescaled(self.solution.event_models[scheduled.name], self.time_base),
                 demand=self.context.decisions[scheduled.name],
@@ -333,7 +333,9 @@ def in_picoseconds(response: Response, time_base: int) -> Response:
     )
 
 
-def _without_order_beside_servers(tasks: Sequence[Task], items: Sequence[ScheduledProcess | Server]) -> list[Task]:
+def _without_order_beside_servers(
+    tasks: Sequence[AnalysedTask], items: Sequence[ScheduledProcess | Server]
+) -> list[AnalysedTask]:
     """The tasks; jobs in a server keep their places in the queue of a priority, so that its budgets precede others in any order."""
     with_server = {item.rank for item in items if isinstance(item, Server)}
     return [

@@ -19,11 +19,11 @@ from amalthea_uros.analyze.response_times import fixed_priority, non_preemptive
 from amalthea_uros.analyze.response_times.blocking import Blocking
 from amalthea_uros.analyze.response_times.busy_window import Interference
 from amalthea_uros.analyze.response_times.solution import Solution
-from amalthea_uros.analyze.response_times.task import Task
+from amalthea_uros.analyze.response_times.task import AnalysedTask
 from amalthea_uros.perf.distributions import highest
 from amalthea_uros.perf.software import Preemption
 from amalthea_uros.perf.stimuli import Periodic, RelativePeriodic
-from amalthea_uros.timing.event_models import Sporadic, rescaled
+from amalthea_uros.timing.event_models import SporadicEvents, rescaled
 from amalthea_uros.timing.scheduling.ranks import EqualPriority, ScheduledProcess, is_preemptive, preemption
 from amalthea_uros.units import Time
 
@@ -93,11 +93,11 @@ def _can_come_together(items: Iterable[ScheduledProcess], solution: Solution) ->
 def _is_free(item: ScheduledProcess, solution: Solution) -> bool:
     """Whether a process can stay away for any time."""
     events = solution.event_models[item.name]
-    return isinstance(events, Sporadic) and events.longest is None
+    return isinstance(events, SporadicEvents) and events.longest is None
 
 
-def _task(item: ScheduledProcess, solution: Solution) -> Task:
+def _task(item: ScheduledProcess, solution: Solution) -> AnalysedTask:
     time_base = solution.context.demand_model.time_base(item.core)
-    return Task(
+    return AnalysedTask(
         name=item.name, events=rescaled(solution.event_models[item.name], time_base), demand=solution.context.demands[item.name]
     )

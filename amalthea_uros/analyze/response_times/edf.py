@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from amalthea_uros.analyze.response_times.busy_window import Interference
 from amalthea_uros.analyze.response_times.fixed_priority import max_jobs, unbounded
 from amalthea_uros.analyze.response_times.kernel import MAX_STEPS
-from amalthea_uros.analyze.response_times.task import Task
+from amalthea_uros.analyze.response_times.task import AnalysedTask
 from amalthea_uros.timing.basics.limits import LIMIT
 from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.units import Time
@@ -27,8 +27,8 @@ SOURCE = "Spuri 1996"
 
 
 def response_time(
-    task: Task,
-    others: Sequence[Task],
+    task: AnalysedTask,
+    others: Sequence[AnalysedTask],
     higher: Interference,
     blocking: Time = 0,
     method: str = METHOD,
@@ -75,7 +75,7 @@ def response_time(
     )
 
 
-def _candidates(task: Task, level: Iterable[Task], window: Time, limit: int) -> Iterator[Time]:
+def _candidates(task: AnalysedTask, level: Iterable[AnalysedTask], window: Time, limit: int) -> Iterator[Time]:
     """The activation times in the busy window that can give the worst case."""
     yield 0
     for other in level:
@@ -88,7 +88,7 @@ def _candidates(task: Task, level: Iterable[Task], window: Time, limit: int) -> 
                 yield activation
 
 
-def _end(task: Task, activation: Time, others: Sequence[Task], higher: Interference, blocking: Time) -> Time:
+def _end(task: AnalysedTask, activation: Time, others: Sequence[AnalysedTask], higher: Interference, blocking: Time) -> Time:
     """The end of the busy window that serves a job and all jobs with earlier or equal deadlines."""
     own = task.demand.max_demand(task.events.eta_plus(activation + 1))
     # Number of jobs of each other task with an earlier or equal deadline; an activation at the end of that time counts.

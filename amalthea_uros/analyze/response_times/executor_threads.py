@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 
 from amalthea_uros.analyze.response_times.blocking import Blocking
 from amalthea_uros.analyze.response_times.busy_window import Interference
-from amalthea_uros.analyze.response_times.task import Task
+from amalthea_uros.analyze.response_times.task import AnalysedTask
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.timing.event_models import rescaled
 from amalthea_uros.timing.scheduling.ranks import ScheduledProcess
@@ -92,19 +92,19 @@ class ExecutorThread:
         return None if found is None else -(-found // self.time_base)
 
 
-def _task(item: ScheduledProcess, solution: Solution) -> Task:
-    return Task(
+def _task(item: ScheduledProcess, solution: Solution) -> AnalysedTask:
+    return AnalysedTask(
         name=item.name,
         events=rescaled(solution.event_models[item.name], solution.context.time_base(item.name)),
         demand=solution.context.demands[item.name],
     )
 
 
-def _decisions(core: str, solution: Solution) -> list[Task]:
+def _decisions(core: str, solution: Solution) -> list[AnalysedTask]:
     """The decisions of schedulers at activations of tasks, which precede everything else."""
     context = solution.context
     return [
-        Task(
+        AnalysedTask(
             name=f"decision for {item.name}",
             events=rescaled(solution.event_models[item.name], context.time_base(item.name)),
             demand=context.decisions[item.name],

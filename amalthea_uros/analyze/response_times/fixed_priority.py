@@ -19,9 +19,9 @@ from __future__ import annotations
 
 from amalthea_uros.analyze.response_times.busy_window import Interference, demand_rate
 from amalthea_uros.analyze.response_times.kernel import greatest_fixed_point
-from amalthea_uros.analyze.response_times.task import Task
+from amalthea_uros.analyze.response_times.task import AnalysedTask
 from amalthea_uros.timing.basics.limits import LIMIT
-from amalthea_uros.timing.event_models import Periodic
+from amalthea_uros.timing.event_models import PeriodicEvents
 from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.units import Time, percent_text
 
@@ -34,7 +34,7 @@ MAX_IRREGULAR_JOBS = 1000
 
 
 def response_time(
-    task: Task, higher: Interference, blocking: Time = 0, start: Time = 0, claim: Claim = Claim.BOUND
+    task: AnalysedTask, higher: Interference, blocking: Time = 0, start: Time = 0, claim: Claim = Claim.BOUND
 ) -> tuple[Response, Time]:
     """The response time of a task, and a lower bound for the windows of tasks below it.
 
@@ -81,12 +81,12 @@ def response_time(
     return Response(worst=None, best=best, method=METHOD, source=SOURCE, reason=reason), start
 
 
-def max_jobs(*tasks: Task) -> int:
+def max_jobs(*tasks: AnalysedTask) -> int:
     """Maximum number of jobs of a busy window that are examined."""
-    return MAX_JOBS if all(isinstance(task.events, Periodic) for task in tasks) else MAX_IRREGULAR_JOBS
+    return MAX_JOBS if all(isinstance(task.events, PeriodicEvents) for task in tasks) else MAX_IRREGULAR_JOBS
 
 
-def unbounded(best: Time, higher: Interference, task: Task, method: str, source: str) -> Response:
+def unbounded(best: Time, higher: Interference, task: AnalysedTask, method: str, source: str) -> Response:
     """The response time of a task that is overloaded together with those of higher priority."""
     rate = higher.rate + float(demand_rate(task))
     reason = f"overload: tasks at this priority or higher need {percent_text(rate, 1)} % of the core"
@@ -95,7 +95,7 @@ def unbounded(best: Time, higher: Interference, task: Task, method: str, source:
     return Response(worst=None, best=best, method=method, source=source, reason=reason, is_overload=True)
 
 
-def best_response(task: Task, higher: Interference) -> Time:
+def best_response(task: AnalysedTask, higher: Interference) -> Time:
     """A lower bound of the response time once all tasks have been released; exact for periodic tasks with unknown offsets."""
     own, rows = task.demand.best, higher.rows
     if higher.best_rate >= 1 or not higher.is_countable:

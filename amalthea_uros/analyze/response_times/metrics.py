@@ -38,7 +38,7 @@ _ZERO = Metric(min=0, max=0, mean=Fraction(0), attained=(0, 0))
 
 
 @dataclass(frozen=True, slots=True)
-class Span:
+class JobInterval:
     """A time from one point to another in the jobs of a task, in the schedules of all best and of all worst cases.
 
     Attributes
@@ -227,7 +227,7 @@ def _means(metrics: Mapping[JobMetric, Metric], process: ProcessResult, period: 
     return means
 
 
-def _spans(name: str, found: CoreSchedule) -> dict[JobMetric, Span]:
+def _spans(name: str, found: CoreSchedule) -> dict[JobMetric, JobInterval]:
     """The metrics of the jobs of a process as times between two points."""
     jobs, task = (found.best[name], found.worst[name]), found.tasks[name]
     repeating = found.cycle // task.period
@@ -245,17 +245,17 @@ def _spans(name: str, found: CoreSchedule) -> dict[JobMetric, Span]:
     nothing = both(np.zeros_like(each) for each in net)
     shortest = net[0]
     return {
-        JobMetric.NET_EXECUTION_TIME: Span(nothing, net),
-        JobMetric.GROSS_EXECUTION_TIME: Span(begins, ends, shortest),
-        JobMetric.RESPONSE_TIME: Span(releases, ends),
-        JobMetric.INITIAL_PENDING_TIME: Span(releases, begins),
-        JobMetric.READY_TIME: Span(begins, idle, nothing[0]),
-        JobMetric.PREEMPTION_TIME: Span(releases, idle),
-        JobMetric.WAITING_TIME: Span(nothing, nothing),
-        JobMetric.ACTIVATE_TO_ACTIVATE: Span(releases, following(releases)),
-        JobMetric.START_TO_START: Span(begins, following(begins), shortest),
-        JobMetric.END_TO_END: Span(ends, following(ends), np.append(shortest[1:], shortest[-repeating])),
-        JobMetric.END_TO_START: Span(ends, following(begins), nothing[0]),
+        JobMetric.NET_EXECUTION_TIME: JobInterval(nothing, net),
+        JobMetric.GROSS_EXECUTION_TIME: JobInterval(begins, ends, shortest),
+        JobMetric.RESPONSE_TIME: JobInterval(releases, ends),
+        JobMetric.INITIAL_PENDING_TIME: JobInterval(releases, begins),
+        JobMetric.READY_TIME: JobInterval(begins, idle, nothing[0]),
+        JobMetric.PREEMPTION_TIME: JobInterval(releases, idle),
+        JobMetric.WAITING_TIME: JobInterval(nothing, nothing),
+        JobMetric.ACTIVATE_TO_ACTIVATE: JobInterval(releases, following(releases)),
+        JobMetric.START_TO_START: JobInterval(begins, following(begins), shortest),
+        JobMetric.END_TO_END: JobInterval(ends, following(ends), np.append(shortest[1:], shortest[-repeating])),
+        JobMetric.END_TO_START: JobInterval(ends, following(begins), nothing[0]),
     }
 
 

@@ -17,7 +17,7 @@ from collections.abc import Sequence
 
 from amalthea_uros.analyze.response_times.busy_window import Interference
 from amalthea_uros.analyze.response_times.fixed_priority import max_jobs, unbounded
-from amalthea_uros.analyze.response_times.task import Task
+from amalthea_uros.analyze.response_times.task import AnalysedTask
 from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.units import Time
 
@@ -25,7 +25,7 @@ METHOD = "busy period, fixed priorities, non-preemptive"
 SOURCE = "Davis, Burns, Bril, Lukkien 2007"
 
 
-def response_times(tasks: Sequence[Task], granularity: Time = 1) -> list[Response]:
+def response_times(tasks: Sequence[AnalysedTask], granularity: Time = 1) -> list[Response]:
     """The response times of non-preemptive tasks, in the given order."""
     found = []
     for task in tasks:
@@ -36,12 +36,12 @@ def response_times(tasks: Sequence[Task], granularity: Time = 1) -> list[Respons
 
 
 def response_time(
-    task: Task,
-    higher: Sequence[Task],
+    task: AnalysedTask,
+    higher: Sequence[AnalysedTask],
     blocking: Time,
     granularity: Time = 1,
     last_region: Time | None = None,
-    always_preempting: Sequence[Task] = (),
+    always_preempting: Sequence[AnalysedTask] = (),
 ) -> Response:
     """The response time of a task with a non-preemptive last region, among tasks of any kind.
 

@@ -14,7 +14,7 @@ from amalthea_uros.analyze.response_times import fixed_priority
 from amalthea_uros.analyze.response_times.blocking import Blocking
 from amalthea_uros.analyze.response_times.busy_window import Interference
 from amalthea_uros.analyze.response_times.solution import Solution
-from amalthea_uros.analyze.response_times.task import Task
+from amalthea_uros.analyze.response_times.task import AnalysedTask
 from amalthea_uros.timing.event_models import rescaled
 from amalthea_uros.timing.scheduling.ranks import ScheduledProcess
 from amalthea_uros.units import Time
@@ -45,7 +45,7 @@ def time_until_executed(name: str, executed: Time, solution: Solution) -> Time |
     return _longest(task, Interference.of(higher), blocking.time(scheduled), executed)
 
 
-def _longest(task: Task, higher: Interference, blocking: Time, executed: Time) -> Time | None:
+def _longest(task: AnalysedTask, higher: Interference, blocking: Time, executed: Time) -> Time | None:
     longest: Time = 0
     for job in range(1, fixed_priority.max_jobs(task)):
         window = higher.window(blocking + task.demand.max_demand(job), 0)
@@ -58,9 +58,9 @@ def _longest(task: Task, higher: Interference, blocking: Time, executed: Time) -
     return None
 
 
-def _task(scheduled: ScheduledProcess, solution: Solution) -> Task:
+def _task(scheduled: ScheduledProcess, solution: Solution) -> AnalysedTask:
     time_base = solution.context.time_base(scheduled.name)
-    return Task(
+    return AnalysedTask(
         name=scheduled.name,
         events=rescaled(solution.event_models[scheduled.name], time_base),
         demand=solution.context.demands[scheduled.name],

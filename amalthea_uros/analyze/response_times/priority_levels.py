@@ -9,7 +9,7 @@ from typing import Protocol
 
 from amalthea_uros.analyze.response_times import edf, fixed_priority, round_robin, unknown_order
 from amalthea_uros.analyze.response_times.busy_window import Interference
-from amalthea_uros.analyze.response_times.task import FULL, Supply, Task
+from amalthea_uros.analyze.response_times.task import FULL, AnalysedTask, Supply
 from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.timing.scheduling.ranks import EqualPriority
 from amalthea_uros.units import Time
@@ -18,7 +18,9 @@ from amalthea_uros.units import Time
 class EqualPriorityMethod(Protocol):
     """A method for a task that shares its priority."""
 
-    def __call__(self, task: Task, others: Sequence[Task], higher: Interference, blocking: Time = 0) -> Response:
+    def __call__(
+        self, task: AnalysedTask, others: Sequence[AnalysedTask], higher: Interference, blocking: Time = 0
+    ) -> Response:
         """The response time of a task among others of its priority.
 
         Parameters
@@ -38,7 +40,9 @@ METHODS: Mapping[EqualPriority, EqualPriorityMethod] = {
 }
 
 
-def response_times(tasks: Sequence[Task], blocking: Sequence[Time] | None = None, supply: Supply = FULL) -> list[Response]:
+def response_times(
+    tasks: Sequence[AnalysedTask], blocking: Sequence[Time] | None = None, supply: Supply = FULL
+) -> list[Response]:
     """The response times, in the order of the tasks.
 
     Parameters
@@ -65,7 +69,7 @@ def response_times(tasks: Sequence[Task], blocking: Sequence[Time] | None = None
     return [found[index] for index in range(len(tasks))]
 
 
-def _levels(tasks: Sequence[Task], order: Sequence[int]) -> Iterator[tuple[int, list[int]]]:
+def _levels(tasks: Sequence[AnalysedTask], order: Sequence[int]) -> Iterator[tuple[int, list[int]]]:
     """Each priority, highest first: number of tasks of higher priority, and the tasks of this one."""
     before = 0
     for _, group in groupby(order, key=lambda index: tasks[index].priority):

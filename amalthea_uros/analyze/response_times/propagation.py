@@ -21,7 +21,7 @@ from amalthea_uros.perf.software import Process
 from amalthea_uros.timing.activation.activations import Output
 from amalthea_uros.timing.basics.limits import MAX_INPUT
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.event_models import Delayed, EventModel, OutputEventModel, Periodic
+from amalthea_uros.timing.event_models import Delayed, EventModel, OutputEventModel, PeriodicEvents
 from amalthea_uros.timing.response import Response
 from amalthea_uros.timing.scheduling.ranks import ScheduledProcess
 from amalthea_uros.units import Time
@@ -98,7 +98,7 @@ def _event_models(solution: Solution, diverging: set[str], responses: Mapping[st
         try:
             _require_known_iterations(name, context)
             events = _workload(scheduled, context.activations.of(scheduled.process, output), context)
-            if isinstance(events, Periodic) and events.jitter * context.time_base(name) > MAX_INPUT:
+            if isinstance(events, PeriodicEvents) and events.jitter * context.time_base(name) > MAX_INPUT:
                 raise UnknownError("its jitter exceeds the supported range of times")
             found[name] = events
         except UnknownError as error:

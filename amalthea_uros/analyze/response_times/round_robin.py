@@ -17,7 +17,7 @@ from fractions import Fraction
 from amalthea_uros.analyze.response_times.busy_window import Interference, demand_rate
 from amalthea_uros.analyze.response_times.fixed_priority import max_jobs, unbounded
 from amalthea_uros.analyze.response_times.kernel import MAX_STEPS
-from amalthea_uros.analyze.response_times.task import FULL, Task
+from amalthea_uros.analyze.response_times.task import FULL, AnalysedTask
 from amalthea_uros.timing.basics.limits import LIMIT
 from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.units import Time
@@ -26,7 +26,7 @@ METHOD = "busy window, round robin"
 SOURCE = "Racu, Li, Henia, Hamann, Ernst 2007"
 
 
-def response_time(task: Task, others: Sequence[Task], higher: Interference, blocking: Time = 0) -> Response:
+def response_time(task: AnalysedTask, others: Sequence[AnalysedTask], higher: Interference, blocking: Time = 0) -> Response:
     """The response time of a task among others of its priority.
 
     Parameters
@@ -49,7 +49,7 @@ def response_time(task: Task, others: Sequence[Task], higher: Interference, bloc
     return Response(worst=None, best=task.demand.best, method=METHOD, source=SOURCE, reason=reason)
 
 
-def _overloads(task: Task, others: Sequence[Task], higher: Interference) -> bool:
+def _overloads(task: AnalysedTask, others: Sequence[AnalysedTask], higher: Interference) -> bool:
     """Whether a task gets less than its demand; slices limit what other tasks of its priority take."""
     own = demand_rate(task)
     between = sum((min(own * other.slice / task.slice, demand_rate(other)) for other in others), own)
@@ -66,15 +66,15 @@ class _Window:
     pending : the maximum number of jobs of each other task that can wait at the same time
     """
 
-    task: Task
-    others: Sequence[Task]
+    task: AnalysedTask
+    others: Sequence[AnalysedTask]
     higher: Interference
     blocking: Time
     demands: Sequence[Time] | None
     pending: Sequence[int]
 
     @classmethod
-    def of(cls, task: Task, others: Sequence[Task], higher: Interference, blocking: Time) -> _Window:
+    def of(cls, task: AnalysedTask, others: Sequence[AnalysedTask], higher: Interference, blocking: Time) -> _Window:
         """The busy window of a task, given that of all tasks of its priority."""
         together = Interference.of([*higher.tasks, *others], higher.supply)
         length = None
@@ -135,7 +135,7 @@ class _Window:
         return sum(task.events.eta_plus(window) for task in self.higher.tasks)
 
 
-def _response(task: Task, completions: Sequence[Time], blocking: Time) -> Response:
+def _response(task: AnalysedTask, completions: Sequence[Time], blocking: Time) -> Response:
     worst_job = max(range(1, len(completions) + 1), key=lambda job: completions[job - 1] - task.events.delta_min(job))
     window, own, earlier = completions[worst_job - 1], task.demand.max_demand(worst_job), task.events.delta_min(worst_job)
     return Response(

@@ -17,7 +17,7 @@ from amalthea_uros.units import Time
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Task:
+class AnalysedTask:
     """A process on one processor.
 
     Attributes

@@ -17,7 +17,7 @@ from dataclasses import replace
 
 from amalthea_uros.analyze.response_times import fixed_priority
 from amalthea_uros.analyze.response_times.busy_window import Interference
-from amalthea_uros.analyze.response_times.task import Task
+from amalthea_uros.analyze.response_times.task import AnalysedTask
 from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.units import Time
 
@@ -25,7 +25,7 @@ METHOD = "busy window, any order of priorities"
 ASSUMPTION = "where tasks of a scheduler have no priority, the response times of all its tasks hold for any order of priorities"
 
 
-def response_time(task: Task, others: Sequence[Task], higher: Interference, blocking: Time = 0) -> Response:
+def response_time(task: AnalysedTask, others: Sequence[AnalysedTask], higher: Interference, blocking: Time = 0) -> Response:
     """The response time of a task among others of an unknown order; see `fixed_priority.response_time`."""
     above = Interference.of([*higher.tasks, *others], higher.supply)
     found, _ = fixed_priority.response_time(task, above, blocking)

@@ -13,7 +13,7 @@ from amalthea_uros.timing.response import Claim
 from amalthea_uros.units import Time
 
 
-class Quantity(StrEnum):
+class LatencyQuantity(StrEnum):
     """An end-to-end latency of a chain."""
 
     MAX_REACTION_TIME = "max_reaction_time"
@@ -41,19 +41,19 @@ class Quantity(StrEnum):
 
 
 #: The quantities that can be explained.
-EXPLAINED: tuple[Quantity, ...] = (
-    Quantity.MAX_REACTION_TIME,
-    Quantity.MAX_REDUCED_REACTION_TIME,
-    Quantity.MAX_DATA_AGE,
-    Quantity.MAX_REDUCED_DATA_AGE,
+EXPLAINED: tuple[LatencyQuantity, ...] = (
+    LatencyQuantity.MAX_REACTION_TIME,
+    LatencyQuantity.MAX_REDUCED_REACTION_TIME,
+    LatencyQuantity.MAX_DATA_AGE,
+    LatencyQuantity.MAX_REDUCED_DATA_AGE,
 )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Value:
+class LatencyValue:
     """A quantity by one method, in picoseconds; None if there is no finite value or it is unknown."""
 
-    quantity: Quantity
+    quantity: LatencyQuantity
     value: Time | None
     claim: Claim
     method: str
@@ -83,8 +83,8 @@ class ChainResult(Shown):
     name: str
     communication: str
     routes: tuple[str, ...] = ()
-    values: tuple[Value, ...] = ()
-    all_values: tuple[Value, ...] = ()
+    values: tuple[LatencyValue, ...] = ()
+    all_values: tuple[LatencyValue, ...] = ()
     why: str = ""
     reason: str = ""
     remedy: str = ""
@@ -100,20 +100,20 @@ class ChainResult(Shown):
         texts = [f"{value.quantity.replace('_', ' ')} {bound_text(value.value)} ({value.claim})" for value in shown]
         return f"<ChainResult {self.name}: {', '.join(texts) or self.reason or 'no values'}>"
 
-    def value(self, quantity: Quantity) -> Value | None:
+    def value(self, quantity: LatencyQuantity) -> LatencyValue | None:
         """The tightest value of a quantity."""
         return next((value for value in self.values if value.quantity is quantity), None)
 
     @property
     def best(self) -> Time | None:
         """A lower bound of the latency from the first event to the last; None if it is unknown."""
-        value = self.value(Quantity.MIN_FIRST_TO_FIRST)
+        value = self.value(LatencyQuantity.MIN_FIRST_TO_FIRST)
         return None if value is None else value.value
 
     @property
     def worst(self) -> Time | None:
         """An upper bound of the reduced reaction time; None if there is none."""
-        value = self.value(Quantity.MAX_REDUCED_REACTION_TIME)
+        value = self.value(LatencyQuantity.MAX_REDUCED_REACTION_TIME)
         return None if value is None else value.value
 
     @property

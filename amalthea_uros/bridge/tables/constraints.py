@@ -191,7 +191,7 @@ def _extract_limit(element: am.Requirement, context: Extracting) -> perf.Limit |
     return limit
 
 
-_SEVERITY = same_names(perf.Severity, am.Severity)
+_SEVERITY = same_names(perf.RequirementSeverity, am.Severity)
 
 
 def build_requirement(requirement: perf.Requirement, context: Building) -> am.Requirement:

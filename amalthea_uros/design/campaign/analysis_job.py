@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass
 
-from amalthea_uros.analyze.impact import Figure, Unit, figures
+from amalthea_uros.analyze.impact import ComparedFigure, FigureUnit, figures
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.sensitivity import max_growth
 from amalthea_uros.analyze.system import analyze_system
@@ -54,12 +54,12 @@ def _record(analysis: Analysis) -> dict[str, Value]:
         names[name] += 1
         # Requirements of one name can limit several quantities.
         number = f" {names[name]}" if names[name] > 1 else ""
-        found[name + number + ("_ps" if figure.unit is Unit.TIME else "")] = _cell(figure)
+        found[name + number + ("_ps" if figure.unit is FigureUnit.TIME else "")] = _cell(figure)
     return found
 
 
-def _cell(figure: Figure) -> Value:
+def _cell(figure: ComparedFigure) -> Value:
     value = figure.value
     if value is None or isinstance(value, str):
         return None if value is None else str(value)
-    return int(value) if figure.unit is Unit.TIME else float(value)
+    return int(value) if figure.unit is FigureUnit.TIME else float(value)

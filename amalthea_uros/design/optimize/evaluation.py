@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
 from amalthea_uros.analyze.results.analysis import Analysis, Judged
-from amalthea_uros.analyze.results.chains import Quantity
+from amalthea_uros.analyze.results.chains import LatencyQuantity
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.design.optimize.candidate import Candidate
 from amalthea_uros.design.optimize.designs import Designs
@@ -22,7 +22,7 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.timing.response import Claim
 
 #: No less than the reduced reaction time.
-_AT_LEAST_REACTION = (Quantity.MAX_REDUCED_REACTION_TIME, Quantity.MAX_REACTION_TIME, FROM_ARRIVAL)
+_AT_LEAST_REACTION = (LatencyQuantity.MAX_REDUCED_REACTION_TIME, LatencyQuantity.MAX_REACTION_TIME, FROM_ARRIVAL)
 _OF_MODEL = {Schedulable.YES: Feasibility.YES, Schedulable.NO: Feasibility.NO, Schedulable.UNKNOWN: Feasibility.UNKNOWN}
 #: A share is exceeded by so many picoseconds per second.
 _SECOND = 10**12
@@ -132,5 +132,5 @@ def _is_exact(analysis: Analysis, figures: Figures) -> bool:
     """Whether the response times and the latencies from which verdicts follow are exact."""
     responses = all(process.response is not None and process.response.claim is Claim.EXACT for process in analysis.processes)
     requirements = all(each.lower == each.upper for each in analysis.requirements if each.limit is not None)
-    chains = (figures.range(analysis, chain.name, Quantity.MAX_REDUCED_REACTION_TIME) for chain in analysis.chains)
+    chains = (figures.range(analysis, chain.name, LatencyQuantity.MAX_REDUCED_REACTION_TIME) for chain in analysis.chains)
     return responses and requirements and all(found.is_exact for found in chains)

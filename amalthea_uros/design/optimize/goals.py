@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from amalthea_uros.analyze.results.analysis import Analysis
-from amalthea_uros.analyze.results.chains import Quantity
+from amalthea_uros.analyze.results.chains import LatencyQuantity
 from amalthea_uros.design.changes.change import split_target
 from amalthea_uros.design.optimize.candidate import Candidate
 from amalthea_uros.design.optimize.limits import Limit
@@ -136,8 +136,8 @@ def latency_limits(analysis: Analysis, limits: Iterable[Limit], figures: Figures
 
 
 _LIMITED = {
-    LatencyKind.REACTION: Quantity.MAX_REDUCED_REACTION_TIME,
-    LatencyKind.AGE: Quantity.MAX_REDUCED_DATA_AGE,
+    LatencyKind.REACTION: LatencyQuantity.MAX_REDUCED_REACTION_TIME,
+    LatencyKind.AGE: LatencyQuantity.MAX_REDUCED_DATA_AGE,
 }
 
 
@@ -150,9 +150,9 @@ def constraints_of(system: System) -> Iterator[Limit]:
 
 def _present(analysis: Analysis, figures: Figures) -> Iterator[Limit]:
     for chain in analysis.chains:
-        upper: Time | Fraction | None = figures.range(analysis, chain.name, Quantity.MAX_REDUCED_REACTION_TIME).upper
+        upper: Time | Fraction | None = figures.range(analysis, chain.name, LatencyQuantity.MAX_REDUCED_REACTION_TIME).upper
         if upper:
-            yield Limit(object=chain.name, quantity=Quantity.MAX_REDUCED_REACTION_TIME, maximum=upper)
+            yield Limit(object=chain.name, quantity=LatencyQuantity.MAX_REDUCED_REACTION_TIME, maximum=upper)
 
 
 def _largest(values: Iterable[Fraction | None]) -> Fraction | None:

@@ -11,7 +11,7 @@ from typing import TypeAlias
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.constraints.process_evidence import worst_response
 from amalthea_uros.analyze.results.analysis import Analysis
-from amalthea_uros.analyze.results.chains import ChainResult, Quantity
+from amalthea_uros.analyze.results.chains import ChainResult, LatencyQuantity
 from amalthea_uros.analyze.results.processes import Metric, ProcessResult
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.judge.evidence import Ends
@@ -71,10 +71,10 @@ class Figures:
     def range(self, analysis: Analysis, name: str, quantity: str) -> Range:
         """The range of a quantity."""
         system = analysis.solution.context.system
-        if name in system.chains and quantity in (*Quantity, FROM_ARRIVAL):
+        if name in system.chains and quantity in (*LatencyQuantity, FROM_ARRIVAL):
             if quantity == FROM_ARRIVAL:
                 return self.from_arrival(analysis, name)
-            return _of_chain(analysis.chains[name], Quantity(quantity))
+            return _of_chain(analysis.chains[name], LatencyQuantity(quantity))
         if name in system.processes:
             return _of_process(analysis.processes[name], quantity)
         if name in system.cores:
@@ -89,8 +89,8 @@ class Figures:
         """
         taker = self.takers.get(chain)
         if taker is None:
-            return _of_chain(analysis.chains[chain], Quantity.MAX_REACTION_TIME)
-        reduced = _of_chain(analysis.chains[chain], Quantity.MAX_REDUCED_REACTION_TIME)
+            return _of_chain(analysis.chains[chain], LatencyQuantity.MAX_REACTION_TIME)
+        reduced = _of_chain(analysis.chains[chain], LatencyQuantity.MAX_REDUCED_REACTION_TIME)
         process = analysis.processes[taker]
         pending = process.metrics.get(JobMetric.INITIAL_PENDING_TIME)
         if reduced.upper is None:
@@ -127,7 +127,7 @@ def check_quantity(system: System, name: str, quantity: str, text: str) -> None:
     """
     known: dict[str, tuple[Iterable[str], ...]] = {}
     for names, quantities in (
-        (system.chains, (*Quantity, FROM_ARRIVAL)),
+        (system.chains, (*LatencyQuantity, FROM_ARRIVAL)),
         (system.processes, (*JobMetric, JITTER)),
         (system.cores, (LOAD,)),
     ):
@@ -141,7 +141,7 @@ def check_quantity(system: System, name: str, quantity: str, text: str) -> None:
         raise InvalidArgumentError(f"{text!r}: {name!r} has no {quantity!r}; expected one of {listed}")
 
 
-def _of_chain(chain: ChainResult, quantity: Quantity) -> Range:
+def _of_chain(chain: ChainResult, quantity: LatencyQuantity) -> Range:
     found = chain.value(quantity)
     if found is None or found.value is None:
         return Range(reason=(found.reason if found else "") or chain.reason or f"no {quantity} is computed")

@@ -8,7 +8,7 @@ from fractions import Fraction
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.semantics.readiness import messages
 from amalthea_uros.perf.executors import Executor, Handle
-from amalthea_uros.timing.event_models import EventModel, Periodic, Sporadic
+from amalthea_uros.timing.event_models import EventModel, PeriodicEvents, SporadicEvents
 from amalthea_uros.units import Time
 
 
@@ -29,7 +29,7 @@ def arrivals(handle: Handle, extra_jitter: Mapping[str, Time | None]) -> EventMo
     if extra is None:
         way = "" if handle.transmission is None else f", see {handle.transmission!r}"
         raise UnknownError(f"the jitter of the messages for {handle.name!r} on their way is not known{way}")
-    kind = Periodic if handle.is_periodic else Sporadic
+    kind = PeriodicEvents if handle.is_periodic else SporadicEvents
     return kind(handle.interval, handle.jitter + extra)
 
 

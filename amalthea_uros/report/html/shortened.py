@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.analyze.results.chains import Quantity
+from amalthea_uros.analyze.results.chains import LatencyQuantity
 from amalthea_uros.report.html.blocks import Block, Cell, Folded, Sentences, table
 from amalthea_uros.report.html.times import at_most
 from amalthea_uros.services.analyze import AnalysisResult
@@ -16,7 +16,7 @@ _MOST = 5
 MOST_RUNNABLES, MOST_PROCESSES = 300, 100
 
 
-def block(content: ReportContent, chain: str, quantity: Quantity) -> Block:
+def block(content: ReportContent, chain: str, quantity: LatencyQuantity) -> Block:
     """The single changes with the greatest effect, and what they make worse."""
     software = content.system.software
     if len(software.runnables) > MOST_RUNNABLES or len(content.system.processes) > MOST_PROCESSES:

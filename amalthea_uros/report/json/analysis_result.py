@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import Any
 
 from amalthea_uros.analyze.results.analysis import Analysis
-from amalthea_uros.analyze.results.chains import ChainResult, Value
+from amalthea_uros.analyze.results.chains import ChainResult, LatencyValue
 from amalthea_uros.analyze.results.processes import CallbackResult, Metric, ProcessorResult, ProcessResult
 from amalthea_uros.analyze.results.requirements import RequirementResult
 from amalthea_uros.report.closing_line import closing_line
@@ -163,7 +163,7 @@ def _chain_json(chain: ChainResult, all_methods: bool) -> dict[str, Any]:
     }
 
 
-def value_json(value: Value) -> dict[str, Any]:
+def value_json(value: LatencyValue) -> dict[str, Any]:
     """A latency of a chain by one method."""
     return {
         "quantity": value.quantity,

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from amalthea_uros.analyze.explanations.chains import ChainExplanation, ProcessHop
 from amalthea_uros.analyze.explanations.execution_shares import ExecutionShare
-from amalthea_uros.analyze.explanations.hop_causes import Cause, Execution
+from amalthea_uros.analyze.explanations.hop_causes import Execution, LatencyCause
 from amalthea_uros.analyze.explanations.processes import CallbackExplanation, ProcessExplanation
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.report.chain_causes import cause_text
@@ -130,7 +130,7 @@ def _chain_json(explanation: ChainExplanation) -> dict[str, Any]:
     }
 
 
-def _cause_json(cause: Cause, hop: ProcessHop) -> dict[str, Any]:
+def _cause_json(cause: LatencyCause, hop: ProcessHop) -> dict[str, Any]:
     return {
         "kind": cause.kind,
         "time_ps": cause.time,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any
 
-from amalthea_uros.analyze.impact import Effect, Figure, Impact, ImpactRow, Unit
+from amalthea_uros.analyze.impact import ComparedFigure, Effect, FigureUnit, Impact, ImpactRow
 
 
 def content(impact: Impact) -> dict[str, Any]:
@@ -29,7 +29,7 @@ def row_json(row: ImpactRow) -> dict[str, Any]:
     }
 
 
-def _figure(figure: Figure | None) -> dict[str, Any] | None:
+def _figure(figure: ComparedFigure | None) -> dict[str, Any] | None:
     if figure is None:
         return None
     return {
@@ -40,11 +40,11 @@ def _figure(figure: Figure | None) -> dict[str, Any] | None:
     }
 
 
-def _value(figure: Figure) -> dict[str, Any]:
+def _value(figure: ComparedFigure) -> dict[str, Any]:
     match figure.unit, figure.value:
-        case Unit.TIME, value:
+        case FigureUnit.TIME, value:
             return {"value_ps": None if value is None else round(Fraction(value))}
-        case Unit.SHARE | Unit.NUMBER, value:
+        case FigureUnit.SHARE | FigureUnit.NUMBER, value:
             exact = None if value is None else Fraction(value)
             known = {} if figure.at_least is None else {"at_least": float(figure.at_least)}
             return {"value": None if exact is None else float(exact), "exact": None if exact is None else str(exact), **known}

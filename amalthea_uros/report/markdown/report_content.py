@@ -7,7 +7,7 @@ from itertools import islice
 
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.analyze.impact import impact
-from amalthea_uros.analyze.results.chains import Quantity
+from amalthea_uros.analyze.results.chains import LatencyQuantity
 from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.report.closing_line import closing_line
 from amalthea_uros.report.judged import judged_rows, limit_text, margin_text, requirements_of, why, worst_chains
@@ -119,7 +119,7 @@ def _chains(content: ReportContent) -> Iterator[str]:
         limits = (
             ("-", "-", "") if worst is None else (f"{worst.quantity} {limit_text(worst)}", margin_text(worst), worst.verdict)
         )
-        quantities = (Quantity.MAX_REDUCED_REACTION_TIME, Quantity.MAX_REDUCED_DATA_AGE)
+        quantities = (LatencyQuantity.MAX_REDUCED_REACTION_TIME, LatencyQuantity.MAX_REDUCED_DATA_AGE)
         values = [chain.value(quantity) for quantity in quantities]
         claims = dict.fromkeys(str(value.claim) for value in values if value is not None and value.value is not None)
         rows.append((chain.name, *map(value_text, values), ", ".join(claims), *limits, chain.reason))

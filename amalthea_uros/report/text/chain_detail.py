@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from amalthea_uros.analyze.results.chains import Quantity
+from amalthea_uros.analyze.results.chains import LatencyQuantity
 from amalthea_uros.report.latencies import quantity_text, value_text
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.services.analyze import ChainDetail
@@ -18,7 +18,7 @@ def write(detail: ChainDetail, terminal: Terminal) -> None:
         terminal.line(f"  {sentence}")
     values = chain.all_values if detail.all_methods else chain.values
     if values:
-        ordered = sorted(values, key=lambda value: list(Quantity).index(value.quantity))
+        ordered = sorted(values, key=lambda value: list(LatencyQuantity).index(value.quantity))
         rows = [
             (quantity_text(value.quantity), value_text(value), value.claim, f"{value.method} ({value.source})")
             for value in ordered

@@ -12,7 +12,7 @@ from amalthea_uros.analyze.explanations.execution_shares import ExecutionShare
 from amalthea_uros.analyze.explanations.origins import OriginKind
 from amalthea_uros.analyze.explanations.processes import CallbackExplanation, ProcessExplanation
 from amalthea_uros.analyze.results.analysis import Judged
-from amalthea_uros.analyze.results.chains import Value
+from amalthea_uros.analyze.results.chains import LatencyValue
 from amalthea_uros.analyze.results.processes import CallbackResult, ProcessResult
 from amalthea_uros.executors.results import HandleResult
 from amalthea_uros.judge.verdict import Verdict
@@ -260,7 +260,7 @@ def _chain(explanation: ChainExplanation, found: Improvements | None, terminal: 
         improvements.write(found, terminal)
 
 
-def _worst_case(explanation: ChainExplanation, value: Value, total: Time, terminal: Terminal) -> None:
+def _worst_case(explanation: ChainExplanation, value: LatencyValue, total: Time, terminal: Terminal) -> None:
     """Write the way, the hops with their causes, and the executions."""
     if explanation.route:
         terminal.line(f"  {explanation.route}")

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from fractions import Fraction
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.analyze.impact import Impact, ImpactRow, Part
+from amalthea_uros.analyze.impact import Impact, ImpactRow, ResultPart
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.requirements import RequirementResult
 from amalthea_uros.design.optimize.problem import Feasibility
@@ -128,7 +128,7 @@ def _loads(before: Analysis, after: Analysis) -> Iterator[tuple[str, ...]]:
 
 def _worse(proposal: DesignProposal, terminal: Terminal) -> None:
     """What gets worse, apart from what the table has."""
-    rows = [row for row in proposal.worse if not (row.part is Part.CORE or row.part is Part.REQUIREMENT)]
+    rows = [row for row in proposal.worse if not (row.part is ResultPart.CORE or row.part is ResultPart.REQUIREMENT)]
     for text in map(_drawback, rows[:_MOST_DRAWBACKS]):
         terminal.line(f"  worse: {text}")
     if len(rows) > _MOST_DRAWBACKS:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from amalthea_uros.analyze.priorities.assignment import Outcome, Proposal
+from amalthea_uros.analyze.priorities.assignment import Proposal, ProposalOutcome
 from amalthea_uros.report.terminal import Terminal
 
 
@@ -16,7 +16,7 @@ def write_proposals(terminal: Terminal, proposals: Iterable[Proposal]) -> None:
 
 def _proposal(terminal: Terminal, proposal: Proposal) -> None:
     terminal.heading(f"Priorities on {proposal.core}")
-    if proposal.outcome is Outcome.KEPT:
+    if proposal.outcome is ProposalOutcome.KEPT:
         terminal.line("  the present priorities meet all deadlines")
         return
     if proposal.priorities is None:

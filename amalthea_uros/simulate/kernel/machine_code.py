@@ -11,7 +11,7 @@ from pathlib import Path
 from types import FunctionType, ModuleType
 from typing import Any, TypeAlias
 
-from amalthea_uros._internal.machine_code import LOADING, Effort
+from amalthea_uros._internal.machine_code import LOADING, CompilationEffort
 from amalthea_uros.simulate.kernel import (
     activation,
     budgets,
@@ -41,10 +41,10 @@ _PREFIX = "kernel_"
 
 
 @cache
-def effort() -> Effort:
+def effort() -> CompilationEffort:
     """What the kernel has taken as Python in this process: the runs of a campaign count together."""
     sources = [Path(str(module.__file__)) for module in (loop, *_MODULES, layout, operations, sys.modules[__name__])]
-    return Effort("the simulation", sources, f"{_PREFIX}*", _COMPILING)
+    return CompilationEffort("the simulation", sources, f"{_PREFIX}*", _COMPILING)
 
 
 def is_worth_it(seconds: float, seconds_left: float) -> bool:

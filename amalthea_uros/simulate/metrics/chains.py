@@ -13,7 +13,7 @@ from amalthea_uros.simulate.kernel.layout import RESPONSE, Observation
 from amalthea_uros.simulate.metrics.distributions import Distributions
 from amalthea_uros.simulate.observations import ChainObservation, MetricObservation, RouteObservation
 from amalthea_uros.timing.basics.quantities import ChainQuantity
-from amalthea_uros.timing.observed.chain_latencies import MEASURED, SAME, RouteLatencies
+from amalthea_uros.timing.observed.chain_latencies import MEASURED, SAME, ObservedRouteLatencies
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -30,11 +30,11 @@ class RouteMetrics:
 
     base: int
     _found: dict[ChainQuantity, Distributions] = field(init=False)
-    _latencies: RouteLatencies = field(init=False)
+    _latencies: ObservedRouteLatencies = field(init=False)
 
     def __post_init__(self) -> None:
         self._found = {quantity: Distributions(size=1, base=self.base, with_histograms=(0,)) for quantity in MEASURED}
-        self._latencies = RouteLatencies(self._note)
+        self._latencies = ObservedRouteLatencies(self._note)
 
     def add(self, rows: Numbers) -> None:
         """Take observations in: a row for each, with a column for each of `Observation`, in the order of time."""

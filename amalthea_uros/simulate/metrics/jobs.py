@@ -11,10 +11,10 @@ from amalthea_uros._internal.arrays import Numbers
 from amalthea_uros.simulate.metrics.distributions import Distributions
 from amalthea_uros.simulate.observations import WITH_HISTOGRAM, CountObservation, MetricObservation
 from amalthea_uros.timing.basics.quantities import JobMetric
-from amalthea_uros.timing.observed.job_times import BETWEEN, OWN, Job, own_times, times_between
+from amalthea_uros.timing.observed.job_times import BETWEEN, OWN, JobColumn, own_times, times_between
 from amalthea_uros.units import Time
 
-_COUNTS = (Job.PREEMPTIONS, Job.MIGRATIONS)
+_COUNTS = (JobColumn.PREEMPTIONS, JobColumn.MIGRATIONS)
 #: So many jobs at a time stay in the cache of a processor.
 _CACHED = 2048
 _OWN_HISTOGRAMS = tuple(map(OWN.index, WITH_HISTOGRAM))
@@ -38,14 +38,14 @@ class JobMetrics:
     def __post_init__(self) -> None:
         self._of_jobs = Distributions(size=len(OWN) + len(_COUNTS), base=self.base, with_histograms=_OWN_HISTOGRAMS)
         self._between_jobs = Distributions(size=len(BETWEEN), base=self.base, with_histograms=())
-        self._last = np.empty((len(Job), 0), np.int64)
+        self._last = np.empty((len(JobColumn), 0), np.int64)
 
     def add(self, jobs: Numbers) -> None:
-        """Take jobs in: a column for each, in the order of their ends, and a row for each of `Job`."""
-        self._of_jobs.add(_own(jobs), jobs[Job.INSTANCE], jobs[Job.ACTIVATION])
+        """Take jobs in: a column for each, in the order of their ends, and a row for each of `JobColumn`."""
+        self._of_jobs.add(_own(jobs), jobs[JobColumn.INSTANCE], jobs[JobColumn.ACTIVATION])
         # The first of these jobs follows the last one before them.
         for earlier, later in ((self._last, jobs[:, : self._last.shape[1]]), (jobs[:, :-1], jobs[:, 1:])):
-            self._between_jobs.add(times_between(earlier, later), later[Job.INSTANCE], later[Job.ACTIVATION])
+            self._between_jobs.add(times_between(earlier, later), later[JobColumn.INSTANCE], later[JobColumn.ACTIVATION])
         self._last = jobs[:, -1:].copy()
 
     @property
@@ -60,12 +60,12 @@ class JobMetrics:
     @property
     def preemptions(self) -> CountObservation:
         """How often jobs were preempted."""
-        return self._counted(Job.PREEMPTIONS)
+        return self._counted(JobColumn.PREEMPTIONS)
 
     @property
     def migrations(self) -> CountObservation:
         """How often jobs moved to another core."""
-        return self._counted(Job.MIGRATIONS)
+        return self._counted(JobColumn.MIGRATIONS)
 
     def observations(self, deadline: Time | None) -> Mapping[JobMetric, MetricObservation]:
         """What was observed of each metric; slack time and lateness only if there is a deadline, in picoseconds."""
@@ -77,7 +77,7 @@ class JobMetrics:
             found[JobMetric.LATENESS] = response.beyond(deadline)
         return {metric: observation for metric in JobMetric if (observation := found.get(metric)) is not None}
 
-    def _counted(self, column: Job) -> CountObservation:
+    def _counted(self, column: JobColumn) -> CountObservation:
         if self.count == 0:
             return CountObservation(total=0, min=0, max=0)
         index, found = len(OWN) + _COUNTS.index(column), self._of_jobs
@@ -87,9 +87,9 @@ class JobMetrics:
 def add_rows(rows: Numbers, processes: Sequence[JobMetrics]) -> None:
     """Take a chunk of rows in, of all processes, in the order of the ends of their jobs."""
     # Numbers of 16 bits are sorted by radix.
-    numbers = rows[:, Job.PROCESS].astype(np.int16 if len(processes) <= 2**15 else np.int64)
+    numbers = rows[:, JobColumn.PROCESS].astype(np.int16 if len(processes) <= 2**15 else np.int64)
     order = np.argsort(numbers, kind="stable")
-    ends = np.cumsum(np.bincount(rows[:, Job.PROCESS], minlength=len(processes))).tolist()
+    ends = np.cumsum(np.bincount(rows[:, JobColumn.PROCESS], minlength=len(processes))).tolist()
     for process, first, end in zip(processes, [0, *ends], ends, strict=False):
         for start in range(first, end, _CACHED):
             jobs = np.take(rows, order[start : min(start + _CACHED, end)], axis=0)

@@ -21,9 +21,9 @@ from amalthea_uros.simulate.program.image import Code, JumpLabel, Operation, Pro
 from amalthea_uros.simulate.program.resources import Parts, Resources
 from amalthea_uros.simulate.program.watches import EventSource
 from amalthea_uros.simulate.sampling.streams import ValueStream
-from amalthea_uros.timing.basics.settings import Memory
+from amalthea_uros.timing.basics.settings import MemoryModel
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.demand.multiframe import Frame
+from amalthea_uros.timing.demand.multiframe import DemandFrame
 from amalthea_uros.timing.jobs.counters import flaw_of_activity, reached
 from amalthea_uros.trace.table import EntityKind, EventKind
 
@@ -160,14 +160,14 @@ class Body:
             ticks = self.context.demand_model.ticks(demand, self.core)
             self.execute(self.resources.ticks(ticks, self.core, Fraction(1), self.place()))
 
-    def frame(self, frame: Frame) -> None:
+    def frame(self, frame: DemandFrame) -> None:
         """Hold the core for the demand of a frame."""
         self.execute(self.resources.frame(frame, self.core, self.place()))
 
     def access(self, name: str, kind: AccessKind, times: Count | float | None) -> None:
         """Hold the core for the time of accesses to memory, if they take any."""
         model = self.context.demand_model
-        if model.settings.memory is not Memory.NONE:
+        if model.settings.memory is not MemoryModel.NONE:
             self.frame(model.access(self.core, name, kind, times))
 
     # Places in the program, and what is added to them.
@@ -229,7 +229,7 @@ def _process_code(body: Body, process: Process, scheduler: Scheduler | None) -> 
     model = body.context.demand_model
     body.require_limited(process.activities)
     entry, exit_ = model.overheads.of_isr(process, body.core) if isinstance(process, Isr) else (None, None)
-    copies = model.copies(process, body.core) if model.settings.memory is Memory.IMPLICIT else []
+    copies = model.copies(process, body.core) if model.settings.memory is MemoryModel.IMPLICIT else []
     body.add_all(body.hooks.start)
     body.demand(entry)
     for kind, frame in copies:

@@ -20,7 +20,7 @@ from amalthea_uros.simulate.sampling.streams import ValueStream, choices, durati
 from amalthea_uros.simulate.sampling.variates import sampling_assumption
 from amalthea_uros.simulate.sampling.words import RandomSource
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.demand.multiframe import Frame
+from amalthea_uros.timing.demand.multiframe import DemandFrame
 from amalthea_uros.timing.jobs.counters import first_effect
 from amalthea_uros.timing.jobs.server_calls import servers
 from amalthea_uros.trace.table import EntityKind
@@ -85,7 +85,7 @@ class Resources:
         tick = model.time_of_tick(settings.scale * settings.growth * factor, core) * Fraction(self.units, model.time_base(core))
         return self._durations(ticks, tick, place)
 
-    def frame(self, frame: Frame, core: str, place: str) -> ValueStream:
+    def frame(self, frame: DemandFrame, core: str, place: str) -> ValueStream:
         """The times of something of which minimum, mean and maximum are known, in the time base of a core."""
         unit = Fraction(self.units, self.context.demand_model.time_base(core))
         average = min(max(float(frame.average), frame.best), frame.worst)

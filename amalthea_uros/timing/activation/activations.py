@@ -36,7 +36,7 @@ def as_activated(_process: Process, activations: Callable[[], EventModel]) -> Ev
     return activations()
 
 
-class Effect(NamedTuple):
+class TriggeredStimulus(NamedTuple):
     """What an activity triggers.
 
     Attributes
@@ -49,7 +49,7 @@ class Effect(NamedTuple):
     share: Fraction
 
 
-class Cause(NamedTuple):
+class TriggeringActivity(NamedTuple):
     """A process that triggers a stimulus.
 
     Attributes
@@ -81,8 +81,8 @@ class Activations:
     dataflow: Dataflow
     flaws: CounterFlaws = field(init=False)
     _incomplete: str = ""
-    _triggers: dict[str, list[Cause]] = field(default_factory=dict)
-    _effects: dict[str, list[Effect]] | None = None
+    _triggers: dict[str, list[TriggeringActivity]] = field(default_factory=dict)
+    _effects: dict[str, list[TriggeredStimulus]] | None = None
     _triggering: dict[str, dict[str, None]] = field(default_factory=dict)
     _activated: dict[str, list[str]] = field(default_factory=dict)
 
@@ -99,7 +99,7 @@ class Activations:
             for position in positions:
                 if isinstance(position.activity, Trigger) and position.times != 0:
                     causes = self._triggers.setdefault(position.activity.stimulus, [])
-                    causes.append(Cause(position, position.activity.counter))
+                    causes.append(TriggeringActivity(position, position.activity.counter))
 
     def of(self, process: Process, output: Output = as_activated) -> EventModel:
         """The event model of the activations of a process.
@@ -166,7 +166,9 @@ class Activations:
         caused = (self._caused_by_process(list(group), output, above) for _, group in by_process)
         return _counted(aggregated(tuple(chain.from_iterable(caused))), stimulus.counter)
 
-    def _caused_by_process(self, causes: Sequence[Cause], output: Output, above: tuple[str, ...]) -> Iterator[EventModel]:
+    def _caused_by_process(
+        self, causes: Sequence[TriggeringActivity], output: Output, above: tuple[str, ...]
+    ) -> Iterator[EventModel]:
         """The events that the activities of a process cause: those of one path of a job, if others exclude it."""
         if all(cause.is_each_time for cause in causes) and (most := self.most_in_a_job(causes)) < len(causes):
             events = self._caused_by(causes[0], output, above)
@@ -174,13 +176,13 @@ class Activations:
         else:
             yield from (self._caused_by(cause, output, above) for cause in causes)
 
-    def most_in_a_job(self, causes: Sequence[Cause]) -> int:
+    def most_in_a_job(self, causes: Sequence[TriggeringActivity]) -> int:
         """How many of some activities of a process a job can reach; each one reaches an activity once at most."""
         numbers = sorted(cause.position.number for cause in causes)
         positions = self.dataflow.events.positions(causes[0].process.name)
         return most_in_a_job(positions, dict.fromkeys(numbers, 1))
 
-    def causes(self, stimulus: InterProcess | EventTriggered) -> list[Cause]:
+    def causes(self, stimulus: InterProcess | EventTriggered) -> list[TriggeringActivity]:
         """The activities that trigger a stimulus, or raise its events.
 
         Raises
@@ -189,19 +191,19 @@ class Activations:
         """
         if isinstance(stimulus, InterProcess):
             return self._triggers.get(stimulus.name, [])
-        found: list[Cause] = []
+        found: list[TriggeringActivity] = []
         for name in stimulus.events:
             event = self.system.events_by_name.get(name)
             if event is None:
                 raise UnknownError(f"the event {name!r} is not defined in the model")
             self._check(event)
-            causes = [Cause(position) for position in self.dataflow.events.raising(event) if position.times != 0]
+            causes = [TriggeringActivity(position) for position in self.dataflow.events.raising(event) if position.times != 0]
             if not causes and isinstance(event, CustomEvent):
                 raise UnknownError(f"no activity in the model raises the event {name!r}")
             found += causes
         return found
 
-    def effects(self, process: str) -> Sequence[Effect]:
+    def effects(self, process: str) -> Sequence[TriggeredStimulus]:
         """What the activities of a process trigger, in order, as far as it is known."""
         if self._effects is None:
             self._effects = {}
@@ -214,7 +216,7 @@ class Activations:
                                 continue
                             share = _share(cause.counter) * _share(stimulus.counter)
                             self._effects.setdefault(cause.process.name, []).append(
-                                Effect(cause.position, stimulus.name, share)
+                                TriggeredStimulus(cause.position, stimulus.name, share)
                             )
             for found in self._effects.values():
                 found.sort(key=lambda effect: effect.position.number)
@@ -254,7 +256,7 @@ class Activations:
             if event.label is None or event.label in assigned:
                 raise UnknownError(f"stimuli also raise the event {event.name!r}")
 
-    def _caused_by(self, cause: Cause, output: Output, above: tuple[str, ...]) -> EventModel:
+    def _caused_by(self, cause: TriggeringActivity, output: Output, above: tuple[str, ...]) -> EventModel:
         """The events that a process causes between its start and its end."""
         times = cause.position.times
         if times is None:
@@ -263,7 +265,7 @@ class Activations:
         return _counted(found if times == 1 else Multiplied(found, times), cause.counter)
 
 
-def _process_name(cause: Cause) -> str:
+def _process_name(cause: TriggeringActivity) -> str:
     return cause.process.name
 
 

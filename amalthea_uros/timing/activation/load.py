@@ -10,7 +10,7 @@ from fractions import Fraction
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import Activity
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.activation.activations import Activations, Effect
+from amalthea_uros.timing.activation.activations import Activations, TriggeredStimulus
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.timing.demand.job_paths import NOTHING, JobDemand, JobPaths, total
 from amalthea_uros.timing.demand.model import DemandModel
@@ -101,7 +101,7 @@ class CoreLoad:
         # Overheads of the operating system and copies of labels are not in the activities.
         return paths.demand() + own + of_activities(*model.activities).every(-1)
 
-    def _caused(self, effect: Effect) -> JobDemand:
+    def _caused(self, effect: TriggeredStimulus) -> JobDemand:
         return total(map(self.of_job, self.activations.activated(effect.stimulus))).every(effect.share)
 
 

@@ -28,7 +28,7 @@ from amalthea_uros.units import Time, time_text
 
 
 @dataclass(frozen=True, slots=True)
-class Occurrence:
+class ExternalInput:
     """What comes from outside, taken by every n-th job of a process.
 
     Attributes
@@ -42,7 +42,7 @@ class Occurrence:
     every: int
 
     @classmethod
-    def of(cls, process: str, counter: Counter) -> Occurrence:
+    def of(cls, process: str, counter: Counter) -> ExternalInput:
         """What a counter in the jobs of a process represents."""
         return cls(process, counter.source, counter.prescaler)
 
@@ -52,18 +52,18 @@ def sources(system: System) -> list[str]:
     return list(dict.fromkeys(counter.source for _, counter in counters(system) if counter.source))
 
 
-def unknown_phases(system: System) -> tuple[Occurrence, ...]:
+def unknown_phases(system: System) -> tuple[ExternalInput, ...]:
     """What comes from outside with an unknown phase."""
     return tuple(
         dict.fromkeys(
-            Occurrence.of(process, counter)
+            ExternalInput.of(process, counter)
             for process, counter in counters(system)
             if counter.source and not counter.is_phase_known
         )
     )
 
 
-def unstated_phases(system: System, times: Mapping[str, Time]) -> tuple[Occurrence, ...]:
+def unstated_phases(system: System, times: Mapping[str, Time]) -> tuple[ExternalInput, ...]:
     """What comes from outside with an unknown phase, also with respect to times at which some sources are due for the first time.
 
     A simulation uses such a time for irregular arrivals, too, although it does not say which jobs take them.
@@ -71,22 +71,22 @@ def unstated_phases(system: System, times: Mapping[str, Time]) -> tuple[Occurren
     return tuple(each for each in unknown_phases(with_first_arrivals(system, times)) if each.source not in times)
 
 
-def phase_count(occurrences: Sequence[Occurrence]) -> int:
+def phase_count(occurrences: Sequence[ExternalInput]) -> int:
     """The number of combinations of all phases."""
     return prod(occurrence.every for occurrence in occurrences)
 
 
-def phase_combinations(occurrences: Sequence[Occurrence]) -> Iterator[Mapping[Occurrence, int]]:
+def phase_combinations(occurrences: Sequence[ExternalInput]) -> Iterator[Mapping[ExternalInput, int]]:
     """For each combination of phases the first job that takes each occurrence."""
     for firsts in product(*(range(1, occurrence.every + 1) for occurrence in occurrences)):
         yield dict(zip(occurrences, firsts, strict=True))
 
 
-def with_phases(system: System, combination: Mapping[Occurrence, int]) -> System:
+def with_phases(system: System, combination: Mapping[ExternalInput, int]) -> System:
     """The system in which some unknown phases are known."""
 
     def known(process: Process, counter: Counter) -> Counter:
-        first = combination.get(Occurrence.of(process.name, counter))
+        first = combination.get(ExternalInput.of(process.name, counter))
         if first is None or counter.is_phase_known:
             return counter
         return replace(counter, offset=first, is_phase_known=True)

@@ -9,7 +9,7 @@ from amalthea_uros.perf.named import Named
 
 
 @dataclass(slots=True)
-class Notes:
+class AnalysisNotes:
     """Collects findings and assumptions, each of them once."""
 
     found: dict[Finding, None] = field(default_factory=dict)
@@ -31,7 +31,7 @@ class Notes:
         """Add an assumption on which the results are based."""
         self.assumptions[sentence] = None
 
-    def include(self, others: Notes) -> None:
+    def include(self, others: AnalysisNotes) -> None:
         """Add the findings and assumptions of another context, on which results of this one are based, too."""
         self.found.update(others.found)
         self.assumptions.update(others.assumptions)

@@ -11,7 +11,7 @@ from amalthea_uros.perf.activities import Communication
 from amalthea_uros.units import Frequency, Time
 
 
-class Memory(StrEnum):
+class MemoryModel(StrEnum):
     """Demand of label accesses: none, the latency of each access, or a copy of each label at the start and end of a job."""
 
     NONE = "none"
@@ -39,12 +39,12 @@ class Settings:
     growth: Fraction = Fraction(1)
     factors: Mapping[str, Fraction] = field(default_factory=dict)
     modes: Mapping[str, str] = field(default_factory=dict)
-    memory: Memory = Memory.NONE
+    memory: MemoryModel = MemoryModel.NONE
     communication: Communication | None = None
     phases: Mapping[str, Time] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        for name, kind in (("memory", Memory), ("communication", Communication)):
+        for name, kind in (("memory", MemoryModel), ("communication", Communication)):
             given = getattr(self, name)
             if given is not None and not isinstance(given, kind):
                 members = ", ".join(f"{kind.__name__}.{member.name}" for member in kind)

@@ -14,7 +14,7 @@ from amalthea_uros.timing.jobs.positions import ActivityPosition
 
 
 @dataclass(frozen=True, slots=True)
-class Protection:
+class LockUsage:
     """What keeps others off during the jobs of a process, at any depth.
 
     Attributes
@@ -29,10 +29,10 @@ class Protection:
     has_non_interruptible_group: bool = False
 
 
-def protection_of(process: Process, system: System) -> Protection:
+def protection_of(process: Process, system: System) -> LockUsage:
     """What a process uses to keep others off."""
     if system.activity_classes.isdisjoint((SemaphoreAccess, Group)):
-        return Protection()
+        return LockUsage()
     spinlocks = spinlocks_of(system)
     semaphores, actively, has_group = set[str](), set[str](), False
     for activity in executed(process.activities, system):
@@ -43,7 +43,7 @@ def protection_of(process: Process, system: System) -> Protection:
                     actively.add(name)
             case Group(interruptible=False):
                 has_group = True
-    return Protection(frozenset(semaphores), frozenset(actively), has_group)
+    return LockUsage(frozenset(semaphores), frozenset(actively), has_group)
 
 
 def spinlocks_of(system: System) -> frozenset[str]:
@@ -86,7 +86,7 @@ class Locks:
     """
 
     system: System
-    protection: Mapping[str, Protection]
+    protection: Mapping[str, LockUsage]
     requests: Mapping[str, set[str]]
 
     @property

@@ -43,7 +43,7 @@ Branches: TypeAlias = Callable[[Switch], Sequence[tuple[Activity, ...]]]
 
 
 @dataclass(frozen=True, slots=True)
-class KeptOff:
+class RegionKind:
     """Where a job keeps another one off; within non-interruptible groups it always does.
 
     Attributes
@@ -59,7 +59,7 @@ class KeptOff:
 
 
 @dataclass(frozen=True, slots=True)
-class Stretches:
+class NonPreemptiveRegions:
     """Maximum demands between points of preemption, over all ways through some activities; None: there is no such way.
 
     Attributes
@@ -86,9 +86,9 @@ class Stretches:
         """The longest stretch."""
         return _longest(self.through, self.first, self.inner, self.last) or 0
 
-    def then(self, other: Stretches) -> Stretches:
+    def then(self, other: NonPreemptiveRegions) -> NonPreemptiveRegions:
         """These activities followed by others."""
-        return Stretches(
+        return NonPreemptiveRegions(
             through=_sum(self.through, other.through),
             first=_longest(self.first, _sum(self.through, other.first)),
             inner=_longest(self.inner, other.inner, _sum(self.last, other.first)),
@@ -103,9 +103,9 @@ class Stretches:
             total=self.total + other.total,
         )
 
-    def either(self, other: Stretches) -> Stretches:
+    def either(self, other: NonPreemptiveRegions) -> NonPreemptiveRegions:
         """These activities or others."""
-        return Stretches(
+        return NonPreemptiveRegions(
             through=_longest(self.through, other.through),
             first=_longest(self.first, other.first),
             inner=_longest(self.inner, other.inner),
@@ -116,13 +116,13 @@ class Stretches:
             total=max(self.total, other.total),
         )
 
-    def repeated(self, total: Time) -> Stretches:
+    def repeated(self, total: Time) -> NonPreemptiveRegions:
         """The same several times, with a total demand: a stretch is then at most all of it."""
 
         def at_most(value: Time | None) -> Time | None:
             return total if value else value
 
-        return Stretches(
+        return NonPreemptiveRegions(
             through=at_most(self.through),
             first=at_most(self.first),
             inner=_longest(at_most(self.inner), at_most(_sum(self.last, self.first))),
@@ -134,9 +134,9 @@ class Stretches:
 
 
 #: Nothing; a point of preemption; and one after a call.
-NOTHING = Stretches(through=0, uncounted=0)
-POINT = Stretches(through=None, first=0, inner=0, last=0, before_last=0)
-AFTER_CALL = Stretches(through=None, first=0, inner=0, last=0, after_call=0, uncounted=0)
+NOTHING = NonPreemptiveRegions(through=0, uncounted=0)
+POINT = NonPreemptiveRegions(through=None, first=0, inner=0, last=0, before_last=0)
+AFTER_CALL = NonPreemptiveRegions(through=None, first=0, inner=0, last=0, after_call=0, uncounted=0)
 
 
 def _sum(first: Time | None, then: Time | None) -> Time | None:
@@ -148,7 +148,7 @@ def _longest(*values: Time | None) -> Time | None:
 
 
 @dataclass(slots=True)
-class StretchWalk:
+class RegionWalk:
     """Finds the stretches in which a process keeps another one off.
 
     Attributes
@@ -159,14 +159,14 @@ class StretchWalk:
     """
 
     system: System
-    kept_off: KeptOff
+    kept_off: RegionKind
     demand_of: DemandOf
     branches: Branches
     requests: dict[str, set[str]] = field(default_factory=dict)
-    _of_runnables: dict[tuple[str, Held, bool], tuple[Stretches, Held]] = field(default_factory=dict)
+    _of_runnables: dict[tuple[str, Held, bool], tuple[NonPreemptiveRegions, Held]] = field(default_factory=dict)
     _is_plain: dict[str, bool] = field(default_factory=dict)
 
-    def of(self, activities: Sequence[Activity]) -> Stretches:
+    def of(self, activities: Sequence[Activity]) -> NonPreemptiveRegions:
         """The stretches of the body of a process.
 
         Raises
@@ -182,24 +182,24 @@ class StretchWalk:
         """Whether the other one is kept off even at schedule points."""
         return inside or not held.isdisjoint(self.kept_off.semaphores)
 
-    def _point(self, held: Held, inside: bool) -> Stretches:
+    def _point(self, held: Held, inside: bool) -> NonPreemptiveRegions:
         """A point at which the job could be preempted."""
         return NOTHING if self._is_kept_off(held, inside) else POINT
 
-    def _end(self, held: Held, inside: bool) -> Stretches:
+    def _end(self, held: Held, inside: bool) -> NonPreemptiveRegions:
         """The end of a section or group: a point of preemption if nothing else keeps the other one off."""
         return NOTHING if self.kept_off.throughout else self._point(held, inside)
 
     def _through(
         self, activities: Iterable[Activity], held: Held, inside: bool, above: tuple[str, ...]
-    ) -> tuple[Stretches, Held]:
+    ) -> tuple[NonPreemptiveRegions, Held]:
         found = NOTHING
         for activity in activities:
             here, held = self._one(activity, held, inside, above)
             found = found.then(here)
         return found, held
 
-    def _one(self, activity: Activity, held: Held, inside: bool, above: tuple[str, ...]) -> tuple[Stretches, Held]:
+    def _one(self, activity: Activity, held: Held, inside: bool, above: tuple[str, ...]) -> tuple[NonPreemptiveRegions, Held]:
         """The stretches of one activity, and the semaphores that are held after it."""
         match activity:
             case SemaphoreAccess():
@@ -229,16 +229,20 @@ class StretchWalk:
                 raise UnknownError(f"it terminates while it holds the semaphore {min(held)!r}")
         return self._executed(activity, held, inside), held
 
-    def _executed(self, activity: Activity, held: Held, inside: bool) -> Stretches:
+    def _executed(self, activity: Activity, held: Held, inside: bool) -> NonPreemptiveRegions:
         """The demand of an activity without parts."""
         demand = self.demand_of(activity)
         if self.kept_off.throughout or self._is_kept_off(held, inside):
-            return Stretches(through=demand, uncounted=demand, total=demand)
-        return Stretches(through=None, first=0, inner=0, last=0, before_last=demand, total=demand) if demand else NOTHING
+            return NonPreemptiveRegions(through=demand, uncounted=demand, total=demand)
+        return (
+            NonPreemptiveRegions(through=None, first=0, inner=0, last=0, before_last=demand, total=demand)
+            if demand
+            else NOTHING
+        )
 
     def _unchanged(
         self, activities: Iterable[Activity], held: Held, inside: bool, above: tuple[str, ...], where: str
-    ) -> tuple[Stretches, Held]:
+    ) -> tuple[NonPreemptiveRegions, Held]:
         """The stretches of activities that may be skipped or repeated, which must release what they request."""
         found, after = self._through(activities, held, inside, above)
         if after != held:
@@ -247,7 +251,7 @@ class StretchWalk:
 
     def _one_of(
         self, alternatives: Sequence[Sequence[Activity]], held: Held, inside: bool, above: tuple[str, ...]
-    ) -> tuple[Stretches, Held]:
+    ) -> tuple[NonPreemptiveRegions, Held]:
         found = [self._through(each, held, inside, above) for each in alternatives]
         if not found:
             return NOTHING, held
@@ -255,9 +259,11 @@ class StretchWalk:
         for _, other in found:
             if other != after:
                 raise UnknownError(f"only some branches of a switch request or release the semaphore {min(other ^ after)!r}")
-        return reduce(Stretches.either, (stretches for stretches, _ in found)), after
+        return reduce(NonPreemptiveRegions.either, (stretches for stretches, _ in found)), after
 
-    def _in_any_order(self, activities: Sequence[Activity], held: Held, inside: bool, above: tuple[str, ...]) -> Stretches:
+    def _in_any_order(
+        self, activities: Sequence[Activity], held: Held, inside: bool, above: tuple[str, ...]
+    ) -> NonPreemptiveRegions:
         """The stretches of activities in unknown order: each pair may follow each other, with all others in between."""
         parts = [self._unchanged((each,), held, inside, above, "a part of an unordered group")[0] for each in activities]
         if not parts:
@@ -265,9 +271,9 @@ class StretchWalk:
         through = sum(part.through or 0 for part in parts)
         total = sum(part.total for part in parts)
         with_points = [part for part in parts if part.first is not None]
-        one = reduce(Stretches.either, parts)
+        one = reduce(NonPreemptiveRegions.either, parts)
         between = _sum(_sum(one.last, one.first), through) if len(with_points) > 1 else None
-        return Stretches(
+        return NonPreemptiveRegions(
             through=None if any(part.through is None for part in parts) else through,
             first=_sum(one.first, through),
             inner=_longest(one.inner, between),
@@ -277,7 +283,7 @@ class StretchWalk:
             total=total,
         )
 
-    def _call(self, call: Call, held: Held, inside: bool, above: tuple[str, ...]) -> tuple[Stretches, Held]:
+    def _call(self, call: Call, held: Held, inside: bool, above: tuple[str, ...]) -> tuple[NonPreemptiveRegions, Held]:
         runnable = self.system.runnables.get(call.runnable)
         if runnable is None or runnable.name in above or len(above) > MAX_CALL_DEPTH:
             # Demand is unknown then, so that the stretches do not matter.
@@ -331,23 +337,23 @@ def _held_after(access: SemaphoreAccess, held: Held) -> Held:
 
 
 @dataclass(slots=True)
-class ProcessStretches:
+class ProcessRegions:
     """The stretches of processes, each found once."""
 
     demand_model: DemandModel
-    _found: dict[tuple[str, str, KeptOff], Stretches] = field(default_factory=dict)
+    _found: dict[tuple[str, str, RegionKind], NonPreemptiveRegions] = field(default_factory=dict)
 
-    def of(self, process: Process, core: str, kept_off: KeptOff) -> Stretches:
-        """The stretches of the jobs of a process on a core, in its time base; raises as `StretchWalk.of`."""
+    def of(self, process: Process, core: str, kept_off: RegionKind) -> NonPreemptiveRegions:
+        """The stretches of the jobs of a process on a core, in its time base; raises as `RegionWalk.of`."""
         key = (process.name, core, kept_off)
         if key not in self._found:
             self._found[key] = self._find(process, core, kept_off)
         return self._found[key]
 
-    def _find(self, process: Process, core: str, kept_off: KeptOff) -> Stretches:
+    def _find(self, process: Process, core: str, kept_off: RegionKind) -> NonPreemptiveRegions:
         model = self.demand_model
 
         def demand_of(activity: Activity) -> Time:
             return model.of_activities(process, (activity,), core).worst
 
-        return StretchWalk(model.system, kept_off, demand_of, model.possible_branches).of(process.activities)
+        return RegionWalk(model.system, kept_off, demand_of, model.possible_branches).of(process.activities)

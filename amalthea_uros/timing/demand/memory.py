@@ -19,9 +19,9 @@ from amalthea_uros.perf.distributions import Distribution, highest, lowest
 from amalthea_uros.perf.hardware import Access, Cache, Connection, Interconnect, Latency, Memory
 from amalthea_uros.perf.named import Named
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.basics.notes import Notes
+from amalthea_uros.timing.basics.notes import AnalysisNotes
 from amalthea_uros.timing.demand.means import mean
-from amalthea_uros.timing.demand.multiframe import Frame
+from amalthea_uros.timing.demand.multiframe import DemandFrame
 from amalthea_uros.timing.scheduling.allocation import frequency_of
 from amalthea_uros.units import SECOND, Frequency, time_of_ticks
 
@@ -42,11 +42,13 @@ class MemoryAccess:
     """
 
     system: System
-    notes: Notes
+    notes: AnalysisNotes
     frequency: Callable[[str], Frequency | None]
     _found: dict[tuple[str, str, AccessKind, int | None, int, int], _TimesInBase] = field(default_factory=dict)
 
-    def frame(self, core: str, label: str, kind: AccessKind, count: tuple[int, Fraction, int], time_base: Fraction) -> Frame:
+    def frame(
+        self, core: str, label: str, kind: AccessKind, count: tuple[int, Fraction, int], time_base: Fraction
+    ) -> DemandFrame:
         """The demand of some accesses.
 
         Parameters
@@ -68,7 +70,7 @@ class MemoryAccess:
         if key not in self._found:
             self._found[key] = self._times(core, memory, kind, self._size(label), time_base)
         minimum, average, maximum = self._found[key]
-        return Frame(worst=ceil(maximum * count[2]), best=floor(minimum * count[0]), average=average * count[1])
+        return DemandFrame(worst=ceil(maximum * count[2]), best=floor(minimum * count[0]), average=average * count[1])
 
     def _times(self, core: str, memory: Memory, kind: AccessKind, size: int | None, time_base: Fraction) -> _TimesInBase:
         """The latency of one access, in the time base."""

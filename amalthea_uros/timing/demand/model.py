@@ -46,11 +46,11 @@ from amalthea_uros.perf.software import Isr, Process, Runnable
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.limits import LIMIT
-from amalthea_uros.timing.basics.notes import Notes
-from amalthea_uros.timing.basics.settings import Memory, Settings
+from amalthea_uros.timing.basics.notes import AnalysisNotes
+from amalthea_uros.timing.basics.settings import MemoryModel, Settings
 from amalthea_uros.timing.demand.means import exact_sum, mean
 from amalthea_uros.timing.demand.memory import MemoryAccess
-from amalthea_uros.timing.demand.multiframe import Frame, MultiframeDemand
+from amalthea_uros.timing.demand.multiframe import DemandFrame, MultiframeDemand
 from amalthea_uros.timing.demand.overheads import Overheads
 from amalthea_uros.timing.jobs.counters import CallSites, CounterFlaws, first_effect, is_always
 from amalthea_uros.timing.jobs.counts import count_of, is_average
@@ -70,7 +70,7 @@ class DemandModel:
     """The demand of the processes of a system."""
 
     system: System
-    notes: Notes
+    notes: AnalysisNotes
     settings: Settings = field(default_factory=Settings)
     memory: MemoryAccess = field(init=False)
     overheads: Overheads = field(init=False)
@@ -79,7 +79,7 @@ class DemandModel:
     _servers: Mapping[str, tuple[str, ...]] | None = None
     _time_bases: dict[str, int] = field(default_factory=dict)
     _times_of_ticks: dict[tuple[str, Fraction], int | Fraction] = field(default_factory=dict)
-    _of_runnables: dict[tuple[str, str], tuple[Frame, ...]] = field(default_factory=dict)
+    _of_runnables: dict[tuple[str, str], tuple[DemandFrame, ...]] = field(default_factory=dict)
     _in_preparation: set[str] = field(default_factory=set)
 
     def __post_init__(self) -> None:
@@ -115,7 +115,7 @@ class DemandModel:
         if Terminate in self.system.activity_classes and any(map(ends_early, self._positions(process))):
             raise UnknownError("it can terminate before its last activity, which cannot be analysed")
         frames = self._frames(process.activities, core, ())
-        if self.settings.memory is Memory.IMPLICIT:
+        if self.settings.memory is MemoryModel.IMPLICIT:
             frames += [frame for _, frame in self.copies(process, core)]
         if isinstance(process, Isr):
             frames += [self._ticks(demand, core) for demand in self.overheads.of_isr(process, core) if demand is not None]
@@ -127,7 +127,7 @@ class DemandModel:
 
     def of_position(self, position: ActivityPosition, core: str, including: bool) -> MultiframeDemand:
         """Demand that jobs have executed when they reach a position, or have left it; raises as `of_process`."""
-        frames: list[Frame] = []
+        frames: list[DemandFrame] = []
         for depth, (activities, index) in enumerate(position.outer, start=1):
             is_last = depth == len(position.outer)
             here = self._frames(activities[: index + (including and is_last)], core, ())
@@ -148,12 +148,12 @@ class DemandModel:
         """The factor on the worst-case execution times of a process."""
         return self.settings.growth * self.settings.factors.get(process.name, 1)
 
-    def access(self, core: str, label: str, kind: AccessKind, times: Count | float | None) -> Frame:
+    def access(self, core: str, label: str, kind: AccessKind, times: Count | float | None) -> DemandFrame:
         """The demand of an access to a label, or to its copy, which can be anywhere on the way to the label; raises as `of_process`."""
         found = self.memory.frame(core, label, kind, count_of(times), self.settings.scale * self.time_base(core))
-        return _at_most(found) if self.settings.memory is Memory.IMPLICIT else found
+        return _at_most(found) if self.settings.memory is MemoryModel.IMPLICIT else found
 
-    def copies(self, process: Process, core: str) -> list[tuple[AccessKind, Frame]]:
+    def copies(self, process: Process, core: str) -> list[tuple[AccessKind, DemandFrame]]:
         """Copies of the labels that a process accesses, at its start (reads), and of those that it writes, at its end.
 
         Also a label that is only written is copied at the start, because a job need not write it, or all of it.
@@ -177,19 +177,19 @@ class DemandModel:
         """Everything that the jobs of a process do."""
         return positions(process, self.system, self.sites)
 
-    def _frames(self, activities: Iterable[Activity], core: str, above: tuple[str, ...]) -> list[Frame]:
+    def _frames(self, activities: Iterable[Activity], core: str, above: tuple[str, ...]) -> list[DemandFrame]:
         # Most activities are accesses.
-        timeless = LabelAccess if self.settings.memory is Memory.NONE else ()
+        timeless = LabelAccess if self.settings.memory is MemoryModel.NONE else ()
         taking_time = (activity for activity in activities if not isinstance(activity, timeless))
         return [frame for activity in taking_time for frame in self._with_services(activity, core, above)]
 
-    def _with_services(self, activity: Activity, core: str, above: tuple[str, ...]) -> Iterator[Frame]:
+    def _with_services(self, activity: Activity, core: str, above: tuple[str, ...]) -> Iterator[DemandFrame]:
         """The frames of one activity and of the OS services that it calls."""
         yield from self._of(activity, core, above)
         for demand in self.overheads.of_activity(activity, core):
             yield self._ticks(demand, core)
 
-    def _of(self, activity: Activity, core: str, above: tuple[str, ...]) -> Sequence[Frame]:
+    def _of(self, activity: Activity, core: str, above: tuple[str, ...]) -> Sequence[DemandFrame]:
         """The frames of one activity; activities without execution time have none."""
         match activity:
             case Execute(demand=demand):
@@ -197,15 +197,15 @@ class DemandModel:
             case ExecutionNeed(needs=needs):
                 scale = self.settings.scale
                 return [self._time(need, self.ticks_per_unit(name, core) * scale, core) for name, need in needs]
-            case LabelAccess(label=label, kind=kind, times=times) if self.settings.memory is not Memory.NONE:
+            case LabelAccess(label=label, kind=kind, times=times) if self.settings.memory is not MemoryModel.NONE:
                 self._require_maximum(times)
                 return [self.access(core, label, kind, times)]
-            case Send(channel=channel, elements=elements) if self.settings.memory is not Memory.NONE:
+            case Send(channel=channel, elements=elements) if self.settings.memory is not MemoryModel.NONE:
                 return [self.access(core, channel, AccessKind.WRITE, max(1, elements))]
-            case Receive(channel=channel, elements=elements, at_least=least) if self.settings.memory is not Memory.NONE:
+            case Receive(channel=channel, elements=elements, at_least=least) if self.settings.memory is not MemoryModel.NONE:
                 most = max(1, elements)
                 return [self.access(core, channel, AccessKind.READ, Count(least=min(least, most), mean=most, most=most))]
-            case ModeAccess() if self.settings.memory is not Memory.NONE:
+            case ModeAccess() if self.settings.memory is not MemoryModel.NONE:
                 self.notes.assume("accesses to mode labels take no time")
             case Call():
                 return self._call(activity, core, above)
@@ -226,11 +226,13 @@ class DemandModel:
                 raise UnknownError("it contains a loop without an upper bound on the number of iterations")
             case ServerCall() | SenderReceiverAccess() if reason := self._obstacle(activity):
                 raise UnknownError(reason)
-            case SenderReceiverAccess(label=label, kind=kind) if self.settings.memory is not Memory.NONE:
+            case SenderReceiverAccess(label=label, kind=kind) if self.settings.memory is not MemoryModel.NONE:
                 return [self.access(core, label, kind, None)]
             case WaitEvent():
                 raise UnknownError("it waits for events without a timeout, so there is no upper bound")
-            case Incomplete(reason=reason, is_access=is_access) if not is_access or self.settings.memory is not Memory.NONE:
+            case Incomplete(reason=reason, is_access=is_access) if (
+                not is_access or self.settings.memory is not MemoryModel.NONE
+            ):
                 raise UnknownError(f"it contains {reason}")
             case Migrate():
                 raise UnknownError("it migrates to another scheduler, which cannot be analysed")
@@ -253,7 +255,7 @@ class DemandModel:
                 return found
         return [*found, switch.default or ()]
 
-    def _ticks(self, demand: Demand, core: str) -> Frame:
+    def _ticks(self, demand: Demand, core: str) -> DemandFrame:
         return self._time(self.ticks(demand, core), self.settings.scale, core)
 
     def ticks(self, demand: Demand, core: str) -> Distribution[int]:
@@ -263,7 +265,7 @@ class DemandModel:
             raise UnknownError(f"ticks have no value for the core {core!r}")
         return ticks
 
-    def _call(self, call: Call, core: str, above: tuple[str, ...]) -> Sequence[Frame]:
+    def _call(self, call: Call, core: str, above: tuple[str, ...]) -> Sequence[DemandFrame]:
         runnable = self.system.runnables.get(call.runnable)
         if runnable is None:
             raise UnknownError(f"the runnable {call.runnable!r} is not defined in the model")
@@ -289,7 +291,7 @@ class DemandModel:
         if isinstance(times, float):
             self.notes.assume("a single whole number of calls or accesses is exact")
 
-    def _runnable(self, runnable: Runnable, core: str, above: tuple[str, ...]) -> Sequence[Frame]:
+    def _runnable(self, runnable: Runnable, core: str, above: tuple[str, ...]) -> Sequence[DemandFrame]:
         """The frames of a runnable, by its own executions."""
         key = (runnable.name, core)
         if key not in self._of_runnables:
@@ -299,16 +301,18 @@ class DemandModel:
             self._of_runnables[key] = _summed(inner)
         return self._of_runnables[key]
 
-    def _counted(self, frame: Frame, call: Call) -> Frame | None:
+    def _counted(self, frame: DemandFrame, call: Call) -> DemandFrame | None:
         """A frame of a called runnable in the executions of the caller; None if it is never executed."""
         if frame.is_always and call.counter is None:
-            return Frame(worst=frame.worst, best=frame.best, average=frame.average, offset=1, least=frame.least)
+            return DemandFrame(worst=frame.worst, best=frame.best, average=frame.average, offset=1, least=frame.least)
         inner = Counter(prescaler=frame.prescaler, offset=frame.offset, is_phase_known=frame.is_certain)
         try:
             counter = self.sites.lifted(call, inner)
         except UnknownError:
             prescaler = frame.prescaler * (call.counter.prescaler if call.counter else 1)
-            return Frame(worst=frame.worst, best=0, average=frame.average / prescaler, is_certain=False, least=frame.least)
+            return DemandFrame(
+                worst=frame.worst, best=0, average=frame.average / prescaler, is_certain=False, least=frame.least
+            )
         if counter is None:
             return None
         is_certain = frame.is_certain and counter.is_phase_known
@@ -339,7 +343,7 @@ class DemandModel:
         called = (activity.runnable for activity in activities if isinstance(activity, Call))
         return [name for name in called if name in self.system.runnables]
 
-    def _time(self, ticks: Distribution[int], factor: Fraction, core: str) -> Frame:
+    def _time(self, ticks: Distribution[int], factor: Fraction, core: str) -> DemandFrame:
         """The demand of ticks, or of units that take `factor` ticks each, in the time base."""
         tick = self.time_of_tick(factor, core)
         worst, best = highest(ticks), lowest(ticks)
@@ -352,7 +356,7 @@ class DemandModel:
             raise UnknownError("the minimum of a number of ticks is greater than the maximum")
         if worst * tick > LIMIT:
             raise UnknownError("an execution time exceeds 13 days")
-        return Frame(worst=ceil(worst * tick), best=floor(best * tick), average=mean(ticks) * tick)
+        return DemandFrame(worst=ceil(worst * tick), best=floor(best * tick), average=mean(ticks) * tick)
 
     def time_of_tick(self, factor: Fraction, core: str) -> int | Fraction:
         """The time units that `factor` ticks of a core take: usually a whole number, with which it is quicker to calculate.
@@ -390,15 +394,15 @@ class DemandModel:
         raise UnknownError(f"the type of the core {core!r} does not define the ticks for {need!r}")
 
 
-def _summed(frames: Sequence[Frame]) -> tuple[Frame, ...]:
+def _summed(frames: Sequence[DemandFrame]) -> tuple[DemandFrame, ...]:
     """The frames of the same jobs added up."""
-    found: dict[tuple[int, int, bool, int], list[Frame]] = {}
+    found: dict[tuple[int, int, bool, int], list[DemandFrame]] = {}
     for frame in frames:
         found.setdefault((frame.prescaler, frame.offset, frame.is_certain, frame.jitter), []).append(frame)
     return tuple(same[0] if len(same) == 1 else _sum(same) for same in found.values())
 
 
-def _sum(same: Sequence[Frame]) -> Frame:
+def _sum(same: Sequence[DemandFrame]) -> DemandFrame:
     return replace(
         same[0],
         worst=sum(frame.worst for frame in same),
@@ -408,12 +412,12 @@ def _sum(same: Sequence[Frame]) -> Frame:
     )
 
 
-def _least(occurring: Time, frames: Iterable[Frame]) -> Time | None:
+def _least(occurring: Time, frames: Iterable[DemandFrame]) -> Time | None:
     """The field of a frame that is made of others; None if all of them certainly occur."""
     return None if all(frame.least is None for frame in frames) else occurring
 
 
-def _scaled(frames: tuple[Frame, ...], growth: Fraction) -> tuple[Frame, ...]:
+def _scaled(frames: tuple[DemandFrame, ...], growth: Fraction) -> tuple[DemandFrame, ...]:
     """Frames with greater worst cases, so that they cover all smaller factors; with a factor below 1, best cases are smaller, too."""
     if growth == 1:
         return frames
@@ -429,19 +433,19 @@ def _scaled(frames: tuple[Frame, ...], growth: Fraction) -> tuple[Frame, ...]:
     )
 
 
-def _at_most(access: Frame) -> Frame:
+def _at_most(access: DemandFrame) -> DemandFrame:
     """The demand of an access that may take no time."""
-    return Frame(worst=access.worst, best=0, average=access.average)
+    return DemandFrame(worst=access.worst, best=0, average=access.average)
 
 
-def _any_time(frame: Frame) -> Frame:
+def _any_time(frame: DemandFrame) -> DemandFrame:
     """A frame on unknown jobs: any job may execute it, and any job may not."""
     if frame.is_always or (frame.prescaler == 1 and not frame.is_certain):
         return frame
-    return Frame(worst=frame.worst, best=0, average=frame.average / frame.prescaler, is_certain=False, least=frame.least)
+    return DemandFrame(worst=frame.worst, best=0, average=frame.average / frame.prescaler, is_certain=False, least=frame.least)
 
 
-def _repeated(frame: Frame, times: Count | float) -> Frame:
+def _repeated(frame: DemandFrame, times: Count | float) -> DemandFrame:
     """A frame that is executed several times."""
     minimum, average, maximum = count_of(times)
     return replace(
@@ -454,8 +458,8 @@ def _repeated(frame: Frame, times: Count | float) -> Frame:
 
 
 def _one_of(
-    alternatives: Sequence[Sequence[Frame]], weights: Sequence[float], each_occurs: bool, *, is_chance: bool
-) -> Sequence[Frame]:
+    alternatives: Sequence[Sequence[DemandFrame]], weights: Sequence[float], each_occurs: bool, *, is_chance: bool
+) -> Sequence[DemandFrame]:
     """One frame that bounds all alternatives.
 
     Parameters
@@ -480,7 +484,7 @@ def _one_of(
     likely = [value for value, weight in zip(occurring, weights, strict=True) if weight]
     least = max(likely) if is_chance else min(occurring)
     return [
-        Frame(
+        DemandFrame(
             worst=max(worst),
             best=min(best),
             average=weighted / total,

@@ -13,7 +13,7 @@ from amalthea_uros.units import Time
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Frame:
+class DemandFrame:
     """Demand of every n-th job.
 
     Attributes
@@ -53,12 +53,12 @@ class Frame:
 class MultiframeDemand:
     """The demand of the jobs of a process."""
 
-    frames: tuple[Frame, ...]
+    frames: tuple[DemandFrame, ...]
 
     @classmethod
     def constant(cls, worst: Time, best: Time | None = None) -> MultiframeDemand:
         """The same demand for all jobs."""
-        return cls((Frame(worst=worst, best=worst if best is None else best, average=Fraction(worst)),))
+        return cls((DemandFrame(worst=worst, best=worst if best is None else best, average=Fraction(worst)),))
 
     @property
     def is_certain(self) -> bool:

@@ -7,7 +7,7 @@ from fractions import Fraction
 from functools import cached_property
 
 from amalthea_uros.timing.event_models.base import NEVER, EventModel
-from amalthea_uros.timing.event_models.periodic import Conditional, Periodic, Sporadic
+from amalthea_uros.timing.event_models.periodic import ConditionalEvents, PeriodicEvents, SporadicEvents
 from amalthea_uros.units import Time
 
 
@@ -135,8 +135,8 @@ class Rescaled(EventModel):
 def rescaled(events: EventModel, factor: int) -> EventModel:
     """Events in a unit of time that is smaller by a factor."""
     match events:
-        case Periodic(period, jitter, distance):
-            kinds = (Conditional, Sporadic, Periodic)
+        case PeriodicEvents(period, jitter, distance):
+            kinds = (ConditionalEvents, SporadicEvents, PeriodicEvents)
             kind = next(kind for kind in kinds if isinstance(events, kind))
             return kind(period * factor, jitter * factor, distance * factor)
     return Rescaled(events, factor)
@@ -169,8 +169,8 @@ class Thinned(EventModel):
 
 def thinned(events: EventModel) -> EventModel:
     """Events that occur only if a condition is true: none of them is certain, and there is no maximum time between two."""
-    if isinstance(events, Periodic):
-        return Conditional(events.period, events.jitter, events.min_interarrival)
+    if isinstance(events, PeriodicEvents):
+        return ConditionalEvents(events.period, events.jitter, events.min_interarrival)
     return Thinned(events)
 
 
@@ -230,7 +230,7 @@ class OutputEventModel(EventModel):
 
     def _earliest(self, count: int) -> Time:
         """Minimum time from the latest completion of a job to the earliest activation of the one `count` - 1 after it."""
-        if isinstance(self.events, Periodic) and not self.events.jitter:
+        if isinstance(self.events, PeriodicEvents) and not self.events.jitter:
             # All distances are equal.
             return self.events.delta_min(count) - self._wcrt
         ends = enumerate(self.completions, start=1)

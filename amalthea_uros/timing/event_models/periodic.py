@@ -12,7 +12,7 @@ from amalthea_uros.units import Time
 
 
 @dataclass(frozen=True)
-class Periodic(EventModel):
+class PeriodicEvents(EventModel):
     """Periodic events with jitter and a minimum distance."""
 
     period: Time
@@ -42,7 +42,7 @@ class Periodic(EventModel):
 
 
 @dataclass(frozen=True)
-class Sporadic(Periodic):
+class SporadicEvents(PeriodicEvents):
     """Events with a minimum distance that can also be less frequent.
 
     Attributes
@@ -59,7 +59,7 @@ class Sporadic(Periodic):
 
 
 @dataclass(frozen=True)
-class Conditional(Sporadic):
+class ConditionalEvents(SporadicEvents):
     """Periodic or sporadic events, each of which occurs only if a condition is true."""
 
     @property
@@ -70,16 +70,16 @@ class Conditional(Sporadic):
 
 def is_strictly_periodic(model: EventModel) -> bool:
     """Whether an event occurs in every period, with or without jitter."""
-    return isinstance(model, Periodic) and not isinstance(model, Sporadic)
+    return isinstance(model, PeriodicEvents) and not isinstance(model, SporadicEvents)
 
 
 def can_be_dense(model: EventModel) -> bool:
     """Whether the minimum distances are known to occur, not only bounds."""
-    return isinstance(model, Periodic) and not model.can_be_suppressed
+    return isinstance(model, PeriodicEvents) and not model.can_be_suppressed
 
 
 @dataclass(frozen=True)
-class Single(EventModel):
+class SingleEvent(EventModel):
     """One event."""
 
     def delta_min(self, count: int) -> Time:
@@ -93,7 +93,7 @@ class Single(EventModel):
 
 
 @dataclass(frozen=True)
-class Pattern(EventModel):
+class EventPattern(EventModel):
     """A list of events that repeats with a period.
 
     Attributes
@@ -140,7 +140,7 @@ class Pattern(EventModel):
 
 
 @dataclass(frozen=True)
-class Curve(EventModel):
+class MinimumDistances(EventModel):
     """Events with given minimum distances for some counts.
 
     Attributes

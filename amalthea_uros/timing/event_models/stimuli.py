@@ -10,7 +10,13 @@ from amalthea_uros.perf.distributions import highest, lowest
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.limits import LIMIT
 from amalthea_uros.timing.event_models.base import EventModel
-from amalthea_uros.timing.event_models.periodic import Curve, Pattern, Periodic, Single, Sporadic
+from amalthea_uros.timing.event_models.periodic import (
+    EventPattern,
+    MinimumDistances,
+    PeriodicEvents,
+    SingleEvent,
+    SporadicEvents,
+)
 from amalthea_uros.units import SECOND, Frequency, Time
 
 #: Stimuli with more occurrences are not analysed.
@@ -24,11 +30,11 @@ def event_model_of(stimulus: perf.Stimulus, system: System) -> EventModel | None
     """
     found = _event_model_of(stimulus, system)
     match found:
-        case Periodic():
+        case PeriodicEvents():
             times = [found.period, found.jitter, found.min_interarrival]
-        case Pattern():
+        case EventPattern():
             times = [found.period]
-        case Curve():
+        case MinimumDistances():
             times = [time for _, time in found.distances]
         case _:
             times = []
@@ -39,40 +45,40 @@ def _event_model_of(stimulus: perf.Stimulus, system: System) -> EventModel | Non
     match stimulus:
         case perf.Periodic(period=period, jitter=jitter, min_distance=distance) if period > 0:
             if jitter is None:
-                return Periodic(period, 0, max(0, distance or 0))
+                return PeriodicEvents(period, 0, max(0, distance or 0))
             earliest, latest = lowest(jitter), highest(jitter)
             if earliest is None or latest is None or earliest > latest:
                 return None
-            return Periodic(period, latest - earliest, max(0, distance or 0))
+            return PeriodicEvents(period, latest - earliest, max(0, distance or 0))
         case perf.RelativePeriodic(distance=distance, has_maximum=has_maximum):
             shortest, longest = lowest(distance), highest(distance)
             if shortest is None or shortest <= 0 or (longest is not None and longest < shortest):
                 return None
             if not has_maximum:
-                return Sporadic(shortest)
-            return Periodic(shortest) if shortest == longest else Sporadic(shortest, longest=longest)
+                return SporadicEvents(shortest)
+            return PeriodicEvents(shortest) if shortest == longest else SporadicEvents(shortest, longest=longest)
         case perf.Synthetic(period=period, times=times) if period > 0 and times:
             # Times beyond the period coincide with those of later periods.
-            return Pattern(period, tuple(sorted(time % period for time in times)), _longest_at_start(period, times))
+            return EventPattern(period, tuple(sorted(time % period for time in times)), _longest_at_start(period, times))
         case perf.Burst(period=period, length=length, distance=distance, count=count) if period > 0:
             # Whether an occurrence at exactly the end of the burst is clipped is not stated; counting it is safe.
             occurrences = min(count, max(length, 0) // distance + 1) if distance > 0 else count
             if not 0 < occurrences <= MAX_OCCURRENCES or (occurrences - 1) * distance >= period:
                 return None
-            return Pattern(period, tuple(index * distance for index in range(occurrences)))
+            return EventPattern(period, tuple(index * distance for index in range(occurrences)))
         case perf.Single():
-            return Single()
+            return SingleEvent()
         case perf.ArrivalCurve(points=points):
             limits = tuple((p.occurrences, p.lower) for p in points if p.lower and 1 < p.occurrences <= MAX_OCCURRENCES)
-            return Curve(limits) if limits else None
+            return MinimumDistances(limits) if limits else None
         case perf.VariableRate(step=step, rate=rate, scenario=None) if step > 0:
             highest_rate = highest(rate)
-            return Sporadic(max(1, int(step / Fraction(highest_rate)))) if highest_rate else None
+            return SporadicEvents(max(1, int(step / Fraction(highest_rate)))) if highest_rate else None
         case perf.VariableRate(scenario=perf.Scenario(clock=name, recurrence=recurrence)) if recurrence > 0:
             frequency = _max_frequency(next((clock for clock in system.stimuli.clocks if clock.name == name), None))
             # An event occurs whenever the integral of the frequency has increased by the recurrence.
             shortest = int(Fraction(recurrence) * SECOND / frequency) if frequency else 0
-            return Sporadic(shortest) if shortest else None
+            return SporadicEvents(shortest) if shortest else None
     return None
 
 

@@ -71,7 +71,7 @@ class _Input:
 
 
 @dataclass(slots=True)
-class RouteLatencies:
+class ObservedRouteLatencies:
     """The latencies of a route, part by part.
 
     Attributes

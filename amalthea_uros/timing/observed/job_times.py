@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     Numbers = NDArray[np.int64]
 
 
-class Job(IntEnum):
+class JobColumn(IntEnum):
     """The columns of a row about a job that has ended, or an execution of a runnable: their numbers follow those of the processes.
 
     `ACTIVATION`, `START` and `END` are points in time. `RUNNING`, `WAITING`, `POLLING` and `PARKING` are the time in these states
@@ -65,16 +65,16 @@ def own_times(jobs: Numbers) -> Numbers:
 
     Parameters
     ----------
-    jobs : a column for each job, a row for each of `Job`
+    jobs : a column for each job, a row for each of `JobColumn`
     """
     found = np.empty((len(OWN), jobs.shape[1]), np.int64)
     net, gross, response, pending, ready, preemption, running, waiting, polling, parking = found
     running[:], waiting[:], polling[:], parking[:] = (
-        jobs[column] for column in (Job.RUNNING, Job.WAITING, Job.POLLING, Job.PARKING)
+        jobs[column] for column in (JobColumn.RUNNING, JobColumn.WAITING, JobColumn.POLLING, JobColumn.PARKING)
     )
-    np.subtract(jobs[Job.END], jobs[Job.START], out=gross)
-    np.subtract(jobs[Job.END], jobs[Job.ACTIVATION], out=response)
-    np.subtract(jobs[Job.START], jobs[Job.ACTIVATION], out=pending)
+    np.subtract(jobs[JobColumn.END], jobs[JobColumn.START], out=gross)
+    np.subtract(jobs[JobColumn.END], jobs[JobColumn.ACTIVATION], out=response)
+    np.subtract(jobs[JobColumn.START], jobs[JobColumn.ACTIVATION], out=pending)
     np.add(running, waiting, out=net)
     net += polling
     np.subtract(gross, net, out=ready)
@@ -92,10 +92,10 @@ def times_between(earlier: Numbers, later: Numbers) -> Numbers:
     """
     found = np.empty((len(BETWEEN), later.shape[1]), np.int64)
     ends = (
-        (Job.ACTIVATION, Job.ACTIVATION),
-        (Job.START, Job.START),
-        (Job.END, Job.END),
-        (Job.END, Job.START),
+        (JobColumn.ACTIVATION, JobColumn.ACTIVATION),
+        (JobColumn.START, JobColumn.START),
+        (JobColumn.END, JobColumn.END),
+        (JobColumn.END, JobColumn.START),
     )
     for row, (begin, end) in zip(found, ends, strict=True):
         np.subtract(later[end], earlier[begin], out=row)

@@ -19,7 +19,7 @@ from amalthea_uros.perf.os import SERVERS, Duration, Parameter, ParameterValue, 
 from amalthea_uros.perf.software import Preemption, Process, Task
 from amalthea_uros.perf.stimuli import Periodic
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.basics.notes import Notes
+from amalthea_uros.timing.basics.notes import AnalysisNotes
 from amalthea_uros.timing.scheduling.allocation import deciding_scheduler, effective_priority
 from amalthea_uros.units import Time
 
@@ -161,7 +161,7 @@ class Scheduling:
     """
 
     system: System
-    notes: Notes
+    notes: AnalysisNotes
     limits: Mapping[str, Time] = field(default_factory=dict)
     servers: dict[str, Server] = field(default_factory=dict)
     _served: Counter[str] = field(init=False, default_factory=Counter)

@@ -16,7 +16,7 @@ from amalthea_uros.analyze.chains.bounds import becker, bi, davare, duerr, haman
 from amalthea_uros.analyze.chains.bounds.chain_task import ChainTask
 from amalthea_uros.analyze.explanations.chains import explain_chain
 from amalthea_uros.analyze.explanations.hop_causes import CauseKind
-from amalthea_uros.analyze.results.chains import EXPLAINED, Quantity
+from amalthea_uros.analyze.results.chains import EXPLAINED, LatencyQuantity
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.activities import Communication
 from amalthea_uros.perf.hardware import StructureKind
@@ -191,7 +191,7 @@ def test_data_that_wait_for_another_controller():
     tasks = [("A", 10, [ticks(4), write("x")], "one"), ("B", 10, [read("x"), ticks(1)], "two")]
     events = (at("A", START), at("B", END))
     analysis = analyze_system(system(tasks, events, cores=("one", "two"), controllers=True))
-    a, b = check_sums(explain_chain(analysis, "chain", Quantity.MAX_REACTION_TIME))
+    a, b = check_sums(explain_chain(analysis, "chain", LatencyQuantity.MAX_REACTION_TIME))
     # The message arrives just after A has started, and its output just after B has: a period and an execution time each.
     assert [(hop.wait // US, hop.run // US) for hop in (a, b)] == [(10, 4), (10, 1)]
 

@@ -9,7 +9,7 @@ from support import ROOT, SHARED
 from test_methods import cases
 
 from amalthea_uros import Settings, analyze_system, describe, extract, load
-from amalthea_uros.analyze.results.chains import Quantity
+from amalthea_uros.analyze.results.chains import LatencyQuantity
 from amalthea_uros.perf.activities import (
     AccessKind,
     Call,
@@ -636,7 +636,7 @@ def test_chains_that_the_importer_drops_or_distorts(path):
     analysis = analyze_system(extract(load(path)).system)
     assert analysis.chains
     for chain in analysis.chains:
-        assert chain.reason or chain.value(Quantity.MAX_REACTION_TIME) is not None
+        assert chain.reason or chain.value(LatencyQuantity.MAX_REACTION_TIME) is not None
         assert bool(chain.reason) == any(
             f.rule in ("CHN001", "CHN002", "CHN003", "CHN004") and f.object == chain.name for f in analysis.findings
         )

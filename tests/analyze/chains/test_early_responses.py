@@ -3,7 +3,7 @@
 import pytest
 from hand_made_systems import READ, WRITE, Proc, access, chain, system, ticks
 
-from amalthea_uros.analyze.results.chains import Quantity
+from amalthea_uros.analyze.results.chains import LatencyQuantity
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.activities import Demand, Execute
 from amalthea_uros.perf.distributions import Boundaries
@@ -36,9 +36,9 @@ def built(before_write):
 @pytest.mark.parametrize("before_write", [ticks(3), VARYING], ids=["constant", "varying"])
 def test_no_bound_counts_on_a_response_before_its_stimulus(before_write):
     found = {value.quantity: value.value for value in analyze_system(built(before_write)).chains["flow"].values}
-    assert found.get(Quantity.MAX_REDUCED_REACTION_TIME, 56 * US) >= 56 * US
+    assert found.get(LatencyQuantity.MAX_REDUCED_REACTION_TIME, 56 * US) >= 56 * US
     # The response at 60 us shows the job of W that started at 4 us; that at 0 us shows the one before, at -86 us if there was one.
-    assert found.get(Quantity.MAX_REDUCED_DATA_AGE, 86 * US) >= 86 * US
+    assert found.get(LatencyQuantity.MAX_REDUCED_DATA_AGE, 86 * US) >= 86 * US
     assert all(value >= 0 for value in found.values())
 
 

@@ -3,7 +3,7 @@
 import pytest
 from hand_made_systems import READ, WRITE, Proc, access, chain, system, ticks
 
-from amalthea_uros.analyze.results.chains import Quantity
+from amalthea_uros.analyze.results.chains import LatencyQuantity
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.events import ProcessChange, ProcessEvent
 from amalthea_uros.perf.software import Label
@@ -16,7 +16,7 @@ from amalthea_uros.units import MICROSECOND as US
 
 def reaction(analysis):
     """The maximum reduced reaction time, and its claim."""
-    value = next(v for v in analysis.chains["flow"].values if v.quantity is Quantity.MAX_REDUCED_REACTION_TIME)
+    value = next(v for v in analysis.chains["flow"].values if v.quantity is LatencyQuantity.MAX_REDUCED_REACTION_TIME)
     return value.value, value.claim
 
 

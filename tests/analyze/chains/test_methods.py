@@ -20,9 +20,9 @@ from amalthea_uros.analyze.chains.bounds.chain_task import ChainTask
 from amalthea_uros.analyze.chains.read_write_times import ReadWriteTimes, let_times
 from amalthea_uros.analyze.response_times import priority_levels, schedule
 from amalthea_uros.analyze.response_times.schedule import PeriodicTask
-from amalthea_uros.analyze.response_times.task import Task
+from amalthea_uros.analyze.response_times.task import AnalysedTask
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
-from amalthea_uros.timing.event_models import Periodic
+from amalthea_uros.timing.event_models import PeriodicEvents
 
 
 @cache
@@ -277,7 +277,7 @@ def test_no_run_is_worse_than_a_bound(rows, data):
     chain = data.draw(st.permutations(names).map(lambda order: order[: data.draw(st.integers(1, len(names)))]))
     found = build_job_chains(tasks, chain)
     responses = priority_levels.response_times(
-        [Task(name=t.name, events=Periodic(t.period), demand=t.demand, priority=t.priority) for t in tasks]
+        [AnalysedTask(name=t.name, events=PeriodicEvents(t.period), demand=t.demand, priority=t.priority) for t in tasks]
     )
     by_name = {task.name: (task, response.worst) for task, response in zip(tasks, responses, strict=True)}
     chain_tasks = [

@@ -12,7 +12,7 @@ from message_board import ACK, CMD, MS, ODOM, US, Publication, Span, Wire, WireK
 
 from amalthea_uros.analyze.chains.messages.evaluate import evaluate_executors_and_messages
 from amalthea_uros.analyze.response_times.propagation import solve
-from amalthea_uros.analyze.results.chains import Quantity
+from amalthea_uros.analyze.results.chains import LatencyQuantity
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.executors.bounds.backlog import Arriving, max_backlog
 from amalthea_uros.executors.bounds.publications import sending_times
@@ -27,7 +27,7 @@ from amalthea_uros.perf.executors import HandleKind
 from amalthea_uros.perf.network import Purpose
 from amalthea_uros.perf.os import Policy, Scheduler
 from amalthea_uros.perf.stimuli import InterProcess, Periodic
-from amalthea_uros.timing.event_models import Sporadic
+from amalthea_uros.timing.event_models import SporadicEvents
 
 TO_PWM = ("to pwm", "cmd_published", "on_cmd_end", "speed_written", "pwm_end")
 TO_HOST = ("to host", "cmd_published", "on_cmd_end", "odom_at_host")
@@ -213,7 +213,7 @@ def test_limits_are_judged_by_the_hops():
     )
     analysis = analyze_system(replace(found, constraints=Constraints(constraints=constraints)))
     assert [analysis.requirements[each.name].verdict for each in constraints] == [verdict for *_, verdict in limits]
-    assert analysis.chains["to pwm"].value(Quantity.MAX_REDUCED_REACTION_TIME).value == chain.worst
+    assert analysis.chains["to pwm"].value(LatencyQuantity.MAX_REDUCED_REACTION_TIME).value == chain.worst
     assert list(analysis.message_chains) == [chain]
 
 
@@ -268,7 +268,7 @@ def test_another_sender_on_the_wire_is_waited_for():
     ],
 )
 def test_messages_that_come_late_lie_unread_together(parts, unread):
-    assert max_backlog([Arriving(events=Sporadic(10 * MS), jitter=40 * MS, parts=parts)], 6 * MS) == unread
+    assert max_backlog([Arriving(events=SporadicEvents(10 * MS), jitter=40 * MS, parts=parts)], 6 * MS) == unread
 
 
 def with_answers(found, interval, write):

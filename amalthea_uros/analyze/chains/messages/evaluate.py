@@ -24,7 +24,7 @@ from amalthea_uros.analyze.chains.messages.segments import (
     name_of,
 )
 from amalthea_uros.analyze.response_times.solution import Solution
-from amalthea_uros.analyze.results.chains import ChainResult, Quantity, Value
+from amalthea_uros.analyze.results.chains import ChainResult, LatencyQuantity, LatencyValue
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.bounds.evaluate import evaluate_executors
 from amalthea_uros.executors.bounds.publications import sending_times
@@ -243,13 +243,13 @@ def _result(
     loss: str = "",
 ) -> ChainResult:
     """The result of a chain in the terms of all chains, so that limits are judged by it."""
-    values = [_value(Quantity.MIN_FIRST_TO_FIRST, sum(hop.best for hop in hops))] if hops else []
+    values = [_value(LatencyQuantity.MIN_FIRST_TO_FIRST, sum(hop.best for hop in hops))] if hops else []
     times = [hop.worst for hop in hops if hop.worst is not None]
     if hops and len(times) == len(hops):
         worst = sum(times)
         hops = [replace(hop, share=Fraction(hop.worst or 0, worst)) if worst else hop for hop in hops]
         if not loss:
-            values.append(_value(Quantity.MAX_REDUCED_REACTION_TIME, worst))
+            values.append(_value(LatencyQuantity.MAX_REDUCED_REACTION_TIME, worst))
     return ChainResult(
         name=chain.name,
         communication="over wires and executors",
@@ -268,5 +268,5 @@ def _result(
     )
 
 
-def _value(quantity: Quantity, time: Time) -> Value:
-    return Value(quantity=quantity, value=time, claim=Claim.BOUND, method=METHOD, source=SOURCE)
+def _value(quantity: LatencyQuantity, time: Time) -> LatencyValue:
+    return LatencyValue(quantity=quantity, value=time, claim=Claim.BOUND, method=METHOD, source=SOURCE)

@@ -20,7 +20,7 @@ from amalthea_uros._internal.by_name import Results
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.chains.messages.segments import CallbackSegment, EntryKind, TaskSegment
 from amalthea_uros.analyze.chains.route_latencies import RouteLatencies
-from amalthea_uros.analyze.results.chains import Quantity, Value
+from amalthea_uros.analyze.results.chains import LatencyQuantity, LatencyValue
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.results import ExecutorResult, HandleResult, Hop, HopKind, TimePart
 from amalthea_uros.perf.events import Event, ProcessChange, ProcessEvent
@@ -153,9 +153,9 @@ def task_hop(segment: TaskSegment, entry: EntryKind, is_last: bool, evaluator: C
     )
 
 
-def _bounds(events: Sequence[Event], entry: EntryKind, evaluator: ChainEvaluator) -> tuple[Value, Time] | None:
+def _bounds(events: Sequence[Event], entry: EntryKind, evaluator: ChainEvaluator) -> tuple[LatencyValue, Time] | None:
     """The tightest bound of a latency, and how long a message waits until then; None if it has no maximum."""
-    quantity = Quantity.MAX_REACTION_TIME if entry is EntryKind.DATA else Quantity.MAX_REDUCED_REACTION_TIME
+    quantity = LatencyQuantity.MAX_REACTION_TIME if entry is EntryKind.DATA else LatencyQuantity.MAX_REDUCED_REACTION_TIME
     bounds = []
     for route in routes(events, evaluator.context.dataflow):
         for link, first, then in zip(route.links, route.events, route.events[1:], strict=False):
@@ -179,7 +179,7 @@ def _best(segment: TaskSegment, evaluator: ChainEvaluator) -> Time:
     times = []
     for route in routes(segment.events, evaluator.context.dataflow):
         values = evaluator.latencies(route).values()
-        bounds = [each.value for each in values if each.quantity is Quantity.MIN_FIRST_TO_FIRST]
+        bounds = [each.value for each in values if each.quantity is LatencyQuantity.MIN_FIRST_TO_FIRST]
         times.append(max((time for time in bounds if time is not None), default=0))
     return min(times, default=0)
 
@@ -196,7 +196,7 @@ def _events(segment: TaskSegment, entry: EntryKind, is_last: bool) -> list[Event
     return events
 
 
-def _tightest(latencies: RouteLatencies, quantity: Quantity) -> Value | None:
+def _tightest(latencies: RouteLatencies, quantity: LatencyQuantity) -> LatencyValue | None:
     bounds = [each for each in latencies.values() if each.quantity is quantity and each.value is not None]
     return min(bounds, key=lambda each: each.value or 0, default=None)
 

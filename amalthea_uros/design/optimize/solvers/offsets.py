@@ -13,7 +13,7 @@ from itertools import combinations, product
 from math import gcd, prod
 from typing import TypeAlias
 
-from amalthea_uros.analyze.results.chains import Quantity
+from amalthea_uros.analyze.results.chains import LatencyQuantity
 from amalthea_uros.design.changes.change import Change
 from amalthea_uros.design.changes.key import Configuration
 from amalthea_uros.design.optimize.candidate import Candidate
@@ -28,7 +28,7 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.timing.activation.phases import unknown_phases
 from amalthea_uros.timing.activation.releases import known_releases
 from amalthea_uros.timing.basics.quantities import JobMetric
-from amalthea_uros.timing.blocking.critical_sections import Protection
+from amalthea_uros.timing.blocking.critical_sections import LockUsage
 from amalthea_uros.timing.scheduling.ranks import EqualPriority, is_preemptive
 from amalthea_uros.units import Time
 
@@ -36,7 +36,7 @@ from amalthea_uros.units import Time
 MAX_VECTORS, MAX_DESIGNS = 200_000, 5000
 
 #: Quantities that are the same wherever a schedule starts.
-_LASTING = (*Quantity, FROM_ARRIVAL, JobMetric.RESPONSE_TIME, LOAD)
+_LASTING = (*LatencyQuantity, FROM_ARRIVAL, JobMetric.RESPONSE_TIME, LOAD)
 
 #: The offsets and periods of processes with known releases.
 Releases: TypeAlias = Mapping[str, tuple[Time, Time]]
@@ -110,7 +110,7 @@ def _depends_on_start(problem: Problem) -> bool:
         return True
     context = timing_context(system, settings)
     return not all(
-        is_preemptive(item) and item.equal_priority is EqualPriority.FIFO and context.protection[item.name] == Protection()
+        is_preemptive(item) and item.equal_priority is EqualPriority.FIFO and context.protection[item.name] == LockUsage()
         for item in context.scheduled.values()
     )
 

@@ -24,8 +24,8 @@ from amalthea_uros.executors.semantics.loops import timing_context
 from amalthea_uros.judge.verdict import FAILURES, Verdict
 from amalthea_uros.perf.stimuli import EventTriggered, InterProcess
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.basics.settings import Memory
-from amalthea_uros.timing.blocking.critical_sections import Protection
+from amalthea_uros.timing.basics.settings import MemoryModel
+from amalthea_uros.timing.blocking.critical_sections import LockUsage
 from amalthea_uros.timing.scheduling.allocation import allocated_cores
 from amalthea_uros.timing.scheduling.ranks import EqualPriority, is_preemptive
 
@@ -189,7 +189,7 @@ class Partition:
 def _is_separable(problem: Problem) -> bool:
     """Whether the tasks of a core depend on nothing that others do, do not block each other, and do not share time in slices."""
     system, settings = problem.present
-    if settings.memory is not Memory.NONE:
+    if settings.memory is not MemoryModel.NONE:
         return False
     stimuli = [system.stimuli_by_name.get(name) for process in system.processes.values() for name in process.stimuli]
     if any(isinstance(stimulus, InterProcess | EventTriggered) for stimulus in stimuli):
@@ -199,7 +199,7 @@ def _is_separable(problem: Problem) -> bool:
         is_preemptive(item)
         and item.server is None
         and item.equal_priority not in (EqualPriority.ROUND_ROBIN, EqualPriority.UNKNOWN)
-        and context.protection[item.name] == Protection()
+        and context.protection[item.name] == LockUsage()
         for item in context.scheduled.values()
     )
 

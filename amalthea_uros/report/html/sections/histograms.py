@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from amalthea_uros.analyze.results.chains import Quantity
+from amalthea_uros.analyze.results.chains import LatencyQuantity
 from amalthea_uros.analyze.results.processes import ProcessResult
 from amalthea_uros.report.html.blocks import Block, Figure, Folded, Section, Sentences
 from amalthea_uros.report.html.times import at_least, at_most
@@ -66,7 +66,7 @@ def _chains(content: ReportContent) -> Iterator[_Distribution]:
             for each in requirements_of(chain.name, content.analysis)
             if each.quantity == "reaction" and each.is_upper and each.limit is not None
         ]
-        value = chain.value(Quantity.MAX_REDUCED_REACTION_TIME)
+        value = chain.value(LatencyQuantity.MAX_REDUCED_REACTION_TIME)
         if value is not None and value.value is not None:
             marks.append(Mark("worst case", value.value, MarkKind.BOUND))
         yield _Distribution(chain.name, quantity, observed[chain.name].quantities[quantity], marks)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from amalthea_uros.analyze.explanations.chains import ChainExplanation, ProcessHop, explain_chain
-from amalthea_uros.analyze.results.chains import Quantity
+from amalthea_uros.analyze.results.chains import LatencyQuantity
 from amalthea_uros.report.html import shortened
 from amalthea_uros.report.html.blocks import Block, Figure, Folded, Heading, Section, Sentences, table
 from amalthea_uros.report.judged import LIMITED, decisive_quantity, requirements_of, worst_chains
@@ -61,7 +61,7 @@ def _blocks(explanation: ChainExplanation, limit: Time | None, name: str) -> lis
     ]
 
 
-def _limit(chain: str, quantity: Quantity, content: ReportContent) -> Time | None:
+def _limit(chain: str, quantity: LatencyQuantity, content: ReportContent) -> Time | None:
     """The tightest limit of a latency."""
     limits = (
         each for each in requirements_of(chain, content.analysis) if each.is_upper and LIMITED.get(each.quantity) is quantity

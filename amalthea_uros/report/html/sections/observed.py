@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.analyze.results.chains import Quantity
+from amalthea_uros.analyze.results.chains import LatencyQuantity
 from amalthea_uros.report.html.badges import badge
 from amalthea_uros.report.html.blocks import Block, Cell, Section, Sentences, table
 from amalthea_uros.report.html.times import about, at_least, at_most
@@ -17,8 +17,8 @@ from amalthea_uros.timing.basics.quantities import ChainQuantity
 
 #: The quantities of chains that are both computed and observed.
 BOUNDED = {
-    ChainQuantity.REDUCED_REACTION_TIME: Quantity.MAX_REDUCED_REACTION_TIME,
-    ChainQuantity.REDUCED_DATA_AGE: Quantity.MAX_REDUCED_DATA_AGE,
+    ChainQuantity.REDUCED_REACTION_TIME: LatencyQuantity.MAX_REDUCED_REACTION_TIME,
+    ChainQuantity.REDUCED_DATA_AGE: LatencyQuantity.MAX_REDUCED_DATA_AGE,
 }
 
 

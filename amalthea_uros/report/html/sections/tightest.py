@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from amalthea_uros.analyze.results.analysis import Analysis
-from amalthea_uros.analyze.results.chains import ChainResult, Quantity
+from amalthea_uros.analyze.results.chains import ChainResult, LatencyQuantity
 from amalthea_uros.report.html.badges import badge, verdict_badge
 from amalthea_uros.report.html.blocks import Block, Cell, Section, table
 from amalthea_uros.report.judged import judged_rows, limit_text, margin_text, requirements_of, why, worst_chains
@@ -47,7 +47,9 @@ def section(content: ReportContent) -> Section | None:
 
 
 def _chain(chain: ChainResult, analysis: Analysis) -> tuple[Cell, ...]:
-    values = [chain.value(quantity) for quantity in (Quantity.MAX_REDUCED_REACTION_TIME, Quantity.MAX_REDUCED_DATA_AGE)]
+    values = [
+        chain.value(quantity) for quantity in (LatencyQuantity.MAX_REDUCED_REACTION_TIME, LatencyQuantity.MAX_REDUCED_DATA_AGE)
+    ]
     claims = dict.fromkeys(str(value.claim) for value in values if value is not None and value.value is not None)
     worst = next(iter(requirements_of(chain.name, analysis)), None)
     return (

@@ -40,7 +40,7 @@ from amalthea_uros.perf.events import (
 )
 from amalthea_uros.simulate.kernel import operations
 from amalthea_uros.simulate.program.activities.calls import check_executing
-from amalthea_uros.timing.basics.settings import Memory
+from amalthea_uros.timing.basics.settings import MemoryModel
 from amalthea_uros.timing.blocking.critical_sections import spinlocks_of, waits_actively
 from amalthea_uros.trace.table import EntityKind, EventKind
 
@@ -167,5 +167,5 @@ def execution_need(body: Body, activity: ExecutionNeed) -> None:
 
 def incomplete(body: Body, activity: Incomplete) -> None:
     """Refuse what the model does not state, unless it is an access that takes no time."""
-    if not activity.is_access or body.context.settings.memory is not Memory.NONE:
+    if not activity.is_access or body.context.settings.memory is not MemoryModel.NONE:
         raise UnknownError(f"it contains {activity.reason}")
