@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from amalthea_uros.analyze.chains.bounds.chain_task import ChainTask
+from amalthea_uros.analyze.chains.bounds import ChainTask
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.timing.jobs.counters import first_effect, is_always
 from amalthea_uros.units import Time

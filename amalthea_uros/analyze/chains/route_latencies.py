@@ -7,9 +7,8 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from amalthea_uros.analyze.chains import job_chains
-from amalthea_uros.analyze.chains.bounds import becker, bi, davare, duerr, hamann, kloda
-from amalthea_uros.analyze.chains.bounds.chain_task import ChainTask
+from amalthea_uros.analyze.chains import bounds, job_chains
+from amalthea_uros.analyze.chains.bounds import ChainTask, total
 from amalthea_uros.analyze.chains.read_write_times import TimedStage
 from amalthea_uros.analyze.chains.stage_timing import in_picoseconds
 from amalthea_uros.analyze.results.chains import LatencyQuantity, LatencyValue
@@ -115,8 +114,8 @@ class RouteLatencies:
         tasks = [timed.task for part in self.parts for timed in part]
         yield from self._of_periods(tasks)
         if all(timed.is_logical for part in self.parts for timed in part):
-            time = hamann.reaction_time(tasks) + _wait_at_start(tasks)
-            yield from self._reactions(time, tasks, "two periods for each step", hamann.SOURCE)
+            time = total(bounds.hamann(tasks)) + _wait_at_start(tasks)
+            yield from self._reactions(time, tasks, "two periods for each step", bounds.HAMANN)
         if len(self.parts) == 1 and all(timed.is_visible_at_once for timed in self.parts[0]) and not is_answered_later:
             yield from self._of_releases(tasks)
 
@@ -194,11 +193,11 @@ class RouteLatencies:
                 yield value(quantity, max(0, int(times.min())))
 
     def _job_chains(self, part: Sequence[TimedStage], pessimistic: bool) -> JobChains | None:
-        bounds = [timed.read_write for timed in part if timed.read_write is not None]
-        chain = [each.pessimistic if pessimistic else each.optimistic for each in bounds]
-        if len(bounds) < len(part) or not all(len(task.releases) for task in chain):
+        times = [timed.read_write for timed in part if timed.read_write is not None]
+        chain = [each.pessimistic if pessimistic else each.optimistic for each in times]
+        if len(times) < len(part) or not all(len(task.releases) for task in chain):
             return None
-        return self.budget.build(chain, max(each.steady_state_start for each in bounds))
+        return self.budget.build(chain, max(each.steady_state_start for each in times))
 
     def _summed(self, found: Sequence[JobChains]) -> Iterator[LatencyValue]:
         """The sum over controllers without a common clock (theorem 5.8 of RTAS 2021)."""
@@ -237,33 +236,33 @@ class RouteLatencies:
         at_start = _wait_at_start(tasks)
         method = "sum of periods and response times"
         if all(task.is_regular for task in tasks):
-            yield from self._reactions(davare.reaction_time(tasks) + at_start, tasks, method, davare.SOURCE)
+            yield from self._reactions(total(bounds.davare(tasks)) + at_start, tasks, method, bounds.DAVARE)
         elif all(task.is_regular for task in others) and self.parts[0][0].is_certain:
-            time = davare.reaction_time(tasks) + at_start - first.period
+            time = total(bounds.davare(tasks)) + at_start - first.period
             yield self._bound(
-                LatencyQuantity.MAX_REDUCED_REACTION_TIME, time, f"{method}, without the first period", davare.SOURCE
+                LatencyQuantity.MAX_REDUCED_REACTION_TIME, time, f"{method}, without the first period", bounds.DAVARE
             )
         if not all(task.is_regular for task in tasks[:-1]):
             return
         if all(task.response <= task.period for task in tasks if task.is_regular):
             if tasks[-1].is_regular:
-                yield from self._reactions(duerr.reaction_time(tasks) + at_start, tasks, "sporadic chains", duerr.SOURCE)
-            time = duerr.reduced_data_age(tasks)
-            yield self._bound(LatencyQuantity.MAX_REDUCED_DATA_AGE, time, "sporadic chains", duerr.SOURCE)
+                yield from self._reactions(total(bounds.duerr(tasks)) + at_start, tasks, "sporadic chains", bounds.DUERR)
+            time = total(bounds.duerr_data_age(tasks))
+            yield self._bound(LatencyQuantity.MAX_REDUCED_DATA_AGE, time, "sporadic chains", bounds.DUERR)
 
     def _of_releases(self, tasks: Sequence[ChainTask]) -> Iterator[LatencyValue]:
         """Bounds for periodic tasks with known releases."""
         if any(task.offset is None or not task.is_regular or task.response > task.period for task in tasks):
             return
-        reaction = kloda.reaction_time(tasks)
+        reaction = bounds.kloda(tasks)
         if reaction is not None:
-            yield from self._reactions(reaction + _not_released(tasks), tasks, "next releases", kloda.SOURCE)
-        age = becker.reduced_data_age(tasks)
+            yield from self._reactions(total(reaction) + _not_released(tasks), tasks, "next releases", bounds.KLODA)
+        age = bounds.becker(tasks)
         if age is not None:
-            yield self._bound(LatencyQuantity.MAX_REDUCED_DATA_AGE, age, "reachable jobs", becker.SOURCE)
+            yield self._bound(LatencyQuantity.MAX_REDUCED_DATA_AGE, total(age), "reachable jobs", bounds.BECKER)
         if len({task.offset for task in tasks}) == 1:
-            age = bi.reduced_data_age(tasks)
-            yield self._bound(LatencyQuantity.MAX_REDUCED_DATA_AGE, age, "grid of releases", bi.SOURCE)
+            grid = total(bounds.bi(tasks))
+            yield self._bound(LatencyQuantity.MAX_REDUCED_DATA_AGE, grid, "grid of releases", bounds.BI)
 
 
 def _wait_at_start(tasks: Sequence[ChainTask]) -> Time:

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from amalthea_uros.analyze.chains.boundary_times import BoundaryTimes, BoundaryWindows, is_inside, is_logical, kind
-from amalthea_uros.analyze.chains.bounds.chain_task import ChainTask
+from amalthea_uros.analyze.chains.bounds import ChainTask
 from amalthea_uros.analyze.chains.read_write_times import ReadWriteBounds, ReadWriteTimes, TimedStage, let_times
 from amalthea_uros.analyze.response_times.blocking import Blocking
 from amalthea_uros.analyze.response_times.core_schedule import CoreSchedules

@@ -10,8 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from amalthea_uros.analyze.chains import job_chains
-from amalthea_uros.analyze.chains.bounds import terms
+from amalthea_uros.analyze.chains import bounds, job_chains
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.chains.job_chains import JobBudget, backward, forward
 from amalthea_uros.analyze.chains.read_write_times import ReadWriteTimes, TimedStage, reach
@@ -288,12 +287,12 @@ class _RouteExplanation:
     # By a bound
 
     def _of_bound(self, timed: Sequence[TimedStage], groups: Sequence[Sequence[Stage]]) -> list[_Step]:
-        table = terms.REDUCED_DATA_AGE if self.quantity is LatencyQuantity.MAX_REDUCED_DATA_AGE else terms.REACTION_TIME
+        table = bounds.REDUCED_DATA_AGE if self.quantity is LatencyQuantity.MAX_REDUCED_DATA_AGE else bounds.REACTION_TIME
         of_method = next((table[source] for source in table if self.value.source.startswith(source)), None)
         if of_method is None:
             return []
         found: list[_Step] = []
-        for term, group, each in zip(of_method([each.task for each in timed]), groups, timed, strict=True):
+        for term, group, each in zip(of_method([each.task for each in timed]) or (), groups, timed, strict=True):
             is_reduced = self.quantity is LatencyQuantity.MAX_REDUCED_REACTION_TIME and not found
             step, *triggered = self._with_triggered(
                 _Step(
@@ -370,11 +369,11 @@ class _Path(NamedTuple):
 
 def _worst_path(part: Sequence[TimedStage], quantity: LatencyQuantity) -> _Path | None:
     """The job chain with the greatest latency; None if there are no job chains."""
-    bounds = [timed.read_write for timed in part if timed.read_write is not None]
-    chain = [each.pessimistic for each in bounds]
-    if len(bounds) < len(part):
+    known = [timed.read_write for timed in part if timed.read_write is not None]
+    chain = [each.pessimistic for each in known]
+    if len(known) < len(part):
         return None
-    built = JobBudget().build(chain, max(each.steady_state_start for each in bounds))
+    built = JobBudget().build(chain, max(each.steady_state_start for each in known))
     if built is None:
         return None
     found = built.from_start(is_exact=True)

@@ -15,8 +15,7 @@ from hypothesis import strategies as st
 from support import SHARED
 
 from amalthea_uros.analyze.chains import job_chains
-from amalthea_uros.analyze.chains.bounds import becker, bi, davare, duerr, hamann, kloda
-from amalthea_uros.analyze.chains.bounds.chain_task import ChainTask
+from amalthea_uros.analyze.chains.bounds import ChainTask, becker, bi, davare, duerr, duerr_data_age, hamann, kloda, total
 from amalthea_uros.analyze.chains.read_write_times import ReadWriteTimes, let_times
 from amalthea_uros.analyze.response_times import priority_levels, schedule
 from amalthea_uros.analyze.response_times.schedule import PeriodicTask
@@ -124,14 +123,14 @@ def chain_tasks_of(case):
 def test_published_bounds(case):
     chain_tasks = chain_tasks_of(case)
     assert {
-        "davare07": davare.reaction_time(chain_tasks),
-        "duerr19_mrt": duerr.reaction_time(chain_tasks),
-        "duerr19_mrda": duerr.reduced_data_age(chain_tasks),
-        "kloda18_mrt": kloda.reaction_time(chain_tasks),
-        "bi22_mrda": bi.reduced_data_age(chain_tasks),
-        "becker17_response_times_mrda": becker.reduced_data_age(chain_tasks),
-        "becker17_no_information_mrda": becker.reduced_data_age([replace(task, response=task.period) for task in chain_tasks]),
-        "hamann17_let": hamann.reaction_time(chain_tasks),
+        "davare07": total(davare(chain_tasks)),
+        "duerr19_mrt": total(duerr(chain_tasks)),
+        "duerr19_mrda": total(duerr_data_age(chain_tasks)),
+        "kloda18_mrt": total(kloda(chain_tasks)),
+        "bi22_mrda": total(bi(chain_tasks)),
+        "becker17_response_times_mrda": total(becker(chain_tasks)),
+        "becker17_no_information_mrda": total(becker([replace(task, response=task.period) for task in chain_tasks])),
+        "hamann17_let": total(hamann(chain_tasks)),
     } == case["bounds"]
 
 
@@ -192,9 +191,9 @@ class TestTheChallengeOf2017:
                 for name, then in zip(names, [*names[1:], None], strict=True)
             ]
             expected = chain["implicit_bounds"][variant]
-            assert davare.reaction_time(chain_tasks) == pytest.approx(expected["davare2007_us"] * 1000, abs=1)
-            assert duerr.reaction_time(chain_tasks) == pytest.approx(expected["duerr2019_max_reaction_us"] * 1000, abs=1)
-            assert duerr.reduced_data_age(chain_tasks) == pytest.approx(expected["duerr2019_max_data_age_us"] * 1000, abs=1)
+            assert total(davare(chain_tasks)) == pytest.approx(expected["davare2007_us"] * 1000, abs=1)
+            assert total(duerr(chain_tasks)) == pytest.approx(expected["duerr2019_max_reaction_us"] * 1000, abs=1)
+            assert total(duerr_data_age(chain_tasks)) == pytest.approx(expected["duerr2019_max_data_age_us"] * 1000, abs=1)
 
 
 # Brute force: jobs with random execution times, played through moment by moment.
@@ -289,13 +288,13 @@ def test_no_run_is_worse_than_a_bound(rows, data):
         )
         for name, then in zip(chain, [*chain[1:], None], strict=True)
     ]
-    reactions = [found.reaction_time, davare.reaction_time(chain_tasks)]
+    reactions = [found.reaction_time, total(davare(chain_tasks))]
     ages = [int(found.last_to_last.max())]
     if all(task.response <= task.period for task in chain_tasks):
-        reactions += [duerr.reaction_time(chain_tasks), kloda.reaction_time(chain_tasks)]
-        ages += [duerr.reduced_data_age(chain_tasks), becker.reduced_data_age(chain_tasks)]
+        reactions += [total(duerr(chain_tasks)), total(kloda(chain_tasks))]
+        ages += [total(duerr_data_age(chain_tasks)), total(becker(chain_tasks))]
         if len({task.offset for task in chain_tasks}) == 1:
-            ages.append(bi.reduced_data_age(chain_tasks))
+            ages.append(total(bi(chain_tasks)))
     for seed in range(3):
         reacting, ageing = observe(tasks, chain, 150, Random(seed))
         steady_state_start = max(task.offset + task.period for task in tasks)

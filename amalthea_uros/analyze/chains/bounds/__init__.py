@@ -1,1 +1,0 @@
-"""Bounds of end-to-end latencies, one file per paper."""
