@@ -29,7 +29,8 @@ from amalthea_uros.timing.event_models import EventModel
 from amalthea_uros.timing.jobs.executed import states_execution_time
 from amalthea_uros.timing.jobs.server_calls import with_direct_calls
 from amalthea_uros.timing.scheduling.allocation import allocated_cores, effective_priority
-from amalthea_uros.timing.scheduling.ranks import ScheduledProcess, Scheduling, Server
+from amalthea_uros.timing.scheduling.ranks import Scheduling
+from amalthea_uros.timing.scheduling.scheduled import ScheduledProcess, Server
 from amalthea_uros.timing.successors import with_successors
 from amalthea_uros.timing.touching import Touching
 

@@ -51,7 +51,7 @@ from amalthea_uros.timing.basics.settings import MemoryModel, Settings
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.dataflow.chains import events_of
 from amalthea_uros.timing.scheduling.allocation import allocated_cores
-from amalthea_uros.timing.scheduling.ranks import is_preemptive
+from amalthea_uros.timing.scheduling.scheduled import is_preemptive
 
 #: By these, processes influence each other in ways that are not followed here: then each one influences all.
 _COUPLING = (Migrate, SemaphoreAccess, SenderReceiverAccess, ServerCall, WaitEvent)

@@ -19,7 +19,7 @@ from amalthea_uros.timing.blocking.critical_sections import LockUsage, protectio
 from amalthea_uros.timing.dataflow.links import Dataflow, DirectLink, LinkKind, reads, writes
 from amalthea_uros.timing.jobs.executed import executed
 from amalthea_uros.timing.scheduling.allocation import allocated_cores, scheduler_cores
-from amalthea_uros.timing.scheduling.ranks import ScheduledProcess
+from amalthea_uros.timing.scheduling.scheduled import ScheduledProcess
 
 #: What the bridge calls a migration without a target.
 _INCOMPLETE_MIGRATION = "an incomplete EnforcedMigration"

@@ -92,7 +92,7 @@ def test_only_what_is_used_much_is_compiled(monkeypatch):
 
 
 def test_what_is_kept_from_an_earlier_run_is_used_sooner(monkeypatch):
-    monkeypatch.setattr("amalthea_uros._internal.machine_code.Effort.is_kept", lambda _: True)
+    monkeypatch.setattr("amalthea_uros._internal.machine_code.CompilationEffort.is_kept", lambda _: True)
 
     @compiled(cost=400_000)
     def double(number):

@@ -11,7 +11,7 @@ from amalthea_uros.analyze.response_times import priority_levels
 from amalthea_uros.analyze.response_times.task import AnalysedTask, Budget
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.event_models import PeriodicEvents
-from amalthea_uros.timing.scheduling.ranks import EqualPriority
+from amalthea_uros.timing.scheduling.scheduled import EqualPriority
 
 
 def shared(equal_priority, rows, above=()):

@@ -10,7 +10,7 @@ from amalthea_uros.analyze.explanations.execution_shares import execution_shares
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.perf.activities import Loop, WaitEvent, walk
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.scheduling.ranks import ScheduledProcess
+from amalthea_uros.timing.scheduling.scheduled import ScheduledProcess
 
 
 class OriginKind(StrEnum):

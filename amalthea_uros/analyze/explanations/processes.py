@@ -21,7 +21,7 @@ from amalthea_uros.judge.verdict import FAILURES, Verdict
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.jobs.counters import takes_effect
 from amalthea_uros.timing.response import Response
-from amalthea_uros.timing.scheduling.ranks import ScheduledProcess, Server
+from amalthea_uros.timing.scheduling.scheduled import ScheduledProcess, Server
 from amalthea_uros.units import Time
 
 

@@ -13,7 +13,7 @@ from amalthea_uros.analyze.priorities.orders import Order, PriorityOrders, with_
 from amalthea_uros.analyze.results.analysis import Analysis, require_analysis
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.judge.verdict import FAILURES, Verdict
-from amalthea_uros.timing.scheduling.ranks import ScheduledProcess
+from amalthea_uros.timing.scheduling.scheduled import ScheduledProcess
 
 #: All orders of at most this many tasks are tried.
 MAX_PERMUTED = 6

@@ -25,7 +25,7 @@ from amalthea_uros.timing.blocking.critical_sections import LockUsage
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.event_models import EventModel
 from amalthea_uros.timing.response import Claim
-from amalthea_uros.timing.scheduling.ranks import EqualPriority, ScheduledProcess, is_preemptive
+from amalthea_uros.timing.scheduling.scheduled import EqualPriority, ScheduledProcess, is_preemptive
 from amalthea_uros.units import Time, percent_text, time_text
 
 #: Names of tasks, lowest priority first.

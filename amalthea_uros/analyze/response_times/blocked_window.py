@@ -13,7 +13,7 @@ from amalthea_uros.analyze.response_times.task import FULL, AnalysedTask, Supply
 from amalthea_uros.perf.software import Preemption
 from amalthea_uros.timing.basics.notes import AnalysisNotes
 from amalthea_uros.timing.response import Response
-from amalthea_uros.timing.scheduling.ranks import EqualPriority, Rank, ScheduledProcess, Server, is_preemptive, preemption
+from amalthea_uros.timing.scheduling.scheduled import EqualPriority, Rank, ScheduledProcess, Server, is_preemptive, preemption
 from amalthea_uros.units import Time
 
 

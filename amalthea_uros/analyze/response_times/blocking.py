@@ -23,7 +23,7 @@ from amalthea_uros.perf.software import Preemption
 from amalthea_uros.timing.blocking.critical_sections import LockUsage
 from amalthea_uros.timing.blocking.regions import NonPreemptiveRegions, ProcessRegions, RegionKind
 from amalthea_uros.timing.demand.model import DemandModel
-from amalthea_uros.timing.scheduling.ranks import EqualPriority, Rank, ScheduledProcess, SchedulingContext, preemption
+from amalthea_uros.timing.scheduling.scheduled import EqualPriority, Rank, ScheduledProcess, SchedulingContext, preemption
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:

@@ -19,7 +19,7 @@ from amalthea_uros.perf.software import Preemption, Task
 from amalthea_uros.timing.activation.releases import known_releases
 from amalthea_uros.timing.blocking.critical_sections import LockUsage
 from amalthea_uros.timing.response import Claim, Response
-from amalthea_uros.timing.scheduling.ranks import ScheduledProcess, preemption
+from amalthea_uros.timing.scheduling.scheduled import ScheduledProcess, preemption
 from amalthea_uros.units import Time
 
 METHOD = "schedule until it repeats, fixed priorities, non-preemptive, constant execution times"

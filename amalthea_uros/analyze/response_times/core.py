@@ -19,7 +19,7 @@ from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.event_models import EventModel, PeriodicEvents, rescaled
 from amalthea_uros.timing.jobs.executed import ends_with_execution
 from amalthea_uros.timing.response import Claim, Response
-from amalthea_uros.timing.scheduling.ranks import EqualPriority, Rank, ScheduledProcess, Server, is_preemptive, preemption
+from amalthea_uros.timing.scheduling.scheduled import EqualPriority, Rank, ScheduledProcess, Server, is_preemptive, preemption
 
 
 def responses_on(core: str, solution: Solution) -> dict[str, Response]:
@@ -229,7 +229,7 @@ class _CoreAnalysis:
             notes.assume("best cases on such cores hold once all tasks have been released")
         if any(item.equal_priority is EqualPriority.UNKNOWN for item in usable):
             notes.assume(unknown_order.ASSUMPTION)
-        decisions = self._decisions(len(ranks)) if supply is FULL else []
+        decisions = AnalysedTask.of_decisions(self.core, self.solution, len(ranks)) if supply is FULL else []
         found = priority_levels.response_times([*tasks, *decisions], [*waits, *[0] * len(decisions)], supply)
         for index, item in enumerate(usable):
             window = BlockedWindow(notes, self.time_base, blocking, usable, [*tasks, *decisions], waits[index], supply)
@@ -287,19 +287,6 @@ class _CoreAnalysis:
             slice=item.slice * self.time_base,
             activation_limit=getattr(item.process, "activation_limit", 1) if isinstance(item, ScheduledProcess) else 1,
         )
-
-    def _decisions(self, priority: int) -> list[AnalysedTask]:
-        """The decisions of schedulers at activations of tasks, which precede everything else."""
-        return [
-            AnalysedTask(
-                name=f"decision for {scheduled.name}",
-                events=rescaled(self.solution.event_models[scheduled.name], self.time_base),
-                demand=self.context.decisions[scheduled.name],
-                priority=priority,
-            )
-            for scheduled in self.context.on_core(self.core)
-            if scheduled.name in self.context.decisions and scheduled.name in self.solution.event_models
-        ]
 
 
 def periodic_tasks(core: str, solution: Solution) -> list[schedule.PeriodicTask]:

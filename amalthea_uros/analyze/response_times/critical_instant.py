@@ -23,8 +23,8 @@ from amalthea_uros.analyze.response_times.task import AnalysedTask
 from amalthea_uros.perf.distributions import highest
 from amalthea_uros.perf.software import Preemption
 from amalthea_uros.perf.stimuli import Periodic, RelativePeriodic
-from amalthea_uros.timing.event_models import SporadicEvents, rescaled
-from amalthea_uros.timing.scheduling.ranks import EqualPriority, ScheduledProcess, is_preemptive, preemption
+from amalthea_uros.timing.event_models import SporadicEvents
+from amalthea_uros.timing.scheduling.scheduled import EqualPriority, ScheduledProcess, is_preemptive, preemption
 from amalthea_uros.units import Time
 
 
@@ -44,7 +44,7 @@ def certain_response(name: str, solution: Solution) -> Time | None:
     if wait and not all(_is_free(other, solution) for other in here):
         # The other releases may leave no moment at which somebody of lower priority is just ahead; but it can do without.
         wait = 0
-    task, *higher = [_task(other, solution) for other in (item, *above)]
+    task, *higher = [AnalysedTask.of(other, solution) for other in (item, *above)]
     if is_preemptive(item):
         worst = fixed_priority.response_time(task, Interference.of(higher), max(0, wait - 1))[0].worst
     else:
@@ -94,10 +94,3 @@ def _is_free(item: ScheduledProcess, solution: Solution) -> bool:
     """Whether a process can stay away for any time."""
     events = solution.event_models[item.name]
     return isinstance(events, SporadicEvents) and events.longest is None
-
-
-def _task(item: ScheduledProcess, solution: Solution) -> AnalysedTask:
-    time_base = solution.context.demand_model.time_base(item.core)
-    return AnalysedTask(
-        name=item.name, events=rescaled(solution.event_models[item.name], time_base), demand=solution.context.demands[item.name]
-    )

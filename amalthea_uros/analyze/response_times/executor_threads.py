@@ -21,8 +21,7 @@ from amalthea_uros.analyze.response_times.blocking import Blocking
 from amalthea_uros.analyze.response_times.busy_window import Interference
 from amalthea_uros.analyze.response_times.task import AnalysedTask
 from amalthea_uros.errors import UnknownError
-from amalthea_uros.timing.event_models import rescaled
-from amalthea_uros.timing.scheduling.ranks import ScheduledProcess
+from amalthea_uros.timing.scheduling.scheduled import ScheduledProcess
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
@@ -70,7 +69,9 @@ class ExecutorThread:
         )
         time_base = context.time_base(task)
         return cls(
-            Interference.of([*(_task(item, solution) for item in above), *_decisions(scheduled.core, solution)]),
+            Interference.of(
+                [*(AnalysedTask.of(item, solution) for item in above), *AnalysedTask.of_decisions(scheduled.core, solution)]
+            ),
             blocking.time(scheduled) + own,
             time_base,
         )
@@ -90,25 +91,3 @@ class ExecutorThread:
             return 0
         found = self.others.window(fixed, 0)
         return None if found is None else -(-found // self.time_base)
-
-
-def _task(item: ScheduledProcess, solution: Solution) -> AnalysedTask:
-    return AnalysedTask(
-        name=item.name,
-        events=rescaled(solution.event_models[item.name], solution.context.time_base(item.name)),
-        demand=solution.context.demands[item.name],
-    )
-
-
-def _decisions(core: str, solution: Solution) -> list[AnalysedTask]:
-    """The decisions of schedulers at activations of tasks, which precede everything else."""
-    context = solution.context
-    return [
-        AnalysedTask(
-            name=f"decision for {item.name}",
-            events=rescaled(solution.event_models[item.name], context.time_base(item.name)),
-            demand=context.decisions[item.name],
-        )
-        for item in context.on_core(core)
-        if item.name in context.decisions and item.name in solution.event_models
-    ]

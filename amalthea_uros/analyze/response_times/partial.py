@@ -15,8 +15,7 @@ from amalthea_uros.analyze.response_times.blocking import Blocking
 from amalthea_uros.analyze.response_times.busy_window import Interference
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.response_times.task import AnalysedTask
-from amalthea_uros.timing.event_models import rescaled
-from amalthea_uros.timing.scheduling.ranks import ScheduledProcess
+from amalthea_uros.timing.scheduling.scheduled import ScheduledProcess
 from amalthea_uros.units import Time
 
 
@@ -41,7 +40,7 @@ def time_until_executed(name: str, executed: Time, solution: Solution) -> Time |
     above = [item for item in processes if item.rank >= level.rank and item.name != name]
     if level.is_flat or any(item.rank == scheduled.rank for item in above) or blocking.obstacle(scheduled):
         return None
-    task, *higher = (_task(item, solution) for item in (scheduled, *above))
+    task, *higher = (AnalysedTask.of(item, solution) for item in (scheduled, *above))
     return _longest(task, Interference.of(higher), blocking.time(scheduled), executed)
 
 
@@ -56,12 +55,3 @@ def _longest(task: AnalysedTask, higher: Interference, blocking: Time, executed:
         if window <= task.events.delta_min(job + 1):
             return longest
     return None
-
-
-def _task(scheduled: ScheduledProcess, solution: Solution) -> AnalysedTask:
-    time_base = solution.context.time_base(scheduled.name)
-    return AnalysedTask(
-        name=scheduled.name,
-        events=rescaled(solution.event_models[scheduled.name], time_base),
-        demand=solution.context.demands[scheduled.name],
-    )

@@ -11,7 +11,7 @@ from amalthea_uros.analyze.response_times import edf, fixed_priority, round_robi
 from amalthea_uros.analyze.response_times.busy_window import Interference
 from amalthea_uros.analyze.response_times.task import FULL, AnalysedTask, Supply
 from amalthea_uros.timing.response import Claim, Response
-from amalthea_uros.timing.scheduling.ranks import EqualPriority
+from amalthea_uros.timing.scheduling.scheduled import EqualPriority
 from amalthea_uros.units import Time
 
 

@@ -23,7 +23,7 @@ from amalthea_uros.timing.basics.limits import MAX_INPUT
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.event_models import Delayed, EventModel, OutputEventModel, PeriodicEvents
 from amalthea_uros.timing.response import Response
-from amalthea_uros.timing.scheduling.ranks import ScheduledProcess
+from amalthea_uros.timing.scheduling.scheduled import ScheduledProcess
 from amalthea_uros.units import Time
 
 #: Maximum number of rounds, and of jobs of busy windows in all rounds; if jitter still increases then, it does not converge.

@@ -8,12 +8,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
-from amalthea_uros.timing.event_models import EventModel
-from amalthea_uros.timing.scheduling.ranks import EqualPriority
+from amalthea_uros.timing.event_models import EventModel, rescaled
+from amalthea_uros.timing.scheduling.scheduled import EqualPriority, ScheduledProcess
 from amalthea_uros.units import Time
+
+if TYPE_CHECKING:
+    from amalthea_uros.analyze.response_times.solution import Solution
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -38,6 +41,30 @@ class AnalysedTask:
     deadline: Time = 0
     slice: Time = 0
     activation_limit: int = 1
+
+    @classmethod
+    def of(cls, item: ScheduledProcess, solution: Solution) -> AnalysedTask:
+        """A scheduled process, in the time base of its core."""
+        return cls(
+            name=item.name,
+            events=rescaled(solution.event_models[item.name], solution.context.time_base(item.name)),
+            demand=solution.context.demands[item.name],
+        )
+
+    @classmethod
+    def of_decisions(cls, core: str, solution: Solution, priority: int = 0) -> list[AnalysedTask]:
+        """The decisions of schedulers at activations of tasks on a core, which precede everything else."""
+        context = solution.context
+        return [
+            cls(
+                name=f"decision for {item.name}",
+                events=rescaled(solution.event_models[item.name], context.time_base(item.name)),
+                demand=context.decisions[item.name],
+                priority=priority,
+            )
+            for item in context.on_core(core)
+            if item.name in context.decisions and item.name in solution.event_models
+        ]
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,7 +16,7 @@ from amalthea_uros.simulate.program.resources import Parts, Resources
 from amalthea_uros.simulate.program.scheduling import Dispatched
 from amalthea_uros.timing.blocking.critical_sections import protection_of
 from amalthea_uros.timing.jobs.executed import states_execution_time
-from amalthea_uros.timing.scheduling.ranks import EqualPriority, preemption
+from amalthea_uros.timing.scheduling.scheduled import EqualPriority, preemption
 from amalthea_uros.trace.table import EntityKind
 
 #: Places for activations of each process to begin with.

@@ -12,15 +12,8 @@ from amalthea_uros.perf.software import Preemption
 from amalthea_uros.timing.activation.releases import response_time_limits
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.scheduling.allocation import allocated_cores
-from amalthea_uros.timing.scheduling.ranks import (
-    EqualPriority,
-    Rank,
-    ScheduledProcess,
-    Scheduling,
-    Server,
-    preemption,
-    standard_policy,
-)
+from amalthea_uros.timing.scheduling.ranks import Scheduling, standard_policy
+from amalthea_uros.timing.scheduling.scheduled import EqualPriority, Rank, ScheduledProcess, Server, preemption
 
 
 @dataclass(frozen=True, slots=True)

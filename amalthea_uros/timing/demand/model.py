@@ -48,9 +48,18 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.limits import LIMIT
 from amalthea_uros.timing.basics.notes import AnalysisNotes
 from amalthea_uros.timing.basics.settings import MemoryModel, Settings
-from amalthea_uros.timing.demand.means import exact_sum, mean
+from amalthea_uros.timing.demand.means import mean
 from amalthea_uros.timing.demand.memory import MemoryAccess
-from amalthea_uros.timing.demand.multiframe import DemandFrame, MultiframeDemand
+from amalthea_uros.timing.demand.multiframe import (
+    DemandFrame,
+    MultiframeDemand,
+    any_time,
+    at_most,
+    one_of,
+    repeated,
+    scaled,
+    summed,
+)
 from amalthea_uros.timing.demand.overheads import Overheads
 from amalthea_uros.timing.jobs.counters import CallSites, CounterFlaws, first_effect, is_always
 from amalthea_uros.timing.jobs.counts import count_of, is_average
@@ -59,7 +68,7 @@ from amalthea_uros.timing.jobs.modes import holds
 from amalthea_uros.timing.jobs.positions import ActivityPosition, ends_early, positions
 from amalthea_uros.timing.jobs.server_calls import obstacle, servers, with_direct_calls
 from amalthea_uros.timing.scheduling.allocation import frequency_of
-from amalthea_uros.units import Frequency, Time, time_of_ticks
+from amalthea_uros.units import Frequency, time_of_ticks
 
 #: With a finer time base, times could exceed 64-bit integers.
 MAX_TIME_BASE = 1000
@@ -119,11 +128,11 @@ class DemandModel:
             frames += [frame for _, frame in self.copies(process, core)]
         if isinstance(process, Isr):
             frames += [self._ticks(demand, core) for demand in self.overheads.of_isr(process, core) if demand is not None]
-        return MultiframeDemand(_scaled(_summed(frames), self._growth(process)))
+        return MultiframeDemand(scaled(summed(frames), self._growth(process)))
 
     def of_activities(self, process: Process, activities: Sequence[Activity], core: str) -> MultiframeDemand:
         """Demand of some activities of a process, without overheads of the process; raises as `of_process`."""
-        return MultiframeDemand(_scaled(_summed(self._frames(activities, core, ())), self._growth(process)))
+        return MultiframeDemand(scaled(summed(self._frames(activities, core, ())), self._growth(process)))
 
     def of_position(self, position: ActivityPosition, core: str, including: bool) -> MultiframeDemand:
         """Demand that jobs have executed when they reach a position, or have left it; raises as `of_process`."""
@@ -136,13 +145,13 @@ class DemandModel:
                 if isinstance(call, Call):
                     here = [counted for frame in here if (counted := self._counted(frame, call)) is not None]
             frames += here
-        return MultiframeDemand(_scaled(_summed(frames), self._growth(position.process)))
+        return MultiframeDemand(scaled(summed(frames), self._growth(position.process)))
 
     def of_decision(self, scheduler: Scheduler, core: str) -> MultiframeDemand:
         """Demand of one decision of a scheduler; raises as `of_process`."""
         # The decisions for all tasks count.
-        frames = [_any_time(frame) for frame in self._frames(scheduler.overhead, core, ())]
-        return MultiframeDemand(_scaled(_summed(frames), self.settings.growth))
+        frames = [any_time(frame) for frame in self._frames(scheduler.overhead, core, ())]
+        return MultiframeDemand(scaled(summed(frames), self.settings.growth))
 
     def _growth(self, process: Process) -> Fraction:
         """The factor on the worst-case execution times of a process."""
@@ -151,7 +160,7 @@ class DemandModel:
     def access(self, core: str, label: str, kind: AccessKind, times: Count | float | None) -> DemandFrame:
         """The demand of an access to a label, or to its copy, which can be anywhere on the way to the label; raises as `of_process`."""
         found = self.memory.frame(core, label, kind, count_of(times), self.settings.scale * self.time_base(core))
-        return _at_most(found) if self.settings.memory is MemoryModel.IMPLICIT else found
+        return at_most(found) if self.settings.memory is MemoryModel.IMPLICIT else found
 
     def copies(self, process: Process, core: str) -> list[tuple[AccessKind, DemandFrame]]:
         """Copies of the labels that a process accesses, at its start (reads), and of those that it writes, at its end.
@@ -171,7 +180,7 @@ class DemandModel:
         frames = [
             (key[1], self.memory.frame(core, *key, count_of(1), time_base), is_certain) for key, is_certain in certain.items()
         ]
-        return [(kind, frame if is_certain else _at_most(frame)) for kind, frame, is_certain in frames]
+        return [(kind, frame if is_certain else at_most(frame)) for kind, frame, is_certain in frames]
 
     def _positions(self, process: Process) -> Sequence[ActivityPosition]:
         """Everything that the jobs of a process do."""
@@ -215,11 +224,11 @@ class DemandModel:
                 weights = [branch.weight for branch in branches]
                 each_occurs = not any(weights) or all(weights)
                 alternatives = [self._frames(branch.activities, core, above) for branch in branches]
-                return _one_of(alternatives, weights, each_occurs, is_chance=True)
+                return one_of(alternatives, weights, each_occurs, is_chance=True)
             case Switch():
                 alternatives = [self._frames(inner, core, above) for inner in self.possible_branches(activity)]
                 # The modes can exclude branches, or combinations of them.
-                return _one_of(alternatives, [1.0] * len(alternatives), each_occurs=len(alternatives) == 1, is_chance=False)
+                return one_of(alternatives, [1.0] * len(alternatives), each_occurs=len(alternatives) == 1, is_chance=False)
             case Loop(condition=condition):
                 if holds(condition, self.settings.modes) is False:
                     return []
@@ -278,10 +287,10 @@ class DemandModel:
             case False:
                 return []
             case None if runnable.condition is not None:
-                frames = [replace(_any_time(frame), best=0, is_certain=not frame.worst, least=0) for frame in frames]
+                frames = [replace(any_time(frame), best=0, is_certain=not frame.worst, least=0) for frame in frames]
         if call.times is not None:
             self._require_maximum(call.times)
-            frames = [_repeated(frame, call.times) for frame in frames]
+            frames = [repeated(frame, call.times) for frame in frames]
         return [counted for frame in frames if (counted := self._counted(frame, call)) is not None]
 
     def _require_maximum(self, times: Count | float | None) -> None:
@@ -298,7 +307,7 @@ class DemandModel:
             self._prepare(runnable, core)
         if key not in self._of_runnables:
             inner = self._frames(runnable.activities, core, (*above, runnable.name))
-            self._of_runnables[key] = _summed(inner)
+            self._of_runnables[key] = summed(inner)
         return self._of_runnables[key]
 
     def _counted(self, frame: DemandFrame, call: Call) -> DemandFrame | None:
@@ -334,7 +343,7 @@ class DemandModel:
             if (name, core) not in self._of_runnables:
                 with suppress(UnknownError):
                     frames = self._frames(self.system.runnables[name].activities, core, (name,))
-                    self._of_runnables[name, core] = _summed(frames)
+                    self._of_runnables[name, core] = summed(frames)
         self._in_preparation.remove(core)
 
     def _called(self, runnable: str) -> list[str]:
@@ -392,103 +401,3 @@ class DemandModel:
             self.notes.assume("an instruction takes one tick unless the core type specifies it")
             return Fraction(1)
         raise UnknownError(f"the type of the core {core!r} does not define the ticks for {need!r}")
-
-
-def _summed(frames: Sequence[DemandFrame]) -> tuple[DemandFrame, ...]:
-    """The frames of the same jobs added up."""
-    found: dict[tuple[int, int, bool, int], list[DemandFrame]] = {}
-    for frame in frames:
-        found.setdefault((frame.prescaler, frame.offset, frame.is_certain, frame.jitter), []).append(frame)
-    return tuple(same[0] if len(same) == 1 else _sum(same) for same in found.values())
-
-
-def _sum(same: Sequence[DemandFrame]) -> DemandFrame:
-    return replace(
-        same[0],
-        worst=sum(frame.worst for frame in same),
-        best=sum(frame.best for frame in same),
-        average=exact_sum(frame.average for frame in same),
-        least=_least(sum(frame.occurring for frame in same), same),
-    )
-
-
-def _least(occurring: Time, frames: Iterable[DemandFrame]) -> Time | None:
-    """The field of a frame that is made of others; None if all of them certainly occur."""
-    return None if all(frame.least is None for frame in frames) else occurring
-
-
-def _scaled(frames: tuple[DemandFrame, ...], growth: Fraction) -> tuple[DemandFrame, ...]:
-    """Frames with greater worst cases, so that they cover all smaller factors; with a factor below 1, best cases are smaller, too."""
-    if growth == 1:
-        return frames
-    return tuple(
-        replace(
-            frame,
-            worst=ceil(frame.worst * growth),
-            best=floor(frame.best * min(growth, Fraction(1))),
-            average=frame.average * growth,
-            least=None if frame.least is None else ceil(frame.least * growth),
-        )
-        for frame in frames
-    )
-
-
-def _at_most(access: DemandFrame) -> DemandFrame:
-    """The demand of an access that may take no time."""
-    return DemandFrame(worst=access.worst, best=0, average=access.average)
-
-
-def _any_time(frame: DemandFrame) -> DemandFrame:
-    """A frame on unknown jobs: any job may execute it, and any job may not."""
-    if frame.is_always or (frame.prescaler == 1 and not frame.is_certain):
-        return frame
-    return DemandFrame(worst=frame.worst, best=0, average=frame.average / frame.prescaler, is_certain=False, least=frame.least)
-
-
-def _repeated(frame: DemandFrame, times: Count | float) -> DemandFrame:
-    """A frame that is executed several times."""
-    minimum, average, maximum = count_of(times)
-    return replace(
-        frame,
-        worst=frame.worst * maximum,
-        best=frame.best * minimum,
-        average=frame.average * average,
-        least=None if frame.least is None else frame.least * maximum,
-    )
-
-
-def _one_of(
-    alternatives: Sequence[Sequence[DemandFrame]], weights: Sequence[float], each_occurs: bool, *, is_chance: bool
-) -> Sequence[DemandFrame]:
-    """One frame that bounds all alternatives.
-
-    Parameters
-    ----------
-    each_occurs : whether each job can take any of them
-    is_chance : whether they are chosen at random, so that each one occurs some time; otherwise modes choose
-    """
-    plain = [[_any_time(frame) for frame in frames] for frames in alternatives]
-    worst = [sum(frame.worst for frame in frames) for frames in plain]
-    best = [sum(frame.best for frame in frames) for frames in plain]
-    average = [sum((frame.average for frame in frames), Fraction(0)) for frames in plain]
-    total = sum(map(Fraction, weights))
-    if not worst:
-        return []
-    if not total:
-        weights, total = [1.0] * len(worst), Fraction(len(worst))
-    weighted = sum((value * Fraction(weight) for value, weight in zip(average, weights, strict=True)), Fraction(0))
-    is_certain = all(frame.is_certain for frames in plain for frame in frames)
-    is_same = max(worst) == min(best)
-    occurring = [sum(frame.occurring for frame in frames) for frames in plain]
-    # Of alternatives that modes choose, some may never occur; one of them does.
-    likely = [value for value, weight in zip(occurring, weights, strict=True) if weight]
-    least = max(likely) if is_chance else min(occurring)
-    return [
-        DemandFrame(
-            worst=max(worst),
-            best=min(best),
-            average=weighted / total,
-            is_certain=is_certain and (each_occurs or is_same),
-            least=None if least == max(worst) else least,
-        )
-    ]

@@ -6,9 +6,14 @@ with different prescalers can fall on the same job, because their counters start
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
+from math import ceil, floor
 
+from amalthea_uros.perf.activities import Count
+from amalthea_uros.timing.demand.means import exact_sum
+from amalthea_uros.timing.jobs.counts import count_of
 from amalthea_uros.units import Time
 
 
@@ -116,3 +121,103 @@ class MultiframeDemand:
     def mean(self) -> Fraction:
         """The mean execution time per job in the long run."""
         return sum((frame.average / frame.prescaler for frame in self.frames), Fraction(0))
+
+
+def summed(frames: Sequence[DemandFrame]) -> tuple[DemandFrame, ...]:
+    """The frames of the same jobs added up."""
+    found: dict[tuple[int, int, bool, int], list[DemandFrame]] = {}
+    for frame in frames:
+        found.setdefault((frame.prescaler, frame.offset, frame.is_certain, frame.jitter), []).append(frame)
+    return tuple(same[0] if len(same) == 1 else _sum(same) for same in found.values())
+
+
+def _sum(same: Sequence[DemandFrame]) -> DemandFrame:
+    return replace(
+        same[0],
+        worst=sum(frame.worst for frame in same),
+        best=sum(frame.best for frame in same),
+        average=exact_sum(frame.average for frame in same),
+        least=_certain_part(sum(frame.occurring for frame in same), same),
+    )
+
+
+def _certain_part(occurring: Time, frames: Iterable[DemandFrame]) -> Time | None:
+    """The field of a frame that is made of others; None if all of them certainly occur."""
+    return None if all(frame.least is None for frame in frames) else occurring
+
+
+def scaled(frames: tuple[DemandFrame, ...], growth: Fraction) -> tuple[DemandFrame, ...]:
+    """Frames with greater worst cases, so that they cover all smaller factors; with a factor below 1, best cases are smaller, too."""
+    if growth == 1:
+        return frames
+    return tuple(
+        replace(
+            frame,
+            worst=ceil(frame.worst * growth),
+            best=floor(frame.best * min(growth, Fraction(1))),
+            average=frame.average * growth,
+            least=None if frame.least is None else ceil(frame.least * growth),
+        )
+        for frame in frames
+    )
+
+
+def at_most(access: DemandFrame) -> DemandFrame:
+    """The demand of an access that may take no time."""
+    return DemandFrame(worst=access.worst, best=0, average=access.average)
+
+
+def any_time(frame: DemandFrame) -> DemandFrame:
+    """A frame on unknown jobs: any job may execute it, and any job may not."""
+    if frame.is_always or (frame.prescaler == 1 and not frame.is_certain):
+        return frame
+    return DemandFrame(worst=frame.worst, best=0, average=frame.average / frame.prescaler, is_certain=False, least=frame.least)
+
+
+def repeated(frame: DemandFrame, times: Count | float) -> DemandFrame:
+    """A frame that is executed several times."""
+    minimum, average, maximum = count_of(times)
+    return replace(
+        frame,
+        worst=frame.worst * maximum,
+        best=frame.best * minimum,
+        average=frame.average * average,
+        least=None if frame.least is None else frame.least * maximum,
+    )
+
+
+def one_of(
+    alternatives: Sequence[Sequence[DemandFrame]], weights: Sequence[float], each_occurs: bool, *, is_chance: bool
+) -> Sequence[DemandFrame]:
+    """One frame that bounds all alternatives.
+
+    Parameters
+    ----------
+    each_occurs : whether each job can take any of them
+    is_chance : whether they are chosen at random, so that each one occurs some time; otherwise modes choose
+    """
+    plain = [[any_time(frame) for frame in frames] for frames in alternatives]
+    worst = [sum(frame.worst for frame in frames) for frames in plain]
+    best = [sum(frame.best for frame in frames) for frames in plain]
+    average = [sum((frame.average for frame in frames), Fraction(0)) for frames in plain]
+    total = sum(map(Fraction, weights))
+    if not worst:
+        return []
+    if not total:
+        weights, total = [1.0] * len(worst), Fraction(len(worst))
+    weighted = sum((value * Fraction(weight) for value, weight in zip(average, weights, strict=True)), Fraction(0))
+    is_certain = all(frame.is_certain for frames in plain for frame in frames)
+    is_same = max(worst) == min(best)
+    occurring = [sum(frame.occurring for frame in frames) for frames in plain]
+    # Of alternatives that modes choose, some may never occur; one of them does.
+    likely = [value for value, weight in zip(occurring, weights, strict=True) if weight]
+    least = max(likely) if is_chance else min(occurring)
+    return [
+        DemandFrame(
+            worst=max(worst),
+            best=min(best),
+            average=weighted / total,
+            is_certain=is_certain and (each_occurs or is_same),
+            least=None if least == max(worst) else least,
+        )
+    ]

@@ -10,17 +10,17 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from enum import StrEnum
 from functools import partial
 
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.mapping import TaskAllocation
 from amalthea_uros.perf.os import SERVERS, Duration, Parameter, ParameterValue, Policy, Scheduler
-from amalthea_uros.perf.software import Preemption, Process, Task
+from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Periodic
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.notes import AnalysisNotes
 from amalthea_uros.timing.scheduling.allocation import deciding_scheduler, effective_priority
+from amalthea_uros.timing.scheduling.scheduled import EqualPriority, ScheduledProcess, SchedulingContext, Server
 from amalthea_uros.units import Time
 
 #: The parameter of OSEK schedulers, which is mandatory in APP4MC; 0 was the value of a task without group when it was an attribute
@@ -43,9 +43,6 @@ _ALIASES = {
 CAPACITY = ("capacity", "maxBudget")
 PERIOD = ("period", "replenishment")
 
-#: Order of service, compared from left to right: interrupts before tasks, then the priorities from the outermost scheduler inwards.
-Rank = tuple[int, ...]
-
 
 def standard_policy(name: str | None) -> str | None:
     """The standard name of a policy; that of the model if it is none of these."""
@@ -55,69 +52,6 @@ def standard_policy(name: str | None) -> str | None:
 def is_by_priority(name: str | None) -> bool:
     """Whether a policy serves the highest priority first."""
     return standard_policy(name) in _BY_PRIORITY | {Policy.FIXED_PRIORITY_WITH_BUDGETS}
-
-
-class EqualPriority(StrEnum):
-    """Order of service among equal priorities."""
-
-    FIFO = "first come, first served"
-    EDF = "earliest deadline first"
-    ROUND_ROBIN = "round robin"
-    UNKNOWN = "an order that is not stated"
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SchedulingContext:
-    """How something is scheduled.
-
-    Attributes
-    ----------
-    server : whose budget it uses; None: it runs on the core itself
-    rank : higher is served first
-    equal_priority, slice : how tasks of the same rank share the core
-    group : its members do not preempt each other
-    """
-
-    core: str = ""
-    server: str | None = None
-    rank: Rank = (0,)
-    equal_priority: EqualPriority = EqualPriority.FIFO
-    deadline: Time | None = None
-    slice: Time = 0
-    group: str | None = None
-
-    @property
-    def urgency(self) -> Rank:
-        """The rank, followed by the deadline under EDF."""
-        return (*self.rank, -(self.deadline or 0)) if self.equal_priority is EqualPriority.EDF else self.rank
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ScheduledProcess(SchedulingContext):
-    """A process on a core."""
-
-    process: Process
-    is_isr: bool
-    priority: int | None
-
-    @property
-    def name(self) -> str:
-        """The name of the process."""
-        return self.process.name
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Server(SchedulingContext):
-    """A scheduler with a budget in each period, in which it serves its tasks."""
-
-    scheduler: Scheduler
-    budget: Time
-    period: Time
-
-    @property
-    def name(self) -> str:
-        """The name of the scheduler."""
-        return self.scheduler.name
 
 
 @dataclass(frozen=True, slots=True)
@@ -456,13 +390,3 @@ _BY_POLICY: Mapping[str, Callable[[Scheduler, _Parameters, SchedulingContext], S
     Policy.RATE_MONOTONIC: _rate_monotonic,
     Policy.EARLIEST_DEADLINE_FIRST: _earliest_deadline_first,
 }
-
-
-def preemption(item: ScheduledProcess) -> Preemption:
-    """The preemption mode of a process; an ISR is preempted only by interrupts of higher priority."""
-    return item.process.preemption if isinstance(item.process, Task) else Preemption.PREEMPTIVE
-
-
-def is_preemptive(item: ScheduledProcess) -> bool:
-    """Whether every process of higher rank can preempt a process immediately."""
-    return preemption(item) is Preemption.PREEMPTIVE and item.group is None

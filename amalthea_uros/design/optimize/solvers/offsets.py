@@ -29,7 +29,7 @@ from amalthea_uros.timing.activation.phases import unknown_phases
 from amalthea_uros.timing.activation.releases import known_releases
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.timing.blocking.critical_sections import LockUsage
-from amalthea_uros.timing.scheduling.ranks import EqualPriority, is_preemptive
+from amalthea_uros.timing.scheduling.scheduled import EqualPriority, is_preemptive
 from amalthea_uros.units import Time
 
 #: At most so many vectors are compared, and so many judged.

@@ -27,7 +27,7 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.settings import MemoryModel
 from amalthea_uros.timing.blocking.critical_sections import LockUsage
 from amalthea_uros.timing.scheduling.allocation import allocated_cores
-from amalthea_uros.timing.scheduling.ranks import EqualPriority, is_preemptive
+from amalthea_uros.timing.scheduling.scheduled import EqualPriority, is_preemptive
 
 #: All exchanges of at most so many cores are tried.
 MAX_EXCHANGED = 5

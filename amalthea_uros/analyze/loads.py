@@ -1,0 +1,108 @@
+"""The load of cores, and which overloads are certain."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
+from fractions import Fraction
+
+from amalthea_uros.analyze.response_times.solution import Solution
+from amalthea_uros.analyze.results.processes import ProcessorResult
+from amalthea_uros.timing.activation.load import CoreLoad, certain_loads, suppressible
+from amalthea_uros.timing.context import TimingContext
+from amalthea_uros.timing.demand.job_paths import JobDemand
+from amalthea_uros.timing.demand.multiframe import MultiframeDemand
+from amalthea_uros.timing.jobs.executed import states_mean
+from amalthea_uros.timing.response import Response
+from amalthea_uros.timing.scheduling.allocation import allocated_cores
+from amalthea_uros.timing.scheduling.scheduled import ScheduledProcess
+from amalthea_uros.units import percent_text
+
+
+def processor_results(solution: Solution) -> Iterator[ProcessorResult]:
+    """The load of each core; unknown if the demand or activation of a process that can run on it is unknown."""
+    context = solution.context
+    known = {core for core in context.system.cores if _is_load_known(core, solution)}
+    certain: Mapping[str, Fraction] = {}
+    if len(known) < len(context.system.cores):
+        uncertain = {*context.with_uncertain_activations, *suppressible(context.system, context.activations)}
+        certain = certain_loads(allocated_cores(context.system), context.activations, context.demand_model, uncertain)
+    for core in context.system.cores:
+        best, mean, worst = _loads(core, solution) if core in known else (None, None, None)
+        yield ProcessorResult(
+            name=core,
+            frequency=context.demand_model.frequency(core),
+            best=best,
+            mean=mean,
+            worst=worst,
+            at_least=certain.get(core, Fraction(0)) if worst is None else _certain_load(context.on_core(core), core, solution),
+        )
+
+
+def without_doubtful_overload(name: str, solution: Solution) -> Response | None:
+    """The response time of a process; without bound, but not overloaded for certain, if what overloads it may exclude each other."""
+    found, context = solution.responses.get(name), solution.context
+    if found is None or not found.is_overload or name not in context.scheduled:
+        return found
+    item = context.scheduled[name]
+    here = [other for other in context.on_core(item.core) if other.rank >= item.rank and solution.is_known(other.name)]
+    each = _sum(_demand(other.name, context).mean_worst * solution.event_models[other.name].rate for other in here)
+    together = _load((other.name for other in here), item.core, solution)
+    are_suppressed = any(solution.event_models[other.name].can_be_suppressed for other in here)
+    if together.certain * context.time_base(name) == each and not are_suppressed:
+        return found
+    if _certain_load(here, item.core, solution) > 1:
+        return replace(
+            found, reason=f"overload: tasks at this priority or higher need {percent_text(together.worst, 1)} % of the core"
+        )
+    if together.worst <= 1:
+        return replace(found, is_overload=False, reason=f"{found.reason}, if what excludes each other is added up")
+    return replace(found, is_overload=False, reason=f"{found.reason}, unless modes exclude a part of it")
+
+
+def _loads(core: str, solution: Solution) -> tuple[Fraction, Fraction | None, Fraction]:
+    """The best, mean and worst load of a core; no mean if conditions may suppress activations, or execution times have none."""
+    context = solution.context
+    here = context.on_core(core)
+    names = [item.name for item in here]
+    load, regular = _load(names, core, solution), _never_suppressed(names, solution)
+    if regular != names:
+        return _load(regular, core, solution).best, None, load.worst
+    has_mean = all(states_mean(item.process, context.system) for item in here)
+    return load.best, load.mean if has_mean else None, load.worst
+
+
+def _is_load_known(core: str, solution: Solution) -> bool:
+    """Whether all processes that can run on a core run nowhere else, and their demand and activations are known."""
+    return solution.is_closed(core) and all(solution.is_known(item.name) for item in solution.context.on_core(core))
+
+
+def _load(names: Iterable[str], core: str, solution: Solution) -> JobDemand:
+    """The load of a core by some of its processes."""
+    context = solution.context
+    demands = {name: _demand(name, context) for name in names}
+    return CoreLoad(core, demands, context.activations, context.demand_model).load(solution.external_rates)
+
+
+def _demand(name: str, context: TimingContext) -> MultiframeDemand:
+    """The demand of a job of a process with what its scheduler needs to decide when it is activated."""
+    own, decision = context.demands[name], context.decisions.get(name)
+    return own if decision is None else MultiframeDemand((*own.frames, *decision.frames))
+
+
+def _certain_load(items: Iterable[ScheduledProcess], core: str, solution: Solution) -> Fraction:
+    """The worst load of processes of a core, without what modes may exclude for ever, and what rounds of executors need.
+
+    Nor does it contain activations that conditions may suppress.
+    """
+    names = (item.name for item in items if item.name not in solution.context.with_uncertain_activations)
+    return _load(_never_suppressed(names, solution), core, solution).certain
+
+
+def _never_suppressed(names: Iterable[str], solution: Solution) -> list[str]:
+    """The processes of which no condition can suppress activations."""
+    return [name for name in names if not solution.event_models[name].can_be_suppressed]
+
+
+def _sum(values: Iterable[Fraction]) -> Fraction:
+    return sum(values, Fraction(0))

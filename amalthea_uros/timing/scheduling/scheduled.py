@@ -1,0 +1,86 @@
+"""How processes and servers are scheduled: the core, the rank among others, and whether they can be preempted."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from amalthea_uros.perf.os import Scheduler
+from amalthea_uros.perf.software import Preemption, Process, Task
+from amalthea_uros.units import Time
+
+#: Order of service, compared from left to right: interrupts before tasks, then the priorities from the outermost scheduler inwards.
+Rank = tuple[int, ...]
+
+
+class EqualPriority(StrEnum):
+    """Order of service among equal priorities."""
+
+    FIFO = "first come, first served"
+    EDF = "earliest deadline first"
+    ROUND_ROBIN = "round robin"
+    UNKNOWN = "an order that is not stated"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SchedulingContext:
+    """How something is scheduled.
+
+    Attributes
+    ----------
+    server : whose budget it uses; None: it runs on the core itself
+    rank : higher is served first
+    equal_priority, slice : how tasks of the same rank share the core
+    group : its members do not preempt each other
+    """
+
+    core: str = ""
+    server: str | None = None
+    rank: Rank = (0,)
+    equal_priority: EqualPriority = EqualPriority.FIFO
+    deadline: Time | None = None
+    slice: Time = 0
+    group: str | None = None
+
+    @property
+    def urgency(self) -> Rank:
+        """The rank, followed by the deadline under EDF."""
+        return (*self.rank, -(self.deadline or 0)) if self.equal_priority is EqualPriority.EDF else self.rank
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ScheduledProcess(SchedulingContext):
+    """A process on a core."""
+
+    process: Process
+    is_isr: bool
+    priority: int | None
+
+    @property
+    def name(self) -> str:
+        """The name of the process."""
+        return self.process.name
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Server(SchedulingContext):
+    """A scheduler with a budget in each period, in which it serves its tasks."""
+
+    scheduler: Scheduler
+    budget: Time
+    period: Time
+
+    @property
+    def name(self) -> str:
+        """The name of the scheduler."""
+        return self.scheduler.name
+
+
+def preemption(item: ScheduledProcess) -> Preemption:
+    """The preemption mode of a process; an ISR is preempted only by interrupts of higher priority."""
+    return item.process.preemption if isinstance(item.process, Task) else Preemption.PREEMPTIVE
+
+
+def is_preemptive(item: ScheduledProcess) -> bool:
+    """Whether every process of higher rank can preempt a process immediately."""
+    return preemption(item) is Preemption.PREEMPTIVE and item.group is None
