@@ -28,6 +28,7 @@ from amalthea_uros.perf.constraints import Bound, TimeLimit, TimeMetric
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.timing.basics.quantities import JobMetric
+from amalthea_uros.timing.basics.time_base import max_time, min_time
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.jobs.counters import first_effect, is_always, min_distance, takes_effect
@@ -189,7 +190,7 @@ class _CallSite:
         """The net execution time of one call."""
         demand = self._demand([replace(self.call, counter=None, times=None)])
         time_base = self.solution.context.time_base(self.process.name)
-        best, worst = demand.best // time_base, -(-demand.worst // time_base)
+        best, worst = min_time(demand.best, time_base), max_time(demand.worst, time_base)
         is_constant = demand.best == demand.worst
         return Metric(min=best, max=worst, mean=demand.mean / time_base, attained=(best, worst) if is_constant else None)
 
@@ -236,7 +237,7 @@ class _CallSite:
             # Whatever the call follows, it takes its own time.
             before = self._demand([replace(self.call, counter=None)]).best
         if self.is_once:
-            after = self._demand(self._after).best // time_base
+            after = min_time(self._demand(self._after).best, time_base)
         return Metric(
             min=before // time_base,
             max=None if response.worst is None else response.worst - after,

@@ -18,6 +18,7 @@ from amalthea_uros.judge.limits import deadline_of
 from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.perf.software import Preemption, Task
 from amalthea_uros.timing.activation.releases import ASSUMPTION
+from amalthea_uros.timing.basics.time_base import max_time, min_time
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.event_models import EventModel
 from amalthea_uros.timing.jobs.executed import states_mean
@@ -71,10 +72,10 @@ def _process(name: str, solution: Solution, executor: ExecutorResult | None) -> 
         processor=placement.core,
         priority=placement.priority,
         preemption=str(preemption(scheduled) if scheduled else getattr(process, "preemption", Preemption.PREEMPTIVE)),
-        bcet=demand.best // time_base if demand else None,
+        bcet=min_time(demand.best, time_base) if demand else None,
         acet=demand.mean / time_base if demand and states_mean(process, context.system) else None,
-        wcet=-(-demand.worst // time_base) if demand else None,
-        least_wcet=demand.least_worst // time_base if demand else None,
+        wcet=max_time(demand.worst, time_base) if demand else None,
+        least_wcet=min_time(demand.least_worst, time_base) if demand else None,
         response=response,
         deadline=None if deadline is None else deadline.value,
         is_implicit=deadline is not None and deadline.is_implicit,

@@ -15,9 +15,9 @@ from amalthea_uros.timing.activation.activations import Activations, TriggeredTo
 from amalthea_uros.timing.activation.phases import arrival_assumptions, with_bounded_arrivals
 from amalthea_uros.timing.activation.releases import response_time_limits
 from amalthea_uros.timing.awaited import why_suspended
-from amalthea_uros.timing.basics.limits import MAX_INPUT
 from amalthea_uros.timing.basics.notes import AnalysisNotes
 from amalthea_uros.timing.basics.settings import MemoryModel, Settings
+from amalthea_uros.timing.basics.time_base import MAX_INPUT
 from amalthea_uros.timing.blocking.critical_sections import Locks, LockUsage, spinlocks_of
 from amalthea_uros.timing.blocking.regions import ProcessRegions, RegionKind, RegionWalk
 from amalthea_uros.timing.dataflow.links import Dataflow

@@ -28,7 +28,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from amalthea_uros.timing.basics.limits import LIMIT
+from amalthea_uros.timing.basics.time_base import LIMIT
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:

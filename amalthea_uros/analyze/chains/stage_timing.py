@@ -29,7 +29,7 @@ from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Counter, EventTriggered, InterProcess, Periodic
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.activation.releases import known_releases, latest_first_release
-from amalthea_uros.timing.basics.limits import LIMIT
+from amalthea_uros.timing.basics.time_base import LIMIT
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.dataflow.events import EventOccurrence, JobPhase
 from amalthea_uros.timing.dataflow.stages import NEXT_JOB, SAME_JOB, At, Boundary, Fire, Pass, Read, Stage

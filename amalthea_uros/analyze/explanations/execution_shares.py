@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import Activity, Call, Execute, ExecutionNeed, Group, LabelAccess
 from amalthea_uros.perf.stimuli import Counter
+from amalthea_uros.timing.basics.time_base import Ticks, max_time
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.units import Time
 
@@ -44,14 +45,15 @@ def execution_shares(context: TimingContext, name: str) -> list[ExecutionShare]:
     grouped: dict[tuple[str, bool, Counter | None], list[Activity]] = {}
     for activity in _flat(scheduled.process.activities):
         grouped.setdefault(_kind(activity), []).append(activity)
-    found, executed = [], 0
+    found, executed = [], Ticks(0)
     time_base = context.time_base(name)
     for (kind, is_runnable, counter), activities in grouped.items():
-        before = -(-executed // time_base)
+        before = max_time(executed, time_base)
         time, reason = None, ""
         try:
-            executed += context.demand_model.of_activities(scheduled.process, activities, scheduled.core).worst
-            time = -(-executed // time_base) - before
+            demand = context.demand_model.of_activities(scheduled.process, activities, scheduled.core)
+            executed = Ticks(executed + demand.worst)
+            time = max_time(executed, time_base) - before
         except UnknownError as error:
             reason = str(error)
         if time != 0:
@@ -60,8 +62,8 @@ def execution_shares(context: TimingContext, name: str) -> list[ExecutionShare]:
                     name=kind, is_runnable=is_runnable, time=time, calls=len(activities), counter=counter, reason=reason
                 )
             )
-    demand = context.demands.get(name)
-    rest = 0 if demand is None else -(-demand.worst // time_base) - -(-executed // time_base)
+    whole = context.demands.get(name)
+    rest = 0 if whole is None else max_time(whole.worst, time_base) - max_time(executed, time_base)
     return [*found, ExecutionShare(name=OVERHEADS, is_runnable=False, time=rest)] if rest > 0 else found
 
 

@@ -18,6 +18,7 @@ from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.processes import CallbackResult, ProcessResult
 from amalthea_uros.executors.results import HandleResult
 from amalthea_uros.judge.verdict import FAILURES, Verdict
+from amalthea_uros.timing.basics.time_base import min_time
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.jobs.counters import takes_effect
 from amalthea_uros.timing.response import Response
@@ -184,7 +185,7 @@ def _in_window(solution: Solution, scheduled: ScheduledProcess, response: Respon
         if other.server != scheduled.server or other.name not in solution.event_models:
             return []
         count = solution.event_models[other.name].eta_plus(response.window)
-        found.append(Share(other.name, count, context.demands[other.name].max_demand(count) // time_base))
+        found.append(Share(other.name, count, min_time(context.demands[other.name].max_demand(count), time_base)))
     return found if _adds_up(found, response) else []
 
 

@@ -14,6 +14,7 @@ from amalthea_uros.analyze.response_times.task import FULL, AnalysedTask, Budget
 from amalthea_uros.perf.os import Policy
 from amalthea_uros.perf.software import Preemption
 from amalthea_uros.timing.activation.releases import known_releases
+from amalthea_uros.timing.basics.time_base import Ticks, to_ticks
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.event_models import EventModel, PeriodicEvents, rescaled
@@ -255,7 +256,7 @@ class _CoreAnalysis:
             longest = together.longest(demands, self.context.activations, self.context.settings.modes)
             if longest < sum(demands.values()):
                 members = [found.pop(name) for name in demands]
-                demand = MultiframeDemand.constant(longest, best=0)
+                demand = MultiframeDemand.constant(Ticks(longest), best=Ticks(0))
                 found[members[0].name] = replace(members[0], demand=demand)
         return list(found.values())
 
@@ -274,7 +275,7 @@ class _CoreAnalysis:
             jitter = item.period - item.budget if item.scheduler.policy == Policy.DEFERRABLE_SERVER else 0
             events: EventModel = PeriodicEvents(item.period, jitter)
             # It need not use its budget.
-            demand = MultiframeDemand.constant(item.budget * self.time_base, best=0)
+            demand = MultiframeDemand.constant(to_ticks(item.budget, self.time_base), best=Ticks(0))
         else:
             events, demand = self.solution.event_models[item.name], self.context.demands[item.name]
         return AnalysedTask(

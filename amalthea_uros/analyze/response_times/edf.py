@@ -16,7 +16,7 @@ from amalthea_uros.analyze.response_times.busy_window import Interference
 from amalthea_uros.analyze.response_times.fixed_priority import max_jobs, unbounded
 from amalthea_uros.analyze.response_times.kernel import MAX_STEPS
 from amalthea_uros.analyze.response_times.task import AnalysedTask
-from amalthea_uros.timing.basics.limits import LIMIT
+from amalthea_uros.timing.basics.time_base import LIMIT
 from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.units import Time
 

@@ -20,7 +20,7 @@ from __future__ import annotations
 from amalthea_uros.analyze.response_times.busy_window import Interference, demand_rate
 from amalthea_uros.analyze.response_times.kernel import greatest_fixed_point
 from amalthea_uros.analyze.response_times.task import AnalysedTask
-from amalthea_uros.timing.basics.limits import LIMIT
+from amalthea_uros.timing.basics.time_base import LIMIT
 from amalthea_uros.timing.event_models import PeriodicEvents
 from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.units import Time, percent_text

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from amalthea_uros._internal.compiled import compiled
-from amalthea_uros.timing.basics.limits import LIMIT
+from amalthea_uros.timing.basics.time_base import LIMIT
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -19,7 +19,7 @@ from amalthea_uros.executors.semantics.loops import sleep_of, why_dense, workloa
 from amalthea_uros.perf.activities import Trigger
 from amalthea_uros.perf.software import Process
 from amalthea_uros.timing.activation.activations import Output
-from amalthea_uros.timing.basics.limits import MAX_INPUT
+from amalthea_uros.timing.basics.time_base import MAX_INPUT, max_time
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.event_models import Delayed, EventModel, OutputEventModel, PeriodicEvents
 from amalthea_uros.timing.response import Response
@@ -112,7 +112,7 @@ def _workload(item: ScheduledProcess, events: EventModel, context: TimingContext
     executor, demand = context.system.executor_of_task.get(item.name), context.demands.get(item.name)
     if executor is None or demand is None:
         return events
-    return workload(executor, events, -(-demand.worst // context.time_base(item.name)))
+    return workload(executor, events, max_time(demand.worst, context.time_base(item.name)))
 
 
 def _require_known_iterations(name: str, context: TimingContext) -> None:
@@ -121,7 +121,7 @@ def _require_known_iterations(name: str, context: TimingContext) -> None:
     demand = context.demands.get(name)
     if executor is None or demand is None:
         return
-    reason = why_dense(executor, context.system.executors, -(-demand.worst // context.time_base(name)))
+    reason = why_dense(executor, context.system.executors, max_time(demand.worst, context.time_base(name)))
     if reason and (_is_above_others(item, context) or _triggers_others(item, context)):
         raise UnknownError(reason)
 

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from amalthea_uros.analyze.response_times.kernel import Whole, dispatch
-from amalthea_uros.timing.basics.limits import LIMIT
+from amalthea_uros.timing.basics.time_base import LIMIT
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.units import Time

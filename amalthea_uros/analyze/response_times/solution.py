@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from amalthea_uros.perf.software import Task
 from amalthea_uros.perf.stimuli import EventTriggered, InterProcess
+from amalthea_uros.timing.basics.time_base import min_time
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.event_models import EventModel
 from amalthea_uros.timing.response import Response
@@ -142,7 +143,7 @@ class Solution:
     def bcet(self, name: str) -> Time:
         """Best-case execution time of a process, in picoseconds; 0 if it is unknown."""
         demand = self.context.demands.get(name)
-        return 0 if demand is None else demand.best // self.context.time_base(name)
+        return 0 if demand is None else min_time(demand.best, self.context.time_base(name))
 
 
 def _rank(scheduled: ScheduledProcess) -> Rank:

@@ -7,7 +7,7 @@ from amalthea_uros.perf.distributions import highest
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Burst, Periodic, RelativePeriodic, Synthetic
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.basics.limits import LIMIT
+from amalthea_uros.timing.basics.time_base import LIMIT
 from amalthea_uros.timing.event_models import EventModel, PeriodicEvents
 from amalthea_uros.units import Time
 

@@ -20,6 +20,7 @@ from amalthea_uros.perf.hardware import Access, Cache, Connection, Interconnect,
 from amalthea_uros.perf.named import Named
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.notes import AnalysisNotes
+from amalthea_uros.timing.basics.time_base import Ticks
 from amalthea_uros.timing.demand.means import mean
 from amalthea_uros.timing.demand.multiframe import DemandFrame
 from amalthea_uros.timing.scheduling.allocation import frequency_of
@@ -70,7 +71,9 @@ class MemoryAccess:
         if key not in self._found:
             self._found[key] = self._times(core, memory, kind, self._size(label), time_base)
         minimum, average, maximum = self._found[key]
-        return DemandFrame(worst=ceil(maximum * count[2]), best=floor(minimum * count[0]), average=average * count[1])
+        return DemandFrame(
+            worst=Ticks(ceil(maximum * count[2])), best=Ticks(floor(minimum * count[0])), average=average * count[1]
+        )
 
     def _times(self, core: str, memory: Memory, kind: AccessKind, size: int | None, time_base: Fraction) -> _TimesInBase:
         """The latency of one access, in the time base."""

@@ -45,9 +45,9 @@ from amalthea_uros.perf.os import Scheduler
 from amalthea_uros.perf.software import Isr, Process, Runnable
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.basics.limits import LIMIT
 from amalthea_uros.timing.basics.notes import AnalysisNotes
 from amalthea_uros.timing.basics.settings import MemoryModel, Settings
+from amalthea_uros.timing.basics.time_base import LIMIT, Ticks
 from amalthea_uros.timing.demand.means import mean
 from amalthea_uros.timing.demand.memory import MemoryAccess
 from amalthea_uros.timing.demand.multiframe import (
@@ -287,7 +287,9 @@ class DemandModel:
             case False:
                 return []
             case None if runnable.condition is not None:
-                frames = [replace(any_time(frame), best=0, is_certain=not frame.worst, least=0) for frame in frames]
+                frames = [
+                    replace(any_time(frame), best=Ticks(0), is_certain=not frame.worst, least=Ticks(0)) for frame in frames
+                ]
         if call.times is not None:
             self._require_maximum(call.times)
             frames = [repeated(frame, call.times) for frame in frames]
@@ -320,14 +322,14 @@ class DemandModel:
         except UnknownError:
             prescaler = frame.prescaler * (call.counter.prescaler if call.counter else 1)
             return DemandFrame(
-                worst=frame.worst, best=0, average=frame.average / prescaler, is_certain=False, least=frame.least
+                worst=frame.worst, best=Ticks(0), average=frame.average / prescaler, is_certain=False, least=frame.least
             )
         if counter is None:
             return None
         is_certain = frame.is_certain and counter.is_phase_known
         return replace(
             frame,
-            best=0 if counter.jitter else frame.best,
+            best=Ticks(0) if counter.jitter else frame.best,
             prescaler=counter.prescaler,
             offset=first_effect(counter),
             is_certain=is_certain,
@@ -365,7 +367,7 @@ class DemandModel:
             raise UnknownError("the minimum of a number of ticks is greater than the maximum")
         if worst * tick > LIMIT:
             raise UnknownError("an execution time exceeds 13 days")
-        return DemandFrame(worst=ceil(worst * tick), best=floor(best * tick), average=mean(ticks) * tick)
+        return DemandFrame(worst=Ticks(ceil(worst * tick)), best=Ticks(floor(best * tick)), average=mean(ticks) * tick)
 
     def time_of_tick(self, factor: Fraction, core: str) -> int | Fraction:
         """The time units that `factor` ticks of a core take: usually a whole number, with which it is quicker to calculate.

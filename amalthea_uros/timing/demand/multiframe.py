@@ -12,9 +12,12 @@ from fractions import Fraction
 from math import ceil, floor
 
 from amalthea_uros.perf.activities import Count
+from amalthea_uros.timing.basics.time_base import Ticks
 from amalthea_uros.timing.demand.means import exact_sum
 from amalthea_uros.timing.jobs.counts import count_of
-from amalthea_uros.units import Time
+
+#: No demand.
+NOTHING = Ticks(0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -30,17 +33,17 @@ class DemandFrame:
     least : as far as it is certain that some job can have it, if modes may exclude the rest for ever; None: all of it
     """
 
-    worst: Time
-    best: Time
+    worst: Ticks
+    best: Ticks
     average: Fraction = Fraction(0)
     prescaler: int = 1
     offset: int = 0
     is_certain: bool = True
     jitter: int = 0
-    least: Time | None = None
+    least: Ticks | None = None
 
     @property
-    def occurring(self) -> Time:
+    def occurring(self) -> Ticks:
         """The demand that some job certainly can have."""
         return self.worst if self.least is None else self.least
 
@@ -61,7 +64,7 @@ class MultiframeDemand:
     frames: tuple[DemandFrame, ...]
 
     @classmethod
-    def constant(cls, worst: Time, best: Time | None = None) -> MultiframeDemand:
+    def constant(cls, worst: Ticks, best: Ticks | None = None) -> MultiframeDemand:
         """The same demand for all jobs."""
         return cls((DemandFrame(worst=worst, best=worst if best is None else best, average=Fraction(worst)),))
 
@@ -70,37 +73,37 @@ class MultiframeDemand:
         """Whether it is known which jobs have which demand."""
         return all(frame.is_certain for frame in self.frames)
 
-    def max_demand(self, count: int) -> Time:
+    def max_demand(self, count: int) -> Ticks:
         """Maximum demand of that many consecutive jobs."""
-        return sum(frame.worst * min(count, -(-(count + frame.jitter) // frame.prescaler)) for frame in self.frames)
+        return Ticks(sum(frame.worst * min(count, -(-(count + frame.jitter) // frame.prescaler)) for frame in self.frames))
 
-    def min_demand(self, count: int) -> Time:
+    def min_demand(self, count: int) -> Ticks:
         """Minimum demand of that many consecutive jobs."""
-        return sum(frame.best * (count // frame.prescaler) for frame in self.frames)
+        return Ticks(sum(frame.best * (count // frame.prescaler) for frame in self.frames))
 
     @property
-    def worst(self) -> Time:
+    def worst(self) -> Ticks:
         """The worst-case execution time of a single job."""
         return self.max_demand(1)
 
     @property
-    def least_worst(self) -> Time:
+    def least_worst(self) -> Ticks:
         """A demand that some job certainly can have: counters can keep frames of different jobs apart for ever."""
         always = sum(frame.occurring for frame in self.frames if frame.prescaler == 1)
-        return always + max((frame.occurring for frame in self.frames if frame.prescaler > 1), default=0)
+        return Ticks(always + max((frame.occurring for frame in self.frames if frame.prescaler > 1), default=0))
 
     @property
-    def best(self) -> Time:
+    def best(self) -> Ticks:
         """The best-case execution time of a single job."""
         return self.min_demand(1)
 
-    def worst_of(self, job: int) -> Time:
+    def worst_of(self, job: int) -> Ticks:
         """Worst-case execution time of the n-th job, counted from 1."""
-        return sum(frame.worst for frame in self.frames if not frame.is_certain or frame.falls_on(job))
+        return Ticks(sum(frame.worst for frame in self.frames if not frame.is_certain or frame.falls_on(job)))
 
-    def best_of(self, job: int) -> Time:
+    def best_of(self, job: int) -> Ticks:
         """Best-case execution time of the n-th job, counted from 1."""
-        return sum(frame.best for frame in self.frames if frame.falls_on(job))
+        return Ticks(sum(frame.best for frame in self.frames if frame.falls_on(job)))
 
     @property
     def mean_worst(self) -> Fraction:
@@ -134,16 +137,16 @@ def summed(frames: Sequence[DemandFrame]) -> tuple[DemandFrame, ...]:
 def _sum(same: Sequence[DemandFrame]) -> DemandFrame:
     return replace(
         same[0],
-        worst=sum(frame.worst for frame in same),
-        best=sum(frame.best for frame in same),
+        worst=Ticks(sum(frame.worst for frame in same)),
+        best=Ticks(sum(frame.best for frame in same)),
         average=exact_sum(frame.average for frame in same),
         least=_certain_part(sum(frame.occurring for frame in same), same),
     )
 
 
-def _certain_part(occurring: Time, frames: Iterable[DemandFrame]) -> Time | None:
+def _certain_part(occurring: int, frames: Iterable[DemandFrame]) -> Ticks | None:
     """The field of a frame that is made of others; None if all of them certainly occur."""
-    return None if all(frame.least is None for frame in frames) else occurring
+    return None if all(frame.least is None for frame in frames) else Ticks(occurring)
 
 
 def scaled(frames: tuple[DemandFrame, ...], growth: Fraction) -> tuple[DemandFrame, ...]:
@@ -153,10 +156,10 @@ def scaled(frames: tuple[DemandFrame, ...], growth: Fraction) -> tuple[DemandFra
     return tuple(
         replace(
             frame,
-            worst=ceil(frame.worst * growth),
-            best=floor(frame.best * min(growth, Fraction(1))),
+            worst=Ticks(ceil(frame.worst * growth)),
+            best=Ticks(floor(frame.best * min(growth, Fraction(1)))),
             average=frame.average * growth,
-            least=None if frame.least is None else ceil(frame.least * growth),
+            least=None if frame.least is None else Ticks(ceil(frame.least * growth)),
         )
         for frame in frames
     )
@@ -164,14 +167,16 @@ def scaled(frames: tuple[DemandFrame, ...], growth: Fraction) -> tuple[DemandFra
 
 def at_most(access: DemandFrame) -> DemandFrame:
     """The demand of an access that may take no time."""
-    return DemandFrame(worst=access.worst, best=0, average=access.average)
+    return DemandFrame(worst=access.worst, best=NOTHING, average=access.average)
 
 
 def any_time(frame: DemandFrame) -> DemandFrame:
     """A frame on unknown jobs: any job may execute it, and any job may not."""
     if frame.is_always or (frame.prescaler == 1 and not frame.is_certain):
         return frame
-    return DemandFrame(worst=frame.worst, best=0, average=frame.average / frame.prescaler, is_certain=False, least=frame.least)
+    return DemandFrame(
+        worst=frame.worst, best=NOTHING, average=frame.average / frame.prescaler, is_certain=False, least=frame.least
+    )
 
 
 def repeated(frame: DemandFrame, times: Count | float) -> DemandFrame:
@@ -179,10 +184,10 @@ def repeated(frame: DemandFrame, times: Count | float) -> DemandFrame:
     minimum, average, maximum = count_of(times)
     return replace(
         frame,
-        worst=frame.worst * maximum,
-        best=frame.best * minimum,
+        worst=Ticks(frame.worst * maximum),
+        best=Ticks(frame.best * minimum),
         average=frame.average * average,
-        least=None if frame.least is None else frame.least * maximum,
+        least=None if frame.least is None else Ticks(frame.least * maximum),
     )
 
 
@@ -214,10 +219,10 @@ def one_of(
     least = max(likely) if is_chance else min(occurring)
     return [
         DemandFrame(
-            worst=max(worst),
-            best=min(best),
+            worst=Ticks(max(worst)),
+            best=Ticks(min(best)),
             average=weighted / total,
             is_certain=is_certain and (each_occurs or is_same),
-            least=None if least == max(worst) else least,
+            least=None if least == max(worst) else Ticks(least),
         )
     ]
