@@ -18,7 +18,7 @@ import numpy as np
 from amalthea_uros._internal.failures import failure
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.constraints.events import EventWindows, exact_delays
-from amalthea_uros.analyze.constraints.plausibility import note_implausible
+from amalthea_uros.analyze.constraints.requirements import report_implausible
 from amalthea_uros.analyze.constraints.runnable_orders import holds_across, holds_in_each_job
 from amalthea_uros.analyze.results.chains import ChainResult, LatencyQuantity, LatencyValue
 from amalthea_uros.analyze.results.requirements import RequirementResult
@@ -74,7 +74,7 @@ class ConstraintEvaluator:
             try:
                 found = [RequirementResult.of(limit, judgement) for limit, judgement in self._one(constraint, limits)]
                 for result in found:
-                    note_implausible(result, constraint, self.evaluation.context.notes)
+                    report_implausible(result, constraint, self.evaluation.context.notes)
                 # What limits nothing is not met.
                 nothing = "it states no limit, or nothing in the model is limited by it"
                 yield from found or _unknown(constraint, limits, nothing)

@@ -1,4 +1,4 @@
-"""What is proved of the metrics that requirements limit."""
+"""What is proved of the metrics that requirements limit, and limits that nobody can have meant."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from dataclasses import replace
 from typing import TypeAlias
 
 from amalthea_uros._internal.by_name import Results
-from amalthea_uros.analyze.constraints.plausibility import note_implausible
 from amalthea_uros.analyze.constraints.process_evidence import worst_response
 from amalthea_uros.analyze.response_times import metrics
 from amalthea_uros.analyze.results.processes import CallbackResult, Metric, ProcessResult
@@ -16,10 +15,11 @@ from amalthea_uros.judge.evidence import Ends
 from amalthea_uros.judge.limits import SystemLimit, is_from_period, limits_of, nominal_period
 from amalthea_uros.judge.verdict import Verdict, prove, unknown
 from amalthea_uros.perf.constraints import Requirement, TimeMetric
+from amalthea_uros.perf.named import Named
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.notes import AnalysisNotes
 from amalthea_uros.timing.basics.quantities import JobMetric, jitter_of
-from amalthea_uros.units import Time
+from amalthea_uros.units import HOUR, Time, time_text
 
 #: What the analysis computes; a running time is bounded by the net execution time, and each kind of waiting by all waiting.
 _METRICS = {
@@ -69,7 +69,7 @@ def evaluate_requirements(
         process = by_name.get(requirement.process or "")
         holders = [process] if process is not None else by_runnable.get(requirement.runnable, ())
         result = _judged(limit, requirement.limit.metric, holders, system)
-        note_implausible(result, requirement, notes)
+        report_implausible(result, requirement, notes)
         yield result
 
 
@@ -157,3 +157,20 @@ def _least(holders: Sequence[Holder], metric: TimeMetric) -> Time | None:
 
 #: Times that depend on nothing but the demand.
 _EXECUTION_TIMES = (TimeMetric.NET_EXECUTION_TIME, TimeMetric.RUNNING_TIME, TimeMetric.CORE_EXECUTION_TIME)
+
+#: Longer limits are certainly mistakes in the unit: a year.
+MAX_LIMIT = 365 * 24 * HOUR
+#: Differences, which can be negative.
+_SIGNED = (TimeMetric.LATENESS, TimeMetric.END_TO_START)
+
+
+def report_implausible(result: RequirementResult, item: Named, notes: AnalysisNotes) -> None:
+    """Report a limit that is negative or longer than a year."""
+    if result.limit is None:
+        return
+    if result.limit < 0 and result.quantity not in _SIGNED:
+        verdict = "can never be met" if result.is_upper else "is always met"
+        limit = time_text(result.limit) if result.limit > -MAX_LIMIT else "of more than a year below zero"
+        notes.warning("ANA010", f"the limit {limit} of {result.name!r} is negative, so it {verdict}", item)
+    elif result.limit > MAX_LIMIT:
+        notes.warning("ANA010", f"the limit of {result.name!r} is longer than a year", item)
