@@ -215,7 +215,7 @@ def _check_targets(traces: Sequence[Path], results: Sequence[Path], table: Path 
 
 
 def _show(result: SimulationResult, table: Path | None, outputs: Sequence[Output]) -> None:
-    from amalthea_uros.report.simulated import closing_line
+    from amalthea_uros.report.documents.simulation import closing_line
 
     show_findings(result.findings)
     show_differences(result.differences)

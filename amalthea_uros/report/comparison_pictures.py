@@ -8,7 +8,14 @@ import numpy as np
 
 from amalthea_uros.compare.results import Agreement, Comparison, ComparisonRow, PredictionClaim, Statistic, is_bound
 from amalthea_uros.measure.series import MeasuredKind
-from amalthea_uros.report.compared import bound_tests, closing_line, deviation_text, prediction_groups, quantity_text, worst_of
+from amalthea_uros.report.documents.comparison import (
+    bound_tests,
+    closing_line,
+    deviation_text,
+    prediction_groups,
+    quantity_text,
+    worst_of,
+)
 from amalthea_uros.report.pictures.compared_times import ComparedQuantity, Interval, compared_times
 from amalthea_uros.units import Time, time_text
 

@@ -2,37 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 
 from amalthea_uros.analyze.results.chains import ChainResult, LatencyQuantity, LatencyValue
-from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.units import Rounding, rounded_time_text
 
 #: The headline quantities: `reaction` and `data age` are what the limits of these names are compared with.
-_COLUMNS = {
+COLUMNS = {
     "min": LatencyQuantity.MIN_FIRST_TO_FIRST,
     "mean": LatencyQuantity.MEAN_FIRST_TO_FIRST,
     "reaction": LatencyQuantity.MAX_REDUCED_REACTION_TIME,
     "data age": LatencyQuantity.MAX_REDUCED_DATA_AGE,
 }
-_NAMES = {quantity: column for column, quantity in _COLUMNS.items() if quantity.is_upper}
+_NAMES = {quantity: column for column, quantity in COLUMNS.items() if quantity.is_upper}
 HEADING = (
     "Event chains (from the stimulus to the first response based on it; data age: from the latest stimulus to each response)"
 )
 
 
-def write_chains(terminal: Terminal, chains: Sequence[ChainResult]) -> None:
-    """Write a row for each chain."""
-    if not chains:
-        return
-    terminal.heading(HEADING)
-    rows = [(chain.name, *cells(chain, _COLUMNS)) for chain in chains]
-    terminal.table(("chain", *_COLUMNS, ""), rows, right=range(1, len(_COLUMNS) + 1))
-
-
 def cells(chain: ChainResult, columns: Iterable[str]) -> tuple[str, ...]:
     """The cells of a chain: its values, and their claims or why they are missing."""
-    values = [chain.value(_COLUMNS[column]) for column in columns]
+    values = [chain.value(COLUMNS[column]) for column in columns]
     claims = dict.fromkeys(str(value.claim) for value in values if value is not None)
     return (*map(value_text, values), chain.reason or ", ".join(claims))
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.measure.series import MeasuredKind, Measurement, Series
 from amalthea_uros.names import listed, require
-from amalthea_uros.report import measured
+from amalthea_uros.report.documents import measurement as measured
 from amalthea_uros.report.pictures.histogram import Histogram, histogram
 from amalthea_uros.report.pictures.histogram import Series as Bars
 from amalthea_uros.report.pictures.histogram_marks import Mark, MarkKind

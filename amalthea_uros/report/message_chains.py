@@ -2,29 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 from amalthea_uros.analyze.results.chains import ChainResult
-from amalthea_uros.executors.results import Hop, TimePart
+from amalthea_uros.report.cells import share_text
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.units import Rounding, Time, rounded_time_text, time_text
 
 #: Of a table with a row for each chain; the last column has none.
-HEADINGS = ("chain", "from", "to", "best", "worst")
-RIGHT = (3, 4)
+HEADINGS = ("chain", "from", "to", ">best", ">worst")
 #: Parts of a latency that its line names.
 _LARGEST = 2
-
-
-def write_message_chains(chains: Sequence[ChainResult], terminal: Terminal) -> None:
-    """Write a line for one chain, or a table for several."""
-    if len(chains) == 1:
-        terminal.line(terminal.style(headline(chains[0]), "1"))
-        terminal.line()
-    elif chains:
-        terminal.line(terminal.style("Latency of messages, end to end", "1"))
-        terminal.table((*HEADINGS, ""), map(latency_row, chains), right=RIGHT)
-        terminal.line()
 
 
 def latency_row(chain: ChainResult) -> tuple[str, ...]:
@@ -63,8 +51,8 @@ def write_hops_of_chain(chain: ChainResult, terminal: Terminal) -> None:
     rows: list[tuple[str, ...]] = []
     for hop in chain.hops:
         note = hop.reason or hop.source
-        rows.append((f"{hop.kind}: {hop.name}", time_text(hop.best), _exact(hop.worst), share_text(hop), note))
-        rows += [(f"  {part.name}", "", part_time(part), "", part.why) for part in hop.parts]
+        rows.append((f"{hop.kind}: {hop.name}", time_text(hop.best), _exact(hop.worst), share_text(hop.share), note))
+        rows += [(f"  {part.name}", "", _exact(part.most), "", part.why) for part in hop.parts]
     rows.append(("sum", time_text(chain.best or 0), _exact(chain.worst_if_not_lost), "", ""))
     terminal.table(("hop", "best", "worst", "share", ""), rows, right=(1, 2, 3))
     terminal.line("  the latency is the sum of the bounds of its hops, which need not occur in one run")
@@ -75,18 +63,8 @@ def write_hops_of_chain(chain: ChainResult, terminal: Terminal) -> None:
             terminal.line(f"  {hop.remedy}")
 
 
-def part_time(part: TimePart) -> str:
-    """The time that a part takes at most, exactly."""
-    return _exact(part.most)
-
-
-def share_text(hop: Hop) -> str:
-    """The part of the upper bound that a hop is, in percent."""
-    return "" if hop.share is None else f"{float(hop.share):.1%}"
-
-
 def _exact(value: Time | None) -> str:
-    return "?" if value is None else time_text(value)
+    return "unknown" if value is None else time_text(value)
 
 
 def _time(value: Time | None, rounding: Rounding) -> str:

@@ -14,11 +14,14 @@ from amalthea_uros.analyze.priorities.assignment import Proposal
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.design.changes.apply import Difference
 from amalthea_uros.diagnostics import Finding
-from amalthea_uros.report.by_result import module_for, rendered_in
+from amalthea_uros.report.document import document
+from amalthea_uros.report.documents.analysis import impact_section, priorities_section
+from amalthea_uros.report.documents.simulation import simulation_document
 from amalthea_uros.report.escape import visible
+from amalthea_uros.report.formats.text import RENDERS, write_text
 from amalthea_uros.report.records import all_records, lean_records
 from amalthea_uros.report.terminal import Terminal
-from amalthea_uros.report.text import analysis_result, impact, proposals, simulation_result
+from amalthea_uros.report.writers.text import write_document
 from amalthea_uros.services import analyze as services_analyze
 from amalthea_uros.services.what_if import WhatIf
 from amalthea_uros.simulate.results import Simulation
@@ -54,18 +57,18 @@ def _write(result: object, terminal: Terminal) -> bool:
     match result:
         case Analysis():
             terminal.findings(result.findings)
-            analysis_result.write(services_analyze.analysis_result(result), terminal)
+            write_text(services_analyze.analysis_result(result), terminal)
         case Simulation():
             terminal.findings(result.findings)
-            simulation_result.write(_SimulationAlone(result), terminal)
+            write_document(simulation_document(_SimulationAlone(result)), terminal)
         case WhatIf():
             for change in result.differences:
                 terminal.line(str(change))
-            impact.write(result.impact, terminal)
+            write_document(document([impact_section(result.impact)]), terminal)
         case Proposal():
-            proposals.write_proposals(terminal, (result,))
-        case _ if type(result).__name__ in rendered_in("text"):
-            module_for(result, "text").write(result, terminal)
+            write_document(document([priorities_section(result)]), terminal)
+        case _ if type(result).__name__ in RENDERS:
+            write_text(result, terminal)
         case _:
             return False
     return True

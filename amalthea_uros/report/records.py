@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from fractions import Fraction
-from functools import singledispatch
 from typing import Any
 
 from amalthea_uros._internal.by_name import Results
@@ -13,28 +12,13 @@ from amalthea_uros.analyze.impact import Impact
 from amalthea_uros.analyze.priorities.assignment import Proposal
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import ChainResult
-from amalthea_uros.analyze.results.processes import CallbackResult, ProcessorResult, ProcessResult
-from amalthea_uros.analyze.results.requirements import RequirementResult
+from amalthea_uros.analyze.results.processes import CallbackResult, ProcessResult
 from amalthea_uros.analyze.sensitivity import Sensitivity
-from amalthea_uros.compare.results import Comparison, ComparisonRow, DistributionRow, MeasuredLimit
-from amalthea_uros.executors.results import ExecutorResult, HandleResult, Hop
+from amalthea_uros.compare.results import Comparison
+from amalthea_uros.executors.results import ExecutorResult
 from amalthea_uros.measure.series import Measurement
-from amalthea_uros.report.json import (
-    analysis_result,
-    build_result,
-    calibration,
-    check_result,
-    comparison,
-    diff_result,
-    generate_result,
-    impact,
-    measurement,
-    meta_check,
-    migration_result,
-    optimization,
-    simulation_result,
-)
-from amalthea_uros.report.json.executors import handle_json, hop_json
+from amalthea_uros.report.fields import analysis, descriptions, explanation, measurement, models, search, simulation
+from amalthea_uros.report.fields.declaration import is_declared, json_of
 from amalthea_uros.services.analyze import AnalysisResult, Explanation
 from amalthea_uros.services.build import BuildResult
 from amalthea_uros.services.calibrate import Calibration
@@ -47,14 +31,10 @@ from amalthea_uros.services.optimize import DesignProposal, Optimization
 from amalthea_uros.services.simulate import CampaignResult, SimulationResult
 from amalthea_uros.services.sweep import SweepResult
 from amalthea_uros.services.what_if import WhatIf
-from amalthea_uros.simulate.observations import (
-    ChainObservation,
-    CoreObservation,
-    LabelObservation,
-    ProcessObservation,
-    RequirementObservation,
-    RunnableObservation,
-)
+from amalthea_uros.simulate.observations import ChainObservation, ProcessObservation, RunnableObservation
+
+#: Declare the fields of all results.
+_DECLARATIONS = (analysis, descriptions, explanation, measurement, models, search, simulation)
 
 #: The most important columns of the results that have too many for a table.
 _LEAN: Mapping[type, tuple[str, ...]] = {
@@ -93,7 +73,6 @@ def lean_records(result: Any) -> list[Record]:
     return rows if columns is None else [{name: row.get(name) for name in columns} for row in rows]
 
 
-@singledispatch
 def all_records(result: Any) -> list[Record]:
     """The rows of a result with all columns; one with parts has a row for each of them.
 
@@ -101,206 +80,37 @@ def all_records(result: Any) -> list[Record]:
     ------
     TypeError : results of this class have no table.
     """
-    raise TypeError(f"{type(result).__name__} has no records")
+    if isinstance(result, Results):
+        return [row for each in result for row in all_records(each)]
+    if isinstance(result, Mapping):
+        return [flat(result)]
+    parts = _PARTS.get(type(result))
+    if parts is not None:
+        return [row for part in parts(result) for row in all_records(part)]
+    if not is_declared(type(result)):
+        raise TypeError(f"{type(result).__name__} has no records")
+    return [flat(json_of(result))]
 
 
-@all_records.register
-def _(results: Results) -> list[Record]:  # type: ignore[type-arg]
-    return [row for result in results for row in all_records(result)]
-
-
-@all_records.register
-def _(analysis: Analysis) -> list[Record]:
-    return all_records(analysis.processes)
-
-
-@all_records.register
-def _(result: AnalysisResult) -> list[Record]:
-    return all_records(result.analysis)
-
-
-@all_records.register
-def _(processor: ProcessorResult) -> list[Record]:
-    return [flat(analysis_result.processor_json(processor))]
-
-
-@all_records.register
-def _(process: ProcessResult) -> list[Record]:
-    return [flat(analysis_result.process_json(process))]
-
-
-@all_records.register
-def _(callback: CallbackResult) -> list[Record]:
-    return [flat(analysis_result.callback_json(callback))]
-
-
-@all_records.register
-def _(executor: ExecutorResult) -> list[Record]:
-    """One row for each handle."""
-    own: Record = {"executor": executor.name}
-    return [own | row for handle in executor.handles for row in all_records(handle)]
-
-
-@all_records.register
-def _(handle: HandleResult) -> list[Record]:
-    return [flat({name: value for name, value in handle_json(handle).items() if name != "terms"})]
-
-
-@all_records.register
-def _(hop: Hop) -> list[Record]:
-    return [flat({name: value for name, value in hop_json(hop).items() if name != "parts"})]
-
-
-@all_records.register
-def _(chain: ChainResult) -> list[Record]:
+def _latencies(chain: ChainResult) -> Iterator[Record]:
     """One row for each latency; a chain without any has a row with the reason."""
     own: Record = {"name": chain.name, "communication": chain.communication}
-    rows = [own | flat(analysis_result.value_json(value)) | {"reason": value.reason} for value in chain.values]
-    nothing: Record = dict.fromkeys(("quantity", "value_ps", "claim", "method", "source"))
-    return rows or [own | nothing | {"reason": chain.reason}]
+    for value in chain.values:
+        yield own | flat(json_of(value)) | {"reason": value.reason}
+    if not chain.values:
+        nothing: Record = dict.fromkeys(("quantity", "value_ps", "claim", "method", "source"))
+        yield own | nothing | {"reason": chain.reason}
 
 
-@all_records.register
-def _(requirement: RequirementResult) -> list[Record]:
-    return [flat(analysis_result.requirement_json(requirement))]
+def _handles(executor: ExecutorResult) -> Iterator[Record]:
+    own: Record = {"executor": executor.name}
+    return (own | row for handle in executor.handles for row in all_records(handle))
 
 
-@all_records.register
-def _(result: SimulationResult) -> list[Record]:
-    return result.simulation.to_records()
-
-
-@all_records.register
-def _(proposal: DesignProposal) -> list[Record]:
-    """One row for each requirement and limit."""
-    return [flat(row) for row in optimization.demands_json(proposal)]
-
-
-@all_records.register
-def _(result: Optimization) -> list[Record]:
-    """One row for each proposal."""
-    return [flat(row) for row in optimization.rows_json(result)]
-
-
-@all_records.register
-def _(result: CampaignResult) -> list[Record]:
-    return [dict(row) for row in result.rows]
-
-
-@all_records.register
-def _(result: SweepResult) -> list[Record]:
-    return [dict(row) for row in result.rows]
-
-
-@all_records.register
-def _(core: CoreObservation) -> list[Record]:
-    return [flat(simulation_result.core_json(core))]
-
-
-@all_records.register
-def _(process: ProcessObservation) -> list[Record]:
-    return [flat(simulation_result.process_json(process))]
-
-
-@all_records.register
-def _(chain: ChainObservation) -> list[Record]:
-    return [flat(simulation_result.chain_json(chain))]
-
-
-@all_records.register
-def _(runnable: RunnableObservation) -> list[Record]:
-    return [flat(simulation_result.runnable_json(runnable))]
-
-
-@all_records.register
-def _(label: LabelObservation) -> list[Record]:
-    return [flat(simulation_result.label_json(label))]
-
-
-@all_records.register
-def _(requirement: RequirementObservation) -> list[Record]:
-    return [flat(simulation_result.requirement_json(requirement))]
-
-
-@all_records.register
-def _(result: GenerateResult) -> list[Record]:
-    """One row for each build option."""
-    return [flat(option) for option in generate_result.content(result)["options"]]
-
-
-@all_records.register
-def _(result: MetaCheck) -> list[Record]:
-    return [flat(finding) for finding in meta_check.content(result)["findings"]]
-
-
-@all_records.register
-def _(result: CheckResult) -> list[Record]:
-    return [flat(finding) for finding in check_result.content(result)["findings"]]
-
-
-@all_records.register
-def _(result: BuildResult) -> list[Record]:
-    """The periods that were chosen, with reasons."""
-    return [flat(choice) for choice in build_result.content(result)["choices"]]
-
-
-@all_records.register
-def _(result: Calibration) -> list[Record]:
-    """The measured values."""
-    return [flat(calibration.value_json(value)) for value in result.values]
-
-
-@all_records.register
-def _(result: Measurement) -> list[Record]:
-    """The series, without histograms."""
-    return [flat({**measurement.series_json(series), "histogram": None}) for series in result.series]
-
-
-@all_records.register
-def _(result: MigrationResult) -> list[Record]:
-    """The objects that were changed."""
-    return [flat(change) for change in migration_result.content(result)["changes"]]
-
-
-@all_records.register
-def _(result: DiffResult) -> list[Record]:
-    return [flat(diff_result.change_json(change)) for change in result.changes]
-
-
-@all_records.register
-def _(result: Comparison) -> list[Record]:
-    return [row for each in result.rows for row in all_records(each)]
-
-
-@all_records.register
-def _(row: ComparisonRow) -> list[Record]:
-    return [flat(comparison.row_json(row))]
-
-
-@all_records.register
-def _(row: DistributionRow) -> list[Record]:
-    return [flat({name: value for name, value in comparison.distribution_json(row).items() if name != "quantiles"})]
-
-
-@all_records.register
-def _(limit: MeasuredLimit) -> list[Record]:
-    return [flat(comparison.limit_json(limit))]
-
-
-@all_records.register
-def _(result: Impact) -> list[Record]:
-    return [flat(impact.row_json(row)) for row in result.rows]
-
-
-@all_records.register
-def _(result: WhatIf) -> list[Record]:
-    return all_records(result.impact)
-
-
-@all_records.register
-def _(result: Explanation) -> list[Record]:
+def _explained_parts(result: Explanation) -> Iterator[Record]:
     """One row for each part of a response time or latency; those of one object add up to it."""
-    return [*_parts_of_response(result), *_parts_of_latency(result)]
+    yield from _parts_of_response(result)
+    yield from _parts_of_latency(result)
 
 
 def _parts_of_response(result: Explanation) -> Iterator[Record]:
@@ -327,10 +137,9 @@ def _part(name: str, part: str, process: str | None, time: int, jobs: int | None
     return {"name": name, "part": part, "process": process, "jobs": jobs, "time_ps": time}
 
 
-@all_records.register
-def _(result: Improvements) -> list[Record]:
-    return [
-        {
+def _improvements(result: Improvements) -> Iterator[Record]:
+    for each in result.found:
+        yield {
             "change": each.change.text,
             "before_ps": each.before,
             "after_ps": each.after,
@@ -338,28 +147,23 @@ def _(result: Improvements) -> list[Record]:
             "is_safe": each.is_safe,
             "drawbacks": "; ".join(f"{drawback.name}: {drawback.before} -> {drawback.after}" for drawback in each.drawbacks),
         }
-        for each in result.found
-    ]
 
 
-@all_records.register
-def _(result: Sensitivity) -> list[Record]:
+def _factors(result: Sensitivity) -> Iterator[Record]:
     """The row without a process is the factor on all execution times together."""
-    rows: list[Record] = [{"process": None, "factor": _float(result.everything), "wcet_ps": None, "longest_ps": None}]
+    yield {"process": None, "factor": _float(result.everything), "wcet_ps": None, "longest_ps": None}
     for process, factor in result.processes.items():
         wcet, longest = result.execution_times[process], result.longest(process)
-        rows.append({"process": process, "factor": _float(factor), "wcet_ps": wcet, "longest_ps": longest})
-    return rows
+        yield {"process": process, "factor": _float(factor), "wcet_ps": wcet, "longest_ps": longest}
 
 
 def _float(factor: Fraction | None) -> float | None:
     return None if factor is None else float(factor)
 
 
-@all_records.register
-def _(result: Proposal) -> list[Record]:
-    return [
-        {
+def _priorities(result: Proposal) -> Iterator[Record]:
+    for task, current in result.current.items():
+        yield {
             "processor": result.core,
             "task": task,
             "current": current,
@@ -367,20 +171,46 @@ def _(result: Proposal) -> list[Record]:
             "outcome": str(result.outcome),
             "reason": result.reason,
         }
-        for task, current in result.current.items()
-    ]
 
+
+#: Results with a row for each of their parts, and the parts: rows, or objects with rows of their own.
+_PARTS: Mapping[type, Callable[[Any], Iterable[Any]]] = {
+    Analysis: lambda result: [result.processes],
+    AnalysisResult: lambda result: [result.analysis],
+    ExecutorResult: _handles,
+    ChainResult: _latencies,
+    Explanation: _explained_parts,
+    Improvements: _improvements,
+    Sensitivity: _factors,
+    Proposal: _priorities,
+    Impact: lambda result: result.rows,
+    WhatIf: lambda result: [result.impact],
+    SimulationResult: lambda result: result.simulation.to_records(),
+    CampaignResult: lambda result: result.rows,
+    SweepResult: lambda result: result.rows,
+    DesignProposal: search.demand_rows,
+    Optimization: search.proposal_rows,
+    Measurement: lambda result: result.series,
+    Comparison: lambda result: result.rows,
+    Calibration: lambda result: result.values,
+    BuildResult: lambda result: json_of(result)["choices"],
+    GenerateResult: lambda result: json_of(result)["options"],
+    MetaCheck: lambda result: result.findings,
+    CheckResult: lambda result: json_of(result)["findings"],
+    MigrationResult: lambda result: result.changes,
+    DiffResult: lambda result: result.changes,
+}
 
 #: What has no place in a cell: distributions, and where in the run something was observed.
-_LEFT_OUT = ("histogram", "at_min", "at_max", "routes")
+_LEFT_OUT = ("histogram", "at_min", "at_max")
 
 
 def flat(values: Mapping[str, object], prefix: str = "") -> Record:
-    """Nested values as one record: keys of inner mappings are joined with dots."""
+    """Nested values as one record: keys of inner mappings are joined with dots; lists have no place in it."""
     found: Record = {}
     for key, value in values.items():
         name = f"{prefix}{key}"
-        if key in _LEFT_OUT:
+        if key in _LEFT_OUT or isinstance(value, list):
             continue
         if isinstance(value, Mapping):
             found |= flat(value, f"{name}.")

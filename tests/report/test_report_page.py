@@ -15,7 +15,7 @@ from amalthea_uros import am, load, report, save
 from amalthea_uros.analyze.results.chains import LatencyQuantity
 from amalthea_uros.perf.activities import Migrate
 from amalthea_uros.report.closing_line import closing_line
-from amalthea_uros.report.html.blocks import table
+from amalthea_uros.report.document import table
 from amalthea_uros.report.latencies import value_text
 from amalthea_uros.units import Rounding, rounded_time_text
 
@@ -230,7 +230,8 @@ def test_the_pools_of_an_app_are_ready_to_copy():
 
 
 def test_long_tables_are_folded():
-    long = table("Things", ("name", ">number", "nothing"), [(f"thing {number}", str(number), "") for number in range(180)])
+    rows = [(f"thing {number}", str(number), "") for number in range(180)]
+    long = table("Things", ("name", ">number", "nothing"), rows).compact
     assert [column.title for column in long.columns] == ["name", "number"]
     assert (len(long.shown), len(long.folded)) == (15, 165)
     assert len(table("Things", ("name",), [("x",)] * 30).folded) == 0

@@ -1,7 +1,7 @@
 """A simulation as text and as JSON, from results made by hand."""
 
 import json
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from io import StringIO
 from pathlib import Path
@@ -12,34 +12,30 @@ from simulations import CHAIN, CONTROL, EXECUTOR, SIMULATION, observation
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.report import formats
-from amalthea_uros.report.simulated import closing_line, duration_text
-from amalthea_uros.simulate.observations import CountObservation, LabelObservation, RequirementObservation, RunnableObservation
-from amalthea_uros.simulate.results import ObservedVerdict, Simulation
+from amalthea_uros.report.documents.simulation import closing_line, duration_text
+from amalthea_uros.services.simulate import SimulationResult
+from amalthea_uros.simulate.observations import CountObservation
+from amalthea_uros.simulate.results import LabelObservation, ObservedVerdict, RequirementObservation, RunnableObservation
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
 from amalthea_uros.units import SECOND
 
 
-@dataclass(frozen=True)
-class SimulationResult:
-    simulation: Simulation
-    paths: tuple[Path, ...] = (Path("app.yaml"),)
-    findings: tuple[Finding, ...] = ()
-    with_metrics: bool = False
-    differences: tuple = ()
-    impact: object = None
+def result_of(simulation, **others):
+    known = {"paths": (Path("app.yaml"),), "system": None, "options": None, "findings": ()}
+    return SimulationResult(simulation=simulation, **known | others)
 
 
 def text(simulation, **others):
     stream = StringIO()
-    formats.write("text", SimulationResult(simulation, **others), stream)
+    formats.write("text", result_of(simulation, **others), stream)
     return stream.getvalue()
 
 
 def content(simulation, **others):
     stream = StringIO()
-    formats.write("json", SimulationResult(simulation, **others), stream)
+    formats.write("json", result_of(simulation, **others), stream)
     return json.loads(stream.getvalue())
 
 

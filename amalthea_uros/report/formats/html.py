@@ -12,6 +12,6 @@ RENDERS = ("ReportContent",)
 
 def write(content: ReportContent, stream: IO[str]) -> None:
     """Write the page."""
-    from amalthea_uros.report.html.page import render
+    from amalthea_uros.report.writers.html import render
 
     stream.write(render(content))

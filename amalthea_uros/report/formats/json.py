@@ -1,17 +1,33 @@
-"""JSON for programs; each result has a module in `report/json`. Times are picoseconds under names that end in `_ps`."""
+"""JSON for programs: the fields that the class of a result declares. Times are picoseconds under names that end in `_ps`."""
 
 from __future__ import annotations
 
-from typing import IO
+from importlib import import_module
+from typing import IO, Any
 
 from amalthea_uros._version import __version__
-from amalthea_uros.report.by_result import module_for, rendered_in
 from amalthea_uros.report.escape import write_json
+from amalthea_uros.report.fields.declaration import json_of
 
-RENDERS = rendered_in("json")
+#: The modules that declare the fields of results.
+_MODULES = {
+    "analysis": ("AnalysisResult",),
+    "descriptions": ("BuildResult", "GenerateResult", "MetaCheck"),
+    "measurement": ("Calibration", "Comparison", "Measurement"),
+    "models": ("CheckResult", "DiffResult", "InfoResult", "MigrationResult", "RulesResult"),
+    "search": ("Optimization", "SweepResult"),
+    "simulation": ("CampaignResult", "SimulationResult"),
+}
+RENDERS = {name: module for module, names in _MODULES.items() for name in names}
+
+
+def content(result: object) -> dict[str, Any]:
+    """The fields of a result."""
+    import_module(f"amalthea_uros.report.fields.{RENDERS[type(result).__name__]}")
+    found: dict[str, Any] = json_of(result)
+    return found
 
 
 def write(result: object, stream: IO[str]) -> None:
     """Write one object, with the version of the tool."""
-    content = module_for(result, "json").content(result)
-    write_json({"amuros": __version__, **content}, stream)
+    write_json({"amuros": __version__, **content(result)}, stream)

@@ -14,8 +14,8 @@ from amalthea_uros.analyze.results.processes import ProcessorResult
 from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.perf.software import Isr, Process
 from amalthea_uros.perf.system import System
+from amalthea_uros.report.cells import load_text
 from amalthea_uros.report.flows import ChainPath, Flow, SystemFlows
-from amalthea_uros.report.load_text import load_text
 from amalthea_uros.report.pictures.page import MARGIN, TOP, WIDTH, LegendEntry, document, draw_legend
 from amalthea_uros.report.pictures.style import PALETTE, SMALL_SIZE, TEXT_SIZE
 from amalthea_uros.report.pictures.svg import Markup, element, number, text, tooltip

@@ -23,7 +23,6 @@ from amalthea_uros.report.hops import write_hops
 from amalthea_uros.report.message_chains import write_hops_of_chain
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.report.text import improvements
-from amalthea_uros.report.text.executors import write_terms
 from amalthea_uros.services.analyze import Explanation
 from amalthea_uros.services.improvements import Improvements
 from amalthea_uros.timing.response import Response
@@ -129,9 +128,15 @@ def _handle(handle: HandleResult, terminal: Terminal) -> None:
     release = "when it is due" if handle.kind is HandleKind.TIMER else "when it has arrived at the controller"
     interval = "" if handle.interval is None else f"; every {time_text(handle.interval)} at most"
     terminal.line(f"  {handle.kind.value} {handle.name}, from {release}{interval}")
-    write_terms(terminal, handle)
+    if handle.terms:
+        rows = [(term.name, _time(term.most), _share_of(term.most, handle), term.why) for term in handle.terms]
+        terminal.table(("in the worst case", "time", "", ""), rows, right=(1, 2))
     if handle.lost is not None:
         terminal.line(f"  {handle.lost.what} {'are' if handle.lost.is_certain else 'can be'} lost: {handle.lost.sequence}")
+
+
+def _share_of(part: Time | None, handle: HandleResult) -> str:
+    return f"{part / handle.response.worst:.1%}" if handle.response.worst and part is not None else ""
 
 
 def _response_text(callback: CallbackResult) -> str:

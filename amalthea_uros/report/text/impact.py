@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from amalthea_uros.analyze.impact import Impact
+from amalthea_uros.report.document import document
+from amalthea_uros.report.documents.analysis import impact_section
 from amalthea_uros.report.terminal import Terminal
-from amalthea_uros.services.impact_text import HEADINGS, RIGHT, cells, unchanged_text
+from amalthea_uros.report.writers.text import write_document
 
 
-def write(impact: Impact, terminal: Terminal, remark: str = "") -> None:
+def write(impact: Impact, terminal: Terminal) -> None:
     """Write a row for each figure that changed, and how many others there are."""
-    terminal.heading("Before and after the change" + (f" ({remark})" if remark else ""))
-    if impact:
-        terminal.table((*HEADINGS[:-1], ""), cells(impact), right=RIGHT)
-    terminal.line(f"  {unchanged_text(impact)}")
+    terminal.line()
+    write_document(document([impact_section(impact)]), terminal)

@@ -13,7 +13,7 @@ from amalthea_uros.analyze.results.requirements import RequirementResult
 from amalthea_uros.design.optimize.problem import Feasibility
 from amalthea_uros.design.optimize.quantities import Amount, Dimension, Range, dimension
 from amalthea_uros.judge.verdict import Verdict
-from amalthea_uros.report.load_text import load_text
+from amalthea_uros.report.cells import load_text
 from amalthea_uros.report.optimized import closing_line, count_text, goal_text, limit_text, space_lines
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.services.impact_text import cells

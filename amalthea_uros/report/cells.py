@@ -1,0 +1,124 @@
+"""Cells of tables: times, loads, verdicts and claims, rounded so that bounds remain bounds; and the order of rows."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import inf
+from typing import TYPE_CHECKING
+
+from amalthea_uros.analyze.results.processes import ProcessResult
+from amalthea_uros.analyze.results.requirements import RequirementResult
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.judge.summary import Schedulable
+from amalthea_uros.judge.verdict import ObservedVerdict, Verdict
+from amalthea_uros.report.document import Badge, Tone
+from amalthea_uros.timing.response import Response
+from amalthea_uros.units import Rounding, Time, number_text, rounded, rounded_time_text, time_text
+
+if TYPE_CHECKING:
+    from amalthea_uros.simulate.observations import MetricObservation
+
+UNKNOWN = "unknown"
+
+_TONES = {
+    Verdict.MET: Tone.GOOD,
+    Verdict.MISSED: Tone.BAD,
+    Verdict.UNBOUNDED: Tone.BAD,
+    Verdict.UNKNOWN: Tone.UNKNOWN,
+    ObservedVerdict.OK: Tone.GOOD,
+    ObservedVerdict.MISSED: Tone.BAD,
+    ObservedVerdict.NOT_OBSERVED: Tone.UNKNOWN,
+    Schedulable.YES: Tone.GOOD,
+    Schedulable.NO: Tone.BAD,
+    Schedulable.UNKNOWN: Tone.UNKNOWN,
+    Severity.ERROR: Tone.BAD,
+    Severity.WARNING: Tone.UNKNOWN,
+    Severity.INFO: Tone.NEUTRAL,
+}
+
+
+def at_most(value: Time | Fraction | None, limit: Time | None = None) -> str:
+    """A maximum, rounded up, but not beyond the limit."""
+    return UNKNOWN if value is None else rounded_time_text(value, Rounding.UP, limit)
+
+
+def at_least(value: Time | Fraction | None, limit: Time | None = None) -> str:
+    """A minimum, rounded down."""
+    return UNKNOWN if value is None else rounded_time_text(value, Rounding.DOWN, limit)
+
+
+def about(value: Time | Fraction | None, limit: Time | None = None) -> str:
+    """A mean."""
+    return UNKNOWN if value is None else rounded_time_text(value, Rounding.NEAREST, limit)
+
+
+def exactly(value: Time | None, nothing: str = "-") -> str:
+    """A time with all its digits."""
+    return nothing if value is None else time_text(value)
+
+
+def response_ends(response: Response | None, limit: Time | None) -> tuple[str, str]:
+    """The best-case and the worst-case response time."""
+    if response is None:
+        return UNKNOWN, UNKNOWN
+    return at_least(response.best), at_most(response.worst, limit)
+
+
+def observed(found: MetricObservation | None, limit: Time | None = None) -> tuple[str, str, str]:
+    """Minimum, mean and maximum of what was observed."""
+    if found is None:
+        return "-", "-", "-"
+    return at_least(found.min, limit), about(found.mean, limit), at_most(found.max, limit)
+
+
+def deadline_text(deadline: Time | None, is_implicit: bool = False) -> str:
+    """A deadline, and whether it is the period."""
+    return "-" if deadline is None else f"{'period ' if is_implicit else ''}{time_text(deadline)}"
+
+
+def priority_text(priority: int | None, is_isr: bool) -> str:
+    """A priority, and whether it is that of an interrupt."""
+    return UNKNOWN if priority is None else f"{'ISR ' if is_isr else ''}{priority}"
+
+
+def load_text(load: Fraction, rounding: Rounding = Rounding.NEAREST) -> str:
+    """A load in percent with four significant digits; bounds are rounded so that they remain bounds."""
+    return f"{number_text(rounded(load * 100, rounding, 100))} %"
+
+
+def share_text(share: Fraction | float | None) -> str:
+    """A part of a whole in percent."""
+    return "" if share is None else f"{float(share):.1%}"
+
+
+def words(name: str) -> str:
+    """A name of JSON as words."""
+    return name.replace("_", " ")
+
+
+def shortened(text: str | None, most: int) -> str:
+    """A text on one line that is not too long."""
+    line = " ".join((text or "").split())
+    return line if len(line) <= most else f"{line[: most - 3]}..."
+
+
+def badge(value: Verdict | ObservedVerdict | Severity | None, word: str = "") -> Badge:
+    """A verdict or a severity; without one, there was nothing to judge."""
+    if value is None:
+        return Badge("no limit", Tone.NEUTRAL)
+    return Badge(word or words(value), _TONES[value])
+
+
+def verdict_badge(item: ProcessResult | RequirementResult) -> Badge:
+    """The verdict on a process or a requirement, with what is wrong."""
+    return badge(item.verdict, str(item.failure or "") if isinstance(item, ProcessResult) else "")
+
+
+def tone_of(schedulable: Schedulable) -> Tone:
+    """That of the verdict on a system."""
+    return _TONES[schedulable]
+
+
+def by_core_and_priority(core: str | None, is_isr: bool, priority: int | None) -> tuple[bool, str, bool, float]:
+    """Sorts by core, and there by priority: what preempts others comes before them; unknown cores and priorities come last."""
+    return (core is None, core or "", not is_isr, inf if priority is None else -priority)

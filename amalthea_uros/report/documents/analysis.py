@@ -1,0 +1,359 @@
+"""An analysis as a document: loads, response times, latencies and verdicts, with what they rest on."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from fractions import Fraction
+from math import ceil
+
+from amalthea_uros.analyze.impact import Effect, Impact
+from amalthea_uros.analyze.priorities.assignment import Proposal, ProposalOutcome
+from amalthea_uros.analyze.results.analysis import Analysis
+from amalthea_uros.analyze.results.chains import ChainResult
+from amalthea_uros.analyze.results.processes import CallbackResult, Metric, ProcessorResult, ProcessResult
+from amalthea_uros.analyze.results.requirements import RequirementResult
+from amalthea_uros.analyze.sensitivity import MAX_FACTOR, Sensitivity
+from amalthea_uros.executors.results import ExecutorResult, HandleResult
+from amalthea_uros.judge.verdict import WORST_FIRST, Verdict
+from amalthea_uros.report.cells import (
+    UNKNOWN,
+    about,
+    at_least,
+    at_most,
+    by_core_and_priority,
+    deadline_text,
+    exactly,
+    priority_text,
+    response_ends,
+    verdict_badge,
+    words,
+)
+from amalthea_uros.report.closing_line import closing_line
+from amalthea_uros.report.document import (
+    Badge,
+    Block,
+    Cell,
+    Document,
+    Section,
+    Sentences,
+    Table,
+    Tone,
+    document,
+    section,
+    table,
+)
+from amalthea_uros.report.latencies import COLUMNS, HEADING, cells
+from amalthea_uros.report.message_chains import HEADINGS as MESSAGE_COLUMNS
+from amalthea_uros.report.message_chains import headline, latency_row
+from amalthea_uros.services import impact_text
+from amalthea_uros.services.analyze import AnalysisResult
+from amalthea_uros.timing.basics.quantities import JobMetric
+from amalthea_uros.units import Rounding, Time, frequency_text, percent_text, time_text
+
+BAR = 20
+_EFFECTS = {Effect.BETTER: Tone.GOOD, Effect.WORSE: Tone.BAD, Effect.UNKNOWN: Tone.UNKNOWN}
+
+
+def analysis_document(result: AnalysisResult) -> Document:
+    """Tables of loads, response times, chains and requirements, with methods, assumptions and the verdict."""
+    analysis = result.analysis
+    return document(
+        (
+            *_message_chains(analysis),
+            section("Load", _loads(analysis)),
+            section("Response times", response_times(analysis)),
+            section("Callbacks (from the activation of the process to the end of the callback)", callbacks(analysis)),
+            *map(_executor, analysis.executors),
+            *(map(_metrics, analysis.processes) if result.with_metrics else ()),
+            section(HEADING, _chains(analysis.chains)),
+            section("Requirements", _requirements(analysis)),
+            *([] if result.impact is None else [impact_section(result.impact)]),
+            *(
+                []
+                if result.sensitivity is None
+                else [section("Maximum factors on execution times", _factors(result.sensitivity))]
+            ),
+            *map(priorities_section, result.proposals or ()),
+            section("Methods", Sentences(list(dict.fromkeys(_methods_of_responses(analysis))))),
+            section("Assumptions", Sentences(analysis.assumptions)),
+        ),
+        closing_line(analysis.summary),
+    )
+
+
+def _message_chains(analysis: Analysis) -> Iterator[Section]:
+    """The latency of messages: a line for one chain, or a table of several."""
+    if len(analysis.message_chains) == 1:
+        yield section(headline(analysis.message_chains[0]), Sentences([""]))
+    elif analysis.message_chains:
+        yield section("Latency of messages, end to end", latencies_of_messages(analysis, ""))
+
+
+def latencies_of_messages(analysis: Analysis, remark: str = "why") -> Table:
+    """The end-to-end latencies of messages."""
+    return table("Latency of messages, end to end", (*MESSAGE_COLUMNS, remark), map(latency_row, analysis.message_chains))
+
+
+def _loads(analysis: Analysis) -> Table:
+    rows = [
+        (
+            processor.name,
+            frequency_text(processor.frequency) if processor.frequency else UNKNOWN,
+            _percent(processor.best, Rounding.DOWN),
+            _percent(processor.mean, Rounding.NEAREST),
+            _worst_load(processor),
+            _bar(processor),
+        )
+        for processor in analysis.processors
+        if processor.worst != 0
+    ]
+    return table("Load of each core", ("core", ">clock", ">best", ">mean", ">worst", ""), rows)
+
+
+def _percent(load: Fraction | None, rounding: Rounding) -> str:
+    """A load in percent with three decimals; bounds are rounded so that they remain bounds."""
+    return UNKNOWN if load is None else f"{percent_text(load, 3, rounding)}%"
+
+
+def _worst_load(processor: ProcessorResult) -> str:
+    """The worst load, or the part of it that is known."""
+    if processor.worst is not None or not processor.at_least:
+        return _percent(processor.worst, Rounding.UP)
+    return f"at least {_percent(processor.at_least, Rounding.DOWN)}"
+
+
+def _bar(processor: ProcessorResult) -> str:
+    """The worst load as far as it is known as a bar, with an exclamation mark above 100 %."""
+    filled = min(BAR, ceil(processor.at_least * BAR))
+    rest = ("." if processor.worst is not None else "?") * (BAR - filled)
+    return "#" * filled + rest + ("!" if processor.is_overloaded else "")
+
+
+def response_times(analysis: Analysis, is_detailed: bool = False) -> Table:
+    """The response times of all processes, by core and priority.
+
+    Parameters
+    ----------
+    is_detailed : with the terms of each response time, and both its claim and what is wrong
+    """
+    ordered = sorted(analysis.processes, key=lambda each: by_core_and_priority(each.processor, each.is_isr, each.priority))
+    terms = list(dict.fromkeys(term for each in ordered if each.response is not None for term in each.response.terms))
+    terms = terms if is_detailed else []
+    rows = [
+        (
+            *_response_row(each, terms),
+            verdict_badge(each) if each.verdict is not None or is_detailed else "-",
+            *_remarks(each, is_detailed),
+        )
+        for each in ordered
+    ]
+    remarks = ("claim", "why") if is_detailed else ("",)
+    columns = (
+        "process",
+        "core",
+        ">priority",
+        ">WCET",
+        ">best",
+        ">worst",
+        *(f">{term}" for term in terms),
+        ">deadline",
+        "verdict",
+    )
+    return table("Response times by core and priority", (*columns, *remarks), rows)
+
+
+def _response_row(process: ProcessResult, terms: Sequence[str]) -> tuple[Cell, ...]:
+    response = process.response
+    parts = response.terms if response is not None and response.worst is not None else {}
+    return (
+        process.name,
+        process.processor or UNKNOWN,
+        priority_text(process.priority, process.is_isr),
+        at_most(process.wcet),
+        *response_ends(response, process.deadline),
+        *(at_most(parts[term]) if parts.get(term) else "-" for term in terms),
+        deadline_text(process.deadline, process.is_implicit),
+    )
+
+
+def _remarks(process: ProcessResult, is_detailed: bool) -> tuple[str, ...]:
+    response = process.response
+    if not is_detailed:
+        return (process.reason or (str(response.claim) if response else ""),)
+    from amalthea_uros.report.judged import why
+
+    return (str(response.claim) if response is not None and response.worst is not None else "", why(process))
+
+
+def callbacks(analysis: Analysis) -> Table:
+    """The response times of the callbacks of periodic executors."""
+    columns = ("callback", "process", ">best", ">mean", ">worst", ">deadline", "")
+    title = "Callbacks, from the activation of the process to the end of the callback"
+    return table(title, columns, map(_callback_row, analysis.of_periodic_executors))
+
+
+def _callback_row(callback: CallbackResult) -> tuple[str, ...]:
+    best, worst = response_ends(callback.response, callback.deadline)
+    mean = callback.metrics[JobMetric.RESPONSE_TIME].mean if callback.response else None
+    claim = str(callback.response.claim) if callback.response else ""
+    deadline = deadline_text(callback.deadline)
+    return (callback.name, callback.process, best, _mean(mean), worst, deadline, callback.reason or claim)
+
+
+def _mean(value: Fraction | None) -> str:
+    return "-" if value is None else about(round(value))
+
+
+def _executor(executor: ExecutorResult) -> Section:
+    """The handles of an executor that spins in a loop, its iterations, and what can be lost."""
+    loop = (
+        f"an iteration takes {_span(executor.round.least, executor.round.most)}, "
+        f"from one wait to the next {_span(executor.loop.least, executor.loop.most)}"
+    )
+    losses = [
+        f"{each.name} {'loses' if each.lost.is_certain else 'can lose'} {each.lost.what}: {each.lost.sequence}"
+        for each in executor.handles
+        if each.lost is not None
+    ]
+    return section(
+        f"Executor {executor.name} (from the arrival of a message, or when a timer is due, to the end of the callback)",
+        Sentences([executor.reason or loop]),
+        handles(executor),
+        Sentences(losses),
+    )
+
+
+def handles(executor: ExecutorResult, is_detailed: bool = False) -> Table:
+    """The response times of the handles of an executor, and what can be lost; with how and why if it is detailed."""
+    remarks = ("what can be lost, and how", "claim", "why") if is_detailed else ("can lose", "")
+    columns = ("handle", "kind", ">interval", ">best", ">worst", ">late by", *remarks)
+    return table(f"Executor {executor.name}", columns, (_handle_row(each, is_detailed) for each in executor.handles))
+
+
+def _handle_row(handle: HandleResult, is_detailed: bool) -> tuple[Cell, ...]:
+    response, lateness, claim = handle.response, handle.lateness, str(handle.response.claim)
+    lost = "-" if handle.lost is None else handle.lost.what
+    if is_detailed and handle.lost is not None:
+        lost = f"{lost}: {handle.lost.sequence}"
+    return (
+        handle.name,
+        handle.kind.value,
+        exactly(handle.interval, UNKNOWN),
+        *response_ends(response, handle.interval),
+        "-" if lateness is None else at_most(lateness.most),
+        lost,
+        *((claim, response.reason) if is_detailed else (response.reason or claim,)),
+    )
+
+
+def _span(lower: Time, upper: Time | None) -> str:
+    return f"{at_least(lower)} to {at_most(upper)}"
+
+
+def _metrics(process: ProcessResult) -> Section:
+    """Minimum, mean and maximum of each metric of a process."""
+    rows = [_metric_row(name, metric) for name, metric in process.metrics.items()] or [("none", *[""] * 4)]
+    return section(f"Metrics of {process.name}", table("", ("metric", ">min", ">mean", ">max", ""), rows))
+
+
+def _metric_row(name: JobMetric, metric: Metric) -> tuple[str, ...]:
+    return (words(name), at_least(metric.min), _mean(metric.mean), at_most(metric.max), str(metric.claim))
+
+
+def _chains(chains: Sequence[ChainResult]) -> Table:
+    rows = [(chain.name, *cells(chain, COLUMNS)) for chain in chains]
+    return table("Latencies of event chains", ("chain", *(f">{column}" for column in COLUMNS), ""), rows)
+
+
+def _requirements(analysis: Analysis) -> Table:
+    ordered = sorted(analysis.requirements, key=lambda requirement: WORST_FIRST.index(requirement.verdict))
+    columns = ("requirement", "what", "limit", ">value", "verdict", ">margin", "")
+    return table("Requirements", columns, map(_requirement_row, ordered))
+
+
+def _requirement_row(requirement: RequirementResult) -> tuple[Cell, ...]:
+    is_certain = requirement.margin is not None and requirement.verdict is not Verdict.UNKNOWN
+    return (
+        requirement.name,
+        f"{requirement.quantity} of {requirement.object}" if requirement.object else requirement.quantity,
+        "-" if requirement.limit is None else limit_text(requirement.limit, requirement.is_upper),
+        _value(requirement),
+        verdict_badge(requirement),
+        at_least(requirement.margin) if is_certain else "",
+        requirement.reason,
+    )
+
+
+def limit_text(limit: Time, is_upper: bool) -> str:
+    """A limit, such as "at most 1 ms"."""
+    return f"at {'most' if is_upper else 'least'} {time_text(limit)}"
+
+
+def _value(requirement: RequirementResult) -> str:
+    """The maximum or minimum that is limited: its safe end, or both ends if it is between them and the verdict is not met."""
+    lower, upper, limit = requirement.lower, requirement.upper, requirement.limit
+    if lower == upper or requirement.verdict is Verdict.MET or lower is None or upper is None:
+        return at_most(requirement.value, limit) if requirement.is_upper else at_least(requirement.value, limit)
+    return f"{at_least(lower, limit)} to {at_most(upper, limit)}"
+
+
+def impact_section(impact: Impact, remark: str = "") -> Section:
+    """What a change does to the results."""
+    title = "Before and after the change" + (f" ({remark})" if remark else "")
+    return section(title, impact_table(impact), Sentences([impact_text.unchanged_text(impact)]))
+
+
+def impact_table(impact: Impact) -> Table:
+    """A row for each figure that changed."""
+    rows: list[tuple[Cell, ...]] = [
+        (*found[:-2], Badge(found[-2], _EFFECTS.get(row.effect, Tone.NEUTRAL)), found[-1])
+        for row, found in zip(impact.rows, impact_text.cells(impact), strict=True)
+    ]
+    return table("Results before and after the change", ("object", "quantity", ">before", ">after", "effect", ""), rows)
+
+
+def _factors(found: Sensitivity) -> Table:
+    """By how much execution times can increase."""
+    rows = [("all together", _factor(found.everything), "", "")]
+    rows += [
+        (name, _factor(factor), at_least(found.execution_times[name]), _longest(found, name))
+        for name, factor in found.processes.items()
+    ]
+    return table("Maximum factors", ("process", ">factor", ">execution time", ">may grow to"), rows)
+
+
+def _longest(found: Sensitivity, name: str) -> str:
+    factor = found.processes[name]
+    return "" if factor is None or factor >= MAX_FACTOR else at_least(found.longest(name))
+
+
+def _factor(factor: Fraction | None) -> str:
+    if factor is None:
+        return "none"
+    return f"{float(factor):.3f}" if factor < MAX_FACTOR else f"{MAX_FACTOR} or more"
+
+
+def priorities_section(proposal: Proposal) -> Section:
+    """The proposed priorities of the tasks of a core."""
+    return section(f"Priorities on {proposal.core}", _priorities(proposal))
+
+
+def _priorities(proposal: Proposal) -> Block:
+    if proposal.outcome is ProposalOutcome.KEPT:
+        return Sentences(["the present priorities meet all deadlines"])
+    if proposal.priorities is None:
+        return Sentences([f"no proposal: {proposal.reason}"])
+    ordered = sorted(proposal.priorities.items(), key=lambda item: -item[1])
+    rows = [(name, UNKNOWN if (now := proposal.current[name]) is None else str(now), str(to)) for name, to in ordered]
+    return table("Proposed priorities", ("task", ">now", ">proposed"), rows)
+
+
+def methods(analysis: Analysis) -> list[str]:
+    """The methods of response times and latencies with their sources, each once."""
+    of_responses = (f"Response times: {each}" for each in _methods_of_responses(analysis))
+    of_latencies = (f"Latencies: {value.method} ({value.source})" for chain in analysis.chains for value in chain.values)
+    return list(dict.fromkeys((*of_responses, *of_latencies)))
+
+
+def _methods_of_responses(analysis: Analysis) -> Iterable[str]:
+    return (f"{each.response.method} ({each.response.source})" for each in analysis.processes if each.response is not None)

@@ -1,0 +1,416 @@
+"""A comparison with a measurement as a document: predictions, bounds, distributions and limits beside what was measured."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from amalthea_uros._internal.plural import counted
+from amalthea_uros.compare.results import (
+    Agreement,
+    Comparison,
+    ComparisonRow,
+    DistributionRow,
+    MeasuredLimit,
+    Statistic,
+    is_bound,
+)
+from amalthea_uros.measure.series import MeasuredKind, Measurement
+from amalthea_uros.report.document import Document, Sentences, document, section, table
+from amalthea_uros.report.documents.simulation import duration_text
+from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
+from amalthea_uros.units import Rounding, rounded_time_text, time_text
+
+#: Quantities that are shown although they agree.
+_IMPORTANT = (
+    JobMetric.NET_EXECUTION_TIME,
+    JobMetric.RESPONSE_TIME,
+    JobMetric.START_TO_START,
+    ChainQuantity.REDUCED_REACTION_TIME,
+    ChainQuantity.REDUCED_DATA_AGE,
+)
+_STATISTICS = (Statistic.MIN, Statistic.MEAN, Statistic.MAX)
+
+
+@dataclass(frozen=True, slots=True)
+class BoundTest:
+    """The bounds of a quantity, and the measured extreme values; None where the analysis has no bound.
+
+    Attributes
+    ----------
+    verdict : the worse one of both
+    """
+
+    lower: ComparisonRow | None
+    upper: ComparisonRow | None
+
+    @property
+    def rows(self) -> list[ComparisonRow]:
+        """The tests, at least one."""
+        return [row for row in (self.lower, self.upper) if row is not None]
+
+    @property
+    def verdict(self) -> Agreement:
+        """Whether both bounds hold."""
+        return Agreement.REFUTED if any(row.verdict is Agreement.REFUTED for row in self.rows) else Agreement.WITHIN
+
+    @property
+    def reason(self) -> str:
+        """What is to be said about the verdict."""
+        return "; ".join(filter(None, (row.reason for row in self.rows)))
+
+
+@dataclass(frozen=True, slots=True)
+class PredictionGroup:
+    """The predictions of a quantity that have a tolerance.
+
+    Attributes
+    ----------
+    distance : of the distributions; None if it is not known
+    """
+
+    rows: tuple[ComparisonRow, ...]
+    distance: DistributionRow | None
+
+    @property
+    def verdict(self) -> Agreement:
+        """The worst one."""
+        return max((row.verdict for row in self.rows), key=_BADNESS.index)
+
+    @property
+    def worst(self) -> ComparisonRow:
+        """The row with the largest deviation, of those that do not agree if there are any."""
+        return worst_of(self.rows)
+
+    @property
+    def deviations(self) -> str:
+        """Those of minimum, mean and maximum."""
+        found = {row.statistic: deviation_text(row) for row in self.rows}
+        texts = [found.get(statistic, "-") for statistic in _STATISTICS]
+        return texts[0] if len(set(texts)) == 1 else " / ".join(texts)
+
+    @property
+    def remark(self) -> str:
+        """What else is outside, and why the verdict is what it is."""
+        others = [row for row in self.rows if row.verdict is not Agreement.WITHIN and row.statistic not in _STATISTICS]
+        parts = [f"{row.statistic} {deviation_text(row)}" for row in others]
+        if self.worst.reason or any(map(_depends_on_phase, self.rows)):
+            parts.append(self.worst.reason or "nearest value of all phases")
+        return ", ".join(parts)
+
+    def times(self, is_measured: bool) -> str:
+        """Minimum, mean and maximum."""
+        found = {row.statistic: row.measured if is_measured else row.predicted for row in self.rows}
+        return " / ".join(_time(found.get(statistic)) for statistic in _STATISTICS)
+
+
+def worst_of(rows: Iterable[ComparisonRow]) -> ComparisonRow:
+    """The row that matters most: what is refuted, then the largest deviation of what does not agree, then of what agrees.
+
+    Of bounds, the deviation does not matter.
+    """
+
+    def rank(row: ComparisonRow) -> tuple[int, bool, bool, Fraction]:
+        is_tested = is_bound(row.claim, row.statistic)
+        return _BADNESS.index(row.verdict), not is_tested, not row.reason, Fraction(0) if is_tested else _size(row)
+
+    return max(rows, key=rank)
+
+
+_BADNESS = (Agreement.WITHIN, Agreement.DIFFERS, Agreement.OUTSIDE, Agreement.REFUTED)
+
+
+def prediction_groups(result: Comparison) -> list[PredictionGroup]:
+    """The predictions with a tolerance that are shown."""
+    groups: dict[tuple[str, MeasuredKind | None, str], list[ComparisonRow]] = {}
+    for row in result.compared:
+        if not is_bound(row.claim, row.statistic):
+            groups.setdefault((row.object, row.kind, row.quantity), []).append(row)
+    distances: dict[tuple[str, MeasuredKind | None, str], DistributionRow]
+    distances = {(row.object, row.kind, row.quantity): row for row in result.distributions}
+    found = [PredictionGroup(tuple(rows), distances.get(key)) for key, rows in groups.items()]
+    return [group for group in found if group.verdict is Agreement.OUTSIDE or _is_shown(result, group.rows[0])]
+
+
+def bound_tests(result: Comparison) -> list[BoundTest]:
+    """The bounds that are shown."""
+    tests: dict[tuple[str, MeasuredKind | None, str], dict[Statistic | None, ComparisonRow]] = {}
+    for row in result.compared:
+        if is_bound(row.claim, row.statistic):
+            tests.setdefault((row.object, row.kind, row.quantity), {})[row.statistic] = row
+    found = [BoundTest(rows.get(Statistic.MIN), rows.get(Statistic.MAX)) for rows in tests.values()]
+    return [test for test in found if test.verdict is Agreement.REFUTED or test.reason or _is_shown(result, test.rows[0])]
+
+
+def missing_rows(result: Comparison) -> list[ComparisonRow]:
+    """What is not compared and shown: of what has no prediction, the most important quantities, and times that are none of them."""
+    return [row for row in result.not_compared if _is_telling(result, row)]
+
+
+def _is_telling(result: Comparison, row: ComparisonRow) -> bool:
+    is_usual = row.quantity in (*JobMetric, *ChainQuantity)
+    return row.verdict is not Agreement.NOT_PREDICTED or not is_usual or _is_shown(result, row)
+
+
+def hidden_missing(result: Comparison) -> str:
+    """How many quantities without a prediction are not shown, "" if all are."""
+    rest = len(result.not_compared) - len(missing_rows(result))
+    return f"{counted(rest, 'other quantity')} not predicted; --all shows them" if rest else ""
+
+
+def hidden(result: Comparison) -> str:
+    """How many comparisons are not shown, "" if all are."""
+    shown = [*(row for each in prediction_groups(result) for row in each.rows)]
+    shown += [row for each in bound_tests(result) for row in each.rows]
+    rest = len(result.compared) - len(shown)
+    differing = result.count(Agreement.DIFFERS) - sum(row.verdict is Agreement.DIFFERS for row in shown)
+    some = f", or {_EXCUSED} ({differing})" if differing else ""
+    return f"{counted(rest, 'other comparison')} within{some}; --all shows them" if rest else ""
+
+
+def _is_shown(result: Comparison, row: ComparisonRow) -> bool:
+    """Whether a quantity is shown although it agrees: the most important ones of processes and chains, or of what else there is."""
+    if result.with_all:
+        return True
+    has_others = any(each.kind is not MeasuredKind.RUNNABLE for each in result.compared)
+    return row.quantity in _IMPORTANT and not (has_others and row.kind is MeasuredKind.RUNNABLE)
+
+
+def subject_line(result: Comparison) -> str:
+    """What is compared with what, and how."""
+    measurement = result.measurement
+    of_model = f" of {result.model}" if result.model else ""
+    run = "" if result.duration is None else f", simulation of {duration_text(result.duration)} with seed {result.seed}"
+    return f"Comparison{of_model} with {_source(measurement)}: tolerance {percent(result.tolerance)} of the measurement{run}"
+
+
+def _source(measurement: Measurement) -> str:
+    duration = duration_text(measurement.duration) if measurement.duration else ""
+    return f"{measurement.source} ({', '.join(filter(None, (measurement.format, duration)))})"
+
+
+def closing_line(result: Comparison) -> str:
+    """Whether the model holds, and which limits were measured as missed."""
+    return "; ".join(filter(None, (_outcome(result), _missed(result.missed))))
+
+
+def _outcome(result: Comparison) -> str:
+    refuted = [row for row in result.rows if row.verdict is Agreement.REFUTED]
+    outside = [row for row in result.rows if row.verdict is Agreement.OUTSIDE]
+    if refuted:
+        others = f"; {counted(len(refuted) - 1, 'other bound')} exceeded" if refuted[1:] else ""
+        return f"Model refuted: {what(refuted[0])} is {time_text(refuted[0].measured or 0)}, {refuted[0].reason}{others}"
+    if not result.compared:
+        return "Nothing compared: no measured quantity is predicted"
+    tolerance = f"{percent(result.tolerance)} of the measurement"
+    number, within = len(result.compared), [row for row in result.compared if row.verdict is Agreement.WITHIN]
+    if outside:
+        return f"Model does not hold: {len(outside)} of {counted(number, 'comparison')} outside {tolerance}{_largest(outside)}"
+    if not within:
+        return f"Nothing agrees: {counted(number, 'comparison')} outside {tolerance}, {_EXCUSED}"
+    differing = f"; {number - len(within)} outside, {_EXCUSED}" if number > len(within) else ""
+    near = [row for row in within if _size(row) <= result.tolerance]
+    missing = {row.object for row in result.not_compared} - {row.object for row in result.compared}
+    rest = f"; not compared: {counted(len(missing), 'object')}" if missing else ""
+    found = f"{counted(len(within), 'comparison')} within {tolerance}{_largest(near)}"
+    return f"Model holds: {found}{differing}{rest}{_scarce(result)}"
+
+
+#: What is to be said of deviations that contradict nothing.
+_EXCUSED = "without contradicting what the model states"
+
+
+#: The extremes of fewer values say little.
+_FEW = 5
+
+
+def _scarce(result: Comparison) -> str:
+    """Of what the fewest values were measured, if these are few."""
+    fewest = min(result.compared, key=lambda row: row.samples)
+    if fewest.samples >= _FEW:
+        return ""
+    return f"; only {counted(fewest.samples, 'value')} of the {quantity_text(fewest.quantity)} of {fewest.object}"
+
+
+#: Smaller deviations are shown as none.
+_SMALLEST = Fraction(5, 10_000)
+
+
+def _largest(rows: Sequence[ComparisonRow]) -> str:
+    """The largest deviation of a prediction that is no bound."""
+    tolerated = (row for row in rows if not is_bound(row.claim, row.statistic))
+    deviations = [row for row in tolerated if _size(row) >= _SMALLEST]
+    worst = max(deviations, key=_size, default=None)
+    return "" if worst is None else f"; largest deviation {deviation_text(worst)} ({what(worst)})"
+
+
+def _missed(limits: Sequence[MeasuredLimit]) -> str:
+    if not limits:
+        return ""
+    first = limits[0]
+    others = f", and {counted(len(limits) - 1, 'other limit')}" if limits[1:] else ""
+    value = f" is {_time(first.value)}," if first.value is not None and first.is_time else ""
+    return f"limit missed: {first.quantity} of {first.object}{value} {limit_text(first)}{others}"
+
+
+def what(row: ComparisonRow) -> str:
+    """What a row compares: "mean response time of Control_Function"."""
+    return f"{row.statistic} {quantity_text(row.quantity)} of {row.object}"
+
+
+def quantity_text(quantity: str) -> str:
+    """The name of a quantity in words."""
+    return quantity.replace("_", " ")
+
+
+def percent(share: Fraction) -> str:
+    """A share in percent, with three digits."""
+    return f"{float(share * 100):.3g} %"
+
+
+def deviation_text(row: ComparisonRow) -> str:
+    """The deviation in percent of the measurement, with its sign: positive if more was measured than predicted."""
+    if row.deviation is None:
+        return "-"
+    return f"{float(row.deviation * 100):+.1f} %" if _size(row) >= _SMALLEST else "0 %"
+
+
+def _size(row: ComparisonRow) -> Fraction:
+    return abs(row.deviation or Fraction(0))
+
+
+def limit_text(limit: MeasuredLimit) -> str:
+    """The limit, such as "at most 1 ms"."""
+    if limit.limit is None:
+        return "-"
+    value = time_text(limit.limit) if limit.is_time else f"{float(limit.limit):g}"
+    return f"at {'most' if limit.is_upper else 'least'} {value}"
+
+
+def distribution_rows(result: Comparison) -> Iterator[tuple[str, ...]]:
+    """The cells of the distributions that are shown: the distance, and both medians and 99 % quantiles."""
+    for row in result.distributions:
+        if not (result.with_all or row.is_hidden):
+            continue
+        between = row.distance
+        median, high = (between.quantiles[share] for share in (Fraction(50, 100), Fraction(99, 100)))
+        yield (
+            row.object,
+            quantity_text(row.quantity),
+            f"{float(between.value):.3f}",
+            f"{between.critical:.3f}",
+            *(_time(Fraction(value)) for value in (*median, *high)),
+            "equal means, other distribution" if row.is_hidden else "",
+        )
+
+
+#: The headings of `distribution_rows`.
+DISTRIBUTIONS = ("object", "quantity", ">distance", ">critical", ">p50", ">simulated p50", ">p99", ">simulated p99", "")
+
+
+def _time(value: Fraction | None) -> str:
+    return "-" if value is None else rounded_time_text(value, Rounding.NEAREST)
+
+
+def prediction_cells(group: PredictionGroup) -> tuple[str, ...]:
+    """The cells of the predictions of a quantity."""
+    first, distance = group.rows[0], group.distance
+    return (
+        first.object,
+        quantity_text(first.quantity),
+        f"{first.samples:,}",
+        group.times(is_measured=True),
+        group.times(is_measured=False),
+        str(first.claim),
+        group.deviations,
+        "-" if distance is None else f"{float(distance.distance.value):.3f}",
+        str(group.verdict),
+        group.remark,
+    )
+
+
+def _depends_on_phase(row: ComparisonRow) -> bool:
+    low, high = row.predicted_range or (Fraction(0), Fraction(0))
+    return high - low > _SMALLEST * abs(high)
+
+
+#: The headings of `prediction_cells`.
+PREDICTIONS = ("object", "quantity", ">values", ">measured", ">predicted", "claim", ">deviation", ">distance", "verdict", "")
+
+
+def bound_cells(test: BoundTest) -> tuple[str, ...]:
+    """The cells of a test of bounds: minimum, maximum, and by how much they are on the safe side."""
+    lower, upper = test.lower, test.upper
+    return (
+        test.rows[0].object,
+        quantity_text(test.rows[0].quantity),
+        "-" if lower is None else _time(lower.predicted),
+        "-" if lower is None else _time(lower.measured),
+        "-" if upper is None else _time(upper.measured),
+        "-" if upper is None else _time(upper.predicted),
+        "-" if upper is None else _time(upper.bound_margin),
+        str(test.rows[0].claim),
+        str(test.verdict),
+        test.reason,
+    )
+
+
+#: The headings of `bound_cells`.
+BOUNDS = ("object", "quantity", ">lower bound", ">min", ">max", ">upper bound", ">margin", "claim", "verdict", "")
+
+
+def limit_cells(limit: MeasuredLimit) -> tuple[str, ...]:
+    """The cells of a limit."""
+    is_known = limit.value is not None and limit.is_time
+    return (
+        limit.name,
+        f"{limit.quantity} of {limit.object}" if limit.object else limit.quantity,
+        limit_text(limit),
+        _rounded(limit) if is_known else "-",
+        f"{limit.samples:,}",
+        limit.verdict.replace("_", " "),
+        limit.reason,
+    )
+
+
+def _rounded(limit: MeasuredLimit) -> str:
+    rounding = Rounding.UP if limit.is_upper else Rounding.DOWN
+    return rounded_time_text(limit.value or 0, rounding, limit.limit)
+
+
+#: The headings of `limit_cells`.
+LIMITS = ("requirement", "what", "limit", ">measured", ">values", "verdict", "")
+
+
+def missing_cells(row: ComparisonRow) -> tuple[str, ...]:
+    """The cells of what is not compared."""
+    return (row.object, quantity_text(row.quantity), str(row.verdict), row.reason)
+
+
+#: The headings of `missing_cells`.
+MISSING = ("object", "quantity", "", "reason")
+
+
+def comparison_document(result: Comparison) -> Document:
+    """Tables of predictions, bounds, distributions and limits, what was not compared, and whether the model holds."""
+    predictions = "Predictions (min / mean / max; deviation: of the measurement, positive if more was measured than predicted)"
+    bounds = "Bounds of the analysis (nothing may be measured beyond them, without tolerance)"
+    distance = "Distributions (Kolmogorov-Smirnov distance from the simulated values, and its critical value at 5 %)"
+    sections = (
+        section(predictions, table("", PREDICTIONS, map(prediction_cells, prediction_groups(result)))),
+        section(bounds, table("", BOUNDS, map(bound_cells, bound_tests(result))), _sentence(hidden(result))),
+        section(distance, table("", DISTRIBUTIONS, distribution_rows(result))),
+        section("Limits, as measured", table("", LIMITS, map(limit_cells, result.limits))),
+        section(
+            "Not compared",
+            table("", MISSING, map(missing_cells, missing_rows(result))),
+            _sentence(hidden_missing(result)),
+        ),
+        section("Assumptions", Sentences(result.assumptions)),
+    )
+    return document(sections, closing_line(result), "Comparison with a measurement", subject_line(result))
+
+
+def _sentence(text: str) -> Sentences:
+    return Sentences([text] if text else [])

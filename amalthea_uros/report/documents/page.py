@@ -1,0 +1,504 @@
+"""A report as a page: all that is known of the timing of a system, what matters most first."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from amalthea_uros._internal.plural import counted
+from amalthea_uros.analyze.explanations.processes import ProcessExplanation, explain_process
+from amalthea_uros.analyze.impact import impact
+from amalthea_uros.analyze.results.analysis import Analysis
+from amalthea_uros.analyze.results.chains import ChainResult, LatencyQuantity
+from amalthea_uros.analyze.results.processes import ProcessorResult, ProcessResult
+from amalthea_uros.diagnostics import Finding, Severity, worst
+from amalthea_uros.executors.results import HandleResult
+from amalthea_uros.findings.targets import summary
+from amalthea_uros.judge.verdict import Verdict
+from amalthea_uros.report.cells import (
+    UNKNOWN,
+    at_least,
+    at_most,
+    badge,
+    by_core_and_priority,
+    exactly,
+    load_text,
+    share_text,
+    tone_of,
+    verdict_badge,
+)
+from amalthea_uros.report.cells import (
+    observed as observed_ends,
+)
+from amalthea_uros.report.closing_line import closing_line
+from amalthea_uros.report.document import (
+    Badge,
+    Block,
+    Cell,
+    Figure,
+    Folded,
+    Heading,
+    Listing,
+    Section,
+    Sentences,
+    Table,
+    Tone,
+    section,
+    table,
+)
+from amalthea_uros.report.documents.analysis import (
+    callbacks,
+    handles,
+    impact_section,
+    latencies_of_messages,
+    methods,
+    response_times,
+)
+from amalthea_uros.report.documents.simulation import REMINDER, duration_text
+from amalthea_uros.report.documents.simulation import closing_line as observed_line
+from amalthea_uros.report.documents.worst_cases import gantt_section, histogram_section, hops_section
+from amalthea_uros.report.judged import judged_rows, limit_text, margin_text, requirements_of, why, worst_chains
+from amalthea_uros.report.latencies import value_text
+from amalthea_uros.report.memory_text import memory_rows
+from amalthea_uros.report.pictures.load_bars import draw_loads
+from amalthea_uros.report.pictures.response_bars import draw_responses
+from amalthea_uros.report.pictures.system_picture import draw_system
+from amalthea_uros.report.wording import findings_text
+from amalthea_uros.services.generate import texts_of
+from amalthea_uros.services.report import ReportContent
+from amalthea_uros.simulate.observations import ChainObservation, ProcessObservation
+from amalthea_uros.simulate.results import Simulation
+from amalthea_uros.timing.basics.quantities import ChainQuantity
+from amalthea_uros.units import Rounding, frequency_text, time_text
+from amalthea_uros.uros.middleware.options import Option
+from amalthea_uros.validate import registry
+
+
+def _changes_section(content: ReportContent) -> Section | None:
+    """The values before and after, and the verdict without the changes."""
+    if content.before is None:
+        return None
+    rows = [(each.target, each.before, each.after) for each in content.differences]
+    return Section(
+        "changes",
+        "What was changed",
+        "This report is about the system with these changes; the files are as they were.",
+        (
+            table("Changed values", ("value", "before", "after"), rows),
+            *impact_section(impact(content.before, content.analysis)).blocks,
+            Sentences([f"Before the changes: {closing_line(content.before.summary)}"]),
+        ),
+    )
+
+
+def limits_table(analysis: Analysis) -> Table:
+    """All deadlines, requirements and constraints: what is missed or unknown comes first, then what uses most of its limit."""
+    rows = [
+        (row.item.name, verdict_badge(row.item), row.what, row.value, row.limit, row.used, row.margin, row.claim, why(row.item))
+        for row in judged_rows(analysis)
+    ]
+    columns = ("requirement", "verdict", "what", ">value", ">limit", ">used", ">margin", "claim", "why")
+    return table("Deadlines, requirements and constraints", columns, rows)
+
+
+def chains_table(analysis: Analysis) -> Table:
+    """The latencies of all chains, the worst first."""
+    columns = ("chain", "verdict", ">reaction time", ">data age", "claim", ">limit", ">margin", "why")
+    return table("Latencies of event chains", columns, [_chain_of_limits(chain, analysis) for chain in worst_chains(analysis)])
+
+
+def _tightest_section(content: ReportContent) -> Section:
+    """What is missed, unknown or closest to its limit first; the rest of long tables is folded."""
+    lead = (
+        "What is missed or unknown comes first, then what uses most of its limit. “Met” and “missed” are certain; a limit between the"
+        " known ends of a value is unknown. “Exact” values occur, a “bound” is never exceeded."
+    )
+    found = limits_table(content.analysis), chains_table(content.analysis)
+    return section("Closest to their limits", *found, lead=lead, anchor="requirements")
+
+
+def _chain_of_limits(chain: ChainResult, analysis: Analysis) -> tuple[Cell, ...]:
+    values = [
+        chain.value(quantity) for quantity in (LatencyQuantity.MAX_REDUCED_REACTION_TIME, LatencyQuantity.MAX_REDUCED_DATA_AGE)
+    ]
+    claims = dict.fromkeys(str(value.claim) for value in values if value is not None and value.value is not None)
+    worst = next(iter(requirements_of(chain.name, analysis)), None)
+    return (
+        chain.name,
+        badge(None) if worst is None else verdict_badge(worst),
+        *(value_text(value).replace("-", "unknown") for value in values),
+        ", ".join(claims),
+        "-" if worst is None or worst.limit is None else f"{worst.quantity} {limit_text(worst)}",
+        "-" if worst is None else margin_text(worst),
+        chain.reason or ("" if worst is None else why(worst)),
+    )
+
+
+def _message_chains_section(content: ReportContent) -> Section | None:
+    """A row for each chain over wires and executors, and its hops."""
+    chains = content.analysis.message_chains
+    if not chains:
+        return None
+    lead = "A latency is the sum of the bounds of its hops, which need not occur in one run."
+    blocks: list[Block] = [latencies_of_messages(content.analysis), *(_hops(chain) for chain in chains if chain.hops)]
+    return Section("message-chains", "Chains over wires and executors", lead, blocks)
+
+
+def _hops(chain: ChainResult) -> Folded:
+    rows: list[tuple[Cell, ...]] = []
+    for hop in chain.hops:
+        note = hop.reason or hop.source
+        rows.append((f"{hop.kind}: {hop.name}", at_least(hop.best), at_most(hop.worst), share_text(hop.share), note))
+        rows += [(f"- {part.name}", "", exactly(part.most, UNKNOWN), "", part.why) for part in hop.parts]
+    blocks: list[Block] = [table(f"Hops of {chain.name}", ("hop", ">best", ">worst", ">share", "why"), rows)]
+    remarks = [*(hop.remedy for hop in chain.hops if hop.worst is None and hop.remedy), *chain.assumptions]
+    if remarks:
+        blocks.append(Sentences(list(dict.fromkeys(remarks))))
+    return Folded(f"Where the latency of {chain.name} comes from", blocks)
+
+
+def _system_section(content: ReportContent) -> Section | None:
+    """The tasks on their cores, and the flows between them."""
+    if not content.system.processes:
+        return None
+    lead = "Boxes are tasks and interrupts on their cores, the most urgent first; arrows are data and triggers, coloured lines chains."
+    return Section("system", "System", lead, [Figure("system", draw_system(content.system, content.analysis))])
+
+
+def _load_section(content: ReportContent) -> Section | None:
+    """The best, mean and worst load of each core that executes something."""
+    used = [core for core in content.analysis.processors if core.worst != 0]
+    if not used:
+        return None
+    titles = ("core", ">clock", ">best", ">mean", ">worst", ">observed", "")
+    rows = [_row_of_loads(core, content) for core in used]
+    lead = "The part of its time that a core needs for what is activated; above 100 % work piles up without end."
+    return Section(
+        "load",
+        "Load of the cores",
+        lead,
+        [Figure("loads", draw_loads(content.analysis)), table("Load of each core", titles, rows)],
+    )
+
+
+def _row_of_loads(core: ProcessorResult, content: ReportContent) -> tuple[Cell, ...]:
+    worst = _load(core.worst, Rounding.UP)
+    if core.worst is None and core.at_least:
+        worst = f"at least {load_text(core.at_least, Rounding.DOWN)}"
+    simulation = content.simulation.simulation if content.simulation is not None else None
+    observed = simulation.cores[core.name].load if simulation is not None else None
+    return (
+        core.name,
+        frequency_text(core.frequency) if core.frequency else UNKNOWN,
+        _load(core.best, Rounding.DOWN),
+        _load(core.mean),
+        worst,
+        "-" if observed is None else load_text(observed),
+        _remark(core),
+    )
+
+
+def _load(load: Fraction | None, rounding: Rounding = Rounding.NEAREST) -> str:
+    return UNKNOWN if load is None else load_text(load, rounding)
+
+
+def _remark(core: ProcessorResult) -> Cell:
+    if core.is_overloaded:
+        return Badge("overload", Tone.BAD)
+    return "" if core.worst is not None else Badge("partly unknown", Tone.UNKNOWN)
+
+
+#: The processes whose interference is listed, the tightest first.
+_MOST_EXPLAINED = 5
+
+
+def _response_times_section(content: ReportContent) -> Section | None:
+    """All processes; of the tightest, who interferes."""
+    analysis = content.analysis
+    if not analysis.processes:
+        return None
+    simulation = content.simulation.simulation if content.simulation is not None else None
+    blocks: list[Block] = [Figure("responses", draw_responses(analysis, simulation))]
+    blocks.append(response_times(analysis, is_detailed=True))
+    blocks += [_explained(each) for each in _tightest(content)]
+    blocks += filter(None, [callbacks(analysis)])
+    lead = "From the activation of a task to its end: the worst case is the sum of its own execution and of what delays it."
+    return Section("response-times", "Response times", lead, blocks)
+
+
+def _tightest(content: ReportContent) -> list[ProcessExplanation]:
+    """The explanations of the processes with the tightest response times."""
+    analysis = content.analysis
+    names = [row.item.name if isinstance(row.item, ProcessResult) else row.item.object for row in judged_rows(analysis)]
+    found = [analysis.processes[name] for name in dict.fromkeys(names) if name in content.system.processes]
+    known = [each.name for each in found if each.response is not None and each.response.worst is not None]
+    explained = (explain_process(analysis, name) for name in known)
+    return [each for _, each in zip(range(_MOST_EXPLAINED), (each for each in explained if each.shares), strict=False)]
+
+
+def _explained(explanation: ProcessExplanation) -> Folded:
+    name = explanation.process.name
+    rows = [(share.name, f"{share.jobs:,}", time_text(share.time)) for share in explanation.shares]
+    shares = table(f"Interference in the worst case of {name}", ("by", ">jobs", ">time"), rows)
+    return Folded(f"What delays {name}", [shares])
+
+
+def _executors_section(content: ReportContent) -> Section | None:
+    """A table for each executor, and the terms of each response time."""
+    executors = content.analysis.executors
+    if not executors:
+        return None
+    blocks: list[Block] = []
+    for executor in executors:
+        blocks.append(handles(executor, is_detailed=True))
+        blocks += [_terms(handle) for handle in executor.handles if handle.terms]
+    lead = "From the arrival of a message at the controller, or from when a timer is due, to the end of the callback."
+    return Section("executors", "Executors", lead, blocks)
+
+
+def _terms(handle: HandleResult) -> Folded:
+    rows = [(term.name, exactly(term.most, UNKNOWN), term.why) for term in handle.terms]
+    terms = table(f"Worst response time of {handle.name}, in the order of time", ("part", ">time", "why"), rows)
+    return Folded(f"What {handle.name} waits for", [terms])
+
+
+#: The quantities of chains that are both computed and observed.
+BOUNDED = {
+    ChainQuantity.REDUCED_REACTION_TIME: LatencyQuantity.MAX_REDUCED_REACTION_TIME,
+    ChainQuantity.REDUCED_DATA_AGE: LatencyQuantity.MAX_REDUCED_DATA_AGE,
+}
+
+
+def _observed_section(content: ReportContent) -> Section | None:
+    """Response times and latencies of a run beside their bounds."""
+    if content.simulation is None:
+        return None
+    simulation = content.simulation.simulation
+    blocks: list[Block] = [Sentences([_run(content, simulation), observed_line(simulation).removesuffix(REMINDER).rstrip()])]
+    ordered = sorted(simulation.processes, key=lambda each: by_core_and_priority(each.core, each.is_isr, each.priority))
+    titles = ("process", ">jobs", ">observed min", ">mean", ">max", ">worst case", ">lost", "observed verdict", "remark")
+    if ordered:
+        blocks.append(table("Response times: observed and worst case", titles, [_process(each, content) for each in ordered]))
+    if simulation.chains:
+        of_chains = ("chain", "latency", ">values", ">observed min", ">mean", ">max", ">worst case", "remark")
+        rows = [row for chain in simulation.chains for row in _chain_of_observations(chain, content)]
+        blocks.append(table("Latencies: observed and worst case", of_chains, rows))
+    lead = "What one simulated run showed, beside the worst case of the analysis: observed values are typical, never a bound."
+    return Section("observed", "Observed in a simulation", lead, blocks)
+
+
+def _run(content: ReportContent, simulation: Simulation) -> str:
+    chosen = ", chosen to limit the work (--duration sets another)" if content.is_duration_chosen else ""
+    jobs = counted(sum(each.jobs for each in simulation.processes), "job")
+    return f"Simulated: {duration_text(simulation.duration)}{chosen}, seed {simulation.seed}, mode {simulation.mode}: {jobs}."
+
+
+def _process(process: ProcessObservation, content: ReportContent) -> tuple[Cell, ...]:
+    response = content.analysis.processes[process.name].response
+    return (
+        process.name,
+        f"{process.jobs:,}",
+        *observed_ends(process.response_time),
+        at_most(response.worst if response is not None else None, process.deadline),
+        f"{process.lost_activations:,}",
+        badge(process.verdict),
+        process.reason,
+    )
+
+
+def _chain_of_observations(chain: ChainObservation, content: ReportContent) -> list[tuple[Cell, ...]]:
+    result = content.analysis.chains[chain.name]
+    rows: list[tuple[Cell, ...]] = []
+    for observed, computed in BOUNDED.items():
+        found = chain.quantities.get(observed)
+        worst = value_text(result.value(computed)).replace("-", "unknown")
+        count = f"{found.count:,}" if found is not None else "0"
+        words = observed.removeprefix("reduced_").replace("_", " ")
+        rows.append((chain.name, words, count, *observed_ends(found), worst, chain.reason))
+    return rows
+
+
+#: Of each rule so many findings are listed.
+_MOST = 20
+_SEVERITIES = tuple(Severity)
+
+
+def _findings_section(content: ReportContent) -> Section | None:
+    """Each rule with its findings, the severest first."""
+    checked = content.check.shown if content.check is not None else []
+    found = list(dict.fromkeys((*checked, *content.findings)))
+    blocks: list[Block] = [Sentences([_total(content, found)])]
+    by_rule: dict[str, list[Finding]] = defaultdict(list)
+    for finding in found:
+        by_rule[finding.rule].append(finding)
+    ordered = sorted(by_rule.items(), key=lambda item: (_SEVERITIES.index(worst(item[1]) or Severity.INFO), item[0]))
+    blocks += [_folded(rule, findings) for rule, findings in ordered]
+    if content.check is not None:
+        others = [summary(target, (group.shown for group in groups)) for target, groups in content.check.targets.items()]
+        if others:
+            blocks.append(Sentences(others))
+    lead = "What the rules report about the model, with what to do about it; amuros explain RULE says more."
+    return Section("findings", "Findings", lead, blocks)
+
+
+def _total(content: ReportContent, found: Sequence[Finding]) -> str:
+    total = f"{findings_text(found)[:1].upper()}{findings_text(found)[1:]}."
+    if content.check is None:
+        return f"{total} The rules check files and models, not systems of the library."
+    return f"{total} The files were checked without the changes." if content.before is not None else total
+
+
+def _folded(rule: str, findings: Sequence[Finding]) -> Folded:
+    kind = registry.kind(rule)
+    severity = worst(findings) or Severity.INFO
+    title = f"{rule}{f': {kind.title}' if kind is not None else ''} ({counted(len(findings), 'finding')})"
+    rows = [(str(each.location or each.object or "-"), each.message, each.help) for each in findings[:_MOST]]
+    caption = f"Findings of {rule}" + (f", the first {_MOST} of {len(findings):,}" if len(findings) > _MOST else "")
+    return Folded(title, [table(caption, ("where", "what", "help"), rows)], badge(severity))
+
+
+def _methods_section(content: ReportContent) -> Section | None:
+    """What the numbers rest on."""
+    simulated = content.simulation.simulation.assumptions if content.simulation is not None else ()
+    lists = {
+        "Assumptions of the analysis": content.analysis.assumptions,
+        "Assumptions of the simulation": tuple(each for each in simulated if each not in content.analysis.assumptions),
+        "Methods and sources": methods(content.analysis),
+    }
+    blocks: list[Block] = []
+    for title, sentences in lists.items():
+        if sentences:
+            blocks += (Heading(title), Sentences(list(sentences)))
+    lead = "Each number holds under these assumptions, and was computed by a published method."
+    return Section("methods", "Assumptions and methods", lead, blocks) if blocks else None
+
+
+def _bus_section(content: ReportContent) -> Section | None:
+    """What an `app.yaml` sends and receives."""
+    if content.assembly is None or not content.assembly.messages:
+        return None
+    rows = [
+        (
+            each.message.topic,
+            "received" if each.incoming else "sent",
+            time_text(each.message.interval),
+            f"{each.length} B",
+            f"{each.frames}",
+            "common" if each.identifier is None else f"0x{each.identifier:X}",
+            time_text(each.transmission_time),
+            load_text(each.bus_load, Rounding.UP),
+        )
+        for each in content.assembly.messages
+    ]
+    titles = ("topic", "direction", ">interval", ">with headers", ">frames", ">identifier", ">transmission", ">bus load")
+    total = load_text(sum((each.bus_load for each in content.assembly.messages), Fraction(0)), Rounding.UP)
+    lead = f"Each message with its headers and maximum bit stuffing; together they need at most {total} of the bus."
+    return Section("messages", "Messages on the CAN bus", lead, [table("Messages of the application", titles, rows)])
+
+
+def _pools_section(content: ReportContent) -> Section | None:
+    """The pools that the application needs, the files for a build with the right sizes, and the memory."""
+    assembly = content.assembly
+    if assembly is None or not assembly.description.application.nodes:
+        return None
+    rows = [
+        (each.name, f"{each.needed}", f"{each.available}", _origin(each), _verdict(each))
+        for each in assembly.pools
+        if each.needed
+    ]
+    sizes = table("Pools of the middleware", ("option", ">needed", ">available", "set by", "verdict"), rows)
+    memory = table("Memory", ("part", ">size", "how it is computed"), memory_rows(assembly.memory))
+    lead = "The middleware takes its objects from pools of fixed size; these files set those that the application needs in the build."
+    files = [Listing(name, text.splitlines()) for name, text in texts_of(assembly).items() if not name.endswith(".h")]
+    return Section("pools", "Static pools", lead, [sizes, memory, *files])
+
+
+def _origin(option: Option) -> str:
+    return "app.yaml" if option.is_stated else "default"
+
+
+def _verdict(option: Option) -> Badge:
+    return Badge("too small", Tone.BAD) if option.is_exceeded else Badge("sufficient", Tone.GOOD)
+
+
+#: The sections in their order; those that have nothing to show are left out.
+_SECTIONS: Sequence[Callable[[ReportContent], Section | None]] = (
+    _changes_section,
+    _tightest_section,
+    _message_chains_section,
+    _system_section,
+    _load_section,
+    _response_times_section,
+    _executors_section,
+    _observed_section,
+    gantt_section,
+    histogram_section,
+    hops_section,
+    _findings_section,
+    _methods_section,
+    _bus_section,
+    _pools_section,
+)
+
+#: What is missed or unknown is listed up to so many items.
+_MOST_REASONS = 12
+#: More names that have one reason are only counted.
+_MOST_NAMES = 4
+_WORDS = {Tone.GOOD: "Schedulable", Tone.BAD: "Not schedulable", Tone.UNKNOWN: "Unknown whether schedulable"}
+
+
+@dataclass(frozen=True, slots=True)
+class Opening:
+    """What the page says first.
+
+    Attributes
+    ----------
+    word, line : in a few words, and the closing line of an analysis
+    reasons : what is missed or unknown, and why
+    """
+
+    tone: Tone
+    word: str
+    line: str
+    reasons: Sequence[tuple[str, str]]
+    left_out: int
+
+
+def page_sections(content: ReportContent) -> list[Section]:
+    """The sections in which there is something."""
+    made = (make(content) for make in _SECTIONS)
+    return [each for each in made if each is not None and each.blocks]
+
+
+def facts(content: ReportContent) -> str:
+    """How large the system is."""
+    system = content.system
+    numbers = {"core": len(system.cores), "task": len(system.software.tasks), "interrupt": len(system.software.isrs)}
+    numbers |= {"runnable": len(system.software.runnables), "event chain": len(system.chains)}
+    numbers |= {"limit": len(judged_rows(content.analysis))}
+    return ", ".join(counted(number, noun) for noun, number in numbers.items() if number)
+
+
+def _together(reasons: Iterable[tuple[str, str]]) -> Iterator[tuple[str, str]]:
+    """Each reason once, with the names of all that have it."""
+    names: dict[str, list[str]] = {}
+    for name, reason in reasons:
+        names.setdefault(reason, []).append(name)
+    for reason, found in names.items():
+        distinct = list(dict.fromkeys(found))
+        more = f" and {len(distinct) - _MOST_NAMES} more" if len(distinct) > _MOST_NAMES else ""
+        yield ", ".join(distinct[:_MOST_NAMES]) + more, reason
+
+
+def opening(content: ReportContent) -> Opening:
+    """The verdict, and what is missed or unknown."""
+    summary = content.analysis.summary
+    tone = tone_of(summary.schedulable)
+    overloads = [(core.name, "the core is overloaded") for core in summary.overloaded]
+    rows = (row.item for row in judged_rows(content.analysis) if row.item.verdict is not Verdict.MET)
+    others = _together((item.name, ": ".join(filter(None, (verdict_badge(item).word, why(item))))) for item in rows)
+    warnings = [(each.rule, each.message) for each in content.warnings]
+    reasons = list(dict.fromkeys((*overloads, *others, *warnings)))
+    return Opening(tone, _WORDS[tone], closing_line(summary), reasons[:_MOST_REASONS], max(0, len(reasons) - _MOST_REASONS))

@@ -1,0 +1,271 @@
+"""A simulation as a document: what was observed, in words and tables."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import ceil, floor
+from pathlib import Path
+from typing import Protocol
+
+from amalthea_uros._internal.plural import counted
+from amalthea_uros.analyze.impact import Impact
+from amalthea_uros.design.changes.apply import Difference
+from amalthea_uros.diagnostics import Finding
+from amalthea_uros.judge.causes import distinct
+from amalthea_uros.judge.verdict import WORST_OBSERVED_FIRST, ObservedVerdict
+from amalthea_uros.report.cells import badge, by_core_and_priority, deadline_text, observed, words
+from amalthea_uros.report.closing_line import left_text
+from amalthea_uros.report.document import Cell, Document, Section, Sentences, Table, document, section, table
+from amalthea_uros.report.documents.analysis import impact_section
+from amalthea_uros.report.findings import joined
+from amalthea_uros.report.latencies import HEADING
+from amalthea_uros.simulate.not_simulated import LIMITED_PROCESS_LEFT_OUT, consequence_of
+from amalthea_uros.simulate.observations import ChainObservation, ProcessObservation, RequirementObservation
+from amalthea_uros.simulate.results import IDLE, Judged, Simulation
+from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
+from amalthea_uros.units import NANOSECOND, SECOND, Rounding, Time, number_text, percent_text, rounded_time_text, time_text
+
+_MINUTE = 60 * SECOND
+REMINDER = "Observed values are no bounds; for bounds use `amuros analyze`."
+
+
+class SimulationShown(Protocol):
+    """The result of a simulation of some files."""
+
+    @property
+    def paths(self) -> tuple[Path, ...]:
+        """The files."""
+
+    @property
+    def simulation(self) -> Simulation:
+        """What was observed."""
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """Problems found while reading the files, and what the simulation does not take into account."""
+
+    @property
+    def with_metrics(self) -> bool:
+        """Whether the metrics of all processes are shown."""
+
+    @property
+    def differences(self) -> tuple[Difference, ...]:
+        """What changes did before the run."""
+
+    @property
+    def impact(self) -> Impact | None:
+        """What the changes do to what is observed; None without changes."""
+
+
+def duration_text(duration: Time) -> str:
+    """A duration, in minutes if it is a number of them: "5 min", "1.5 s"."""
+    return f"{duration // _MINUTE} min" if duration % _MINUTE == 0 else time_text(duration)
+
+
+def closing_line(simulation: Simulation) -> str:
+    """What was missed, or what came closest to its limit; and that this is no bound."""
+    run = f"Observed over {duration_text(simulation.duration)} (seed {simulation.seed})"
+    parts = filter(None, (_incomplete(simulation), _missed(simulation), _not_observed(simulation)))
+    return f"{run}: {'; '.join(parts)}. {REMINDER}"
+
+
+def limit_text(requirement: RequirementObservation) -> str:
+    """The limit, such as "at most 1 ms"."""
+    if requirement.limit is None:
+        return "-"
+    return f"at {'most' if requirement.is_upper else 'least'} {value_text(requirement, requirement.limit)}"
+
+
+def value_text(requirement: RequirementObservation, value: Fraction | None) -> str:
+    """A value of what a requirement limits."""
+    if value is None:
+        return "-"
+    return time_text(round(value)) if requirement.is_time else number_text(value)
+
+
+def _incomplete(simulation: Simulation) -> str:
+    """The first thing that was not simulated, and the number of the others; whether nothing at all was."""
+    idle, errors = [each for each in simulation.errors if each == IDLE], [each for each in simulation.errors if each != IDLE]
+    others = [counted(len(errors) - 1, "other error")] if errors[1:] else []
+    return "; ".join([": ".join([*idle, *errors[:1]]), *others])
+
+
+def _missed(simulation: Simulation) -> str:
+    missed = distinct(simulation.missed)
+    if missed:
+        others = len(missed) - 1
+        return _failure(missed[0]) + (f"; {counted(others, 'other failure')}" if others else "")
+    if len(simulation.not_observed) == len(simulation.judged):
+        return "" if simulation.judged else "no deadline, requirement or constraint to judge"
+    what = "deadline or requirement" if simulation.requirements else "deadline"
+    return f"no {what} missed{_tightest(simulation)}"
+
+
+def _tightest(simulation: Simulation) -> str:
+    item = simulation.tightest
+    if item is None or item.margin is None or item.limit is None:
+        return ""
+    return f"; tightest: {item.name}, {left_text(item.margin, item.limit, item.is_upper)}"
+
+
+def _failure(item: Judged) -> str:
+    if isinstance(item, RequirementObservation):
+        what = f"{item.quantity} of {item.object}" if item.object else item.quantity
+        if item.value is None or item.limit is None:
+            return f"{what}: {item.reason}"
+        reason = f" ({item.reason})" if item.reason else ""
+        return f"{what} is {value_text(item, item.value)}{reason}, limit {limit_text(item)}"
+    if item.reason or item.response_time is None:
+        return f"{item.name}: {item.reason}"
+    kind = "period" if item.is_implicit else "deadline"
+    return f"{item.name} responds after {time_text(round(item.response_time.max))}, {kind} {time_text(item.deadline or 0)}"
+
+
+def _not_observed(simulation: Simulation) -> str:
+    missing = simulation.not_observed
+    if not missing:
+        return ""
+    count, left_out = f"not observed: {len(missing)} of {len(simulation.judged)}", {each.name for each in simulation.left_out}
+    # What is not simulated stands before this in the line; what follows from it needs no reason of its own.
+    consequences = {LIMITED_PROCESS_LEFT_OUT, *map(consequence_of, left_out)}
+    others = [each for each in missing if each.name not in left_out and each.reason not in consequences]
+    return f"{count}, because of {others[0].name!r}: {others[0].reason}" if others else count
+
+
+def simulation_document(result: SimulationShown) -> Document:
+    """Tables of loads, response times, chains and requirements, with assumptions and what was observed."""
+    simulation = result.simulation
+    run = f"{duration_text(simulation.duration)}, seed {simulation.seed}, mode {simulation.mode}"
+    of_files = f" of {joined(result.paths)}" if result.paths else ""
+    loads = [(core.name, _percent(core.load)) for core in simulation.cores if core.load]
+    remark = f"observed with seed {simulation.seed}"
+    sections = (
+        section("Load", table("", ("core", ">load"), loads)),
+        section("Observed response times", _processes(simulation)),
+        *(map(_metrics, simulation.processes) if result.with_metrics else ()),
+        section(HEADING, _chains(simulation)),
+        section("Runnables with requirements", _runnables(simulation)),
+        section("Labels", _labels(simulation)),
+        section("Requirements", _requirements(simulation)),
+        *([] if result.impact is None else [impact_section(result.impact, remark)]),
+        section("Assumptions", Sentences(simulation.assumptions)),
+    )
+    return document(sections, closing_line(simulation), opening=f"Simulation{of_files}: {run}")
+
+
+def _percent(load: Fraction) -> str:
+    return f"{percent_text(load, 3)}%"
+
+
+def _processes(simulation: Simulation) -> Table:
+    ordered = sorted(simulation.processes, key=lambda each: by_core_and_priority(each.core, each.is_isr, each.priority))
+    rows = [
+        (
+            process.name,
+            process.core or "-",
+            f"{process.jobs:,}",
+            _percent(process.load),
+            *observed(process.response_time, process.deadline),
+            deadline_text(process.deadline, process.is_implicit),
+            f"{process.lost_activations:,}",
+            "-" if process.verdict is None else badge(process.verdict),
+            process.reason,
+        )
+        for process in ordered
+    ]
+    numbers = (">jobs", ">load", ">min", ">mean", ">max", ">deadline", ">lost")
+    return table("Observed response times", ("process", "core", *numbers, "verdict", ""), rows)
+
+
+def _metrics(process: ProcessObservation) -> Section:
+    rows = [
+        (words(name), _microseconds(found.min), _microseconds(found.mean), _microseconds(found.max, is_max=True))
+        for name, found in process.metrics.items()
+    ]
+    return section(
+        f"Metrics of {process.name} (us)", table("", ("metric", ">min", ">avg", ">max"), rows or [("none", "", "", "")])
+    )
+
+
+def _microseconds(value: Fraction, is_max: bool = False) -> str:
+    """A time in microseconds with three digits, so that minimum and maximum are rounded outwards; means are cut off."""
+    nanoseconds = (ceil if is_max else floor)(value / NANOSECOND)
+    whole, digits = divmod(abs(nanoseconds), 1000)
+    return f"{'-' if nanoseconds < 0 else ''}{whole}.{digits:03}"
+
+
+def _chains(simulation: Simulation) -> Table:
+    columns = ("chain", ">observations", ">min", ">mean", ">reaction", ">data age", ">unanswered", "")
+    return table("Latencies of event chains", columns, map(_chain, simulation.chains))
+
+
+def _chain(chain: ChainObservation) -> tuple[str, ...]:
+    age = observed(chain.quantities.get(ChainQuantity.REDUCED_DATA_AGE))
+    missing = f"{chain.not_evaluated:,} latencies too long to be observed" if chain.not_evaluated else ""
+    return (
+        chain.name,
+        f"{chain.observations:,}",
+        *observed(chain.quantities.get(ChainQuantity.REDUCED_REACTION_TIME)),
+        age[2],
+        f"{chain.unanswered:,}",
+        chain.reason or missing,
+    )
+
+
+def _runnables(simulation: Simulation) -> Table:
+    rows = [
+        (
+            runnable.name,
+            f"{runnable.executions:,}",
+            *observed(runnable.metrics.get(JobMetric.RESPONSE_TIME)),
+            observed(runnable.metrics.get(JobMetric.NET_EXECUTION_TIME))[2],
+        )
+        for runnable in simulation.runnables
+    ]
+    return table("", ("runnable", ">executions", ">min response", ">mean", ">max", ">max net execution"), rows)
+
+
+def _labels(simulation: Simulation) -> Table:
+    rows = [
+        (
+            label.name,
+            *(f"{number:,}" for number in (label.reads, label.writes, label.unwritten_reads, label.overwritten)),
+            *observed(label.age),
+        )
+        for label in simulation.labels
+    ]
+    return table("", ("label", ">reads", ">writes", ">unwritten", ">overwritten", ">min age", ">mean", ">max"), rows)
+
+
+def _requirements(simulation: Simulation) -> Table:
+    ordered = sorted(simulation.requirements, key=lambda each: WORST_OBSERVED_FIRST.index(each.verdict))
+    columns = ("requirement", "what", "limit", ">observed", "verdict", ">margin", "")
+    return table("Requirements", columns, map(_requirement, ordered))
+
+
+def _requirement(requirement: RequirementObservation) -> tuple[Cell, ...]:
+    rounding = Rounding.UP if requirement.is_upper else Rounding.DOWN
+    return (
+        requirement.name,
+        f"{requirement.quantity} of {requirement.object}" if requirement.object else requirement.quantity,
+        limit_text(requirement),
+        _rounded(requirement, requirement.value, rounding, requirement.limit),
+        badge(requirement.verdict),
+        "" if requirement.margin is None else _rounded(requirement, requirement.margin, Rounding.DOWN),
+        _remark(requirement),
+    )
+
+
+def _rounded(
+    requirement: RequirementObservation, value: Fraction | None, rounding: Rounding, limit: Fraction | None = None
+) -> str:
+    if value is None or not requirement.is_time:
+        return value_text(requirement, value)
+    return rounded_time_text(value, rounding, limit)
+
+
+def _remark(requirement: RequirementObservation) -> str:
+    """Why, and when a limit was missed first."""
+    is_missed = requirement.verdict is ObservedVerdict.MISSED and requirement.at is not None
+    when = f"at {time_text(round(requirement.at or 0))}" if is_missed else ""
+    return ", ".join(filter(None, (requirement.reason, when)))

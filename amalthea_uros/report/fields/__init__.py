@@ -1,0 +1,1 @@
+"""The names and values of results for programs: each class declares its fields once, for JSON, records and data frames."""

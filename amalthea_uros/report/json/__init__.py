@@ -1,1 +1,0 @@
-"""Results as JSON: a module for each, named by the class of the result."""

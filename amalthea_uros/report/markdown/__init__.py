@@ -1,1 +1,0 @@
-"""Results as Markdown: each has a module with the name of its class."""

@@ -1,0 +1,1 @@
+"""Documents as text for terminals, as HTML, and as Markdown."""

@@ -1,0 +1,59 @@
+"""A report as one HTML page, which needs nothing outside of itself."""
+
+from __future__ import annotations
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup
+
+from amalthea_uros._internal.addresses import DOCUMENTATION
+from amalthea_uros._internal.resources import resource_folder
+from amalthea_uros._version import __version__
+from amalthea_uros.report.document import Figure
+from amalthea_uros.report.documents.page import facts, opening, page_sections
+from amalthea_uros.report.escape import visible
+from amalthea_uros.report.pictures.embedding import embedded
+from amalthea_uros.report.pictures.style import style_sheet
+from amalthea_uros.services.report import ReportContent
+
+
+def render(content: ReportContent) -> str:
+    """The page."""
+    template = _environment().get_template("page.html.jinja")
+    return template.render(
+        title=content.title,
+        date=content.date,
+        facts=facts(content),
+        verdict=opening(content),
+        sections=page_sections(content),
+        picture_style=Markup(style_sheet()),
+        version=__version__,
+        documentation=DOCUMENTATION,
+    )
+
+
+def _environment() -> Environment:
+    environment = Environment(
+        loader=FileSystemLoader(resource_folder("templates/report")),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        finalize=_finalized,
+    )
+    environment.filters |= {"file": _file, "picture": _picture}
+    return environment
+
+
+def _finalized(value: object) -> object:
+    """Text of models without hidden characters, which could pretend to be other text."""
+    return visible(value) if isinstance(value, str) and not isinstance(value, Markup) else value
+
+
+def _file(name: str) -> Markup:
+    """A file of ours, to be a part of the page."""
+    return Markup((resource_folder("templates/report") / name).read_text(encoding="utf-8"))
+
+
+def _picture(figure: Figure) -> Markup:
+    """A picture as a part of a page; its text is escaped already."""
+    return Markup(embedded(figure.picture, figure.name))
