@@ -73,8 +73,11 @@ if TYPE_CHECKING:
     from amalthea_uros.design.changes.change import parse_change as parse_change
     from amalthea_uros.design.changes.sweep import Sweep as Sweep
     from amalthea_uros.design.changes.sweep import parse_sweep as parse_sweep
+    from amalthea_uros.design.improvements import Improvement as Improvement
+    from amalthea_uros.design.improvements import Improvements as Improvements
     from amalthea_uros.design.optimize.problem import Conclusion as Conclusion
     from amalthea_uros.design.optimize.problem import SearchResult as SearchResult
+    from amalthea_uros.design.proposals import DesignProposal as DesignProposal
     from amalthea_uros.design.task_parameters import TaskParameters as TaskParameters
     from amalthea_uros.design.task_parameters import task as task
     from amalthea_uros.design.taskset import taskset as taskset
@@ -121,19 +124,16 @@ if TYPE_CHECKING:
     from amalthea_uros.services.diff import DiffResult as DiffResult
     from amalthea_uros.services.diff import diff as diff
     from amalthea_uros.services.explain import explain as explain
+    from amalthea_uros.services.explain import improvements as improvements
     from amalthea_uros.services.generate import GenerateResult as GenerateResult
     from amalthea_uros.services.generate import MetaCheck as MetaCheck
     from amalthea_uros.services.generate import check_colcon_meta as check_colcon_meta
     from amalthea_uros.services.generate import generate as generate
     from amalthea_uros.services.import_code import ImportResult as ImportResult
     from amalthea_uros.services.import_code import import_code as import_code
-    from amalthea_uros.services.improvements import Improvement as Improvement
-    from amalthea_uros.services.improvements import Improvements as Improvements
-    from amalthea_uros.services.improvements import improvements as improvements
     from amalthea_uros.services.measure import measure as measure
     from amalthea_uros.services.migrate import MigrationResult as MigrationResult
     from amalthea_uros.services.migrate import migrate as migrate
-    from amalthea_uros.services.optimize import DesignProposal as DesignProposal
     from amalthea_uros.services.optimize import Optimization as Optimization
     from amalthea_uros.services.optimize import optimize as optimize
     from amalthea_uros.services.settings import CheckSettings as CheckSettings
@@ -166,72 +166,61 @@ if TYPE_CHECKING:
     from amalthea_uros.xmi.save import save as save
 
 _NAMES = {
-    "analyze.priorities.assignment": ("Proposal", "propose_priorities"),
-    "executors.results": ("ExecutorResult", "HandleResult", "Hop", "HopKind", "Loss"),
     "analyze.impact": ("Effect", "Impact", "ImpactRow"),
+    "analyze.priorities.assignment": ("Proposal", "propose_priorities"),
     "analyze.results.analysis": ("Analysis",),
-    "analyze.results.chains": (
-        "ChainResult",
-        "LatencyQuantity",
-        "LatencyValue",
-    ),
-    "analyze.results.processes": (
-        "CallbackResult",
-        "Metric",
-        "ProcessResult",
-        "ProcessorResult",
-    ),
+    "analyze.results.chains": ("ChainResult", "LatencyQuantity", "LatencyValue"),
+    "analyze.results.processes": ("CallbackResult", "Metric", "ProcessResult", "ProcessorResult"),
     "analyze.results.requirements": ("RequirementResult",),
-    "timing.basics.quantities": ("JobMetric",),
-    "timing.response": (
-        "Claim",
-        "Response",
-    ),
     "analyze.sensitivity": ("Sensitivity", "sensitivity"),
-    "judge.summary": ("Schedulable", "Summary"),
     "analyze.system": ("analyze_system",),
-    "judge.verdict": ("Verdict",),
     "bridge.build": ("build_model",),
     "bridge.extract": ("Extraction", "extract"),
+    "compare.calibration.values": ("CalibratedValue",),
+    "compare.naming": ("Meaning", "Names"),
+    "compare.results": ("Comparison", "ComparisonRow", "MeasuredLimit"),
+    "design.campaign.run": ("Outcome", "Run"),
+    "design.campaign.tables": ("write_table",),
+    "design.changes.change": ("Change", "parse_change"),
+    "design.changes.sweep": ("Sweep", "parse_sweep"),
+    "design.improvements": ("Improvement", "Improvements"),
+    "design.optimize.problem": ("Conclusion", "SearchResult"),
+    "design.proposals": ("DesignProposal",),
+    "design.task_parameters": ("TaskParameters", "task"),
+    "design.taskset": ("taskset",),
     "diagnostics": ("Finding", "Location", "Severity"),
     "errors": ("AmurosError", "InvalidArgumentError", "ReadError", "WriteError"),
+    "executors.results": ("ExecutorResult", "HandleResult", "Hop", "HopKind", "Loss"),
+    "judge.summary": ("Schedulable", "Summary"),
+    "judge.verdict": ("Verdict",),
     "measure.series": ("Counts", "Measurement", "Series", "Statistics"),
     "metamodel.element": ("Element",),
     "metamodel.model": ("Document", "Model", "Reference"),
-    "design.optimize.problem": ("Conclusion", "SearchResult"),
     "perf.activities": ("Communication",),
     "perf.system": ("System",),
     "report.library": ("Report", "report"),
     "services.analyze": ("AnalysisResult", "Explanation", "analyze", "analyze_files"),
     "services.build": ("BuildResult", "build", "describe"),
     "services.calibrate": ("Calibration", "calibrate"),
-    "compare.calibration.values": ("CalibratedValue",),
-    "design.campaign.run": ("Outcome", "Run"),
-    "design.campaign.tables": ("write_table",),
-    "design.changes.change": ("Change", "parse_change"),
-    "design.changes.sweep": ("Sweep", "parse_sweep"),
     "services.check": ("CheckResult", "check", "check_files"),
     "services.compare": ("compare",),
-    "compare.naming": ("Meaning", "Names"),
-    "compare.results": ("Comparison", "ComparisonRow", "MeasuredLimit"),
     "services.diff": ("DiffResult", "diff"),
-    "services.explain": ("explain",),
+    "services.explain": ("explain", "improvements"),
     "services.generate": ("GenerateResult", "MetaCheck", "check_colcon_meta", "generate"),
     "services.import_code": ("ImportResult", "import_code"),
-    "services.improvements": ("Improvement", "Improvements", "improvements"),
     "services.measure": ("measure",),
     "services.migrate": ("MigrationResult", "migrate"),
-    "services.optimize": ("DesignProposal", "Optimization", "optimize"),
+    "services.optimize": ("Optimization", "optimize"),
     "services.settings": ("CheckSettings",),
     "services.simulate": ("CampaignResult", "SimulationResult", "simulate", "simulate_campaign", "simulate_files"),
     "services.sweep": ("SweepResult", "sweep"),
-    "design.task_parameters": ("TaskParameters", "task"),
-    "design.taskset": ("taskset",),
     "services.what_if": ("WhatIf", "what_if"),
     "simulate.options": ("Mode", "Options"),
     "simulate.results": ("Simulation",),
-    "timing.dataflow.paths": ("paths",),
+    "timing.basics.quantities": ("JobMetric",),
     "timing.basics.settings": ("MemoryModel", "Settings"),
+    "timing.dataflow.paths": ("paths",),
+    "timing.response": ("Claim", "Response"),
     "trace.table": ("Entity", "EntityKind", "EventKind", "EventTable"),
     "units": ("parse_time",),
     "uros.assemble": ("Assembly",),

@@ -8,9 +8,9 @@ from command import amuros
 
 from amalthea_uros import analyze_files, simulate
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.services.build import describe_text
 from amalthea_uros.units import MILLISECOND as MS
 from amalthea_uros.units import time_text
+from amalthea_uros.uros.described import describe_text
 
 BOARD = """
 amuros: 1
@@ -69,11 +69,11 @@ def test_a_label_that_the_last_member_does_not_write():
 
 
 def described(old, new):
-    return describe_text(changed(old, new)).findings
+    return describe_text(changed(old, new)).assembly.findings
 
 
 def analysis_of(text):
-    return analyze_system(describe_text(text).system)
+    return analyze_system(describe_text(text).assembly.system)
 
 
 def test_the_worst_latency_is_the_same_everywhere(app, tmp_path):

@@ -9,7 +9,7 @@ from support import ROOT
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.errors import ReadError
 from amalthea_uros.findings import catalogue
-from amalthea_uros.services.build import describe_text
+from amalthea_uros.uros.described import describe_text
 from amalthea_uros.validate import registry
 
 TEXT = (ROOT / "docs" / "micro-ros-traps.md").read_text()
@@ -25,7 +25,7 @@ ELSEWHERE = {"UR101", "UR102", "UR103", "UR104", "UR105", "UR107", "UR130"}
 def results(example):
     """The ids of the findings of an example, and its assumptions."""
     try:
-        described = describe_text(EXAMPLES[example])
+        described = describe_text(EXAMPLES[example]).assembly
     except ReadError as error:
         return {finding.rule for finding in error.findings}, ""
     analysis = analyze_system(described.system)

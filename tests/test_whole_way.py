@@ -7,8 +7,8 @@ from effort import IS_THOROUGH
 from whole_player import MS, US, Player, S
 
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.services.build import describe_content
 from amalthea_uros.spec.transports import CanFd
+from amalthea_uros.uros.described import describe_content
 from amalthea_uros.uros.transports.can_fd import CanFdLine
 
 NS = 1000
@@ -232,7 +232,7 @@ def contradictions(seed, until=S):
     """What a run contradicts; and how many bounds it was compared with."""
     chance = random.Random(seed)
     content, plan = drawn(chance)
-    assembly = describe_content(content)
+    assembly = describe_content(content).assembly
     analysis = analyze_system(assembly.system)
     prepared(content, plan)
     player = Player(plan, chance)

@@ -30,8 +30,8 @@ from amalthea_uros.design.changes import sweep as sweeping
 from amalthea_uros.design.optimize import limits as limiting
 from amalthea_uros.design.optimize.goals import GOALS
 from amalthea_uros.design.optimize.recorder import INTERRUPTED as ENDED_BY_USER
+from amalthea_uros.design.space.choices import DEFAULT, Vary
 from amalthea_uros.report.optimized import closing_line, is_met
-from amalthea_uros.services.design_space import DEFAULT, Vary
 from amalthea_uros.services.optimize import MOST_DESIGNS, MOST_PROPOSALS, Optimization, optimize
 from amalthea_uros.services.optimized_model import write_proposal
 from amalthea_uros.timing.basics.settings import Settings

@@ -15,6 +15,8 @@ from amalthea_uros.analyze.results.chains import ChainResult
 from amalthea_uros.analyze.results.processes import CallbackResult, ProcessResult
 from amalthea_uros.analyze.sensitivity import Sensitivity
 from amalthea_uros.compare.results import Comparison
+from amalthea_uros.design.improvements import Improvements
+from amalthea_uros.design.proposals import DesignProposal
 from amalthea_uros.executors.results import ExecutorResult
 from amalthea_uros.measure.series import Measurement
 from amalthea_uros.report.fields import analysis, descriptions, explanation, measurement, models, search, simulation
@@ -25,9 +27,8 @@ from amalthea_uros.services.calibrate import Calibration
 from amalthea_uros.services.check import CheckResult
 from amalthea_uros.services.diff import DiffResult
 from amalthea_uros.services.generate import GenerateResult, MetaCheck
-from amalthea_uros.services.improvements import Improvements
 from amalthea_uros.services.migrate import MigrationResult
-from amalthea_uros.services.optimize import DesignProposal, Optimization
+from amalthea_uros.services.optimize import Optimization
 from amalthea_uros.services.simulate import CampaignResult, SimulationResult
 from amalthea_uros.services.sweep import SweepResult
 from amalthea_uros.services.what_if import WhatIf

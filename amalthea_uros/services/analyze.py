@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from amalthea_uros.analyze.explanations.processes import CallbackExplanation, ProcessExplanation
     from amalthea_uros.analyze.priorities.assignment import Proposal
     from amalthea_uros.analyze.sensitivity import Sensitivity
-    from amalthea_uros.services.improvements import Improvements
+    from amalthea_uros.design.improvements import Improvements
     from amalthea_uros.services.what_if import Changes
 
 

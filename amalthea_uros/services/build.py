@@ -2,26 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.files import STANDARD_INPUT, STANDARD_OUTPUT, is_file
 from amalthea_uros._internal.garbage import paused_garbage_collection
-from amalthea_uros._internal.paths import TEXT, StrPath, folder_of
+from amalthea_uros._internal.paths import StrPath
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.diagnostics import Finding, Location, Severity
-from amalthea_uros.errors import AmurosError, InvalidArgumentError, ReadError, WriteError
+from amalthea_uros.errors import AmurosError, InvalidArgumentError, WriteError
 from amalthea_uros.findings.suppression import unsuppressed
 from amalthea_uros.perf.named import Brief
-from amalthea_uros.uros.assemble import Assembly, assemble
+from amalthea_uros.uros.assemble import Assembly
 
 if TYPE_CHECKING:
     from amalthea_uros.metamodel.model import Document, Model
     from amalthea_uros.perf.system import System
-    from amalthea_uros.spec.description import Description
-    from amalthea_uros.spec.read import Draft
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -60,59 +57,9 @@ def describe(path: StrPath, platform: str | None = None) -> Assembly:
     ------
     ReadError : the file cannot be read, or something in it is wrong; carries a finding for each mistake.
     """
-    from amalthea_uros.spec.description import Description
-    from amalthea_uros.spec.read import read_draft
+    from amalthea_uros.uros.described import describe_file
 
-    file = Path(path)
-    return _assembly(read_draft(file, Description), folder_of(file), platform)
-
-
-def describe_text(text: str) -> Assembly:
-    """The system that the text of an `app.yaml` describes; files that it names are relative to the current folder.
-
-    Raises
-    ------
-    ReadError : something in it is wrong; carries a finding for each mistake.
-    """
-    from amalthea_uros.spec.description import Description
-    from amalthea_uros.spec.read import text_draft
-
-    return _assembly(text_draft(TEXT, text, Description), Path())
-
-
-def describe_content(content: Mapping[str, Any]) -> Assembly:
-    """The system that the content of an `app.yaml` describes, which may come from any program; raises as `describe_text`."""
-    from amalthea_uros.spec.description import Description
-    from amalthea_uros.spec.read import content_draft
-
-    return _assembly(content_draft(content, Description), Path())
-
-
-def _assembly(draft: Draft[Description], folder: Path, platform: str | None = None) -> Assembly:
-    """The system of a draft, unless something in it is wrong."""
-    try:
-        if draft.section is None:
-            raise ReadError(draft.findings)
-        assembly = _assembled(draft.section, folder, platform)
-    except ReadError as error:
-        raise ReadError(draft.with_more(error.findings)) from None
-    if draft.findings:
-        raise ReadError(draft.findings)
-    return assembly
-
-
-def _assembled(description: Description, folder: Path, platform: str | None) -> Assembly:
-    from amalthea_uros.services.bus_database import database_frames
-    from amalthea_uros.spec.platforms import complete
-
-    whole, name, findings = complete(description, folder, platform)
-    try:
-        assembly = assemble(whole, whole.hardware, name, database_frames(whole, folder))
-    except ReadError as error:
-        raise ReadError([*findings, *error.findings]) from None
-    if findings:
-        raise ReadError(findings)
-    return assembly
+    return describe_file(Path(path), platform).assembly
 
 
 def system_with_bus(assembly: Assembly, path: StrPath) -> System:

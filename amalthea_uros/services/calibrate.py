@@ -20,7 +20,6 @@ from amalthea_uros.compare.calibration.periods import calibrated_periods
 from amalthea_uros.compare.calibration.samples import Measured
 from amalthea_uros.compare.calibration.values import CalibratedValue, Outcome
 from amalthea_uros.design.description import text_edits
-from amalthea_uros.design.description.described import described
 from amalthea_uros.design.description.edit import apply_assignments
 from amalthea_uros.design.description.places import Places
 from amalthea_uros.diagnostics import Finding, Location, Severity
@@ -28,6 +27,7 @@ from amalthea_uros.errors import InvalidArgumentError, ReadError, WriteError
 from amalthea_uros.measure.series import Measurement
 from amalthea_uros.services.file_changes import FileChange
 from amalthea_uros.services.measure import measure
+from amalthea_uros.uros.described import describe_text
 
 _BOM = "\ufeff"
 
@@ -139,7 +139,7 @@ def calibrate_text(text: str, path: Path, measurements: Sequence[Measurement], o
     if not measurements:
         raise InvalidArgumentError("nothing was measured; give at least one trace")
     mark = _BOM if text.startswith(_BOM) else ""
-    before = described(text.removeprefix(_BOM), path)
+    before = describe_text(text.removeprefix(_BOM), path)
     places = Places(before.description, before.platform, before.core_types, before.assembly.priority_scale)
     measured = [Measured(series, measurement) for measurement in measurements for series in measurement.series]
     executors = (choice.period for choice in before.assembly.choices if choice.task == choice.executor)
@@ -194,7 +194,7 @@ def _with_value(text: str, value: CalibratedValue) -> str:
 def _check(text: str, path: Path) -> None:
     """Read the text again."""
     try:
-        described(text, path)
+        describe_text(text, path)
     except ReadError as error:
         reasons = "; ".join(finding.message for finding in error.findings)
         raise InvalidArgumentError(f"the description with the measured values is not valid: {reasons}") from None

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.paths import StrPath, is_description
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.design.changed_model import changed_system, update_model
 from amalthea_uros.design.changes.change import Change
+from amalthea_uros.design.changes.changed_model import changed_system, update_model
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.services.subject import Subject, paths_of, system_of
 from amalthea_uros.timing.basics.settings import Settings

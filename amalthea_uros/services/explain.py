@@ -1,13 +1,13 @@
-"""Why a response time or a latency is so long."""
+"""Why a response time or a latency is so long, and what would shorten it."""
 
 from __future__ import annotations
 
 from amalthea_uros.analyze.explanations.chains import explain_chain
 from amalthea_uros.analyze.explanations.processes import explain_callback, explain_process
 from amalthea_uros.analyze.results.chains import LatencyQuantity
+from amalthea_uros.design.improvements import Improvements, check_explained, improvements_of
 from amalthea_uros.names import require
 from amalthea_uros.services.analyze import Analyzed, Explanation, analysis_result
-from amalthea_uros.services.improvements import check_explained, improvements_of
 from amalthea_uros.uros.application.callbacks import body_name
 
 
@@ -41,5 +41,25 @@ def explain(
         process=explain_process(analysis, name) if name in system.processes else None,
         chain=chain,
         callbacks=explain_callback(analysis, name),
-        improvements=None if chain is None else improvements_of(result, chain),
+        improvements=None if chain is None else improvements_of(analysis, chain, result.task_periods),
     )
+
+
+def improvements(
+    analyzed: Analyzed, chain: str, quantity: LatencyQuantity = LatencyQuantity.MAX_REDUCED_REACTION_TIME
+) -> Improvements:
+    """Try single changes of a system, and rank those that shorten a latency of a chain.
+
+    Parameters
+    ----------
+    analyzed : an analysis, or what `analyze` takes
+    quantity : one of `MAX_REACTION_TIME`, `MAX_REDUCED_REACTION_TIME`, `MAX_DATA_AGE` and `MAX_REDUCED_DATA_AGE`
+
+    Raises
+    ------
+    InvalidArgumentError : there is no such chain, or another quantity.
+    """
+    result = analysis_result(analyzed)
+    require("chain", [chain], result.system.chains)
+    check_explained(quantity)
+    return improvements_of(result.analysis, explain_chain(result.analysis, chain, quantity), result.task_periods)

@@ -2,96 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from time import monotonic
 
 from amalthea_uros._internal.shown import Shown
-from amalthea_uros.analyze.impact import Effect, Impact, ImpactRow, impact
 from amalthea_uros.analyze.results.analysis import Analysis
-from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.design.changes.apply import Difference
-from amalthea_uros.design.changes.change import Change
 from amalthea_uros.design.changes.key import Configuration
 from amalthea_uros.design.changes.sweep import Sweep, parse_sweep
-from amalthea_uros.design.optimize.evaluation import DesignEvaluator
-from amalthea_uros.design.optimize.goals import Scale, goals_of, latency_limits, named_by
-from amalthea_uros.design.optimize.limits import Limit, check_limit, parse_limit
-from amalthea_uros.design.optimize.lower_bounds import sampled_chains
+from amalthea_uros.design.optimize.limits import Limit
 from amalthea_uros.design.optimize.parallel_evaluation import evaluator_on
-from amalthea_uros.design.optimize.problem import Evaluation, Feasibility, Goal, Problem, SearchResult
-from amalthea_uros.design.optimize.quantities import FROM_ARRIVAL, Figures, Range, takers
+from amalthea_uros.design.optimize.problem import Evaluation, Goal, SearchResult
 from amalthea_uros.design.optimize.recorder import Effort
 from amalthea_uros.design.optimize.search import search
 from amalthea_uros.design.optimize.space import Space
+from amalthea_uros.design.proposals import DesignProposal, SearchPlan, plan_search, proved_proposal
+from amalthea_uros.design.space.choices import DEFAULT, Vary, Wishes
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.findings.suppression import unsuppressed
-from amalthea_uros.perf.system import System
-from amalthea_uros.services.design_space import DEFAULT, Vary, Wishes, design_space
 from amalthea_uros.services.names import require_settings
-from amalthea_uros.services.subject import Subject, open_subject, paths_of, reusable
+from amalthea_uros.services.subject import Subject, description_text, open_subject, paths_of, reusable
 from amalthea_uros.timing.basics.settings import Settings
 
 #: So many proposals are shown, unless more are asked for.
 MOST_PROPOSALS = 5
 #: So many designs are judged, unless more are asked for.
 MOST_DESIGNS = 2000
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LimitRow:
-    """A limit that designs must keep beside those of the model, now and in a proposal."""
-
-    limit: Limit
-    before: Range
-    after: Range
-
-    @property
-    def verdict(self) -> Feasibility:
-        """Whether it holds in the proposal."""
-        return self.limit.verdict(self.after)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
-class DesignProposal(Shown):
-    """A design that meets all limits, with its full analysis.
-
-    Attributes
-    ----------
-    differences : the changed values, before and after
-    changes : all that is set, also what follows from the changed values, such as the jobs that take messages
-    value_changes : those of them that are values of a system
-    rebuilt : the system in which they are set, if only a changed description describes it; otherwise None
-    analysis : of the changed system
-    configuration : its system and settings
-    impact : what the changes do to all results
-    limits : the limits beside those of the model
-    """
-
-    evaluation: Evaluation
-    differences: tuple[Difference, ...]
-    changes: tuple[Change, ...]
-    value_changes: tuple[Change, ...]
-    rebuilt: System | None
-    analysis: Analysis
-    configuration: Configuration
-    impact: Impact
-    limits: tuple[LimitRow, ...]
-
-    def __repr__(self) -> str:
-        return f"<DesignProposal {'; '.join(map(str, self.differences)) or 'no change'}>"
-
-    @property
-    def worse(self) -> tuple[ImpactRow, ...]:
-        """The figures that get worse, such as the load."""
-        return tuple(row for row in self.impact.rows if row.effect is Effect.WORSE)
-
-    @property
-    def options(self) -> tuple[str, ...]:
-        """The options with which `amuros analyze` analyses it; none for a design that only a description states."""
-        return () if self.rebuilt is not None else tuple(part for change in self.changes for part in ("--set", str(change)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -130,19 +68,10 @@ class Optimization(Shown):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Plan:
-    """A search that can be started.
-
-    Attributes
-    ----------
-    before : the analysis of the present design
-    evaluator : judges the designs of the problem
-    """
+class OptimizationPlan(SearchPlan):
+    """A search that can be started, with what it is about."""
 
     subject: Subject = field(compare=False)
-    problem: Problem
-    before: Analysis
-    evaluator: DesignEvaluator
     findings: tuple[Finding, ...]
 
 
@@ -155,37 +84,23 @@ def plan_optimization(
     settings: Settings | None = None,
     may_be_later: bool = False,
     seed: int = 1,
-) -> Plan:
+) -> OptimizationPlan:
     """Read what describes a system, and find out what may change; parameters and errors as for `optimize`."""
     subject = reusable(subject)
     opened = open_subject(subject)
-    settings = settings or Settings()
-    require_settings(settings, opened.system)
-    present = Configuration(opened.system, settings)
-    before = analyze_system(*present)
-    figures = Figures(takers(before))
-    space, designs = design_space(subject, opened, present, wishes or Wishes())
-    stated = tuple(parse_limit(each) if isinstance(each, str) else each for each in limits)
-    for limit in stated:
-        check_limit(limit, opened.system)
-    evaluator = DesignEvaluator(
-        designs=designs,
-        limits=stated if may_be_later else (*stated, *_not_later(before, figures)),
-        chains=sampled_chains(before),
-        goals=goals_of(goals, opened.system),
-        scale=Scale(figures=figures, latencies=latency_limits(before, stated, figures)),
+    present = Configuration(opened.system, settings or Settings())
+    require_settings(present.settings, present.system)
+    source = None if opened.assembly is None else description_text(subject)
+    plan = plan_search(
+        present, wishes or Wishes(), opened.assembly, source, limits=limits, goals=goals, may_be_later=may_be_later, seed=seed
     )
-    problem = Problem(
-        present=present,
-        space=space,
-        goals=evaluator.goals,
-        configure=designs.configure,
-        evaluate=evaluator,
-        seed=seed,
-        named=frozenset([(limit.object, limit.quantity) for limit in evaluator.limits]) | named_by(evaluator.goals),
+    return OptimizationPlan(
+        problem=plan.problem,
+        before=plan.before,
+        evaluator=plan.evaluator,
+        subject=subject,
+        findings=unsuppressed((*opened.findings, *plan.before.findings)),
     )
-    findings = unsuppressed((*opened.findings, *before.findings))
-    return Plan(subject=subject, problem=problem, before=before, evaluator=evaluator, findings=findings)
 
 
 def optimize(
@@ -252,18 +167,18 @@ def optimize(
     return found_by(plan, found, proposals)
 
 
-def found_by(plan: Plan, found: SearchResult, proposals: int = MOST_PROPOSALS) -> Optimization:
+def found_by(plan: OptimizationPlan, found: SearchResult, proposals: int = MOST_PROPOSALS) -> Optimization:
     """The outcome of a search, each proposal proved by a full analysis of its own."""
-    problem, evaluator = plan.problem, plan.evaluator
+    problem, evaluator, before = plan.problem, plan.evaluator, plan.before
     return Optimization(
         subject=plan.subject,
         paths=paths_of(plan.subject) or (),
         space=problem.space,
         limits=evaluator.limits,
         goals=problem.goals,
-        before=plan.before,
-        present=evaluator.judged((), plan.before),
-        proposals=tuple(_proposal(each, evaluator, plan.before) for each in found.best[:proposals]),
+        before=before,
+        present=evaluator.judged((), before),
+        proposals=tuple(proved_proposal(each, evaluator, before) for each in found.best[:proposals]),
         search=found,
         findings=plan.findings,
         settings=problem.present.settings,
@@ -277,14 +192,6 @@ def _vary(text: str | Vary) -> Vary:
         raise InvalidArgumentError(f"cannot vary {str(text)!r}; expected some of {', '.join(Vary)}") from None
 
 
-def _not_later(before: Analysis, figures: Figures) -> Iterator[Limit]:
-    """No chain must answer later than now: a chain that is measured from the job that takes a message gets shorter if messages wait."""
-    for chain in before.chains:
-        found = figures.range(before, chain.name, FROM_ARRIVAL)
-        if found.upper is not None:
-            yield Limit(object=chain.name, quantity=FROM_ARRIVAL, maximum=found.upper, reason="not later than now")
-
-
 def _clock(time_limit: float | None) -> Callable[[], str]:
     start = monotonic()
 
@@ -293,29 +200,3 @@ def _clock(time_limit: float | None) -> Callable[[], str]:
         return f"the time limit of {time_limit:g} s was reached" if is_over else ""
 
     return ended
-
-
-def _proposal(evaluation: Evaluation, evaluator: DesignEvaluator, before: Analysis) -> DesignProposal:
-    """A proposal, proved by a full analysis of its own."""
-    designs = evaluator.designs
-    stated, values = designs.divided(evaluation.candidate)
-    built = designs.built(stated)
-    configuration = designs.configure(evaluation.candidate)
-    analysis = analyze_system(*configuration)
-    again = evaluator.judged(evaluation.candidate, analysis)
-    assert again == evaluation, "a design was judged in two ways"
-    figures = evaluator.figures(evaluation.candidate, analysis)
-    return DesignProposal(
-        evaluation=evaluation,
-        differences=designs.describe(evaluation.candidate),
-        changes=designs.changes(evaluation.candidate),
-        value_changes=built.value_changes(values),
-        rebuilt=built.present.system if stated else None,
-        analysis=analysis,
-        configuration=configuration,
-        impact=impact(before, analysis),
-        limits=tuple(
-            LimitRow(limit=limit, before=limit.range(before, evaluator.scale.figures), after=limit.range(analysis, figures))
-            for limit in evaluator.limits
-        ),
-    )

@@ -7,7 +7,9 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeGuard
 
-from amalthea_uros._internal.paths import StrPath
+from amalthea_uros._internal.files import read_text
+from amalthea_uros._internal.limits import DESCRIPTION_SIZE
+from amalthea_uros._internal.paths import TEXT, StrPath, is_description
 from amalthea_uros.perf.system import System
 from amalthea_uros.services.inputs import SystemInput, as_paths, described_input, open_system
 
@@ -42,10 +44,10 @@ def open_subject(subject: Subject) -> SystemInput:
         extraction = extract(subject)
         return SystemInput(system=extraction.system, model=subject, findings=(*subject.findings, *extraction.findings))
     if isinstance(subject, Mapping) or _is_text(subject):
-        from amalthea_uros.services.build import describe_content, describe_text
+        from amalthea_uros.uros.described import describe_content, describe_text
 
-        assembly = describe_text(subject) if isinstance(subject, str) else describe_content(subject)
-        return described_input(assembly)
+        described = describe_text(subject) if isinstance(subject, str) else describe_content(subject)
+        return described_input(described.assembly)
     return open_system(as_paths(_paths(subject)))
 
 
@@ -61,6 +63,14 @@ def paths_of(subject: Subject) -> tuple[Path, ...] | None:
 def reusable(subject: Subject) -> Subject:
     """The subject, of which paths can be asked for again."""
     return paths_of(subject) or subject
+
+
+def description_text(subject: Subject) -> tuple[str, Path] | None:
+    """The text of a description, and its file; None if the subject is something else."""
+    paths = paths_of(subject)
+    if paths is not None and len(paths) == 1 and is_description(paths[0]):
+        return read_text(paths[0], DESCRIPTION_SIZE), paths[0]
+    return (subject, TEXT) if _is_text(subject) else None
 
 
 def system_of(subject: Subject) -> System:

@@ -10,10 +10,10 @@ from support import ROOT
 from amalthea_uros import InvalidArgumentError, Options, WriteError, analyze, calibrate, simulate, simulate_files
 from amalthea_uros.compare.calibration.values import Outcome
 from amalthea_uros.measure.series import MeasuredKind, Measurement, Series, statistics_of
-from amalthea_uros.services.build import describe_text
 from amalthea_uros.services.measure import measure
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.units import MICROSECOND, MILLISECOND, SECOND
+from amalthea_uros.uros.described import describe_text
 
 SAMPLES = ROOT / "samples"
 ADVANCED = (SAMPLES / "bodas-test-advanced.yaml").read_text()
@@ -66,7 +66,7 @@ def test_the_values_of_the_measured_system_come_back(trace):
     assert "execution_time: {base: 12 us, per_message: 13 us}" in result.text
     assert "execution_time: 2 us" in result.text
     assert "execution_time: 4 us" in result.text
-    old, new = (describe_text(text).system for text in (ADVANCED, result.text))
+    old, new = (describe_text(text).assembly.system for text in (ADVANCED, result.text))
     assert old == new
 
 
@@ -210,7 +210,7 @@ def test_the_jitter_of_messages_is_that_of_all_against_one_grid():
     times = np.array([20 * number + delay for number, delay in enumerate(delays)])
     result = calibrate(ADVANCED, measured(distances("factor", *np.diff(times))))
     (jitter,) = [value for value in result.values if value.target == "Message_Factor.arrival_jitter"]
-    (subscription,) = describe_text(result.text).messages
+    (subscription,) = describe_text(result.text).assembly.messages
     assert jitter.outcome is Outcome.WRITTEN
     assert subscription.message.interval == 17 * MILLISECOND
 
@@ -317,7 +317,7 @@ def of_tasks(**times):
 
 def test_a_comment_is_no_part_of_a_text_of_several_lines():
     result = calibrate(UGLY, of_tasks(A=[3, 5]))
-    labels = [{label.name for label in describe_text(text).system.software.labels} for text in (UGLY, result.text)]
+    labels = [{label.name for label in describe_text(text).assembly.system.software.labels} for text in (UGLY, result.text)]
     assert labels[0] == labels[1] == {"a b"}
     assert '"a\n      b"], name: A, period: 1 ms, execution_time: {min: 2 us, max: 6 us}}' in result.text
 

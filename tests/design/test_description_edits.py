@@ -9,8 +9,8 @@ from support import ROOT
 from amalthea_uros import InvalidArgumentError, LatencyQuantity, analyze, parse_change
 from amalthea_uros.design.description.edit import edit_description
 from amalthea_uros.design.description.text_edits import newline_of, value_text, with_comment, with_value
-from amalthea_uros.services.build import describe_text
 from amalthea_uros.units import MICROSECOND, MILLISECOND
+from amalthea_uros.uros.described import describe_text
 
 SAMPLES = sorted(path for path in (ROOT / "samples").glob("*.yaml") if "amuros:" in path.read_text())
 ADVANCED = (ROOT / "samples" / "bodas-test-advanced.yaml").read_text()
@@ -50,7 +50,8 @@ def test_priorities_that_would_follow_the_periods_are_kept():
     # Task_5ms is above the executor; with 10 ms, rate-monotonic priorities would put it below.
     result = edited(DRIVE, "Task_5ms.period=10ms")
     old, new = (
-        {each.task: each.priority for each in describe_text(text).system.mapping.tasks} for text in (DRIVE, result.text)
+        {each.task: each.priority for each in describe_text(text).assembly.system.mapping.tasks}
+        for text in (DRIVE, result.text)
     )
     assert old["Task_5ms"] > old["Executor_Task"]
     assert new["Task_5ms"] > new["Executor_Task"] > new["Control_Speed"]
@@ -117,7 +118,7 @@ def test_messages_come_as_before_if_the_change_says_so():
 def test_a_change_touches_one_line_of_each_sample(path, newline, monkeypatch):
     monkeypatch.chdir(path.parent)  # where the databases lie that it names
     text = path.read_text().replace("\n", newline).removesuffix(newline)
-    system = describe_text(text).system
+    system = describe_text(text).assembly.system
     process = [task.name for task in system.software.tasks if task.name not in system.transmissions][-1]
     result = edited(text, f"{process}.deadline=900us")
     assert len(changed_lines(text, result.text)) == 1
@@ -216,7 +217,7 @@ def test_values_are_written_where_their_mapping_is_missing():
 def test_times_are_exact():
     result = edited(ADVANCED, "Message_Factor.offset=0.0005ms")
     assert "offset: 500 ns" in result.text
-    assert describe_text(result.text).system.stimuli_by_name
+    assert describe_text(result.text).assembly.system.stimuli_by_name
     assert 5 * MILLISECOND == 5_000_000_000
 
 
@@ -229,4 +230,4 @@ def test_a_priority_is_written_as_the_operating_system_counts():
     # In the system, A has priority 14 - 3 = 11 and B 14 - 5 = 9; 12 is above both, and 2 in the file.
     result = edited(text, "B.priority=12")
     assert changed_lines(text, result.text) == ["  - {name: B, period: 20 ms, priority: 2, execution_time: 1 ms}"]
-    assert {each.task: each.priority for each in describe_text(result.text).system.mapping.tasks} == {"A": 11, "B": 12}
+    assert {each.task: each.priority for each in describe_text(result.text).assembly.system.mapping.tasks} == {"A": 11, "B": 12}

@@ -8,13 +8,12 @@ from support import ROOT
 
 from amalthea_uros.analyze.results.chains import LatencyQuantity
 from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.design import improvements as improvements_module
 from amalthea_uros.design.changes.apply import apply
 from amalthea_uros.perf.activities import Communication
 from amalthea_uros.perf.constraints import Bound, Requirement, TimeLimit, TimeMetric
-from amalthea_uros.services import improvements as improvements_module
 from amalthea_uros.services.analyze import analyze_files
-from amalthea_uros.services.explain import explain
-from amalthea_uros.services.improvements import improvements
+from amalthea_uros.services.explain import explain, improvements
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS

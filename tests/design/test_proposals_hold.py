@@ -14,7 +14,7 @@ from amalthea_uros.design.optimize.problem import Conclusion
 from amalthea_uros.design.optimize.recorder import Effort
 from amalthea_uros.design.optimize.search import search
 from amalthea_uros.design.optimize.space import Choice, Kind, PriorityOrder, Space
-from amalthea_uros.services.design_space import Wishes
+from amalthea_uros.design.space.choices import Wishes
 from amalthea_uros.services.optimize import plan_optimization
 from amalthea_uros.units import MILLISECOND as MS
 

@@ -13,7 +13,7 @@ from amalthea_uros.design.optimize.exhaustive import try_all
 from amalthea_uros.design.optimize.problem import Conclusion, Goal
 from amalthea_uros.design.optimize.solvers.offsets import offset_classes, solve_offsets
 from amalthea_uros.design.optimize.space import Choice, Kind, Space
-from amalthea_uros.services.design_space import Wishes
+from amalthea_uros.design.space.choices import Wishes
 from amalthea_uros.services.optimize import plan_optimization
 from amalthea_uros.units import MICROSECOND as US
 

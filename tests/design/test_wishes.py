@@ -10,8 +10,8 @@ from amalthea_uros.design.changes.sweep import parse_sweep
 from amalthea_uros.design.optimize.exhaustive import try_all
 from amalthea_uros.design.optimize.problem import Conclusion
 from amalthea_uros.design.optimize.solvers.mapping import solve_mapping
+from amalthea_uros.design.space.choices import Vary, Wishes
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.services.design_space import Vary, Wishes
 from amalthea_uros.services.optimize import optimize, plan_optimization
 
 TASKS = [{"name": "A", "C": 5, "T": 10, "D": 10}, {"name": "B", "C": 2, "T": 10, "D": 10}]

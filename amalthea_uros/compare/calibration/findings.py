@@ -11,12 +11,12 @@ from amalthea_uros.compare.calibration.options import CalibrationOptions, Form
 from amalthea_uros.compare.calibration.samples import Measured
 from amalthea_uros.compare.calibration.values import CalibratedValue, Outcome
 from amalthea_uros.compare.calibration.wording import statistics_text
-from amalthea_uros.design.description.described import Described
 from amalthea_uros.design.description.places import Places
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.measure.series import MeasuredKind
 from amalthea_uros.names import listed
 from amalthea_uros.timing.basics.quantities import JobMetric
+from amalthea_uros.uros.described import Described
 
 
 def findings_of(

@@ -10,7 +10,6 @@ from amalthea_uros.compare.calibration.options import CalibrationOptions
 from amalthea_uros.compare.calibration.samples import Measured, Samples, samples_of
 from amalthea_uros.compare.calibration.values import CalibratedValue, Outcome, calibrated
 from amalthea_uros.design.changes.change import Change
-from amalthea_uros.design.description.described import Described
 from amalthea_uros.design.description.owners import callbacks
 from amalthea_uros.design.description.places import Assignment, Places
 from amalthea_uros.design.description.text_edits import Path
@@ -20,6 +19,7 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.spec.application import Subscription
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.units import Rounding, Time, rounded, rounded_time_text, time_text
+from amalthea_uros.uros.described import Described
 
 #: The distances that show a period; those of activations first, since starts are delayed by others.
 QUANTITIES = (JobMetric.ACTIVATE_TO_ACTIVATE, JobMetric.START_TO_START)

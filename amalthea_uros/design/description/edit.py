@@ -7,10 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from amalthea_uros._internal.paths import TEXT
-from amalthea_uros.design.changed_model import changed_system
 from amalthea_uros.design.changes.change import Change
+from amalthea_uros.design.changes.changed_model import changed_system
 from amalthea_uros.design.description import text_edits
-from amalthea_uros.design.description.described import described
 from amalthea_uros.design.description.meaning import arrival_periods, differences, meaning
 from amalthea_uros.design.description.places import Assignment, Places
 from amalthea_uros.errors import InvalidArgumentError, ReadError
@@ -18,6 +17,7 @@ from amalthea_uros.perf.stimuli import Periodic
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import time_text
+from amalthea_uros.uros.described import describe_text
 
 #: Changes of what a description states otherwise than a system does; there is no other way to them that could be compared.
 _STRUCTURAL = ("order", "semantics", "callbacks", "runs_in", "runs_when")
@@ -78,7 +78,7 @@ def edit_description(text: str, path: Path = TEXT, changes: Sequence[Change] = (
     structural = [change for change in changes if change.key in _STRUCTURAL]
     if structural:
         return _restructured(text, path, structural, [change for change in changes if change.key not in _STRUCTURAL])
-    before = described(text, path)
+    before = describe_text(text, path)
     expected = changed_system(before.assembly.system, changes, Settings())
     places = Places(before.description, before.platform, before.core_types, before.assembly.priority_scale)
     assignments = [assignment for change in changes for assignment in places.assignments(change)]
@@ -100,7 +100,7 @@ def edit_description(text: str, path: Path = TEXT, changes: Sequence[Change] = (
 
 def _restructured(text: str, path: Path, structural: Sequence[Change], values: Sequence[Change]) -> EditedDescription:
     """The text with changes for which there is no other way than a description, and then with other values of what it describes."""
-    before = described(text, path)
+    before = describe_text(text, path)
     places = Places(before.description, before.platform, before.core_types, before.assembly.priority_scale)
     assignments = [assignment for change in structural for assignment in places.assignments(change)]
     rebuilt = apply_assignments(text, assignments)
@@ -133,7 +133,7 @@ def value_edits(
 
 def _system(text: str, path: Path, changes: Sequence[Change]) -> System:
     try:
-        return described(text, path).assembly.system
+        return describe_text(text, path).assembly.system
     except ReadError as error:
         reasons = "; ".join(finding.message for finding in error.findings)
         what = ", ".join(map(str, changes))

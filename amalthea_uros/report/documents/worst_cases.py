@@ -10,6 +10,7 @@ from amalthea_uros._internal.plural import counted
 from amalthea_uros.analyze.explanations.chains import ChainExplanation, ProcessHop, explain_chain
 from amalthea_uros.analyze.results.chains import LatencyQuantity
 from amalthea_uros.analyze.results.processes import ProcessResult
+from amalthea_uros.design.improvements import Improvement
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.report.cells import at_least, at_most
 from amalthea_uros.report.document import Block, Cell, Figure, Folded, Heading, Section, Sentences, table
@@ -19,7 +20,7 @@ from amalthea_uros.report.pictures.chain_hops import draw_hops
 from amalthea_uros.report.pictures.histogram_marks import Mark, MarkKind
 from amalthea_uros.report.simulation_pictures import gantt_picture, histogram_picture
 from amalthea_uros.services.analyze import AnalysisResult
-from amalthea_uros.services.improvements import Improvement, improvements
+from amalthea_uros.services.explain import improvements
 from amalthea_uros.services.report import ReportContent
 from amalthea_uros.services.simulate import SimulationResult
 from amalthea_uros.simulate.observations import MetricObservation

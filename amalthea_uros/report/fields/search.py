@@ -8,13 +8,14 @@ from typing import Any
 
 from amalthea_uros.design.optimize.problem import Evaluation, Goal
 from amalthea_uros.design.optimize.quantities import Amount, Dimension, Range, dimension
+from amalthea_uros.design.proposals import DesignProposal, LimitRow
 from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.report import optimized
 from amalthea_uros.report.fields.analysis import summary_json
 from amalthea_uros.report.fields.declaration import ALSO, declare, json_of
 from amalthea_uros.report.findings import joined
 from amalthea_uros.report.text.sweep_result import closing_line
-from amalthea_uros.services.optimize import DesignProposal, LimitRow, Optimization
+from amalthea_uros.services.optimize import Optimization
 from amalthea_uros.services.sweep import SweepResult
 
 _VERDICTS = {"yes": "met", "no": "missed", "unknown": "unknown"}

@@ -14,6 +14,7 @@ from amalthea_uros.analyze.explanations.processes import CallbackExplanation, Pr
 from amalthea_uros.analyze.results.analysis import Judged
 from amalthea_uros.analyze.results.chains import LatencyValue
 from amalthea_uros.analyze.results.processes import CallbackResult, ProcessResult
+from amalthea_uros.design.improvements import Improvements
 from amalthea_uros.executors.results import HandleResult
 from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.perf.executors import HandleKind
@@ -24,7 +25,6 @@ from amalthea_uros.report.message_chains import write_hops_of_chain
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.report.text import improvements
 from amalthea_uros.services.analyze import Explanation
-from amalthea_uros.services.improvements import Improvements
 from amalthea_uros.timing.response import Response
 from amalthea_uros.units import Time, percent_text, time_text
 

@@ -10,7 +10,7 @@ from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.units import time_text
 
 if TYPE_CHECKING:
-    from amalthea_uros.services.improvements import Improvement, Improvements
+    from amalthea_uros.design.improvements import Improvement, Improvements
 
 #: Further changes shorten the latency less.
 _MOST = 5

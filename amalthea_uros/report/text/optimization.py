@@ -12,12 +12,13 @@ from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.requirements import RequirementResult
 from amalthea_uros.design.optimize.problem import Feasibility
 from amalthea_uros.design.optimize.quantities import Amount, Dimension, Range, dimension
+from amalthea_uros.design.proposals import DesignProposal, LimitRow
 from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.report.cells import load_text
 from amalthea_uros.report.optimized import closing_line, count_text, goal_text, limit_text, space_lines
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.services.impact_text import cells
-from amalthea_uros.services.optimize import DesignProposal, LimitRow, Optimization
+from amalthea_uros.services.optimize import Optimization
 from amalthea_uros.units import Rounding, Time, rounded_time_text
 
 _HEADINGS = ("what", "quantity", "now", "proposed", "limit", "margin", "verdict")

@@ -6,9 +6,9 @@ The cited issues belong to micro-ROS on GitHub.
 import pytest
 
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.services.build import describe_text
 from amalthea_uros.units import MILLISECOND as MS
 from amalthea_uros.units import SECOND
+from amalthea_uros.uros.described import describe_text
 
 APP = """
 amuros: 1
@@ -37,7 +37,7 @@ def analysis(
     period="5 s",
 ):
     text = APP.format(loop=loop, baud_rate=baud_rate, size=size, reliability=reliability, interval=interval, period=period)
-    return analyze_system(describe_text(text).system)
+    return analyze_system(describe_text(text).assembly.system)
 
 
 def messages(found, rule):

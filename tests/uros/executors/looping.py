@@ -1,7 +1,7 @@
 """Descriptions of executors with loops."""
 
 from amalthea_uros.errors import ReadError
-from amalthea_uros.services.build import describe_text
+from amalthea_uros.uros.described import describe_text
 
 CALLBACKS = """
       publishers: [{topic: state, message_size: 8 B, reliability: best-effort}]
@@ -28,7 +28,7 @@ application:
   nodes:
     - name: node{callbacks}
 """
-    )
+    ).assembly
 
 
 def executor_of(*arguments, **more):

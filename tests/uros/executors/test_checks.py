@@ -3,7 +3,7 @@
 import pytest
 from looping import CALLBACKS, described, findings_of
 
-from amalthea_uros.services.build import describe_text
+from amalthea_uros.uros.described import describe_text
 
 LOOP = "loop: {spin_some: 100 ms, sleep: 10 ms}"
 TIMER = "\n      timers: [{name: Control, period: 50 ms, execution_time: 300 us}]"
@@ -100,8 +100,8 @@ middleware: {executor: {period: 1 ms%s}}
 application:
   nodes: [{name: node, timers: [{name: Control, period: 10 ms, execution_time: 1 ms}]}]
 """
-    assert describe_text(text % "").placement == "the platform bodas-rc18-12-40 runs callbacks in their own tasks"
-    stated = describe_text(text % ", callbacks: in-executor")
+    assert describe_text(text % "").assembly.placement == "the platform bodas-rc18-12-40 runs callbacks in their own tasks"
+    stated = describe_text(text % ", callbacks: in-executor").assembly
     assert stated.placement == "callbacks run in the executor: set in app.yaml"
 
 

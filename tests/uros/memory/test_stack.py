@@ -7,7 +7,7 @@ from effort import examples
 from hypothesis import given
 from hypothesis import strategies as st
 
-from amalthea_uros.services.build import describe_text
+from amalthea_uros.uros.described import describe_text
 
 KINDS = ("preemptive", "cooperative", "non-preemptive")
 
@@ -18,7 +18,7 @@ def described(tasks, isrs=(), stack="shared", cores=1):
         *(f"  - {task}" for task in tasks),
         *(["isrs:", *(f"  - {isr}" for isr in isrs)] if isrs else []),
     ]
-    return describe_text("\n".join(lines)).memory.stacks
+    return describe_text("\n".join(lines)).assembly.memory.stacks
 
 
 def task(name, priority, size, preemption="preemptive", functions=1, core=0):
@@ -111,4 +111,4 @@ def test_the_longest_chain_is_that_of_all_chains(tasks, isrs):
 @pytest.mark.parametrize(("os", "shared"), [("", True), ("os: {stack: per-task}\n", False)])
 def test_tasks_of_osek_share_their_stack(os, shared):
     text = f"amuros: 1\nname: app\nhardware: {{platform: generic}}\n{os}middleware: {{policy: OSEK}}\ntasks:\n  - {task('A', 1, 100)}"
-    assert describe_text(text).memory.stacks.shared is shared
+    assert describe_text(text).assembly.memory.stacks.shared is shared

@@ -8,27 +8,25 @@ from itertools import permutations, product
 from math import prod
 from pathlib import Path
 
-from amalthea_uros._internal.paths import is_description
 from amalthea_uros.design.changes.change import Change
-from amalthea_uros.design.description.described import Described, described
 from amalthea_uros.design.description.edit import edit_description
 from amalthea_uros.design.optimize.candidate import Candidate
 from amalthea_uros.design.optimize.designs import Structure
 from amalthea_uros.design.optimize.space import Choice, Kind
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.system import System
-from amalthea_uros.services.inputs import SystemInput, described_input
-from amalthea_uros.services.subject import Subject, paths_of
 from amalthea_uros.spec.executors import Executor
 from amalthea_uros.uros.application.callbacks import Callback, callbacks_of, registration_order
 from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.application.serving import stated_executors
+from amalthea_uros.uros.assemble import Assembly
+from amalthea_uros.uros.described import Described, describe_text
 
 #: Each structure is built before the search begins.
 MOST_STRUCTURES = 500
 
 #: What makes the rules and orders of the structure of a system.
-Completed = Callable[[tuple[Change, ...], SystemInput], Structure]
+Completed = Callable[[tuple[Change, ...], Assembly], Structure]
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,22 +38,13 @@ class DescribedCallbacks:
     whole: Described
 
     @classmethod
-    def of(cls, subject: Subject) -> DescribedCallbacks:
-        """Those of what describes a system; InvalidArgumentError if it is no description."""
-        from amalthea_uros._internal.files import read_text
-        from amalthea_uros._internal.limits import DESCRIPTION_SIZE
-        from amalthea_uros._internal.paths import TEXT
-
-        paths = paths_of(subject)
-        if paths is not None and len(paths) == 1 and is_description(paths[0]):
-            text, path = read_text(paths[0], DESCRIPTION_SIZE), paths[0]
-        elif isinstance(subject, str) and paths is None:
-            text, path = subject, TEXT
-        else:
+    def of(cls, source: tuple[str, Path] | None) -> DescribedCallbacks:
+        """Those of the text of a description; InvalidArgumentError without one."""
+        if source is None:
             raise InvalidArgumentError(
                 "only an app.yaml says where callbacks run and in which order; give one, or leave out 'callbacks'"
             )
-        return cls(text, path, described(text, path))
+        return cls(*source, describe_text(*source))
 
     @property
     def executor(self) -> Executor:
@@ -125,10 +114,10 @@ class DescribedCallbacks:
             text = edit_description(self.text, self.path, changes).text
         except InvalidArgumentError as error:
             return str(error)
-        opened = described_input(described(text, self.path).assembly)
-        if _demands(opened.system) != _demands(self.whole.assembly.system):
+        rebuilt = describe_text(text, self.path).assembly
+        if _demands(rebuilt.system) != _demands(self.whole.assembly.system):
             return "a requirement of the model has no object there"
-        return complete(changes, opened)
+        return complete(changes, rebuilt)
 
     def _with_order(self, own: Candidate, inside: Mapping[str, bool]) -> tuple[Change, ...]:
         """The changes, with an order that has only callbacks that run in the executor."""

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import islice
 
 from amalthea_uros._internal.shown import Shown
-from amalthea_uros.analyze.explanations.chains import ChainExplanation, explain_chain
+from amalthea_uros.analyze.explanations.chains import ChainExplanation
 from amalthea_uros.analyze.impact import Amount, ComparedFigure, Effect, FigureUnit, ResultPart, impact
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import EXPLAINED, LatencyQuantity
@@ -16,8 +16,6 @@ from amalthea_uros.design.changes.apply import Difference, apply, describe
 from amalthea_uros.design.changes.key import Configuration
 from amalthea_uros.design.improvement_candidates import Candidate, candidates
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.names import require
-from amalthea_uros.services.analyze import AnalysisResult, Analyzed, analysis_result
 from amalthea_uros.timing.activation.phases import counters, nominal_period
 from amalthea_uros.timing.response import Claim
 from amalthea_uros.units import Time, time_text
@@ -94,35 +92,20 @@ class Improvements(Shown):
         return tuple(islice(different.values(), count))
 
 
-def improvements(
-    analyzed: Analyzed, chain: str, quantity: LatencyQuantity = LatencyQuantity.MAX_REDUCED_REACTION_TIME
-) -> Improvements:
-    """Try single changes of a system, and rank those that shorten a latency of a chain; see `improvements_of`.
-
-    Parameters
-    ----------
-    analyzed : an analysis, or what `analyze` takes
-    quantity : one of `MAX_REACTION_TIME`, `MAX_REDUCED_REACTION_TIME`, `MAX_DATA_AGE` and `MAX_REDUCED_DATA_AGE`
-
-    Raises
-    ------
-    InvalidArgumentError : there is no such chain, or another quantity.
-    """
-    result = analysis_result(analyzed)
-    require("chain", [chain], result.system.chains)
-    check_explained(quantity)
-    return improvements_of(result, explain_chain(result.analysis, chain, quantity))
-
-
-def improvements_of(result: AnalysisResult, explanation: ChainExplanation) -> Improvements:
+def improvements_of(analysis: Analysis, explanation: ChainExplanation, offered: Sequence[Time] = ()) -> Improvements:
     """Try single changes of a system, and rank those that shorten an explained latency.
 
     Periods are only shortened: with a longer period of the first process, inputs wait longer before the chain begins, which a latency
     that begins there does not include.
+
+    Parameters
+    ----------
+    offered : the periods that tasks can have; empty if they can have any
     """
     chain, quantity = explanation.chain.name, explanation.quantity
-    analysis, present = result.analysis, Configuration(result.system, result.settings)
-    every = candidates(explanation, analysis, present, result.task_periods)
+    context = analysis.solution.context
+    present = Configuration(context.system, context.settings)
+    every = candidates(explanation, analysis, present, offered)
     applied = [(each, changed) for each in every if (changed := _applied(each, present)) is not None]
     most = min(MAX_ANALYSES, max(MIN_ANALYSES, MAX_PROCESSES // max(1, len(analysis.processes))))
     found, tried = [], 0

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
+from pathlib import Path
 from typing import NamedTuple
 
 from amalthea_uros.design.changes.apply import apply, check_key, describe
@@ -16,21 +17,20 @@ from amalthea_uros.design.changes.sweep import Sweep
 from amalthea_uros.design.optimize.designs import Designs, Structure
 from amalthea_uros.design.optimize.rules import CapacityRule
 from amalthea_uros.design.optimize.space import Choice, Kind, PriorityOrder, Space
+from amalthea_uros.design.space.rules import rules
+from amalthea_uros.design.space.structures import DescribedCallbacks
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.names import require
 from amalthea_uros.perf.activities import AccessKind, Communication, LabelAccess
 from amalthea_uros.perf.hardware import MemoryKind
 from amalthea_uros.perf.system import System
-from amalthea_uros.services.design_rules import rules
-from amalthea_uros.services.design_structures import DescribedCallbacks
-from amalthea_uros.services.inputs import SystemInput
-from amalthea_uros.services.subject import Subject
 from amalthea_uros.timing.activation.releases import known_releases
 from amalthea_uros.timing.basics.settings import MemoryModel
 from amalthea_uros.timing.jobs.executed import executed
 from amalthea_uros.timing.scheduling.allocation import allocated_cores, scheduler_cores
 from amalthea_uros.timing.scheduling.ranks import is_by_priority
 from amalthea_uros.units import time_text
+from amalthea_uros.uros.assemble import Assembly
 
 
 class Vary(StrEnum):
@@ -81,49 +81,52 @@ class Wishes:
     is_rate_monotonic: bool = False
 
 
-def design_space(subject: Subject, opened: SystemInput, present: Configuration, wishes: Wishes) -> tuple[Space, Designs]:
+def design_space(
+    present: Configuration, wishes: Wishes, assembly: Assembly | None, source: tuple[str, Path] | None
+) -> tuple[Space, Designs]:
     """The space of designs, and what makes their systems.
 
     Parameters
     ----------
-    subject : what was opened
+    assembly : of the description of the system; None if it has none
+    source : the text of the description, and its file
 
     Raises
     ------
     InvalidArgumentError : an offer or something to keep does not exist, an offered value is wrong, or something cannot be varied.
     """
-    builder = _Builder(opened, present, wishes)
-    source = DescribedCallbacks.of(subject) if _needs_description(opened, wishes) else None
-    _check_keep(wishes.keep, present.system, source)
-    stated = () if source is None else tuple(builder.stated_choices(source))
+    builder = _Builder(assembly, present, wishes)
+    described = DescribedCallbacks.of(source) if _needs_description(assembly, wishes) else None
+    _check_keep(wishes.keep, present.system, described)
+    stated = () if described is None else tuple(builder.stated_choices(described))
     orders = tuple(builder.orders())
     follows = wishes.is_rate_monotonic
     varies_priorities = Vary.PRIORITIES in wishes.vary and not follows
     space = Space(choices=(*builder.choices(), *stated), orders=orders if varies_priorities else ())
 
-    def completed(changes: tuple[Change, ...], rebuilt: SystemInput) -> Structure:
+    def completed(changes: tuple[Change, ...], rebuilt: Assembly) -> Structure:
         other = _Builder(rebuilt, present._replace(system=rebuilt.system), wishes)
         return Structure(
             changes=changes,
             system=rebuilt.system,
-            rules=tuple(rules(rebuilt.assembly, rebuilt.system)),
+            rules=tuple(rules(rebuilt, rebuilt.system)),
             rate_monotonic=tuple(other.orders()) if follows else (),
         )
 
     designs = Designs(
         present=present,
-        rules=tuple(rules(opened.assembly, present.system)),
+        rules=tuple(rules(assembly, present.system)),
         rate_monotonic=orders if follows else (),
         stated={choice.target: choice.options[0] for choice in stated},
-        structures={} if source is None else source.structures(stated, completed),
+        structures={} if described is None else described.structures(stated, completed),
     )
     return space, designs
 
 
-def _needs_description(opened: SystemInput, wishes: Wishes) -> bool:
+def _needs_description(assembly: Assembly | None, wishes: Wishes) -> bool:
     """Whether something can change that only a description states: also the semantics of its executor, if it is one."""
     is_stated = {Vary.CALLBACKS, Vary.ORDER} & set(wishes.vary)
-    return bool(is_stated) or (Vary.COMMUNICATION in wishes.vary and opened.assembly is not None)
+    return bool(is_stated) or (Vary.COMMUNICATION in wishes.vary and assembly is not None)
 
 
 def _check_keep(keep: Iterable[str], system: System, source: DescribedCallbacks | None) -> None:
@@ -147,7 +150,7 @@ class _Use(NamedTuple):
 
 @dataclass
 class _Builder:
-    opened: SystemInput
+    assembly: Assembly | None
     present: Configuration
     wishes: Wishes
 
@@ -194,10 +197,11 @@ class _Builder:
 
     def _periods(self) -> Iterator[Choice]:
         """Shorter periods on offer: nobody stated that a process may run less often."""
+        offered = () if self.assembly is None else self.assembly.task_periods
         for name, process in self.system.processes.items():
             releases = known_releases(process, self.system)
             if releases is not None:
-                shorter = sorted((each for each in self.opened.task_periods if each < releases.period), reverse=True)
+                shorter = sorted((each for each in offered if each < releases.period), reverse=True)
                 yield _choice(name, "period", Kind.PERIOD, map(time_text, [releases.period, *shorter]))
 
     def _offsets(self) -> Iterator[Choice]:

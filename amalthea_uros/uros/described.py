@@ -1,0 +1,127 @@
+"""A description with all that it describes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from amalthea_uros._internal.paths import TEXT, folder_of
+from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros.errors import ReadError
+from amalthea_uros.spec.description import Description
+from amalthea_uros.spec.platforms import complete
+from amalthea_uros.spec.read import Draft, content_draft, read_draft, text_draft
+from amalthea_uros.trace.can.dbc import DbcMessage, read_dbc
+from amalthea_uros.trace.can.frames import EXTENDED
+from amalthea_uros.uros.assemble import Assembly, assemble
+from amalthea_uros.uros.transports.foreign import ForeignFrame
+
+
+@dataclass(frozen=True, slots=True)
+class Described:
+    """A description, and what it means.
+
+    Attributes
+    ----------
+    platform : the name of the hardware in execution times; None if it has none
+    core_types : by core
+    """
+
+    description: Description
+    assembly: Assembly
+    platform: str | None
+    core_types: Mapping[str, str]
+
+
+def describe_file(file: Path, platform: str | None = None) -> Described:
+    """What the description in a file describes.
+
+    Parameters
+    ----------
+    platform : replaces the platform that the file names
+
+    Raises
+    ------
+    ReadError : the file cannot be read, or something in it is wrong; carries a finding for each mistake.
+    """
+    return _described(read_draft(file, Description), folder_of(file), platform)
+
+
+def describe_text(text: str, path: Path = TEXT) -> Described:
+    """What the text of a description describes.
+
+    Parameters
+    ----------
+    path : the file of the text, for findings, and for the files that it names; without it, these are relative to the current folder
+
+    Raises
+    ------
+    ReadError : something in it is wrong; carries a finding for each mistake.
+    """
+    return _described(text_draft(path, text, Description), folder_of(path))
+
+
+def describe_content(content: Mapping[str, Any]) -> Described:
+    """What the content of a description describes, which may come from any program; raises as `describe_text`."""
+    return _described(content_draft(content, Description), Path())
+
+
+def _described(draft: Draft[Description], folder: Path, platform: str | None = None) -> Described:
+    """What a draft describes, unless something in it is wrong."""
+    try:
+        if draft.section is None:
+            raise ReadError(draft.findings)
+        found = _assembled(draft.section, folder, platform)
+    except ReadError as error:
+        raise ReadError(draft.with_more(error.findings)) from None
+    if draft.findings:
+        raise ReadError(draft.findings)
+    return found
+
+
+def _assembled(description: Description, folder: Path, platform: str | None) -> Described:
+    whole, name, findings = complete(description, folder, platform)
+    try:
+        assembly = assemble(whole, whole.hardware, name, database_frames(whole, folder))
+    except ReadError as error:
+        raise ReadError([*findings, *error.findings]) from None
+    if findings:
+        raise ReadError(findings)
+    types = {core: each.type or "" for core, each in assembly.system.cores.items()}
+    return Described(description, assembly, name, types)
+
+
+def database_frames(description: Description, folder: Path) -> tuple[ForeignFrame, ...]:
+    """The foreign frames of the DBC file that a description names; none without one.
+
+    Parameters
+    ----------
+    folder : what the path of the file is relative to
+
+    Raises
+    ------
+    ReadError : there is no such file, or it is not a DBC file.
+    InvalidArgumentError : cantools is not installed.
+    """
+    transport = description.middleware.transport
+    bus = transport.can or transport.can_fd
+    if bus is None or bus.dbc is None:
+        return ()
+    path, stated = folder / bus.dbc, bus.location("dbc")
+    if not path.is_file():
+        advice = "Give a path relative to the directory of this file."
+        raise ReadError([Finding("APP001", Severity.ERROR, f"DBC file {str(path)!r} not found", stated, advice)])
+    return tuple(_frame(message, stated) for message in read_dbc(path).messages.values())
+
+
+def _frame(message: DbcMessage, stated: Location | None) -> ForeignFrame:
+    return ForeignFrame(
+        name=message.name,
+        identifier=message.identifier & ~EXTENDED,
+        extended=bool(message.identifier & EXTENDED),
+        data_bytes=message.length,
+        period=message.cycle_time,
+        origin=stated,
+    )
