@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from amalthea_uros.findings import catalogue
 from amalthea_uros.findings.kind import FindingKind
 from amalthea_uros.validate import registry
-from amalthea_uros.validate.rule import ModelRule, Profile
+from amalthea_uros.validate.rule import ModelRule, RuleProfile
 
 #: Families of findings whose examples are logs.
 _TRACES = ("CAN", "TRC")
@@ -15,7 +15,7 @@ _TRACES = ("CAN", "TRC")
 
 def rule_pages() -> Iterator[tuple[str, str]]:
     """Path and text of each page; rules of users have none."""
-    built_in = (profile for profile in Profile if profile is not Profile.USER)
+    built_in = (profile for profile in RuleProfile if profile is not RuleProfile.USER)
     for identifier in (*registry.ids(built_in), *catalogue.ids()):
         kind = registry.kind(identifier)
         assert kind is not None

@@ -15,9 +15,9 @@ from amalthea_uros.diagnostics import Severity
 from amalthea_uros.services.check import CheckResult, CheckStatistics, add_rules, check_files, write_baseline
 from amalthea_uros.services.file_changes import FilesDiff
 from amalthea_uros.services.settings import CheckSettings
-from amalthea_uros.validate.rule import Profile
+from amalthea_uros.validate.rule import RuleProfile
 
-_PROFILES = Several("PROFILE", tuple(map(str, Profile)))
+_PROFILES = Several("PROFILE", tuple(map(str, RuleProfile)))
 _RULES = Several("RULE")
 
 
@@ -29,7 +29,7 @@ _RULES = Several("RULE")
     type=_PROFILES,
     multiple=True,
     callback=several,
-    help=f"Only rules for a purpose: {', '.join(Profile)}. May be repeated, or given with commas.",
+    help=f"Only rules for a purpose: {', '.join(RuleProfile)}. May be repeated, or given with commas.",
 )
 @click.option(
     "--select",
@@ -104,7 +104,7 @@ def command(
     outputs = beside_files(outputs, [("--write-baseline", new_baseline)])
     add_rules(rule_files)
     settings = CheckSettings(
-        profiles=(*profiles, Profile.USER) if profiles and rule_files else profiles,
+        profiles=(*profiles, RuleProfile.USER) if profiles and rule_files else profiles,
         select=select,
         ignore=ignore,
         fail_on=Severity(fail_on) if fail_on else None,

@@ -8,7 +8,7 @@ from amalthea_uros.cli.output import Output, output_option, write_outputs
 from amalthea_uros.cli.several import Several, several
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.services.rules import RulesResult, find_rules
-from amalthea_uros.validate.rule import Profile
+from amalthea_uros.validate.rule import RuleProfile
 
 
 @click.command("rules")
@@ -16,10 +16,10 @@ from amalthea_uros.validate.rule import Profile
 @click.option(
     "--profile",
     "profiles",
-    type=Several("PROFILE", tuple(map(str, Profile))),
+    type=Several("PROFILE", tuple(map(str, RuleProfile))),
     multiple=True,
     callback=several,
-    help=f"Only rules for a purpose: {', '.join(Profile)}. May be repeated, or given with commas.",
+    help=f"Only rules for a purpose: {', '.join(RuleProfile)}. May be repeated, or given with commas.",
 )
 @click.option(
     "--severity",
@@ -42,5 +42,5 @@ def command(
 
     RULE is the id of a rule, or the first letters of ids: `amuros rules TIM INC-HW`. With several conditions, a rule meets all of them.
     """
-    result = find_rules(patterns, profiles=map(Profile, profiles), severities=map(Severity, severities), text=text)
+    result = find_rules(patterns, profiles=map(RuleProfile, profiles), severities=map(Severity, severities), text=text)
     write_outputs(outputs, result)

@@ -11,7 +11,7 @@ from amalthea_uros._internal.files import overlaid
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.editor.document import Document
 from amalthea_uros.errors import ReadError
-from amalthea_uros.findings.grouping import Group, group
+from amalthea_uros.findings.grouping import FindingGroup, group
 from amalthea_uros.services.check import check_files
 from amalthea_uros.validate.registry import rule_url
 
@@ -41,13 +41,13 @@ def diagnostics_of(document: Document) -> list[types.Diagnostic]:
     return [_diagnostic(document, found) for found in groups if not _is_elsewhere(found, others)]
 
 
-def _is_elsewhere(found: Group, others: Collection[Path]) -> bool:
+def _is_elsewhere(found: FindingGroup, others: Collection[Path]) -> bool:
     """Whether all findings of a flaw are in other files of the model, of which the editor shows them."""
     places = [finding.location for finding in (*found.same, *found.consequences)]
     return all(place is not None and place.path in others for place in places)
 
 
-def _diagnostic(document: Document, found: Group) -> types.Diagnostic:
+def _diagnostic(document: Document, found: FindingGroup) -> types.Diagnostic:
     finding = found.shown
     url = rule_url(finding.rule)
     return types.Diagnostic(
@@ -75,7 +75,7 @@ def _range(document: Document, place: Location | None) -> types.Range:
     return document.token(place.line - 1, (place.column or 1) - 1)
 
 
-def _related(document: Document, found: Group) -> Iterator[types.DiagnosticRelatedInformation]:
+def _related(document: Document, found: FindingGroup) -> Iterator[types.DiagnosticRelatedInformation]:
     """What else is reported because of the same flaw."""
     for finding in (*found.same[1:], *found.consequences):
         place = finding.location

@@ -11,7 +11,7 @@ from lsprotocol import types
 
 from amalthea_uros.editor.document import Document
 from amalthea_uros.errors import ReadError
-from amalthea_uros.spec.nodes import Mapping, Node, Place, Scalar, Sequence, read_nodes
+from amalthea_uros.spec.nodes import MappingNode, Node, NodePlace, ScalarNode, SequenceNode, read_nodes
 
 #: What separates values of an `app.yaml`, and the attributes and references of a model.
 _YAML_VALUE = re.compile(r"""(?:(?!:(?:\s|$)|-\s|[,\[\]{}"'#]).)+""")
@@ -85,21 +85,21 @@ def _flat(symbols: list[types.DocumentSymbol]) -> Iterator[types.DocumentSymbol]
 
 
 def _symbols(document: Document, node: Node) -> Iterator[types.DocumentSymbol]:
-    if not isinstance(node, Mapping):
+    if not isinstance(node, MappingNode):
         return
     for key, value in node.items.items():
         if key in _OUTER:
             yield from _symbols(document, value)
-        elif key == "labels" and isinstance(value, Mapping):
+        elif key == "labels" and isinstance(value, MappingNode):
             yield from (_symbol(document, key, name, value.keys[name], item) for name, item in value.items.items())
         elif key in _KINDS:
-            for item in value.items if isinstance(value, Sequence) else [value]:
-                name = item.items.get("name") if isinstance(item, Mapping) else None
-                if isinstance(name, Scalar) and str(name.value or "").strip():
+            for item in value.items if isinstance(value, SequenceNode) else [value]:
+                name = item.items.get("name") if isinstance(item, MappingNode) else None
+                if isinstance(name, ScalarNode) and str(name.value or "").strip():
                     yield _symbol(document, key, str(name.value), name.place, item)
 
 
-def _symbol(document: Document, key: str, name: str, place: Place, node: Node) -> types.DocumentSymbol:
+def _symbol(document: Document, key: str, name: str, place: NodePlace, node: Node) -> types.DocumentSymbol:
     selection = types.Range(
         document.position(place.line, place.column), document.position(place.line, place.column + len(name))
     )
@@ -116,5 +116,5 @@ def _symbol(document: Document, key: str, name: str, place: Place, node: Node) -
 
 
 def _last_line(node: Node) -> int:
-    inner = list(node.items.values()) if isinstance(node, Mapping) else node.items if isinstance(node, Sequence) else []
+    inner = list(node.items.values()) if isinstance(node, MappingNode) else node.items if isinstance(node, SequenceNode) else []
     return max([node.place.line, *map(_last_line, inner)])

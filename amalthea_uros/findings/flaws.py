@@ -9,7 +9,7 @@ from typing import NamedTuple
 from amalthea_uros.diagnostics import Finding
 
 
-class Source(NamedTuple):
+class FindingSource(NamedTuple):
     """The findings of an id, or those of them whose message contains one of some words.
 
     Attributes
@@ -40,7 +40,7 @@ class Flaw:
     of_events : some of them name functions, others the events of these
     """
 
-    sources: tuple[Source, ...]
+    sources: tuple[FindingSource, ...]
     same_name: bool = False
     in_file: bool = False
     of_events: bool = False
@@ -57,22 +57,22 @@ class Consequence:
     except_named_by : not those that name the same thing as a finding of this id, which then is their cause
     """
 
-    cause: Source
-    effects: tuple[Source, ...]
+    cause: FindingSource
+    effects: tuple[FindingSource, ...]
     in_file: bool = False
     same_name: bool = False
     except_named_by: str = ""
 
 
-def _required(*features: str) -> Source:
-    return Source("AM-EMF-INTRINSIC/required-feature", features)
+def _required(*features: str) -> FindingSource:
+    return FindingSource("AM-EMF-INTRINSIC/required-feature", features)
 
 
-def _sources(*items: str | Source) -> tuple[Source, ...]:
-    return tuple(Source(item) if isinstance(item, str) else item for item in items)
+def _sources(*items: str | FindingSource) -> tuple[FindingSource, ...]:
+    return tuple(FindingSource(item) if isinstance(item, str) else item for item in items)
 
 
-def _flaw(*items: str | Source, same_name: bool = False, in_file: bool = False, of_events: bool = False) -> Flaw:
+def _flaw(*items: str | FindingSource, same_name: bool = False, in_file: bool = False, of_events: bool = False) -> Flaw:
     return Flaw(_sources(*items), same_name, in_file, of_events)
 
 
@@ -94,8 +94,8 @@ FLAWS = (
     # Stimuli
     _flaw("TIM-STIMULUS", "INC-ST-NONE"),
     _flaw("TIM-PERIOD", "INC-ST-PERIOD", _required("recurrence", "nextOccurrence", "step", "occurrencesPerStep")),
-    _flaw(Source("AM-EMF-INTRINSIC/datatype", ("occurrenceCount",)), "INC-ST-BURST"),
-    _flaw("AM-Basic-Counter", Source("AM-EMF-INTRINSIC/datatype", ("offset", "prescaler"))),
+    _flaw(FindingSource("AM-EMF-INTRINSIC/datatype", ("occurrenceCount",)), "INC-ST-BURST"),
+    _flaw("AM-Basic-Counter", FindingSource("AM-EMF-INTRINSIC/datatype", ("offset", "prescaler"))),
     # Mapping and scheduling
     _flaw("TIM-PRIORITY-SHARED", "UR106"),
     _flaw("TIM-ALLOCATION", "AM-Mapping-Task-Scheduler", "AM-Mapping-ISR-Scheduler", "INC-MAP-TASK-ONCE"),
@@ -116,53 +116,53 @@ FLAWS = (
     _flaw(_required("condition"), "INC-SW-CONDSET"),
     _flaw(_required("semaphore"), "INC-SW-ACCESS"),
     _flaw(_required("serverRunnable"), "INC-SW-SERVER"),
-    _flaw(Source("AM-EMF-INTRINSIC/required-feature"), "INC-SW-REF"),
+    _flaw(FindingSource("AM-EMF-INTRINSIC/required-feature"), "INC-SW-REF"),
     # Chains and constraints
     _flaw("TIM-CHAIN-CARRIED", "UR130", "CHN002", same_name=True, in_file=True, of_events=True),
     _flaw("AM-Constraints-EventChain", "INC-EC-SEQ"),
     _flaw(_required("stimulus", "response"), "INC-EC-ENDS"),
     _flaw(_required("scope"), "INC-LC-SCOPE"),
-    _flaw("DOC-ProcessScope", Source("AM-EMF-INTRINSIC/multiplicity", ("runnableGroups",))),
+    _flaw("DOC-ProcessScope", FindingSource("AM-EMF-INTRINSIC/multiplicity", ("runnableGroups",))),
 )
 
 CONSEQUENCES = (
     # What the version of the file does not have, or the reader does not know yet, is found all over the file.
-    Consequence(Source("INC-IO-VERSION"), _sources("INC-IO-FEATURE"), in_file=True),
-    Consequence(Source("XMI007"), _sources("XMI010", "XMI011", "INC-IO-FEATURE"), in_file=True),
+    Consequence(FindingSource("INC-IO-VERSION"), _sources("INC-IO-FEATURE"), in_file=True),
+    Consequence(FindingSource("XMI007"), _sources("XMI010", "XMI011", "INC-IO-FEATURE"), in_file=True),
     # Objects of files that were not read cannot be found.
     Consequence(
-        Source("XMI025"),
+        FindingSource("XMI025"),
         _sources("AM-EMF-INTRINSIC/proxy-resolves", "INC-IO-REF"),
         in_file=True,
         except_named_by="XMI020",
     ),
-    Consequence(Source("AM-EMF-INTRINSIC/unique-id"), _sources("XMI021"), in_file=True, same_name=True),
-    Consequence(Source("AM-EMF-SCOPE"), _sources("XMI021"), in_file=True, same_name=True),
-    Consequence(Source("EMF-ID"), _sources("XMI022"), in_file=True),
-    Consequence(Source("AM-EMF-INTRINSIC/proxy-resolves"), _sources("INC-HW-CONN-PORTS")),
-    Consequence(Source("DOC-Feature-Single"), _sources("AM-HW-Definition")),
-    Consequence(Source("AM-HW-Module-Definition"), _sources("INC-HW-MEM-SIZE")),
-    Consequence(Source("TIM-ALLOCATION"), _sources("DOC-Task-Single-Scheduler"), in_file=True, same_name=True),
+    Consequence(FindingSource("AM-EMF-INTRINSIC/unique-id"), _sources("XMI021"), in_file=True, same_name=True),
+    Consequence(FindingSource("AM-EMF-SCOPE"), _sources("XMI021"), in_file=True, same_name=True),
+    Consequence(FindingSource("EMF-ID"), _sources("XMI022"), in_file=True),
+    Consequence(FindingSource("AM-EMF-INTRINSIC/proxy-resolves"), _sources("INC-HW-CONN-PORTS")),
+    Consequence(FindingSource("DOC-Feature-Single"), _sources("AM-HW-Definition")),
+    Consequence(FindingSource("AM-HW-Module-Definition"), _sources("INC-HW-MEM-SIZE")),
+    Consequence(FindingSource("TIM-ALLOCATION"), _sources("DOC-Task-Single-Scheduler"), in_file=True, same_name=True),
     # Tasks of a scheduler without a core are never executed; a stimulus that is not converted never activates a process.
     Consequence(
-        Source("AM-Mapping-Scheduler-ProcessingUnit"),
+        FindingSource("AM-Mapping-Scheduler-ProcessingUnit"),
         _sources("DOC-Task-Affinity-Intersection"),
         in_file=True,
         same_name=True,
     ),
-    Consequence(Source("INC-ST-TYPE"), _sources("INC-ST-ORDER"), in_file=True, same_name=True),
+    Consequence(FindingSource("INC-ST-TYPE"), _sources("INC-ST-ORDER"), in_file=True, same_name=True),
     Consequence(_required("nextOccurrence"), _sources("INC-ST-RELPER")),
     # A mean cannot be within bounds of which the lower one is above the upper one.
     Consequence(
-        Source("AM-EMF-INTRINSIC/TruncatedTimeDistribution"),
+        FindingSource("AM-EMF-INTRINSIC/TruncatedTimeDistribution"),
         _sources("TA-Basic-TimeGaussDistribution-mean"),
     ),
     Consequence(
-        Source("AM-EMF-INTRINSIC/TruncatedDiscreteValueDistribution"),
+        FindingSource("AM-EMF-INTRINSIC/TruncatedDiscreteValueDistribution"),
         _sources("TA-Basic-DiscreteValueGaussDistribution-mean"),
     ),
     Consequence(
-        Source("AM-EMF-INTRINSIC/TruncatedContinuousValueDistribution"),
+        FindingSource("AM-EMF-INTRINSIC/TruncatedContinuousValueDistribution"),
         _sources("TA-Basic-ContinuousValueGaussDistribution-mean"),
     ),
 )

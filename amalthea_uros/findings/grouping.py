@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from amalthea_uros.diagnostics import Finding, worst
-from amalthea_uros.findings.flaws import CONSEQUENCES, FLAWS, Consequence, Flaw, Source
+from amalthea_uros.findings.flaws import CONSEQUENCES, FLAWS, Consequence, FindingSource, Flaw
 from amalthea_uros.findings.naming import likeness, names_in, names_of_events
 
 #: Findings whose object is not the qualified name of an object of the model.
@@ -22,7 +22,7 @@ _SEARCHED = 50
 
 
 @dataclass(frozen=True, slots=True)
-class Group:
+class FindingGroup:
     """What is shown as one finding.
 
     Attributes
@@ -46,7 +46,7 @@ class Group:
         return tuple(dict.fromkeys(finding.rule for finding in self.same[1:]))
 
 
-def group(findings: Sequence[Finding]) -> list[Group]:
+def group(findings: Sequence[Finding]) -> list[FindingGroup]:
     """The findings by flaw, in the order of the first one of each; none is lost."""
     items = [_Item(index, finding) for index, finding in enumerate(findings)]
     by_id: _ById = defaultdict(list)
@@ -113,9 +113,9 @@ class _Flaws:
         self.members[first] = joined
 
 
-def _group(members: Iterable[_Item], effects: Iterable[_Item]) -> Group:
+def _group(members: Iterable[_Item], effects: Iterable[_Item]) -> FindingGroup:
     same = tuple(item.finding for item in members)
-    return Group(same, tuple(item.finding for item in sorted(effects, key=lambda item: item.position)))
+    return FindingGroup(same, tuple(item.finding for item in sorted(effects, key=lambda item: item.position)))
 
 
 class _Alike(NamedTuple):
@@ -236,7 +236,7 @@ def _with(cluster: list[_Item] | None, item: _Item) -> list[_Item]:
     return cluster
 
 
-def _of(source: Source, by_id: _ById) -> Iterator[_Item]:
+def _of(source: FindingSource, by_id: _ById) -> Iterator[_Item]:
     """The findings that a source means."""
     return (item for item in by_id.get(source.id, ()) if source.has(item.finding))
 

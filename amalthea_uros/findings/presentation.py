@@ -8,11 +8,11 @@ from typing import NamedTuple
 
 from amalthea_uros.diagnostics import Finding, by_place
 from amalthea_uros.findings.fingerprint import fingerprint
-from amalthea_uros.findings.grouping import Group, group
-from amalthea_uros.findings.targets import Target, split
+from amalthea_uros.findings.grouping import FindingGroup, group
+from amalthea_uros.findings.targets import TargetTool, split
 
 
-class Entry(NamedTuple):
+class FindingEntry(NamedTuple):
     """A finding for programs.
 
     Attributes
@@ -36,24 +36,24 @@ class Presentation:
     targets : the same for each target tool that nobody asked for
     """
 
-    groups: Sequence[Group]
-    targets: Mapping[Target, Sequence[Group]]
+    groups: Sequence[FindingGroup]
+    targets: Mapping[TargetTool, Sequence[FindingGroup]]
 
     @property
     def shown(self) -> list[Finding]:
         """One finding for each flaw; the exit code depends on these."""
         return [found.shown for found in self.groups]
 
-    def entries(self) -> list[Entry]:
+    def entries(self) -> list[FindingEntry]:
         """All findings by place."""
         return sorted(self._entries(), key=lambda entry: by_place(entry.finding))
 
-    def _entries(self) -> Iterator[Entry]:
+    def _entries(self) -> Iterator[FindingEntry]:
         for counts, groups in ((True, self.groups), *((False, groups) for groups in self.targets.values())):
             for found in groups:
                 first, *others = (*found.same, *found.consequences)
-                yield Entry(first, None, counts)
-                yield from (Entry(finding, fingerprint(first), counts) for finding in others)
+                yield FindingEntry(first, None, counts)
+                yield from (FindingEntry(finding, fingerprint(first), counts) for finding in others)
 
 
 def present(findings: Sequence[Finding], asked: Collection[str] = ()) -> Presentation:

@@ -10,7 +10,7 @@ from amalthea_uros.diagnostics import Finding, Severity
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Target:
+class TargetTool:
     """A tool for which models are written.
 
     Attributes
@@ -28,13 +28,13 @@ class Target:
 
 
 TARGETS = (
-    Target(
+    TargetTool(
         name="inchron",
         title="INCHRON's importer",
         prefix="INC-",
         effects={Severity.ERROR: "refuses or crashes at", Severity.WARNING: "drops or changes", Severity.INFO: "simplifies"},
     ),
-    Target(
+    TargetTool(
         name="ta",
         title="TA tools",
         prefix="TA-",
@@ -43,12 +43,12 @@ TARGETS = (
 )
 
 
-def target_of(identifier: str) -> Target | None:
+def target_of(identifier: str) -> TargetTool | None:
     """The tool that a rule is about, None if it is about the model itself."""
     return next((target for target in TARGETS if identifier.startswith(target.prefix)), None)
 
 
-def split(findings: Iterable[Finding], asked: Collection[str]) -> tuple[list[Finding], dict[Target, list[Finding]]]:
+def split(findings: Iterable[Finding], asked: Collection[str]) -> tuple[list[Finding], dict[TargetTool, list[Finding]]]:
     """The findings that count, and those about target tools that nobody asked for.
 
     Parameters
@@ -66,7 +66,7 @@ def split(findings: Iterable[Finding], asked: Collection[str]) -> tuple[list[Fin
     return counting, {target: others[target.name] for target in TARGETS if target.name in others}
 
 
-def summary(target: Target, findings: Iterable[Finding]) -> str:
+def summary(target: TargetTool, findings: Iterable[Finding]) -> str:
     """One line about what a tool makes of a model.
 
     >>> from amalthea_uros.diagnostics import Finding, Severity

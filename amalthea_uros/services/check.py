@@ -14,10 +14,10 @@ from amalthea_uros.diagnostics import Finding, Severity, by_place
 from amalthea_uros.errors import InvalidArgumentError, ReadError
 from amalthea_uros.findings.baseline import baseline_text, read_baseline
 from amalthea_uros.findings.fingerprint import fingerprint
-from amalthea_uros.findings.grouping import Group, group
+from amalthea_uros.findings.grouping import FindingGroup, group
 from amalthea_uros.findings.presentation import Presentation, present
 from amalthea_uros.findings.suppression import is_suppressed
-from amalthea_uros.findings.targets import TARGETS, Target
+from amalthea_uros.findings.targets import TARGETS, TargetTool
 from amalthea_uros.findings.unreadable import is_unreadable
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.perf.named import Brief
@@ -26,7 +26,7 @@ from amalthea_uros.services.inputs import ModelInput, as_paths, open_model
 from amalthea_uros.services.settings import CheckSettings, project_settings
 from amalthea_uros.validate import registry
 from amalthea_uros.validate.engine import run, run_system
-from amalthea_uros.validate.rule import ModelRule, Profile, SystemRule
+from amalthea_uros.validate.rule import ModelRule, RuleProfile, SystemRule
 from amalthea_uros.validate.selection import Selection, UnknownPatternError, select
 from amalthea_uros.validate.user_rules import rules_of_file
 
@@ -181,14 +181,14 @@ def add_rules(files: Iterable[StrPath]) -> None:
         registry.add(rules_of_file(Path(file)))
 
 
-def summaries(model: Model, targets: Iterable[str]) -> Mapping[Target, Sequence[Group]]:
+def summaries(model: Model, targets: Iterable[str]) -> Mapping[TargetTool, Sequence[FindingGroup]]:
     """What target tools make of a model, by flaw.
 
     Parameters
     ----------
     targets : names of the tools
     """
-    return present(check(model, registry.ids(map(Profile, targets)))).targets
+    return present(check(model, registry.ids(map(RuleProfile, targets)))).targets
 
 
 def selection_of(settings: CheckSettings) -> Selection:
@@ -199,7 +199,7 @@ def selection_of(settings: CheckSettings) -> Selection:
     InvalidArgumentError : a pattern matches no rule.
     """
     try:
-        return select(map(Profile, settings.profiles), settings.select, settings.ignore)
+        return select(map(RuleProfile, settings.profiles), settings.select, settings.ignore)
     except UnknownPatternError as error:
         raise unknown_rule(error.pattern, error.known) from None
 
@@ -281,7 +281,7 @@ def _system_findings(model: Model, system: System | None, rules: Sequence[System
 
 def _schema_findings(model: Model, rules: Collection[str]) -> list[Finding]:
     """The findings of the XML schema, if any of its rules is selected."""
-    if set(rules).isdisjoint(registry.ids([Profile.SCHEMA])):
+    if set(rules).isdisjoint(registry.ids([RuleProfile.SCHEMA])):
         return []
     from amalthea_uros.xmi.schema import schema_findings
 
@@ -291,4 +291,4 @@ def _schema_findings(model: Model, rules: Collection[str]) -> list[Finding]:
 def _is_selected(finding: Finding, rules: Collection[str]) -> bool:
     """Whether a finding of reading or building belongs to no rule, or to a selected one that has no check of its own."""
     profile = registry.profile_of(finding.rule)
-    return profile is None or (profile is Profile.MICRO_ROS and finding.rule in rules)
+    return profile is None or (profile is RuleProfile.MICRO_ROS and finding.rule in rules)

@@ -18,7 +18,7 @@ from amalthea_uros.findings.suppression import unsuppressed
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.services.build import describe
 from amalthea_uros.services.waiting_messages import waiting_messages, with_analysed_storage
-from amalthea_uros.spec.application import Application, Node
+from amalthea_uros.spec.application import Application, NodeSection
 from amalthea_uros.spec.platforms import complete
 from amalthea_uros.spec.read import read_description
 from amalthea_uros.uros.application.entities import LIFECYCLE_SERVICES, PARAMETER_SERVICES, executors_of
@@ -199,7 +199,7 @@ def _handles(assembly: Assembly) -> dict[str, int]:
     return {executors_of(assembly.description.middleware)[0].name: sum(map(_node_handles, nodes))}
 
 
-def _node_handles(node: Node) -> int:
+def _node_handles(node: NodeSection) -> int:
     messages = len(node.subscriptions) + len(node.services) + len(node.clients)
     others = len(node.timers) + len(node.guard_conditions) + len(node.action_servers) + len(node.action_clients)
     parameters = PARAMETER_SERVICES if node.parameter_server is not None else 0

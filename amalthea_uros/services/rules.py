@@ -12,7 +12,7 @@ from amalthea_uros.findings import catalogue
 from amalthea_uros.findings.kind import FindingKind
 from amalthea_uros.services.check import unknown_rule
 from amalthea_uros.validate import registry
-from amalthea_uros.validate.rule import Profile
+from amalthea_uros.validate.rule import RuleProfile
 from amalthea_uros.validate.selection import UnknownPatternError, select
 
 
@@ -26,7 +26,7 @@ class RulesResult:
 def find_rules(
     patterns: Iterable[str] = (),
     *,
-    profiles: Iterable[Profile] = (),
+    profiles: Iterable[RuleProfile] = (),
     severities: Iterable[Severity] = (),
     text: str = "",
 ) -> RulesResult:

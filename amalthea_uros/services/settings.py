@@ -14,7 +14,7 @@ from amalthea_uros._internal.similar import similar
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.findings.targets import TARGETS
-from amalthea_uros.validate.rule import Profile
+from amalthea_uros.validate.rule import RuleProfile
 
 #: Where a project may have settings, and in which tables of the file; the first one that has them counts.
 _PLACES = (("amuros.toml", ("check",)), ("pyproject.toml", ("tool", "amuros", "check")))
@@ -47,8 +47,8 @@ class CheckSettings:
             if isinstance(given, str):
                 raise TypeError(f"{name} must be a list, e.g. [{given!r}], not the string {given!r}")
         for profile in self.profiles:
-            if profile not in tuple(Profile):
-                raise ValueError(f"unknown profile {profile!r}; expected one of {', '.join(Profile)}")
+            if profile not in tuple(RuleProfile):
+                raise ValueError(f"unknown profile {profile!r}; expected one of {', '.join(RuleProfile)}")
         if self.fail_on is not None and self.fail_on not in tuple(Severity):
             raise ValueError(f"unknown severity {self.fail_on!r}; expected one of {', '.join(Severity)}")
 
@@ -127,7 +127,7 @@ class _Reader:
         return tuple(value)
 
     def profiles(self, key: str, value: Any) -> tuple[str, ...]:
-        return self.names_among(key, value, tuple(Profile))
+        return self.names_among(key, value, tuple(RuleProfile))
 
     def targets(self, key: str, value: Any) -> tuple[str, ...]:
         return self.names_among(key, value, tuple(target.name for target in TARGETS))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 from amalthea_uros.source.scope import Expression, called
-from amalthea_uros.source.walk import Call
+from amalthea_uros.source.walk import FunctionCall
 from amalthea_uros.units import Time
 
 #: In picoseconds.
@@ -43,7 +43,7 @@ _DURATIONS = {
 _TICK_LENGTHS = ("portTICK_PERIOD_MS", "portTICK_RATE_MS")
 
 
-def sleep_time(call: Call, tick_rate: Fraction | None) -> Time | None:
+def sleep_time(call: FunctionCall, tick_rate: Fraction | None) -> Time | None:
     """How long a call sleeps, None if it is not constant.
 
     Parameters

@@ -8,27 +8,27 @@ from collections.abc import Collection, Iterator
 from pathlib import Path
 
 from amalthea_uros.diagnostics import Location
-from amalthea_uros.source.facts import Entity, Executor, Facts, Handle, Kind, SpinKind, Thread
+from amalthea_uros.source.facts import CodeEntity, CodeEntityKind, CodeExecutor, CodeFacts, CodeHandle, SpinKind, Thread
 from amalthea_uros.source.messages import MessageType, length_of
-from amalthea_uros.source.names import Names
+from amalthea_uros.source.names import CodeNames
 from amalthea_uros.units import Time, time_text
 
 GAP = "TODO"
 _PLAIN = re.compile(r"[A-Za-z/][\w/.-]*", re.ASCII)
 _WORDS = ("true", "false", "null", "yes", "no", "on", "off", "y", "n", "todo")
 _LISTS = {
-    Kind.SUBSCRIPTION: "subscriptions",
-    Kind.TIMER: "timers",
-    Kind.SERVICE: "services",
-    Kind.CLIENT: "clients",
-    Kind.GUARD_CONDITION: "guard_conditions",
-    Kind.ACTION_SERVER: "action_servers",
-    Kind.ACTION_CLIENT: "action_clients",
+    CodeEntityKind.SUBSCRIPTION: "subscriptions",
+    CodeEntityKind.TIMER: "timers",
+    CodeEntityKind.SERVICE: "services",
+    CodeEntityKind.CLIENT: "clients",
+    CodeEntityKind.GUARD_CONDITION: "guard_conditions",
+    CodeEntityKind.ACTION_SERVER: "action_servers",
+    CodeEntityKind.ACTION_CLIENT: "action_clients",
 }
-_NOT_ARRIVING = (Kind.TIMER, Kind.GUARD_CONDITION)
+_NOT_ARRIVING = (CodeEntityKind.TIMER, CodeEntityKind.GUARD_CONDITION)
 
 
-def description_text(facts: Facts, name: str, board: str | None, options: Collection[str]) -> str:
+def description_text(facts: CodeFacts, name: str, board: str | None, options: Collection[str]) -> str:
     """The description.
 
     Parameters
@@ -36,7 +36,7 @@ def description_text(facts: Facts, name: str, board: str | None, options: Collec
     board : the name of a platform, if it is known
     options : build options of the middleware that a description can have
     """
-    names = Names(facts)
+    names = CodeNames(facts)
     lines = [
         "# Imported from source code. Each TODO is a value that the code cannot tell: replace all of them, then run amuros check.",
         "amuros: 1",
@@ -77,7 +77,7 @@ def _hardware(board: str | None) -> Iterator[str]:
     yield f"  frequency: {GAP} # clock of the cores"
 
 
-def _middleware(facts: Facts, names: Names, options: Collection[str]) -> Iterator[str]:
+def _middleware(facts: CodeFacts, names: CodeNames, options: Collection[str]) -> Iterator[str]:
     executors = list(facts.executors.values())
     if len(executors) == 1:
         yield "executor:"
@@ -98,7 +98,7 @@ def _middleware(facts: Facts, names: Names, options: Collection[str]) -> Iterato
         yield from (f"  {option.name}: {option.value}{_at(option.place)}" for option in known)
 
 
-def _transport(facts: Facts) -> Iterator[str]:
+def _transport(facts: CodeFacts) -> Iterator[str]:
     transport = facts.transport
     if transport is None or transport.key is None:
         note = transport.note if transport is not None else "not set in these files"
@@ -109,7 +109,7 @@ def _transport(facts: Facts) -> Iterator[str]:
     yield f"  {transport.key}: {{{values}}}{_at(transport.place, transport.note)}"
 
 
-def _executor(executor: Executor, facts: Facts, names: Names) -> Iterator[str]:
+def _executor(executor: CodeExecutor, facts: CodeFacts, names: CodeNames) -> Iterator[str]:
     yield f"name: {quoted(names.executors[executor.key])}{_at(executor.place)}"
     if executor.max_handles:
         yield f"max_handles: {executor.max_handles}{_at(executor.place)}"
@@ -134,7 +134,7 @@ def _thread(thread: Thread) -> Iterator[str]:
         yield f"core: {GAP}{_at(thread.place, f'pinned to core {thread.core}')}"
 
 
-def _loop(executor: Executor) -> Iterator[str]:
+def _loop(executor: CodeExecutor) -> Iterator[str]:
     if not executor.spins:
         yield f"loop: {GAP} # no call lets it spin"
         return
@@ -154,7 +154,7 @@ def _loop(executor: Executor) -> Iterator[str]:
     yield f"loop: {{{', '.join(parts)}}}{_at(spin.place, others)}"
 
 
-def _trigger(executor: Executor, names: Names) -> Iterator[str]:
+def _trigger(executor: CodeExecutor, names: CodeNames) -> Iterator[str]:
     trigger = executor.trigger
     if trigger is None or trigger.function == "any":
         return
@@ -167,8 +167,8 @@ def _trigger(executor: Executor, names: Names) -> Iterator[str]:
         yield f"trigger: {trigger.function}{_at(trigger.place)}"
 
 
-def _application(facts: Facts, names: Names) -> Iterator[str]:
-    nodes = facts.of_kind(Kind.NODE)
+def _application(facts: CodeFacts, names: CodeNames) -> Iterator[str]:
+    nodes = facts.of_kind(CodeEntityKind.NODE)
     if not nodes:
         yield f"nodes: {GAP} # no node is created in these files"
         return
@@ -182,11 +182,11 @@ def _item(lines: Iterator[str], indent: str) -> Iterator[str]:
         yield f"{indent}{'  ' if index else '- '}{line}"
 
 
-def _node(node: Entity, is_first: bool, facts: Facts, names: Names) -> Iterator[str]:
+def _node(node: CodeEntity, is_first: bool, facts: CodeFacts, names: CodeNames) -> Iterator[str]:
     # The code of a timer or guard condition does not say which node it belongs to; nothing depends on it.
     own = [each for each in facts.entities.values() if each.node == node.key or (is_first and not each.node)]
     yield f"name: {quoted(node.name) if node.name else GAP}{_at(node.place)}"
-    publishers = [each for each in own if each.kind is Kind.PUBLISHER]
+    publishers = [each for each in own if each.kind is CodeEntityKind.PUBLISHER]
     if publishers:
         yield "publishers:"
         for publisher in publishers:
@@ -201,7 +201,7 @@ def _node(node: Entity, is_first: bool, facts: Facts, names: Names) -> Iterator[
     yield from _servers(node, own, facts, names)
 
 
-def _publisher(entity: Entity) -> Iterator[str]:
+def _publisher(entity: CodeEntity) -> Iterator[str]:
     yield f"topic: {quoted(entity.name) if entity.name else GAP}{_at(entity.place)}"
     yield _size("message_size", entity.type)
     yield f"reliability: {entity.reliability or GAP}"
@@ -218,10 +218,10 @@ def _size(key: str, kind: MessageType | None) -> str:
     return f"{key}: {length.bytes} B{_at(None, str(kind))}"
 
 
-def _callback(entity: Entity, handle: Handle, executor: str, facts: Facts, names: Names) -> Iterator[str]:
+def _callback(entity: CodeEntity, handle: CodeHandle, executor: str, facts: CodeFacts, names: CodeNames) -> Iterator[str]:
     yield f"name: {quoted(names.handles[entity.key])}{_at(handle.place)}"
     yield from _content(entity)
-    if entity.kind is Kind.TIMER:
+    if entity.kind is CodeEntityKind.TIMER:
         yield f"period: {_time(entity.period)}{_at(entity.place)}"
     elif entity.kind not in _NOT_ARRIVING:
         yield f"rate: {GAP} # how often messages arrive at most"
@@ -233,46 +233,46 @@ def _callback(entity: Entity, handle: Handle, executor: str, facts: Facts, names
     yield from _outputs(entity, handle, facts, names)
 
 
-def _content(entity: Entity) -> Iterator[str]:
+def _content(entity: CodeEntity) -> Iterator[str]:
     named = quoted(entity.name) if entity.name else GAP
     match entity.kind:
-        case Kind.SUBSCRIPTION:
+        case CodeEntityKind.SUBSCRIPTION:
             yield f"topic: {named}{_at(entity.place)}"
             yield _size("message_size", entity.type)
             yield f"reliability: {entity.reliability or GAP}"
-        case Kind.SERVICE | Kind.CLIENT:
-            if entity.kind is Kind.CLIENT:
+        case CodeEntityKind.SERVICE | CodeEntityKind.CLIENT:
+            if entity.kind is CodeEntityKind.CLIENT:
                 yield f"service: {named}{_at(entity.place)}"
             for key, suffix in (("request_size", "Request"), ("response_size", "Response")):
                 yield _size(key, entity.type.part(suffix) if entity.type is not None else None)
-        case Kind.ACTION_SERVER | Kind.ACTION_CLIENT:
-            if entity.kind is Kind.ACTION_CLIENT:
+        case CodeEntityKind.ACTION_SERVER | CodeEntityKind.ACTION_CLIENT:
+            if entity.kind is CodeEntityKind.ACTION_CLIENT:
                 yield f"action: {named}{_at(entity.place)}"
             for key in ("goal_size", "result_size", "feedback_size"):
                 yield f"{key}: {GAP}{_at(None, str(entity.type or ''))}"
 
 
-def _outputs(entity: Entity, handle: Handle, facts: Facts, names: Names) -> Iterator[str]:
+def _outputs(entity: CodeEntity, handle: CodeHandle, facts: CodeFacts, names: CodeNames) -> Iterator[str]:
     callbacks = [*handle.callbacks, *([entity.callback] if entity.callback is not None else [])]
     used: dict[str, Location] = {}
     for callback in callbacks:
         if callback.function is not None:
             used |= facts.publishes.get(callback.function.scope, {})
-    for key, kind in (("publishes", Kind.PUBLISHER), ("requests", Kind.CLIENT)):
+    for key, kind in (("publishes", CodeEntityKind.PUBLISHER), ("requests", CodeEntityKind.CLIENT)):
         found = [(facts.entities[each], place) for each, place in used.items() if each in facts.entities]
         values = [(_target(each, names), place) for each, place in found if each.kind is kind]
         if values:
             yield f"{key}: [{', '.join(value for value, _ in values)}]{_at(values[0][1])}"
 
 
-def _target(entity: Entity, names: Names) -> str:
-    name = entity.name if entity.kind is Kind.PUBLISHER else names.handles.get(entity.key)
+def _target(entity: CodeEntity, names: CodeNames) -> str:
+    name = entity.name if entity.kind is CodeEntityKind.PUBLISHER else names.handles.get(entity.key)
     return quoted(name) if name else GAP
 
 
-def _servers(node: Entity, own: list[Entity], facts: Facts, names: Names) -> Iterator[str]:
+def _servers(node: CodeEntity, own: list[CodeEntity], facts: CodeFacts, names: CodeNames) -> Iterator[str]:
     for entity in own:
-        if entity.kind is Kind.PARAMETER_SERVER:
+        if entity.kind is CodeEntityKind.PARAMETER_SERVER:
             stated = dict(entity.options)
             yield f"parameter_server:{_at(entity.place)}"
             yield f"  rate: {GAP} # of requests"
@@ -283,9 +283,12 @@ def _servers(node: Entity, own: list[Entity], facts: Facts, names: Names) -> Ite
             for key, option in (("events", "notify_changed_over_dds"), ("low_memory", "low_mem_mode")):
                 if option in stated:
                     yield f"  {key}: {str(stated[option]).lower()}"
-        elif entity.kind is Kind.LIFECYCLE:
+        elif entity.kind is CodeEntityKind.LIFECYCLE:
             services = [
-                handle for executor in facts.executors.values() for handle in executor.handles if handle.kind is Kind.LIFECYCLE
+                handle
+                for executor in facts.executors.values()
+                for handle in executor.handles
+                if handle.kind is CodeEntityKind.LIFECYCLE
             ]
             if services:
                 yield f"lifecycle:{_at(entity.place)}"

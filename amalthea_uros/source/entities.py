@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from amalthea_uros.source.facts import Callback, Entity, Kind
+from amalthea_uros.source.facts import CodeCallback, CodeEntity, CodeEntityKind
 from amalthea_uros.source.messages import MessageType
 from amalthea_uros.source.scope import Expression, called
 from amalthea_uros.source.syntax import descendants, text_of
-from amalthea_uros.source.walk import Call, Walk
+from amalthea_uros.source.walk import CodeWalk, FunctionCall
 from amalthea_uros.units import Time
 
 RELIABLE, BEST_EFFORT = "reliable", "best-effort"
@@ -39,7 +39,7 @@ class _Creation:
     quality : the reliability, or `by profile`: the fifth argument says it
     """
 
-    kind: Kind
+    kind: CodeEntityKind
     node: int | None = None
     type: int | None = None
     name: int | None = None
@@ -48,41 +48,41 @@ class _Creation:
     quality: str | None = None
 
 
-def _with_quality(kind: Kind, prefix: str) -> dict[str, _Creation]:
+def _with_quality(kind: CodeEntityKind, prefix: str) -> dict[str, _Creation]:
     qualities = {"_init_default": RELIABLE, "_init_best_effort": BEST_EFFORT, "_init": _BY_PROFILE}
     return {
         prefix + suffix: _Creation(kind=kind, node=1, type=2, name=3, quality=quality) for suffix, quality in qualities.items()
     }
 
 
-_TIMER = _Creation(kind=Kind.TIMER, period=2, callback=3)
+_TIMER = _Creation(kind=CodeEntityKind.TIMER, period=2, callback=3)
 #: ros2/rclc rclc/include/rclc/*.h, rclc_parameter, rclc_lifecycle.
 CREATIONS: Mapping[str, _Creation] = {
-    "rclc_node_init_default": _Creation(kind=Kind.NODE, name=1),
-    "rclc_node_init_with_options": _Creation(kind=Kind.NODE, name=1),
-    "rclc_make_node_a_lifecycle_node": _Creation(kind=Kind.LIFECYCLE, node=1),
+    "rclc_node_init_default": _Creation(kind=CodeEntityKind.NODE, name=1),
+    "rclc_node_init_with_options": _Creation(kind=CodeEntityKind.NODE, name=1),
+    "rclc_make_node_a_lifecycle_node": _Creation(kind=CodeEntityKind.LIFECYCLE, node=1),
     "rclc_timer_init_default": _TIMER,
     "rclc_timer_init_default2": _TIMER,
-    "rcl_guard_condition_init": _Creation(kind=Kind.GUARD_CONDITION),
-    "rclc_action_server_init_default": _Creation(kind=Kind.ACTION_SERVER, node=1, type=3, name=4),
-    "rclc_action_client_init_default": _Creation(kind=Kind.ACTION_CLIENT, node=1, type=2, name=3),
-    "rclc_parameter_server_init_default": _Creation(kind=Kind.PARAMETER_SERVER, node=1),
-    "rclc_parameter_server_init_with_option": _Creation(kind=Kind.PARAMETER_SERVER, node=1),
-    **_with_quality(Kind.PUBLISHER, "rclc_publisher"),
-    **_with_quality(Kind.SUBSCRIPTION, "rclc_subscription"),
-    **_with_quality(Kind.SERVICE, "rclc_service"),
-    **_with_quality(Kind.CLIENT, "rclc_client"),
+    "rcl_guard_condition_init": _Creation(kind=CodeEntityKind.GUARD_CONDITION),
+    "rclc_action_server_init_default": _Creation(kind=CodeEntityKind.ACTION_SERVER, node=1, type=3, name=4),
+    "rclc_action_client_init_default": _Creation(kind=CodeEntityKind.ACTION_CLIENT, node=1, type=2, name=3),
+    "rclc_parameter_server_init_default": _Creation(kind=CodeEntityKind.PARAMETER_SERVER, node=1),
+    "rclc_parameter_server_init_with_option": _Creation(kind=CodeEntityKind.PARAMETER_SERVER, node=1),
+    **_with_quality(CodeEntityKind.PUBLISHER, "rclc_publisher"),
+    **_with_quality(CodeEntityKind.SUBSCRIPTION, "rclc_subscription"),
+    **_with_quality(CodeEntityKind.SERVICE, "rclc_service"),
+    **_with_quality(CodeEntityKind.CLIENT, "rclc_client"),
 }
 
 
-def entity_of(call: Call, walk: Walk) -> Entity | None:
+def entity_of(call: FunctionCall, walk: CodeWalk) -> CodeEntity | None:
     """What a call creates; None if it lacks the first argument."""
     form, variable = CREATIONS[call.name], call.argument(0)
     if variable is None:
         return None
     parts = {name: _argument(call, getattr(form, name)) for name in ("node", "type", "name", "period", "callback")}
     nanoseconds = parts["period"].number if parts["period"] is not None else None
-    return Entity(
+    return CodeEntity(
         kind=form.kind,
         key=variable.key,
         variable=variable.name,
@@ -97,7 +97,7 @@ def entity_of(call: Call, walk: Walk) -> Entity | None:
     )
 
 
-def _argument(call: Call, index: int | None) -> Expression | None:
+def _argument(call: FunctionCall, index: int | None) -> Expression | None:
     return call.argument(index) if index is not None else None
 
 
@@ -115,28 +115,28 @@ def message_type(given: Expression) -> MessageType | None:
     return MessageType(*names) if len(names) == 3 else None
 
 
-def callback_of(given: Expression, walk: Walk) -> Callback | None:
+def callback_of(given: Expression, walk: CodeWalk) -> CodeCallback | None:
     """The function that an expression names; None for NULL."""
     own = given.core
     if own.node.type == "lambda_expression":
         function = walk.lambdas.get(text_of(own.node))
-        return Callback(name=function.name if function is not None else "lambda", function=function)
+        return CodeCallback(name=function.name if function is not None else "lambda", function=function)
     name = given.name
     if name in ("NULL", "nullptr", "0"):
         return None
     found = walk.program.functions.get(name, [])
     near = [each for each in found if each.file is given.file] or found
-    return Callback(name=name, function=near[0] if len(near) == 1 else None)
+    return CodeCallback(name=name, function=near[0] if len(near) == 1 else None)
 
 
-def _reliability(call: Call, quality: str | None) -> str | None:
+def _reliability(call: FunctionCall, quality: str | None) -> str | None:
     if quality != _BY_PROFILE:
         return quality
     profile = call.argument(4)
     return _PROFILES.get(profile.resolved.name) if profile is not None else None
 
 
-def _options(call: Call) -> tuple[tuple[str, bool], ...]:
+def _options(call: FunctionCall) -> tuple[tuple[str, bool], ...]:
     """The options of a parameter server, as far as their initialiser shows them."""
     given = call.argument(2)
     if call.name != "rclc_parameter_server_init_with_option" or given is None:

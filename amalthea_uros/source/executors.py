@@ -7,27 +7,36 @@ from fractions import Fraction
 
 from amalthea_uros.source.delays import SLEEPS, sleep_time
 from amalthea_uros.source.entities import callback_of
-from amalthea_uros.source.facts import Callback, Executor, Facts, Handle, Kind, Spin, SpinKind, Trigger
-from amalthea_uros.source.walk import Call, Walk
+from amalthea_uros.source.facts import (
+    CodeCallback,
+    CodeEntityKind,
+    CodeExecutor,
+    CodeFacts,
+    CodeHandle,
+    CodeTrigger,
+    Spin,
+    SpinKind,
+)
+from amalthea_uros.source.walk import CodeWalk, FunctionCall
 from amalthea_uros.units import Time
 
 _NANOSECOND = 1000
 _ADD = "rclc_executor_add_"
 #: What is added -> its kind, and the positions of its callbacks.
-_ADDED: Mapping[str, tuple[Kind, tuple[int, ...]]] = {
-    "subscription": (Kind.SUBSCRIPTION, (3,)),
-    "subscription_with_context": (Kind.SUBSCRIPTION, (3,)),
-    "timer": (Kind.TIMER, ()),
-    "service": (Kind.SERVICE, (4,)),
-    "service_with_request_id": (Kind.SERVICE, (4,)),
-    "service_with_context": (Kind.SERVICE, (4,)),
-    "client": (Kind.CLIENT, (3,)),
-    "client_with_request_id": (Kind.CLIENT, (3,)),
-    "guard_condition": (Kind.GUARD_CONDITION, (2,)),
-    "action_server": (Kind.ACTION_SERVER, (5, 6)),
-    "action_client": (Kind.ACTION_CLIENT, (5, 6, 7, 8)),
-    "parameter_server": (Kind.PARAMETER_SERVER, (2,)),
-    "parameter_server_with_context": (Kind.PARAMETER_SERVER, (2,)),
+_ADDED: Mapping[str, tuple[CodeEntityKind, tuple[int, ...]]] = {
+    "subscription": (CodeEntityKind.SUBSCRIPTION, (3,)),
+    "subscription_with_context": (CodeEntityKind.SUBSCRIPTION, (3,)),
+    "timer": (CodeEntityKind.TIMER, ()),
+    "service": (CodeEntityKind.SERVICE, (4,)),
+    "service_with_request_id": (CodeEntityKind.SERVICE, (4,)),
+    "service_with_context": (CodeEntityKind.SERVICE, (4,)),
+    "client": (CodeEntityKind.CLIENT, (3,)),
+    "client_with_request_id": (CodeEntityKind.CLIENT, (3,)),
+    "guard_condition": (CodeEntityKind.GUARD_CONDITION, (2,)),
+    "action_server": (CodeEntityKind.ACTION_SERVER, (5, 6)),
+    "action_client": (CodeEntityKind.ACTION_CLIENT, (5, 6, 7, 8)),
+    "parameter_server": (CodeEntityKind.PARAMETER_SERVER, (2,)),
+    "parameter_server_with_context": (CodeEntityKind.PARAMETER_SERVER, (2,)),
 }
 #: RCLC_EXECUTOR_PARAMETER_SERVER_HANDLES of ros2/rclc rclc_parameter/rclc_parameter.h.
 _PARAMETER_SERVER_HANDLES = 6
@@ -46,55 +55,55 @@ _LIFECYCLE = (
 _TRIGGER_PREFIX = "rclc_executor_trigger_"
 _BUILT_IN = ("any", "all", "one", "always")
 
-Action = Callable[[Facts, Call, Walk], None]
+Action = Callable[[CodeFacts, FunctionCall, CodeWalk], None]
 
 
-def _init(facts: Facts, call: Call, _walk: Walk) -> None:
+def _init(facts: CodeFacts, call: FunctionCall, _walk: CodeWalk) -> None:
     variable, number = call.argument(0), call.argument(2)
     if variable is not None and variable.key not in facts.executors:
         handles = number.number if number is not None else None
-        facts.executors[variable.key] = Executor(
+        facts.executors[variable.key] = CodeExecutor(
             key=variable.key, variable=variable.name, place=call.place, max_handles=handles
         )
 
 
-def _executor(facts: Facts, call: Call, index: int = 0) -> Executor | None:
+def _executor(facts: CodeFacts, call: FunctionCall, index: int = 0) -> CodeExecutor | None:
     variable = call.argument(index)
     return facts.executors.get(variable.key) if variable is not None else None
 
 
-def _add(facts: Facts, call: Call, walk: Walk) -> None:
+def _add(facts: CodeFacts, call: FunctionCall, walk: CodeWalk) -> None:
     executor, entity = _executor(facts, call), call.argument(1)
     if executor is None or entity is None:
         return
     kind, positions = _ADDED[call.name.removeprefix(_ADD)]
-    callbacks: list[Callback] = []
+    callbacks: list[CodeCallback] = []
     for position in positions:
         given = call.argument(position)
         callback = callback_of(given, walk) if given is not None else None
         callbacks += [callback] if callback is not None else []
     last = call.argument(-1)
-    handle = Handle(
+    handle = CodeHandle(
         kind=kind,
         entity=entity.key,
         callbacks=tuple(callbacks),
         place=call.place,
-        count=_PARAMETER_SERVER_HANDLES if kind is Kind.PARAMETER_SERVER else 1,
-        always=kind is Kind.SUBSCRIPTION and last is not None and last.resolved.text == "ALWAYS",
+        count=_PARAMETER_SERVER_HANDLES if kind is CodeEntityKind.PARAMETER_SERVER else 1,
+        always=kind is CodeEntityKind.SUBSCRIPTION and last is not None and last.resolved.text == "ALWAYS",
     )
     if not any(each.entity == handle.entity and each.kind is kind for each in executor.handles):
         executor.handles.append(handle)
 
 
-def _add_lifecycle(facts: Facts, call: Call, _walk: Walk) -> None:
+def _add_lifecycle(facts: CodeFacts, call: FunctionCall, _walk: CodeWalk) -> None:
     executor = _executor(facts, call, 1)
     if executor is not None:
-        handle = Handle(kind=Kind.LIFECYCLE, entity=call.name, callbacks=(), place=call.place)
+        handle = CodeHandle(kind=CodeEntityKind.LIFECYCLE, entity=call.name, callbacks=(), place=call.place)
         if all(each.entity != call.name for each in executor.handles):
             executor.handles.append(handle)
 
 
-def _timeout(facts: Facts, call: Call, _walk: Walk) -> None:
+def _timeout(facts: CodeFacts, call: FunctionCall, _walk: CodeWalk) -> None:
     executor, given = _executor(facts, call), call.argument(1)
     if executor is not None and given is not None:
         number = given.number
@@ -102,17 +111,17 @@ def _timeout(facts: Facts, call: Call, _walk: Walk) -> None:
         executor.timeout_place = call.place
 
 
-def _trigger(facts: Facts, call: Call, _walk: Walk) -> None:
+def _trigger(facts: CodeFacts, call: FunctionCall, _walk: CodeWalk) -> None:
     executor, function, target = _executor(facts, call), call.argument(1), call.argument(2)
     if executor is not None and function is not None:
         name = function.name.removeprefix(_TRIGGER_PREFIX)
         is_custom = name not in _BUILT_IN
-        executor.trigger = Trigger(
+        executor.trigger = CodeTrigger(
             function=name, object=target.key if target is not None else "", is_custom=is_custom, place=call.place
         )
 
 
-def _semantics(facts: Facts, call: Call, _walk: Walk) -> None:
+def _semantics(facts: CodeFacts, call: FunctionCall, _walk: CodeWalk) -> None:
     executor, given = _executor(facts, call), call.argument(1)
     if executor is not None and given is not None and given.resolved.text in ("LET", "RCLCPP_EXECUTOR"):
         executor.semantics = "LET" if given.resolved.text == "LET" else "ROS"
@@ -130,7 +139,7 @@ ACTIONS: Mapping[str, Action] = {
 SPINS = frozenset(_SPINS)
 
 
-def note_spins(facts: Facts, calls: Sequence[Call], tick_rate: Fraction | None) -> None:
+def note_spins(facts: CodeFacts, calls: Sequence[FunctionCall], tick_rate: Fraction | None) -> None:
     """Add to each executor how it spins, with the sleeps in the same loop."""
     for call in calls:
         if call.name in _SPINS and (executor := _executor(facts, call)) is not None:
@@ -139,7 +148,7 @@ def note_spins(facts: Facts, calls: Sequence[Call], tick_rate: Fraction | None) 
             executor.spins.append(_spin(call, calls, tick_rate))
 
 
-def _spin(call: Call, calls: Sequence[Call], tick_rate: Fraction | None) -> Spin:
+def _spin(call: FunctionCall, calls: Sequence[FunctionCall], tick_rate: Fraction | None) -> Spin:
     kind, given = _SPINS[call.name], call.argument(1)
     number = given.number if given is not None else None
     time = Time(number * _NANOSECOND) if number is not None and number >= 0 else None

@@ -12,7 +12,7 @@ from amalthea_uros.source.program import Function
 from amalthea_uros.units import Time
 
 
-class Kind(StrEnum):
+class CodeEntityKind(StrEnum):
     """What is created."""
 
     NODE = "node"
@@ -29,7 +29,7 @@ class Kind(StrEnum):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Entity:
+class CodeEntity:
     """Something that a function of rclc creates.
 
     Attributes
@@ -45,7 +45,7 @@ class Entity:
     options : of a parameter server: names with their value
     """
 
-    kind: Kind
+    kind: CodeEntityKind
     key: str
     variable: str
     place: Location
@@ -54,12 +54,12 @@ class Entity:
     type: MessageType | None = None
     reliability: str | None = None
     period: Time | None = None
-    callback: Callback | None = None
+    callback: CodeCallback | None = None
     options: tuple[tuple[str, bool], ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Callback:
+class CodeCallback:
     """A function that an executor calls.
 
     Attributes
@@ -73,7 +73,7 @@ class Callback:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Handle:
+class CodeHandle:
     """Something that was added to an executor.
 
     Attributes
@@ -84,9 +84,9 @@ class Handle:
     always : whether its callback is called without a message, too
     """
 
-    kind: Kind
+    kind: CodeEntityKind
     entity: str
-    callbacks: tuple[Callback, ...]
+    callbacks: tuple[CodeCallback, ...]
     place: Location
     count: int = 1
     always: bool = False
@@ -140,7 +140,7 @@ class Spin:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Trigger:
+class CodeTrigger:
     """The trigger of an executor.
 
     Attributes
@@ -156,7 +156,7 @@ class Trigger:
 
 
 @dataclass(slots=True, kw_only=True)
-class Executor:
+class CodeExecutor:
     """An executor.
 
     Attributes
@@ -169,17 +169,17 @@ class Executor:
     variable: str
     place: Location
     max_handles: int | None
-    handles: list[Handle] = field(default_factory=list)
+    handles: list[CodeHandle] = field(default_factory=list)
     timeout: Time | None = None
     timeout_place: Location | None = None
-    trigger: Trigger | None = None
+    trigger: CodeTrigger | None = None
     semantics: str = "ROS"
     spins: list[Spin] = field(default_factory=list)
     thread: Thread | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Transport:
+class CodeTransport:
     """The transport that the code sets.
 
     Attributes
@@ -195,7 +195,7 @@ class Transport:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Option:
+class CodeOption:
     """A build option of the middleware."""
 
     name: str
@@ -204,7 +204,7 @@ class Option:
 
 
 @dataclass(slots=True, kw_only=True)
-class Facts:
+class CodeFacts:
     """Everything.
 
     Attributes
@@ -214,15 +214,15 @@ class Facts:
     tick_rate : its ticks per second
     """
 
-    entities: dict[str, Entity] = field(default_factory=dict)
-    executors: dict[str, Executor] = field(default_factory=dict)
+    entities: dict[str, CodeEntity] = field(default_factory=dict)
+    executors: dict[str, CodeExecutor] = field(default_factory=dict)
     publishes: dict[str, dict[str, Location]] = field(default_factory=dict)
-    transport: Transport | None = None
-    options: dict[str, Option] = field(default_factory=dict)
+    transport: CodeTransport | None = None
+    options: dict[str, CodeOption] = field(default_factory=dict)
     rtos: str = ""
     tick_rate: Fraction | None = None
     findings: list[Finding] = field(default_factory=list)
 
-    def of_kind(self, kind: Kind) -> list[Entity]:
+    def of_kind(self, kind: CodeEntityKind) -> list[CodeEntity]:
         """What was created of a kind, in order."""
         return [entity for entity in self.entities.values() if entity.kind is kind]

@@ -8,8 +8,8 @@ from amalthea_uros._internal.plural import counted
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.source.entities import CREATIONS, RELIABLE
 from amalthea_uros.source.executors import ACTIONS
-from amalthea_uros.source.facts import Executor, Facts, Kind, SpinKind
-from amalthea_uros.source.walk import Call, Walk
+from amalthea_uros.source.facts import CodeEntityKind, CodeExecutor, CodeFacts, SpinKind
+from amalthea_uros.source.walk import CodeWalk, FunctionCall
 from amalthea_uros.units import Time, time_text
 
 #: Functions of micro-ROS/rmw_microxrcedds that wait for an answer of the agent.
@@ -17,26 +17,26 @@ _ROUND_TRIPS = ("rmw_uros_ping_agent", "rmw_uros_ping_agent_options", "rmw_uros_
 _MILLISECOND = 10**9
 _SECOND = 10**12
 _WITH_HANDLES = (
-    Kind.SUBSCRIPTION,
-    Kind.TIMER,
-    Kind.SERVICE,
-    Kind.CLIENT,
-    Kind.GUARD_CONDITION,
-    Kind.ACTION_SERVER,
-    Kind.ACTION_CLIENT,
+    CodeEntityKind.SUBSCRIPTION,
+    CodeEntityKind.TIMER,
+    CodeEntityKind.SERVICE,
+    CodeEntityKind.CLIENT,
+    CodeEntityKind.GUARD_CONDITION,
+    CodeEntityKind.ACTION_SERVER,
+    CodeEntityKind.ACTION_CLIENT,
 )
 #: Defaults of micro-ROS/rmw_microxrcedds rmw_microxrcedds_c/CMakeLists.txt; each timer needs a guard condition.
 _POOLS = {
-    "RMW_UXRCE_MAX_NODES": (4, (Kind.NODE,)),
-    "RMW_UXRCE_MAX_PUBLISHERS": (4, (Kind.PUBLISHER,)),
-    "RMW_UXRCE_MAX_SUBSCRIPTIONS": (4, (Kind.SUBSCRIPTION,)),
-    "RMW_UXRCE_MAX_SERVICES": (4, (Kind.SERVICE,)),
-    "RMW_UXRCE_MAX_CLIENTS": (4, (Kind.CLIENT,)),
-    "RMW_UXRCE_MAX_GUARD_CONDITION": (4, (Kind.TIMER, Kind.GUARD_CONDITION)),
+    "RMW_UXRCE_MAX_NODES": (4, (CodeEntityKind.NODE,)),
+    "RMW_UXRCE_MAX_PUBLISHERS": (4, (CodeEntityKind.PUBLISHER,)),
+    "RMW_UXRCE_MAX_SUBSCRIPTIONS": (4, (CodeEntityKind.SUBSCRIPTION,)),
+    "RMW_UXRCE_MAX_SERVICES": (4, (CodeEntityKind.SERVICE,)),
+    "RMW_UXRCE_MAX_CLIENTS": (4, (CodeEntityKind.CLIENT,)),
+    "RMW_UXRCE_MAX_GUARD_CONDITION": (4, (CodeEntityKind.TIMER, CodeEntityKind.GUARD_CONDITION)),
 }
 
 
-def flaws(facts: Facts, walk: Walk) -> Iterator[Finding]:
+def flaws(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
     """The findings about the application itself."""
     yield from _unchecked(walk.calls)
     yield from _pools(facts)
@@ -50,7 +50,7 @@ def flaws(facts: Facts, walk: Walk) -> Iterator[Finding]:
     yield from _pings(walk)
 
 
-def _unchecked(calls: list[Call]) -> Iterator[Finding]:
+def _unchecked(calls: list[FunctionCall]) -> Iterator[Finding]:
     names = {*CREATIONS, *(name for name in ACTIONS if "_add_" in name or name.endswith("_init"))}
     for call in calls:
         if call.unchecked and call.name in names:
@@ -58,7 +58,7 @@ def _unchecked(calls: list[Call]) -> Iterator[Finding]:
             yield Finding("IMP008", Severity.WARNING, message, call.place, "Compare it with RCL_RET_OK.")
 
 
-def _pools(facts: Facts) -> Iterator[Finding]:
+def _pools(facts: CodeFacts) -> Iterator[Finding]:
     for name, (default, kinds) in _POOLS.items():
         used = [entity for entity in facts.entities.values() if entity.kind in kinds]
         option = facts.options.get(name)
@@ -73,7 +73,7 @@ def _pools(facts: Facts) -> Iterator[Finding]:
             yield Finding("IMP007", severity, message, used[size].place, advice)
 
 
-def _never_called(facts: Facts) -> Iterator[Finding]:
+def _never_called(facts: CodeFacts) -> Iterator[Finding]:
     added = {handle.entity for executor in facts.executors.values() for handle in executor.handles}
     for entity in facts.entities.values():
         if entity.kind in _WITH_HANDLES and entity.key not in added:
@@ -95,7 +95,7 @@ def _never_called(facts: Facts) -> Iterator[Finding]:
                 yield Finding("IMP017", Severity.WARNING, message, handle.place, "Add it to the description by hand.")
 
 
-def _handles(executor: Executor) -> Iterator[Finding]:
+def _handles(executor: CodeExecutor) -> Iterator[Finding]:
     if executor.max_handles is None:
         message = f"the number of handles of '{executor.variable}' is not constant"
         yield Finding("IMP004", Severity.WARNING, message, executor.place, "Add max_handles to the description.")
@@ -112,7 +112,7 @@ def _handles(executor: Executor) -> Iterator[Finding]:
             return
 
 
-def _waiting(executor: Executor) -> Iterator[Finding]:
+def _waiting(executor: CodeExecutor) -> Iterator[Finding]:
     for spin in executor.spins:
         if spin.kind is SpinKind.SOME and spin.time is not None and spin.time < _MILLISECOND:
             message = f"the timeout of {time_text(spin.time)} is below 1 ms, so the executor polls instead of waiting"
@@ -142,12 +142,12 @@ def _waiting(executor: Executor) -> Iterator[Finding]:
         yield Finding("IMP004", Severity.WARNING, message, spin.place, "Check 'loop' in the description.")
 
 
-def _timeout(executor: Executor) -> Time:
+def _timeout(executor: CodeExecutor) -> Time:
     """What a round waits at most, 0 if the code sets something that cannot be read."""
     return Time(_SECOND) if executor.timeout_place is None else executor.timeout or Time(0)
 
 
-def _timers(executor: Executor, facts: Facts) -> Iterator[Finding]:
+def _timers(executor: CodeExecutor, facts: CodeFacts) -> Iterator[Finding]:
     spin = next(iter(executor.spins), None)
     least = None if spin is None else spin.time if spin.kind is SpinKind.PERIOD else spin.sleep
     for handle in executor.handles:
@@ -157,14 +157,14 @@ def _timers(executor: Executor, facts: Facts) -> Iterator[Finding]:
             yield Finding("IMP011", Severity.WARNING, message, entity.place, "Sleep less in the loop, or use a longer period.")
 
 
-def _triggers(executor: Executor) -> Iterator[Finding]:
+def _triggers(executor: CodeExecutor) -> Iterator[Finding]:
     if executor.trigger is not None and executor.trigger.is_custom:
         message = f"the condition of the trigger '{executor.trigger.function}' cannot be read from the code"
         advice = "Write the sets of callbacks that it waits for as trigger: {custom: [[A, B], [C]]}."
         yield Finding("IMP014", Severity.WARNING, message, executor.trigger.place, advice)
 
 
-def _pings(walk: Walk) -> Iterator[Finding]:
+def _pings(walk: CodeWalk) -> Iterator[Finding]:
     for call in walk.calls:
         if call.name in _ROUND_TRIPS and (call.loops or (call.root is not None and call.root.name == "loop")):
             message = f"'{call.name}' in a loop waits for the agent, which the description does not have"
@@ -173,7 +173,7 @@ def _pings(walk: Walk) -> Iterator[Finding]:
             )
 
 
-def _blocking(facts: Facts, walk: Walk) -> Iterator[Finding]:
+def _blocking(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
     published = {place for places in facts.publishes.values() for place in places.values()}
     told = set()
     for call in walk.calls:

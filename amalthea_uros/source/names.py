@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from amalthea_uros.source.facts import Facts, Handle
+from amalthea_uros.source.facts import CodeFacts, CodeHandle
 
 _LONGEST = 150
 
 
-class Names:
+class CodeNames:
     """The names of executors and callbacks.
 
     Attributes
@@ -17,11 +17,11 @@ class Names:
     handle_by_entity : the handle of an entity, and the name of its executor
     """
 
-    def __init__(self, facts: Facts) -> None:
+    def __init__(self, facts: CodeFacts) -> None:
         self._used: set[str] = set()
         self.executors: dict[str, str] = {}
         self.handles: dict[str, str] = {}
-        self.handle_by_entity: dict[str, tuple[Handle, str]] = {}
+        self.handle_by_entity: dict[str, tuple[CodeHandle, str]] = {}
         for executor in facts.executors.values():
             name = executor.thread.name if executor.thread is not None else executor.variable
             self.executors[executor.key] = self._unique(name, executor.variable)

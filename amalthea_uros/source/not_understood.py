@@ -8,9 +8,9 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.source.entities import CREATIONS
 from amalthea_uros.source.executors import ACTIONS, SPINS
-from amalthea_uros.source.facts import Facts
+from amalthea_uros.source.facts import CodeFacts
 from amalthea_uros.source.syntax import descendants
-from amalthea_uros.source.walk import Walk
+from amalthea_uros.source.walk import CodeWalk
 
 #: Functions that change nothing in the description.
 _HARMLESS = re.compile(
@@ -21,7 +21,7 @@ _HARMLESS = re.compile(
 _CALL = re.compile(rb"\brclc_\w+(?=\s*\()")
 
 
-def not_understood(walk: Walk, facts: Facts) -> Iterator[Finding]:
+def not_understood(walk: CodeWalk, facts: CodeFacts) -> Iterator[Finding]:
     """Calls of unknown functions, code that could not be parsed, and code that is compiled under unknown conditions."""
     if not facts.entities and not facts.executors:
         advice = "Give the files in which rclc_node_init_default and rclc_executor_init are called."
@@ -37,7 +37,7 @@ def not_understood(walk: Walk, facts: Facts) -> Iterator[Finding]:
     yield from _unread(walk)
 
 
-def _unread(walk: Walk) -> Iterator[Finding]:
+def _unread(walk: CodeWalk) -> Iterator[Finding]:
     """Calls in the text that no path through the code led to."""
     for file, root in walk.program.files:
         ignored = [(start, end) for path, start, end in walk.inactive if path == str(file.path)]

@@ -43,7 +43,7 @@ class Function:
 
 
 @dataclass(slots=True, eq=False)
-class Program:
+class CodeProgram:
     """Everything that sources define.
 
     Attributes
@@ -72,14 +72,14 @@ class Program:
             yield from group
 
 
-def read_program(files: tuple[SourceFile, ...]) -> Program:
+def read_program(files: tuple[SourceFile, ...]) -> CodeProgram:
     """What files define.
 
     Raises
     ------
     ReadError : the parsers are not installed.
     """
-    program = Program()
+    program = CodeProgram()
     for file in files:
         root = parse(file)
         program.files.append((file, root))
@@ -88,7 +88,7 @@ def read_program(files: tuple[SourceFile, ...]) -> Program:
     return program
 
 
-def _note(program: Program, file: SourceFile, node: Node) -> None:
+def _note(program: CodeProgram, file: SourceFile, node: Node) -> None:
     match node.type:
         case "preproc_def":
             name, value = node.child_by_field_name("name"), node.child_by_field_name("value")
@@ -113,7 +113,7 @@ def _note(program: Program, file: SourceFile, node: Node) -> None:
             _note_change(program, node)
 
 
-def _note_function(program: Program, file: SourceFile, node: Node) -> None:
+def _note_function(program: CodeProgram, file: SourceFile, node: Node) -> None:
     declarator, body = node.child_by_field_name("declarator"), node.child_by_field_name("body")
     while declarator is not None and declarator.type != "function_declarator":
         declarator = declarator.child_by_field_name("declarator")
@@ -143,7 +143,7 @@ def function_of(name: str, file: SourceFile, declarator: Node | None, body: Node
     return Function(name, file, body, owner, parameters, frozenset({*inner, *parameters}))
 
 
-def _note_variables(program: Program, file: SourceFile, node: Node) -> None:
+def _note_variables(program: CodeProgram, file: SourceFile, node: Node) -> None:
     is_static = any(child.type == "storage_class_specifier" and text_of(child) == "static" for child in node.children)
     for name, value in declared(node):
         key = text_of(name)
@@ -154,7 +154,7 @@ def _note_variables(program: Program, file: SourceFile, node: Node) -> None:
             program.values[key] = value, file
 
 
-def _note_change(program: Program, node: Node) -> None:
+def _note_change(program: CodeProgram, node: Node) -> None:
     target = node.child_by_field_name("left") or node.child_by_field_name("argument")
     if target is not None:
         program.changed.add(text_of(target).rpartition(".")[2].rpartition(">")[2])

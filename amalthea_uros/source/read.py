@@ -10,14 +10,14 @@ from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.source.delays import SLEEPS
 from amalthea_uros.source.entities import CREATIONS, entity_of
 from amalthea_uros.source.executors import ACTIONS, SPINS, note_spins
-from amalthea_uros.source.facts import Callback, Facts, Option, Thread
+from amalthea_uros.source.facts import CodeCallback, CodeFacts, CodeOption, Thread
 from amalthea_uros.source.files import SourceFile, Sources
 from amalthea_uros.source.flaws import flaws
 from amalthea_uros.source.not_understood import not_understood
-from amalthea_uros.source.program import Program, read_program
+from amalthea_uros.source.program import CodeProgram, read_program
 from amalthea_uros.source.threads import FORMS, thread_of
 from amalthea_uros.source.transports import SETTERS, transport_of
-from amalthea_uros.source.walk import Call, Walk
+from amalthea_uros.source.walk import CodeWalk, FunctionCall
 
 _NAMES = frozenset({*SLEEPS, *FORMS, *SETTERS, "Serial.begin"})
 _SENDS = ("rcl_publish", "rcl_send_request")
@@ -27,7 +27,7 @@ _OPTION = re.compile(r'"\s*-D\s*(\w+)(?::\w+)?=([^"]*)"')
 _COMMENT = re.compile(r'("(?:[^"\\\n]|\\.)*")|//[^\n]*|/\*.*?\*/', re.DOTALL)
 
 
-def read_facts(sources: Sources) -> Facts:
+def read_facts(sources: Sources) -> CodeFacts:
     """What sources say about their application.
 
     Raises
@@ -35,9 +35,9 @@ def read_facts(sources: Sources) -> Facts:
     ReadError : the parsers are not installed.
     """
     program = read_program(sources.code)
-    walk = Walk(program, _NAMES)
+    walk = CodeWalk(program, _NAMES)
     walk.all()
-    facts = Facts()
+    facts = CodeFacts()
     facts.findings += [*sources.findings, *walk.findings, *_several_programs(program)]
     facts.rtos, facts.tick_rate = _operating_system(walk.calls), _tick_rate(program)
     _note_objects(facts, walk)
@@ -51,7 +51,7 @@ def read_facts(sources: Sources) -> Facts:
     return facts
 
 
-def _note_objects(facts: Facts, walk: Walk) -> None:
+def _note_objects(facts: CodeFacts, walk: CodeWalk) -> None:
     for call in walk.calls:
         if call.name in CREATIONS:
             entity = entity_of(call, walk)
@@ -62,14 +62,14 @@ def _note_objects(facts: Facts, walk: Walk) -> None:
     _act(facts, walk, ACTIONS.keys() - {"rclc_executor_init"})
 
 
-def _act(facts: Facts, walk: Walk, names: Iterable[str]) -> None:
+def _act(facts: CodeFacts, walk: CodeWalk, names: Iterable[str]) -> None:
     wanted = frozenset(names)
     for call in walk.calls:
         if call.name in wanted:
             ACTIONS[call.name](facts, call, walk)
 
 
-def _note_threads(facts: Facts, walk: Walk) -> None:
+def _note_threads(facts: CodeFacts, walk: CodeWalk) -> None:
     """Give each executor the thread whose entry leads to its spin."""
     is_idf = any(b'"freertos/' in file.text or b"<freertos/" in file.text for file, _ in walk.program.files)
     threads = [thread_of(call, walk, not is_idf) for call in walk.calls if call.name in FORMS]
@@ -81,9 +81,9 @@ def _note_threads(facts: Facts, walk: Walk) -> None:
             executor.thread = executor.thread or by_entry.get(call.root.scope)
 
 
-def _note_publications(facts: Facts, walk: Walk) -> None:
+def _note_publications(facts: CodeFacts, walk: CodeWalk) -> None:
     """What callbacks publish, also by functions that they call."""
-    callbacks: list[Callback] = [entity.callback for entity in facts.entities.values() if entity.callback is not None]
+    callbacks: list[CodeCallback] = [entity.callback for entity in facts.entities.values() if entity.callback is not None]
     for executor in facts.executors.values():
         for handle in executor.handles:
             callbacks += handle.callbacks
@@ -96,7 +96,7 @@ def _note_publications(facts: Facts, walk: Walk) -> None:
             }
 
 
-def _operating_system(calls: Iterable[Call]) -> str:
+def _operating_system(calls: Iterable[FunctionCall]) -> str:
     """The operating system that is used, as `app.yaml` calls it."""
     hints = {name: form.rtos for name, form in FORMS.items() if form.rtos} | dict.fromkeys(
         ("vTaskDelay", "osDelay"), "freertos"
@@ -105,14 +105,14 @@ def _operating_system(calls: Iterable[Call]) -> str:
     return next((hints[call.name] for call in calls if call.name in hints), "")
 
 
-def _tick_rate(program: Program) -> Fraction | None:
+def _tick_rate(program: CodeProgram) -> Fraction | None:
     texts = program.macros.get("configTICK_RATE_HZ", set()) | program.macros.get("CONFIG_FREERTOS_HZ", set())
     numbers = {number for text in texts for number in re.findall(r"\d+", text)}
     rate = next(iter(numbers)) if len(numbers) == 1 else "0"
     return Fraction(int(rate)) if 0 < len(rate) < 10 and int(rate) else None
 
 
-def _several_programs(program: Program) -> list[Finding]:
+def _several_programs(program: CodeProgram) -> list[Finding]:
     found = []
     for name in _ENTRIES:
         entries = [each for each in program.functions.get(name, ()) if not each.owner]
@@ -123,12 +123,12 @@ def _several_programs(program: Program) -> list[Finding]:
     return found
 
 
-def _options(file: SourceFile) -> dict[str, Option]:
+def _options(file: SourceFile) -> dict[str, CodeOption]:
     """The options in a file for colcon, which may have comments; anything else in it is ignored."""
     text = _COMMENT.sub(lambda match: match[1] or "", file.text.decode("utf-8", "replace"))
     lines = file.text.decode("utf-8", "replace").split("\n")
     found = {}
     for name, value in _OPTION.findall(text):
         row = next((row for row, line in enumerate(lines) if f"-D{name}" in line.replace(" ", "")), 0)
-        found[name] = Option(name=name, value=value, place=file.location(row, 0))
+        found[name] = CodeOption(name=name, value=value, place=file.location(row, 0))
     return found

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, TypeAlias
 
 from amalthea_uros.source.files import SourceFile
-from amalthea_uros.source.program import Function, Program
+from amalthea_uros.source.program import CodeProgram, Function
 from amalthea_uros.source.syntax import parse_expression, text_of
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ class Expression:
     bindings : parameters of the function, with the arguments of its call; counters of loops, with their value in one iteration
     """
 
-    program: Program
+    program: CodeProgram
     node: Node
     file: SourceFile
     function: Function | None = None

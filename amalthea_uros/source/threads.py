@@ -9,7 +9,7 @@ from amalthea_uros.source.entities import callback_of
 from amalthea_uros.source.facts import Thread
 from amalthea_uros.source.scope import Expression
 from amalthea_uros.source.syntax import descendants, text_of
-from amalthea_uros.source.walk import Call, Walk
+from amalthea_uros.source.walk import CodeWalk, FunctionCall
 
 #: Of a stack of FreeRTOS that is counted in words.
 _WORD = 4
@@ -25,7 +25,7 @@ _CMSIS_PRIORITIES = {
 }
 
 
-class _Form(NamedTuple):
+class _ThreadForm(NamedTuple):
     """Positions of the arguments of a function that creates a thread; None: it has none."""
 
     entry: int
@@ -37,18 +37,18 @@ class _Form(NamedTuple):
     rtos: str = ""
 
 
-FORMS: Mapping[str, _Form] = {
-    "xTaskCreate": _Form(0, 1, 2, 4, rtos="freertos"),
-    "xTaskCreateStatic": _Form(0, 1, 2, 4, rtos="freertos"),
-    "xTaskCreatePinnedToCore": _Form(0, 1, 2, 4, 6, rtos="freertos"),
-    "osThreadNew": _Form(0, attributes=2, rtos="freertos"),
-    "K_THREAD_DEFINE": _Form(2, 0, 1, 6, rtos="zephyr"),
-    "k_thread_create": _Form(3, 0, 2, 7, rtos="zephyr"),
-    "pthread_create": _Form(2, 0),
+FORMS: Mapping[str, _ThreadForm] = {
+    "xTaskCreate": _ThreadForm(0, 1, 2, 4, rtos="freertos"),
+    "xTaskCreateStatic": _ThreadForm(0, 1, 2, 4, rtos="freertos"),
+    "xTaskCreatePinnedToCore": _ThreadForm(0, 1, 2, 4, 6, rtos="freertos"),
+    "osThreadNew": _ThreadForm(0, attributes=2, rtos="freertos"),
+    "K_THREAD_DEFINE": _ThreadForm(2, 0, 1, 6, rtos="zephyr"),
+    "k_thread_create": _ThreadForm(3, 0, 2, 7, rtos="zephyr"),
+    "pthread_create": _ThreadForm(2, 0),
 }
 
 
-def thread_of(call: Call, walk: Walk, in_words: bool) -> Thread | None:
+def thread_of(call: FunctionCall, walk: CodeWalk, in_words: bool) -> Thread | None:
     """The thread that a call creates.
 
     Parameters

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from amalthea_uros.source.facts import Transport
-from amalthea_uros.source.program import Program
+from amalthea_uros.source.facts import CodeTransport
+from amalthea_uros.source.program import CodeProgram
 from amalthea_uros.source.scope import Expression
 from amalthea_uros.source.syntax import descendants, text_of
-from amalthea_uros.source.walk import Call
+from amalthea_uros.source.walk import FunctionCall
 
 #: Functions that set a network; the bit rate of the link is not in the code.
 _UDP = ("set_microros_wifi_transports", "set_microros_native_ethernet_transports", "rmw_uros_options_set_udp_address")
@@ -18,14 +18,14 @@ SETTERS = frozenset({*_UDP, *_SERIAL, "rmw_uros_set_custom_transport"})
 _ARDUINO = 115200
 
 
-def transport_of(calls: Iterable[Call], program: Program) -> Transport | None:
+def transport_of(calls: Iterable[FunctionCall], program: CodeProgram) -> CodeTransport | None:
     """The transport that the first call of a function for it sets; None if there is none."""
     every = list(calls)
     call = next((each for each in every if each.name in SETTERS), None)
     if call is None:
         return None
     if call.name in _UDP:
-        return Transport(
+        return CodeTransport(
             key="udp", values=(("bitrate", None),), note="bit rate of the link of the controller", place=call.place
         )
     rate = _baud_rate(every, program)
@@ -37,22 +37,22 @@ def transport_of(calls: Iterable[Call], program: Program) -> Transport | None:
     is_framed = framed is not None and framed.resolved.text in ("true", "1")
     if is_framed or any(word in names for word in ("serial", "uart", "usb", "cdc")):
         is_usb = "usb" in names or "cdc" in names
-        return Transport(key="usb_cdc", values=(), note="full speed", place=call.place) if is_usb else _serial(rate, call)
+        return CodeTransport(key="usb_cdc", values=(), note="full speed", place=call.place) if is_usb else _serial(rate, call)
     if "udp" in names:
-        return Transport(
+        return CodeTransport(
             key="udp", values=(("bitrate", None),), note="bit rate of the link of the controller", place=call.place
         )
-    return Transport(key=None, values=(), note="custom transport", place=call.place)
+    return CodeTransport(key=None, values=(), note="custom transport", place=call.place)
 
 
-def _serial(rate: int | None, call: Call) -> Transport:
+def _serial(rate: int | None, call: FunctionCall) -> CodeTransport:
     value = str(rate) if rate is not None else None
-    return Transport(
+    return CodeTransport(
         key="serial", values=(("baud_rate", value),), note="symbols per second, as the agent has", place=call.place
     )
 
 
-def _baud_rate(calls: Iterable[Call], program: Program) -> int | None:
+def _baud_rate(calls: Iterable[FunctionCall], program: CodeProgram) -> int | None:
     """The rate that the code sets anywhere, if it sets only one."""
     begun = (each.argument(0) for each in calls if each.name.endswith("Serial.begin"))
     rates = {given.number for given in begun if given is not None}

@@ -10,7 +10,7 @@ from amalthea_uros._internal.limits import SOURCE_NODES
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.source.files import SourceFile
 from amalthea_uros.source.preprocessor import branches, is_conditional
-from amalthea_uros.source.program import Function, Program, declared, function_of
+from amalthea_uros.source.program import CodeProgram, Function, declared, function_of
 from amalthea_uros.source.scope import Binding, Expression, called
 from amalthea_uros.source.syntax import descendants, location_of, text_of
 
@@ -33,7 +33,7 @@ _RELEVANT = ("rclc_", "rcl_", "rmw_", "set_microros_")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Call:
+class FunctionCall:
     """A call of a function that the sources do not define.
 
     Attributes
@@ -76,7 +76,7 @@ class _Context:
     depth: int = 0
 
 
-class Walk:
+class CodeWalk:
     """Walks through the functions of a program.
 
     Attributes
@@ -86,9 +86,9 @@ class Walk:
     findings : code that is nested too deeply, or too much
     """
 
-    def __init__(self, program: Program, names: frozenset[str]) -> None:
+    def __init__(self, program: CodeProgram, names: frozenset[str]) -> None:
         self.program = program
-        self.calls: list[Call] = []
+        self.calls: list[FunctionCall] = []
         self.seen: set[tuple[str, int]] = set()
         self.inactive: set[tuple[str, int, int]] = set()
         self.lambdas: dict[str, Function] = {}
@@ -115,7 +115,7 @@ class Walk:
         """Walk through a function."""
         self._visit(function.body, _Context(function.file, function, {}, (function,)))
 
-    def calls_from(self, function: Function) -> list[Call]:
+    def calls_from(self, function: Function) -> list[FunctionCall]:
         """The calls on the paths that begin with a function."""
         found = [call for call in self.calls if call.root is function]
         if found or function not in self._relevant.functions | frozenset(self.lambdas.values()):
@@ -244,7 +244,7 @@ class Walk:
             return
         plain = name.removeprefix("::").removeprefix("std::").rpartition("this->")[2]
         self.calls.append(
-            Call(
+            FunctionCall(
                 plain,
                 expressions,
                 location_of(context.file, node),
@@ -296,7 +296,7 @@ class Relevance:
     called: frozenset[str]
 
 
-def relevant_functions(program: Program, names: frozenset[str]) -> Relevance:
+def relevant_functions(program: CodeProgram, names: frozenset[str]) -> Relevance:
     """The functions that lead to calls of micro-ROS, of delays and of the operating system."""
     calls = {function: frozenset(_called_names(function.body)) for function in program.every_function()}
     callers: dict[str, set[Function]] = {}

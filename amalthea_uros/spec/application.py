@@ -6,8 +6,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from amalthea_uros.spec.execution_time import ExecutionTime
-from amalthea_uros.spec.os import Overhead
+from amalthea_uros.spec.execution_time import ExecutionTimeSection
+from amalthea_uros.spec.os import OverheadSection
 from amalthea_uros.spec.section import Section
 from amalthea_uros.spec.values import Count, Duration, Name, Offset, Priority, Rate, Size, described
 
@@ -34,12 +34,12 @@ _CONDITIONS = described(
 )
 
 
-class Callback(Section):
+class CallbackSection(Section):
     """Keys that all callbacks have."""
 
     name: Name
     """Name of the callback, and of its task."""
-    execution_time: ExecutionTime
+    execution_time: ExecutionTimeSection
     """Execution time of the callback."""
     reads: list[Name] = Field(default_factory=list)
     """Labels that it reads at its start."""
@@ -68,11 +68,11 @@ class Callback(Section):
     """Core of its task; default: the core of its node."""
     deadline: Duration | None = None
     """Deadline relative to the activation of its task."""
-    overhead: Overhead | None = None
+    overhead: OverheadSection | None = None
     """Overhead of the operating system per job of its task; default: that of `os`."""
 
 
-class MessageCallback(Callback):
+class MessageCallback(CallbackSection):
     """A callback that becomes ready when a message arrives."""
 
     rate: Rate | None = None
@@ -102,7 +102,7 @@ class Subscription(MessageCallback):
     """Quality of service."""
 
 
-class GuardCondition(Callback):
+class GuardCondition(CallbackSection):
     """A guard condition that the application triggers, with its callback."""
 
     interval: Duration | None = None
@@ -111,7 +111,7 @@ class GuardCondition(Callback):
     """Maximum rate of triggers; the reciprocal of `interval`."""
 
 
-class Timer(Callback):
+class Timer(CallbackSection):
     """A timer with its callback."""
 
     period: Duration | None = None
@@ -131,7 +131,7 @@ class Publisher(Section):
     """Quality of service."""
 
 
-class Service(MessageCallback):
+class ServiceSection(MessageCallback):
     """A service server; its callback answers requests."""
 
     request_size: Size
@@ -178,7 +178,7 @@ class ActionClient(MessageCallback):
 class ParameterServer(Section):
     """The parameter server of a node: six services, and a publisher for changes."""
 
-    execution_time: ExecutionTime
+    execution_time: ExecutionTimeSection
     """Execution time of answering a request."""
     rate: Rate | None = None
     """Maximum rate of requests."""
@@ -197,7 +197,7 @@ class Lifecycle(Section):
 
     services: Annotated[int, Field(strict=True, ge=1, le=3)] = 3
     """Number of services that are added to the executor."""
-    execution_time: ExecutionTime
+    execution_time: ExecutionTimeSection
     """Execution time of answering a request."""
     rate: Rate | None = None
     """Maximum rate of requests."""
@@ -207,7 +207,7 @@ class Lifecycle(Section):
     """The executor that serves them; default: that of its node."""
 
 
-class Node(Section):
+class NodeSection(Section):
     """A node."""
 
     name: Name
@@ -222,7 +222,7 @@ class Node(Section):
     """Its publishers."""
     timers: list[Timer] = Field(default_factory=list)
     """Its timers."""
-    services: list[Service] = Field(default_factory=list)
+    services: list[ServiceSection] = Field(default_factory=list)
     """Its service servers."""
     clients: list[Client] = Field(default_factory=list)
     """Its service clients."""
@@ -241,5 +241,5 @@ class Node(Section):
 class Application(Section):
     """The micro-ROS application."""
 
-    nodes: list[Node] = Field(default_factory=list)
+    nodes: list[NodeSection] = Field(default_factory=list)
     """Its nodes."""

@@ -10,23 +10,23 @@ from typing import Any
 from amalthea_uros._internal.limits import ADVICE, DESCRIPTION_VALUES
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
-from amalthea_uros.spec.nodes import MAX_DEPTH, Mapping, Node, Place, Scalar, Sequence, Source
+from amalthea_uros.spec.nodes import MAX_DEPTH, MappingNode, Node, NodePlace, ScalarNode, SequenceNode, SourceText
 
 #: What the content as a whole is called.
 WHOLE = "<content>"
 
 
-class KeyPaths(Source):
+class KeyPaths(SourceText):
     """The paths of all nodes, such as `application.nodes[0].name`: one for each "line"."""
 
     __slots__ = ()
 
-    def location(self, place: Place) -> Location:
+    def location(self, place: NodePlace) -> Location:
         """The path of the keys in the place of a file."""
         return Location(Path(self.lines[place.line]))
 
 
-def nodes_of(content: AbstractMapping[Any, Any]) -> tuple[Node, Source]:
+def nodes_of(content: AbstractMapping[Any, Any]) -> tuple[Node, SourceText]:
     """The nodes of some content, and where they are.
 
     Raises
@@ -34,11 +34,11 @@ def nodes_of(content: AbstractMapping[Any, Any]) -> tuple[Node, Source]:
     ReadError : it exceeds a limit, or holds something that YAML cannot.
     """
     source = KeyPaths(Path(WHOLE), [])
-    return _Converter(source).node(content, "", 1), source
+    return _ContentConverter(source).node(content, "", 1), source
 
 
-class _Converter:
-    def __init__(self, source: Source) -> None:
+class _ContentConverter:
+    def __init__(self, source: SourceText) -> None:
         self.paths = source.lines
 
     def node(self, value: object, path: str, depth: int) -> Node:
@@ -47,17 +47,17 @@ class _Converter:
             raise self.stop("YML002", f"the content is nested more than {MAX_DEPTH} levels deep", path)
         if len(self.paths) == DESCRIPTION_VALUES:
             raise self.stop("YML002", f"the content has more than {DESCRIPTION_VALUES:,} values", path, ADVICE)
-        place = Place(len(self.paths), 0)
+        place = NodePlace(len(self.paths), 0)
         self.paths.append(path or WHOLE)
         if isinstance(value, AbstractMapping):
             return self.mapping(value, place, path, depth)
         if isinstance(value, list | tuple):
-            return Sequence(place, [self.node(item, f"{path}[{index}]", depth + 1) for index, item in enumerate(value)])
-        return Scalar(place, self.scalar(value, path))
+            return SequenceNode(place, [self.node(item, f"{path}[{index}]", depth + 1) for index, item in enumerate(value)])
+        return ScalarNode(place, self.scalar(value, path))
 
-    def mapping(self, values: AbstractMapping[Any, Any], place: Place, path: str, depth: int) -> Mapping:
+    def mapping(self, values: AbstractMapping[Any, Any], place: NodePlace, path: str, depth: int) -> MappingNode:
         """A mapping as a node."""
-        found = Mapping(place, {}, {})
+        found = MappingNode(place, {}, {})
         for key, value in values.items():
             if not isinstance(key, str):
                 raise self.stop("YML001", f"a key must be a string, not {key!r}", path)

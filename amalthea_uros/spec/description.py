@@ -7,11 +7,11 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from amalthea_uros.spec.application import Application
-from amalthea_uros.spec.hardware import Hardware
+from amalthea_uros.spec.hardware import HardwareSection
 from amalthea_uros.spec.middleware import Middleware
-from amalthea_uros.spec.os import Os
-from amalthea_uros.spec.processes import Isr, Label, Task
-from amalthea_uros.spec.requirements import Chain, Requirement
+from amalthea_uros.spec.os import OsSection
+from amalthea_uros.spec.processes import IsrSection, LabelSection, TaskSection
+from amalthea_uros.spec.requirements import Chain, RequirementSection
 from amalthea_uros.spec.section import Section
 from amalthea_uros.spec.values import WHOLE_NUMBER, Name
 
@@ -23,21 +23,21 @@ class Description(Section):
     """Version of the format."""
     name: Name
     """Name of the application."""
-    hardware: Hardware
+    hardware: HardwareSection
     """The controller."""
-    os: Os = Field(default_factory=Os)
+    os: OsSection = Field(default_factory=OsSection)
     """The operating system."""
     middleware: Middleware = Field(default_factory=Middleware)
     """The generic micro-ROS model."""
     application: Application = Field(default_factory=Application)
     """The micro-ROS application."""
-    tasks: list[Task] = Field(default_factory=list)
+    tasks: list[TaskSection] = Field(default_factory=list)
     """Tasks of the controller that are not part of the micro-ROS application."""
-    isrs: list[Isr] = Field(default_factory=list)
+    isrs: list[IsrSection] = Field(default_factory=list)
     """Interrupt service routines of the controller that are not part of the micro-ROS application."""
-    labels: dict[Name, Label] = Field(default_factory=dict)
+    labels: dict[Name, LabelSection] = Field(default_factory=dict)
     """Variables; one that is read or written somewhere needs no entry if its size and memory are the default ones."""
     chains: list[Chain] = Field(default_factory=list)
     """Cause-effect chains."""
-    requirements: list[Requirement] = Field(default_factory=list)
+    requirements: list[RequirementSection] = Field(default_factory=list)
     """Requirements on processes."""

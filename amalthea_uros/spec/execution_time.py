@@ -10,7 +10,7 @@ from amalthea_uros.spec.section import Section, Shorthand
 from amalthea_uros.spec.values import Count, Duration, Name, Number, described, problem
 
 
-class Bucket(Section):
+class BucketSection(Section):
     """Number of measured execution times between two values."""
 
     min: Duration
@@ -29,7 +29,7 @@ _DISTRIBUTIONS = described(
 )
 
 
-class ExecutionTime(Shorthand):
+class ExecutionTimeSection(Shorthand):
     """An execution time: `12 us`, or with `min` and `max`, or per platform with `on`."""
 
     shorthand = (
@@ -54,9 +54,9 @@ class ExecutionTime(Shorthand):
     """Second shape parameter of the beta distribution."""
     exceeding: Annotated[Number, Field(lt=1000)] | None = None
     """Per mille of the execution times of a Weibull distribution that exceed `max`."""
-    histogram: list[Bucket] | None = Field(None, min_length=1)
+    histogram: list[BucketSection] | None = Field(None, min_length=1)
     """Measured execution times."""
-    on: dict[Name, ExecutionTime] | None = Field(None, min_length=1)
+    on: dict[Name, ExecutionTimeSection] | None = Field(None, min_length=1)
     """Execution times by platform or core type; `default` for all others."""
 
     @model_validator(mode="after")

@@ -6,8 +6,8 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from amalthea_uros.spec.execution_time import ExecutionTime
-from amalthea_uros.spec.os import Overhead
+from amalthea_uros.spec.execution_time import ExecutionTimeSection
+from amalthea_uros.spec.os import OverheadSection
 from amalthea_uros.spec.section import Section, Shorthand
 from amalthea_uros.spec.values import Count, Duration, Name, Offset, Priority, Size, described, problem
 
@@ -17,9 +17,9 @@ class MessageCost(Shorthand):
 
     shorthand = ("fixed",)
     plain_value = "The same execution time for every message."
-    nested = ExecutionTime
+    nested = ExecutionTimeSection
 
-    fixed: ExecutionTime | None = None
+    fixed: ExecutionTimeSection | None = None
     """Execution time per message, independent of its size."""
     per_byte: Offset = 0
     """Additional execution time per byte of the message."""
@@ -30,17 +30,17 @@ class ExecutorCost(Shorthand):
 
     shorthand = ("base",)
     plain_value = "The same execution time in every activation of the executor."
-    nested = ExecutionTime
+    nested = ExecutionTimeSection
 
-    base: ExecutionTime | None = None
+    base: ExecutionTimeSection | None = None
     """Execution time of every activation."""
-    per_ready_callback: ExecutionTime | None = None
+    per_ready_callback: ExecutionTimeSection | None = None
     """Additional execution time per ready callback."""
     per_message: MessageCost = Field(default_factory=MessageCost)
     """Additional execution time per message taken."""
-    per_timer: ExecutionTime | None = None
+    per_timer: ExecutionTimeSection | None = None
     """Additional execution time per timer, in every activation."""
-    per_handle: ExecutionTime | None = None
+    per_handle: ExecutionTimeSection | None = None
     """Additional execution time per handle, in every activation: the wait set is filled anew each time."""
 
 
@@ -51,7 +51,7 @@ _TRIGGERS = described(
 )
 
 
-class Trigger(Shorthand):
+class TriggerSection(Shorthand):
     """When the executor runs its callbacks: `any`, `all`, `always`, `{one: NAME}`, or `{custom: [[NAME, ...], ...]}`."""
 
     shorthand = ("when",)
@@ -65,7 +65,7 @@ class Trigger(Shorthand):
     """As soon as all callbacks of one of these sets are ready: what a trigger function of the application returns."""
 
 
-class Loop(Section):
+class LoopSection(Section):
     """How the thread of an executor spins: exactly one of `spin_some`, `spin_period` and `spin`."""
 
     spin_some: Offset | None = None
@@ -102,7 +102,7 @@ _SEMANTICS = described(
 )
 
 
-class Executor(Section):
+class ExecutorSection(Section):
     """The task or thread that serves the middleware and notifies or runs callbacks."""
 
     name: Name = "Executor_Task"
@@ -117,9 +117,9 @@ class Executor(Section):
     """Core of its task; default: the first core."""
     deadline: Duration | None = None
     """Deadline relative to the activation."""
-    overhead: Overhead | None = None
+    overhead: OverheadSection | None = None
     """Overhead of the operating system per job; default: that of `os`."""
-    loop: Loop | None = None
+    loop: LoopSection | None = None
     """How its thread spins; without it, its task is activated with `period`."""
     max_handles: Count | None = None
     """Number of handles that `rclc_executor_init` gets; default: as many as it has."""
@@ -134,5 +134,5 @@ class Executor(Section):
     """Order in which callbacks were added to the executor; callbacks not listed follow in the order of the file."""
     semantics: Annotated[Literal["ROS", "LET"], _SEMANTICS] = "ROS"
     """`ROS`: each message is taken just before its callback runs; `LET`: all messages are taken before the first callback runs."""
-    trigger: Trigger = Field(default_factory=Trigger)
+    trigger: TriggerSection = Field(default_factory=TriggerSection)
     """Condition under which callbacks in the executor run."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Finding, Severity
-from amalthea_uros.spec.nodes import Mapping, Node, Scalar, Sequence, Source
+from amalthea_uros.spec.nodes import MappingNode, Node, ScalarNode, SequenceNode, SourceText
 from amalthea_uros.spec.section import EXTENSION
 
 GAP = "TODO"
@@ -27,10 +27,10 @@ _ADVICE = {
 
 def is_gap(node: Node) -> bool:
     """Whether a value is to be filled in."""
-    return isinstance(node, Scalar) and node.value == GAP
+    return isinstance(node, ScalarNode) and node.value == GAP
 
 
-def gaps(node: Node, source: Source) -> Iterator[Finding]:
+def gaps(node: Node, source: SourceText) -> Iterator[Finding]:
     """A finding for each value that is to be filled in; also for names, which `TODO` could be."""
     for key, value in _values(node, ""):
         if is_gap(value):
@@ -41,11 +41,11 @@ def gaps(node: Node, source: Source) -> Iterator[Finding]:
 
 def _values(node: Node, key: str) -> Iterator[tuple[str, Node]]:
     match node:
-        case Mapping():
+        case MappingNode():
             for name, item in node.items.items():
                 if not name.startswith(EXTENSION):
                     yield from _values(item, name)
-        case Sequence():
+        case SequenceNode():
             for item in node.items:
                 yield from _values(item, key)
         case _:

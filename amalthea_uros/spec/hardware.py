@@ -7,14 +7,14 @@ from typing import Annotated, Any, Literal, TypeAlias
 from pydantic import BeforeValidator, Field
 
 from amalthea_uros.spec.middleware import Middleware
-from amalthea_uros.spec.os import Os
+from amalthea_uros.spec.os import OsSection
 from amalthea_uros.spec.section import Section, Shorthand
 from amalthea_uros.spec.values import WHOLE_NUMBER, CountOrNone, Name, Rate, Size, described, unexpected
 
 MAX_CORES = 1024
 
 
-class Core(Shorthand):
+class CoreSection(Shorthand):
     """A core: its name, or a mapping with more."""
 
     shorthand = ("name",)
@@ -40,9 +40,9 @@ def _of_number(value: Any) -> Any:
 
 #: The cores, or their number: 4 means Core_0 to Core_3.
 Cores: TypeAlias = Annotated[
-    list[Core],
+    list[CoreSection],
     Field(min_length=1, max_length=MAX_CORES),
-    BeforeValidator(_of_number, json_schema_input_type=Annotated[int, Field(ge=1, le=MAX_CORES)] | list[Core]),
+    BeforeValidator(_of_number, json_schema_input_type=Annotated[int, Field(ge=1, le=MAX_CORES)] | list[CoreSection]),
 ]
 
 
@@ -54,7 +54,7 @@ _MEMORY_KINDS = described(
 )
 
 
-class Latencies(Section):
+class LatenciesSection(Section):
     """Core cycles of accesses to a memory from certain cores."""
 
     cores: list[Name] = Field(min_length=1)
@@ -65,7 +65,7 @@ class Latencies(Section):
     """Core cycles per write access."""
 
 
-class Memory(Section):
+class MemorySection(Section):
     """A memory."""
 
     name: Name
@@ -78,11 +78,11 @@ class Memory(Section):
     """Core cycles per read access."""
     write_cycles: CountOrNone | None = None
     """Core cycles per write access."""
-    accesses: list[Latencies] = Field(default_factory=list)
+    accesses: list[LatenciesSection] = Field(default_factory=list)
     """Core cycles per access where they depend on the core: a memory of one core is slower for the others."""
 
 
-class Hardware(Shorthand):
+class HardwareSection(Shorthand):
     """The controller that the application runs on: a platform, or a mapping with more.
 
     Other keys override those of the platform.
@@ -107,7 +107,7 @@ class Hardware(Shorthand):
     """Clock of all cores without a `frequency`; together with `platform`: clock of all cores."""
     cores: Cores | None = None
     """The cores, or their number."""
-    memories: list[Memory] | None = None
+    memories: list[MemorySection] | None = None
     """The memories."""
     label_memory: Name | None = None
     """Memory of all labels without a `memory`; default: the first SRAM."""
@@ -122,9 +122,9 @@ class Platform(Section):
     """Version of the format."""
     platform: Name
     """Name by which execution times refer to it."""
-    hardware: Hardware
+    hardware: HardwareSection
     """The hardware itself."""
-    os: Os = Field(default_factory=Os)
+    os: OsSection = Field(default_factory=OsSection)
     """The operating system that is usual on it; keys of the application override it."""
     middleware: Middleware = Field(default_factory=Middleware)
     """The generic micro-ROS model as ported to it; keys of the application override it, key by key."""

@@ -9,18 +9,18 @@ from __future__ import annotations
 from collections.abc import Set as AbstractSet
 from typing import Any, TypeVar
 
-from amalthea_uros.spec.executors import Executor, Loop
+from amalthea_uros.spec.executors import ExecutorSection, LoopSection
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.spec.section import Section, Shorthand
-from amalthea_uros.spec.transports import Transport
+from amalthea_uros.spec.transports import TransportSection
 
 S = TypeVar("S", bound=Section)
 
 #: Keys of which a section has one: its executor or executors, the activation of an executor, the wire of a transport.
 _ALTERNATIVES: dict[type[Section], AbstractSet[str]] = {
     Middleware: {"executor", "executors"},
-    Executor: {"loop", "period"},
-    Transport: {"can", "can_fd", "serial", "udp", "tcp", "usb_cdc", "custom"},
+    ExecutorSection: {"loop", "period"},
+    TransportSection: {"can", "can_fd", "serial", "udp", "tcp", "usb_cdc", "custom"},
 }
 
 
@@ -62,4 +62,4 @@ def _excluded(own: Section) -> AbstractSet[str]:
 
 def _has_parts(value: Any) -> bool:
     """Whether a value is completed, instead of being replaced."""
-    return isinstance(value, Section) and not isinstance(value, Shorthand | Loop)
+    return isinstance(value, Section) and not isinstance(value, Shorthand | LoopSection)

@@ -6,9 +6,9 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from amalthea_uros.spec.executors import Executor, MessageCost
+from amalthea_uros.spec.executors import ExecutorSection, MessageCost
 from amalthea_uros.spec.section import Section, Shorthand
-from amalthea_uros.spec.transports import Agent, Transport
+from amalthea_uros.spec.transports import Agent, TransportSection
 from amalthea_uros.spec.values import Count, CountOrNone, Duration, Name, OffsetOrNumberZero, Priority, Size, described
 
 
@@ -27,7 +27,7 @@ class ResponseTime(Shorthand):
     """Maximum time."""
 
 
-class Initialisation(Section):
+class InitialisationSection(Section):
     """Creation of the entities, one after the other."""
 
     response_time: ResponseTime | None = None
@@ -190,9 +190,9 @@ class Middleware(Section):
     """Scheduling policy of the operating system."""
     task_periods: list[Duration] = Field(default_factory=list)
     """Available task periods; if omitted, any period is available."""
-    executor: Executor = Field(default_factory=Executor)
+    executor: ExecutorSection = Field(default_factory=ExecutorSection)
     """The executor, if there is only one."""
-    executors: list[Executor] = Field(default_factory=list)
+    executors: list[ExecutorSection] = Field(default_factory=list)
     """The executors, if there are several; the first one serves callbacks that name no other."""
     multithread: bool = False
     """Whether the middleware is built for several threads: then they share its session, one at a time."""
@@ -202,11 +202,11 @@ class Middleware(Section):
     """How reliable messages are sent."""
     tasks: list[MiddlewareTask] = Field(default_factory=list)
     """Tasks or threads of the middleware."""
-    transport: Transport = Field(default_factory=Transport)
+    transport: TransportSection = Field(default_factory=TransportSection)
     """The transport to the agent."""
     agent: Agent = Field(default_factory=Agent)
     """The agent, or the router of the middleware."""
-    initialisation: Initialisation = Field(default_factory=Initialisation)
+    initialisation: InitialisationSection = Field(default_factory=InitialisationSection)
     """Creation of the entities."""
     limits: PoolSizes = Field(default_factory=PoolSizes)
     """Static pools."""

@@ -13,7 +13,7 @@ from pydantic_core import ErrorDetails
 from amalthea_uros._internal.plural import counted
 from amalthea_uros._internal.similar import similar
 from amalthea_uros.diagnostics import Finding, Severity
-from amalthea_uros.spec.nodes import Mapping, Node, Place, Scalar, Sequence, Source
+from amalthea_uros.spec.nodes import MappingNode, Node, NodePlace, ScalarNode, SequenceNode, SourceText
 from amalthea_uros.spec.section import Section
 from amalthea_uros.units import shortened
 
@@ -82,7 +82,7 @@ class Mistake(NamedTuple):
         return str(self.details["loc"][-1]) if self.details["loc"] else ""
 
 
-def finding_of(mistake: Mistake, source: Source, kind: type[Section]) -> Finding:
+def finding_of(mistake: Mistake, source: SourceText, kind: type[Section]) -> Finding:
     """The finding for an error in a section of some kind."""
     value = mistake.path[-1]
     match mistake.kind:
@@ -114,12 +114,12 @@ def intended_word(mistake: Mistake, similarity: float = _SIMILAR) -> str | None:
 def without_consequences(mistakes: list[Mistake]) -> list[Mistake]:
     """The mistakes without those in the number before a decimal comma, of which the rest is an unknown key."""
     rests = [mistake for mistake in mistakes if mistake.kind == "extra_forbidden" and _AFTER_COMMA.fullmatch(mistake.key)]
-    holders = {id(holder): holder for holder in (mistake.path[-2] for mistake in rests) if isinstance(holder, Mapping)}
+    holders = {id(holder): holder for holder in (mistake.path[-2] for mistake in rests) if isinstance(holder, MappingNode)}
     cut_off = _before({id(mistake.path[-1]) for mistake in rests}, holders.values())
     return [mistake for mistake in mistakes if id(mistake.path[-1]) not in cut_off]
 
 
-def _before(nodes: set[int], holders: Iterable[Mapping]) -> set[int]:
+def _before(nodes: set[int], holders: Iterable[MappingNode]) -> set[int]:
     """The values before some others in mappings, all by their ids: nodes that look the same are different ones."""
     return {id(value) for holder in holders for value, following in pairwise(holder.items.values()) if id(following) in nodes}
 
@@ -128,23 +128,23 @@ def _path(loc: tuple[int | str, ...], node: Node) -> Iterator[Node]:
     """The nodes on the path to an error; parts that exist only in pydantic are skipped."""
     yield node
     for part in loc:
-        if isinstance(node, Mapping) and part in node.items:
+        if isinstance(node, MappingNode) and part in node.items:
             node = node.items[str(part)]
             yield node
-        elif isinstance(node, Sequence) and isinstance(part, int) and part < len(node.items):
+        elif isinstance(node, SequenceNode) and isinstance(part, int) and part < len(node.items):
             node = node.items[part]
             yield node
 
 
-def _key_place(mistake: Mistake) -> Place:
+def _key_place(mistake: Mistake) -> NodePlace:
     *_, holder, value = mistake.path
-    return holder.keys[mistake.key] if isinstance(holder, Mapping) else value.place
+    return holder.keys[mistake.key] if isinstance(holder, MappingNode) else value.place
 
 
 def _owner(mistake: Mistake) -> str:
     """The key that the erroneous value belongs to, as the start of a sentence."""
     for part in reversed(mistake.details["loc"]):
-        if any(isinstance(node, Mapping) and part in node.items for node in mistake.path):
+        if any(isinstance(node, MappingNode) and part in node.items for node in mistake.path):
             return f"{shortened(str(part))}: "
     return ""
 
@@ -170,15 +170,15 @@ def _sentence(details: ErrorDetails, node: Node) -> tuple[str, str]:
 def _given(node: Node) -> str:
     """What the author wrote, for a message."""
     match node:
-        case Mapping():
+        case MappingNode():
             return "a mapping"
-        case Sequence():
+        case SequenceNode():
             return "a list"
-        case Scalar(value=None):
+        case ScalarNode(value=None):
             return "nothing"
-        case Scalar(value=bool() as value):
+        case ScalarNode(value=bool() as value):
             return str(value).lower()
-        case Scalar(value=value):
+        case ScalarNode(value=value):
             return shortened(repr(value))
 
 
@@ -188,7 +188,7 @@ def _correction(details: ErrorDetails, node: Node) -> str:
         word = intended_word(Mistake(details, (node,)))
         return f"Did you mean {word!r}?" if word else ""
     wants_number = "number" in details["msg"] or "integer" in details["msg"]
-    if wants_number and isinstance(node, Scalar) and isinstance(node.value, str) and _WHOLE_NUMBER.fullmatch(node.value):
+    if wants_number and isinstance(node, ScalarNode) and isinstance(node.value, str) and _WHOLE_NUMBER.fullmatch(node.value):
         return f"Write {int(node.value)}, without quotes, sign or leading zeros." if node.value else ""
     return ""
 

@@ -38,7 +38,7 @@ _Event: TypeAlias = Any
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class NodePlace:
     """Where a node begins; line and column are counted from 0."""
 
     line: int
@@ -46,55 +46,55 @@ class Place:
 
 
 @dataclass(frozen=True, slots=True)
-class Scalar:
+class ScalarNode:
     """A single value."""
 
-    place: Place
+    place: NodePlace
     value: str | int | bool | None
 
 
 @dataclass(frozen=True, slots=True)
-class Sequence:
+class SequenceNode:
     """A list of nodes."""
 
-    place: Place
+    place: NodePlace
     items: list[Node]
 
 
 @dataclass(frozen=True, slots=True)
-class Mapping:
+class MappingNode:
     """Nodes by key."""
 
-    place: Place
+    place: NodePlace
     items: dict[str, Node]
-    keys: dict[str, Place]
+    keys: dict[str, NodePlace]
 
 
-Node: TypeAlias = Scalar | Sequence | Mapping
+Node: TypeAlias = ScalarNode | SequenceNode | MappingNode
 
 
 @dataclass(frozen=True, slots=True)
-class Source:
+class SourceText:
     """The text of a file, to show lines of it."""
 
     path: Path
     lines: list[str]
 
-    def location(self, place: Place) -> Location:
+    def location(self, place: NodePlace) -> Location:
         """A place as a location with the text of its line."""
         text = self.lines[place.line] if place.line < len(self.lines) else ""
         return Location(self.path, place.line + 1, place.column + 1, text)
 
 
-def read_nodes(path: Path, text: str) -> tuple[Node, Source, list[Finding]]:
+def read_nodes(path: Path, text: str) -> tuple[Node, SourceText, list[Finding]]:
     """The content of a YAML document, and the errors in it that do not stop the parser.
 
     Raises
     ------
     ReadError : the text is not a YAML document, or exceeds a limit.
     """
-    source = Source(path, text.split("\n"))
-    reader = _Reader(source)
+    source = SourceText(path, text.split("\n"))
+    reader = _NodeReader(source)
     try:
         node = reader.document(text)
     except yaml.MarkedYAMLError as error:
@@ -108,7 +108,7 @@ def read_nodes(path: Path, text: str) -> tuple[Node, Source, list[Finding]]:
     return node, source, reader.findings
 
 
-def _reason(error: yaml.MarkedYAMLError, source: Source) -> str:
+def _reason(error: yaml.MarkedYAMLError, source: SourceText) -> str:
     problem, context = error.problem or "", error.context or ""
     mark = error.problem_mark
     if "tab character that violates indentation" in problem:
@@ -120,18 +120,18 @@ def _reason(error: yaml.MarkedYAMLError, source: Source) -> str:
     return f"not valid YAML: {problem}{f' ({context})' if context else ''}"
 
 
-def _unreadable(source: Source, text: str, error: yaml.reader.ReaderError) -> Finding:
+def _unreadable(source: SourceText, text: str, error: yaml.reader.ReaderError) -> Finding:
     match = re.search(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x84\x86-\x9f\ud800-\udfff\ufffe\uffff]", text)
     if match is None:
         return Finding("YML001", Severity.ERROR, f"not valid YAML: {error.reason}", Location(source.path))
     line = text.count("\n", 0, match.start())
-    place = Place(line, match.start() - text.rfind("\n", 0, match.start()) - 1)
+    place = NodePlace(line, match.start() - text.rfind("\n", 0, match.start()) - 1)
     location = Location(source.path, place.line + 1, place.column + 1)
     return Finding("YML001", Severity.ERROR, f"not valid YAML: the character U+{ord(match[0]):04X} is not allowed", location)
 
 
-class _Reader:
-    def __init__(self, source: Source) -> None:
+class _NodeReader:
+    def __init__(self, source: SourceText) -> None:
         self.source = source
         self.findings: list[Finding] = []
         self.anchors: dict[str, Node] = {}
@@ -146,7 +146,7 @@ class _Reader:
                 if isinstance(event, yaml.DocumentStartEvent):
                     break
             else:
-                return Scalar(Place(0, 0), None)
+                return ScalarNode(NodePlace(0, 0), None)
             node = self.node(next(events), events, 1)
             next(events)
             extra = next(events)
@@ -166,9 +166,9 @@ class _Reader:
         place = _place(event.start_mark)
         node: Node
         if isinstance(event, yaml.ScalarEvent):
-            node = Scalar(place, _value(event))
+            node = ScalarNode(place, _value(event))
         elif isinstance(event, yaml.SequenceStartEvent):
-            node = Sequence(place, self.items(events, depth))
+            node = SequenceNode(place, self.items(events, depth))
         else:
             node = self.mapping(place, events, depth)
         self.tally(event.start_mark)
@@ -185,10 +185,10 @@ class _Reader:
             found.append(self.node(event, events, depth + 1))
         return found
 
-    def mapping(self, place: Place, events: Iterator[_Event], depth: int) -> Mapping:
+    def mapping(self, place: NodePlace, events: Iterator[_Event], depth: int) -> MappingNode:
         """The nodes of a mapping; of a duplicate key the first value is used."""
-        found = Mapping(place, {}, {})
-        inherited: list[Mapping] = []
+        found = MappingNode(place, {}, {})
+        inherited: list[MappingNode] = []
         for event in events:
             if isinstance(event, yaml.MappingEndEvent):
                 break
@@ -211,10 +211,10 @@ class _Reader:
                 found.items.setdefault(key, item)
         return found
 
-    def merged(self, value: Node, mark: Any) -> list[Mapping]:
+    def merged(self, value: Node, mark: Any) -> list[MappingNode]:
         """The mappings that a merge key names."""
-        named = value.items if isinstance(value, Sequence) else [value]
-        mappings = [item for item in named if isinstance(item, Mapping)]
+        named = value.items if isinstance(value, SequenceNode) else [value]
+        mappings = [item for item in named if isinstance(item, MappingNode)]
         if len(mappings) < len(named):
             message = f"{_MERGE!r} merges mappings, but its value is something else"
             raise self.stop(
@@ -222,7 +222,7 @@ class _Reader:
             )
         return mappings
 
-    def second(self, key: str, first: Place, where: Place) -> None:
+    def second(self, key: str, first: NodePlace, where: NodePlace) -> None:
         """Report a duplicate key."""
         message = f"duplicate key {key!r} (first defined on line {first.line + 1})"
         self.findings.append(Finding("YML003", Severity.ERROR, message, self.source.location(where), "Remove one of them."))
@@ -263,8 +263,8 @@ class _Reader:
         return ReadError([*self.findings, Finding(rule, Severity.ERROR, message, location, help_text)])
 
 
-def _place(mark: Any) -> Place:
-    return Place(mark.line, mark.column)
+def _place(mark: Any) -> NodePlace:
+    return NodePlace(mark.line, mark.column)
 
 
 def _value(event: _Event) -> str | int | bool | None:
@@ -280,17 +280,17 @@ def _value(event: _Event) -> str | int | bool | None:
 def _walk(node: Node, depth: int) -> Iterator[tuple[int, Node]]:
     """A node and everything in it, with their depths."""
     yield depth, node
-    if not isinstance(node, Scalar):
-        for inner in node.items.values() if isinstance(node, Mapping) else node.items:
+    if not isinstance(node, ScalarNode):
+        for inner in node.items.values() if isinstance(node, MappingNode) else node.items:
             yield from _walk(inner, depth + 1)
 
 
 def plain(node: Node) -> Any:
     """The node as dicts, lists and values."""
     match node:
-        case Scalar():
+        case ScalarNode():
             return node.value
-        case Sequence():
+        case SequenceNode():
             return [plain(item) for item in node.items]
-        case Mapping():
+        case MappingNode():
             return {key: plain(item) for key, item in node.items.items()}

@@ -6,12 +6,12 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, model_validator
 
-from amalthea_uros.spec.execution_time import ExecutionTime
+from amalthea_uros.spec.execution_time import ExecutionTimeSection
 from amalthea_uros.spec.section import Section, Shorthand
 from amalthea_uros.spec.values import CountOrNone, Duration, Name, OffsetOrNumberZero, PriorityNumber, described, problem
 
 
-class OverheadTime(ExecutionTime):
+class OverheadTime(ExecutionTimeSection):
     """A time that the operating system needs: as an execution time, which can also be zero."""
 
     min: OffsetOrNumberZero | None = None
@@ -22,7 +22,7 @@ class OverheadTime(ExecutionTime):
     """Worst-case time."""
 
 
-class Overhead(Shorthand):
+class OverheadSection(Shorthand):
     """What the operating system adds to each job: a time, or a mapping with the parts before and after what the job does itself."""
 
     shorthand = ("activation",)
@@ -57,7 +57,7 @@ class OsOverhead(Section):
     """Time per job of a task, after its last function."""
     activations_run_in: Annotated[Literal["task", "interrupt"], _LEVELS] = "task"
     """Where the work for the activation of a task is executed."""
-    isr: Overhead = Field(default_factory=Overhead)
+    isr: OverheadSection = Field(default_factory=OverheadSection)
     """Time per execution of an interrupt service routine."""
 
 
@@ -92,7 +92,7 @@ class SleepTicks(Section):
     """Number of ticks by which a sleep can be longer than the ticks it is rounded up to."""
 
 
-class Os(Section):
+class OsSection(Section):
     """The operating system."""
 
     rtos: (

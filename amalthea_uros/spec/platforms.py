@@ -10,11 +10,11 @@ from amalthea_uros._internal.resources import PLATFORMS, RTOSES, known_platforms
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.spec.description import Description
-from amalthea_uros.spec.hardware import Hardware, Platform
+from amalthea_uros.spec.hardware import HardwareSection, Platform
 from amalthea_uros.spec.known_files import KnownFiles
 from amalthea_uros.spec.merging import merged, merged_middleware
 from amalthea_uros.spec.middleware import Middleware
-from amalthea_uros.spec.os import Os
+from amalthea_uros.spec.os import OsSection
 from amalthea_uros.spec.read import read_section
 from amalthea_uros.spec.rtos import Rtos
 
@@ -65,7 +65,7 @@ def complete(description: Description, folder: Path, other: str | None = None) -
 def _completed(
     description: Description,
     platform: Platform | None,
-    systems: Sequence[Os],
+    systems: Sequence[OsSection],
     models: Sequence[Middleware],
     findings: Iterable[Finding],
 ) -> CompleteDescription:
@@ -85,7 +85,7 @@ def _policy(model: Middleware) -> Middleware:
     return Middleware(policy=model.policy) if model.states("policy") else Middleware()
 
 
-def _platform_file(stated: Hardware, folder: Path, other: str | None, findings: list[Finding]) -> Path | None:
+def _platform_file(stated: HardwareSection, folder: Path, other: str | None, findings: list[Finding]) -> Path | None:
     name = other or stated.platform
     if name is None:
         return None
@@ -96,7 +96,7 @@ def _platform_file(stated: Hardware, folder: Path, other: str | None, findings: 
     return path
 
 
-def _platform(path: Path, stated: Hardware) -> Platform:
+def _platform(path: Path, stated: HardwareSection) -> Platform:
     platform = read_section(path, Platform)
     if path.parent == PLATFORMS:
         # Users cannot change the files that come with amuros; they change what names them.
@@ -109,7 +109,7 @@ def _platform(path: Path, stated: Hardware) -> Platform:
     return platform
 
 
-def _hardware(stated: Hardware, usual: Hardware) -> Hardware:
+def _hardware(stated: HardwareSection, usual: HardwareSection) -> HardwareSection:
     found = merged(stated, usual)
     if stated.frequency is None or stated.cores is not None or found.cores is None:
         return found
@@ -117,7 +117,7 @@ def _hardware(stated: Hardware, usual: Hardware) -> Hardware:
     return found.model_copy(update={"cores": [core.model_copy(update={"frequency": None}) for core in found.cores]})
 
 
-def _rtos(stated: Os, folder: Path, findings: list[Finding]) -> Rtos:
+def _rtos(stated: OsSection, folder: Path, findings: list[Finding]) -> Rtos:
     """The operating system that is stated; one without properties if none is."""
     if stated.rtos is None:
         return Rtos(amuros=1, rtos="none", title="none")

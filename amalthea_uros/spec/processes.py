@@ -6,8 +6,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from amalthea_uros.spec.execution_time import ExecutionTime
-from amalthea_uros.spec.os import Overhead
+from amalthea_uros.spec.execution_time import ExecutionTimeSection
+from amalthea_uros.spec.os import OverheadSection
 from amalthea_uros.spec.section import Section, Shorthand
 from amalthea_uros.spec.values import (
     WHOLE_NUMBER,
@@ -23,7 +23,7 @@ from amalthea_uros.spec.values import (
 )
 
 
-class Sporadic(Shorthand):
+class SporadicSection(Shorthand):
     """Sporadic activation: the minimum interarrival time, or a mapping with minimum and maximum."""
 
     shorthand = ("min",)
@@ -35,7 +35,7 @@ class Sporadic(Shorthand):
     """Maximum time between two activations; default: unknown."""
 
 
-class Burst(Section):
+class BurstSection(Section):
     """Several activations at the start of each period."""
 
     period: Duration
@@ -62,7 +62,7 @@ class Times(Section):
 class Steps(Section):
     """Execution time, accesses and triggers of a function or a process."""
 
-    execution_time: ExecutionTime | None = None
+    execution_time: ExecutionTimeSection | None = None
     """Execution time."""
     reads: list[Name] = Field(default_factory=list)
     """Labels that it reads at its start."""
@@ -74,7 +74,7 @@ class Steps(Section):
     """Resources that it holds during its execution (priority ceiling protocol)."""
 
 
-class Runnable(Steps):
+class RunnableSection(Steps):
     """A function of a task or interrupt service routine."""
 
     name: Name
@@ -85,7 +85,7 @@ class Runnable(Steps):
     """Number of the first job in which it runs, counted from 1; default: the n of `every`."""
 
 
-class Process(Steps):
+class ProcessSection(Steps):
     """Keys that tasks and interrupt service routines have; exactly one kind of activation is given."""
 
     name: Name
@@ -96,9 +96,9 @@ class Process(Steps):
     """Time of the first activation, for `period`."""
     jitter: Duration | None = None
     """Maximum deviation from the nominal activation time, for `period`."""
-    sporadic: Sporadic | None = None
+    sporadic: SporadicSection | None = None
     """Sporadic activation."""
-    burst: Burst | None = None
+    burst: BurstSection | None = None
     """Activation in bursts."""
     times: Times | None = None
     """Activation by a list of times that repeats."""
@@ -108,9 +108,9 @@ class Process(Steps):
     """Core that it runs on; default: the first core."""
     deadline: Duration | None = None
     """Deadline relative to the activation."""
-    overhead: Overhead | None = None
+    overhead: OverheadSection | None = None
     """Overhead of the operating system per job; default: that of `os`."""
-    runnables: list[Runnable] = Field(default_factory=list)
+    runnables: list[RunnableSection] = Field(default_factory=list)
     """Its functions, in order; unnecessary for a process with one function."""
     stack: Size | None = None
     """Its stack; for tasks that share one stack: the most that it uses itself."""
@@ -123,7 +123,7 @@ _PREEMPTIONS = described(
 )
 
 
-class Task(Process):
+class TaskSection(ProcessSection):
     """A task of the controller."""
 
     priority: Priority | None = None
@@ -134,7 +134,7 @@ class Task(Process):
     """Maximum number of pending jobs; further activations are lost."""
 
 
-class Isr(Process):
+class IsrSection(ProcessSection):
     """An interrupt service routine of the controller."""
 
     priority: Priority = 1
@@ -143,7 +143,7 @@ class Isr(Process):
     """OSEK category."""
 
 
-class Label(Shorthand):
+class LabelSection(Shorthand):
     """A variable: its size, or a mapping with more."""
 
     shorthand = ("size",)

@@ -17,7 +17,7 @@ from amalthea_uros.spec.content import nodes_of
 from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.gaps import gaps, is_gap
 from amalthea_uros.spec.mistakes import Mistake, finding_of, without_consequences
-from amalthea_uros.spec.nodes import MAX_FINDINGS, Node, Scalar, Source, plain, read_nodes
+from amalthea_uros.spec.nodes import MAX_FINDINGS, Node, ScalarNode, SourceText, plain, read_nodes
 from amalthea_uros.spec.repair import repair
 from amalthea_uros.spec.section import Section, attach_locations
 
@@ -77,7 +77,7 @@ def text_draft(path: Path, text: str, kind: type[S]) -> Draft[S]:
     """A text as a section of some kind, as the content of a file with this path; raises as `read_draft`."""
     _refuse_xml(path, text)
     node, source, findings = read_nodes(path, text)
-    if isinstance(node, Scalar) and node.value is None:
+    if isinstance(node, ScalarNode) and node.value is None:
         raise ReadError([*findings, Finding("YML001", Severity.ERROR, "the file is empty", Location(path))])
     return _draft(node, source, findings, kind)
 
@@ -93,7 +93,7 @@ def content_draft(content: Mapping[Any, Any], kind: type[S]) -> Draft[S]:
     return _draft(node, source, [], kind)
 
 
-def _draft(node: Node, source: Source, findings: list[Finding], kind: type[S]) -> Draft[S]:
+def _draft(node: Node, source: SourceText, findings: list[Finding], kind: type[S]) -> Draft[S]:
     findings += gaps(node, source)
     section, mistakes = _validated(node, kind)
     if section is not None:

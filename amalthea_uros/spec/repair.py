@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from amalthea_uros.spec.mistakes import Mistake, intended_key, intended_word
-from amalthea_uros.spec.nodes import Mapping, Place, Scalar
+from amalthea_uros.spec.nodes import MappingNode, NodePlace, ScalarNode
 from amalthea_uros.spec.section import Section
 
 #: Similarity of words from which on one is taken for a misspelling of the other.
 CERTAIN = 0.8
 
 
-def repair(mistakes: Iterable[Mistake], kind: type[Section]) -> set[Place] | None:
+def repair(mistakes: Iterable[Mistake], kind: type[Section]) -> set[NodePlace] | None:
     """Correct misspelled keys and words in the nodes of a file, and remove those that are not understood.
 
     Returns
@@ -20,16 +20,16 @@ def repair(mistakes: Iterable[Mistake], kind: type[Section]) -> set[Place] | Non
     set : the places whose further findings may be consequences; None if a mistake leaves too little to examine, such as an unknown
         list, which may define names.
     """
-    touched: set[Place] = set()
+    touched: set[NodePlace] = set()
     for mistake in mistakes:
         holder = mistake.path[-2] if len(mistake.path) > 1 else None
-        if not isinstance(holder, Mapping) or not _repair(mistake, holder, kind):
+        if not isinstance(holder, MappingNode) or not _repair(mistake, holder, kind):
             return None
         touched.update(_places(holder))
     return touched
 
 
-def _repair(mistake: Mistake, holder: Mapping, kind: type[Section]) -> bool:
+def _repair(mistake: Mistake, holder: MappingNode, kind: type[Section]) -> bool:
     """Repair a mistake in the mapping that it is in, unless that would be a guess."""
     value = mistake.path[-1]
     key = next((part for part in map(str, reversed(mistake.details["loc"])) if holder.items.get(part) is value), None)
@@ -42,23 +42,23 @@ def _repair(mistake: Mistake, holder: Mapping, kind: type[Section]) -> bool:
         if word is None:
             del holder.items[key]
         else:
-            holder.items[key] = Scalar(value.place, word)
+            holder.items[key] = ScalarNode(value.place, word)
         return True
     return False
 
 
-def _rename(holder: Mapping, key: str, intended: str | None) -> bool:
+def _rename(holder: MappingNode, key: str, intended: str | None) -> bool:
     if intended is not None and intended not in holder.items:
         holder.items[intended], holder.keys[intended] = holder.items[key], holder.keys[key]
-    elif not isinstance(holder.items[key], Scalar):
+    elif not isinstance(holder.items[key], ScalarNode):
         return False
     del holder.items[key]
     return True
 
 
-def _places(holder: Mapping) -> Iterator[Place]:
+def _places(holder: MappingNode) -> Iterator[NodePlace]:
     """The places of a mapping and of its plain values."""
     yield holder.place
     for item in holder.items.values():
-        if isinstance(item, Scalar):
+        if isinstance(item, ScalarNode):
             yield item.place

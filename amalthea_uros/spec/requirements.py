@@ -19,7 +19,7 @@ Moment = Annotated[
 ]
 
 
-class Limits(Shorthand):
+class LimitsSection(Shorthand):
     """A maximum, or a mapping with minimum and maximum."""
 
     shorthand = ("max",)
@@ -72,9 +72,9 @@ class Chain(Section):
     """Event of the first member that starts the chain."""
     end: Moment = Field("finish", alias="to")
     """Event of the last member that ends the chain."""
-    reaction: Limits | None = None
+    reaction: LimitsSection | None = None
     """Limits on the reaction: from the start event to the end of the first job whose output is based on it."""
-    age: Limits | None = None
+    age: LimitsSection | None = None
     """Limits on the data age: from the start event on which an output is based to that output."""
     jitter: ChainJitter | None = None
     """Limit on the jitter: the maximum minus the minimum of the reaction, or of the age."""
@@ -114,7 +114,7 @@ class Jitter(Shorthand):
     """Maximum that is allowed."""
 
 
-class Requirement(Section):
+class RequirementSection(Section):
     """Limits that every job of a process must meet."""
 
     process: Name
@@ -123,23 +123,23 @@ class Requirement(Section):
     """Name of the requirement; default: made from the process and the limited quantity."""
     severity: Literal["cosmetic", "minor", "major", "critical"] | None = None
     """Severity of a violation."""
-    response_time: Limits | None = None
+    response_time: LimitsSection | None = None
     """Limits on the time from activation to end."""
-    net_execution_time: Limits | None = None
+    net_execution_time: LimitsSection | None = None
     """Limits on the time that a job executes, without preemption."""
-    gross_execution_time: Limits | None = None
+    gross_execution_time: LimitsSection | None = None
     """Limits on the time from start to end, including preemption."""
-    start_delay: Limits | None = None
+    start_delay: LimitsSection | None = None
     """Limits on the time from activation to start."""
-    start_to_start: Limits | None = None
+    start_to_start: LimitsSection | None = None
     """Limits on the time from one start to the next."""
-    end_to_end: Limits | None = None
+    end_to_end: LimitsSection | None = None
     """Limits on the time from one end to the next."""
     jitter: Jitter | None = None
     """Limit on the jitter of the response time, or of another time."""
 
     @model_validator(mode="after")
     def _is_something(self) -> Self:
-        if not any(isinstance(getattr(self, key), Limits | Jitter) for key in type(self).model_fields):
+        if not any(isinstance(getattr(self, key), LimitsSection | Jitter) for key in type(self).model_fields):
             raise problem("the requirement has no limit; add one, e.g. response_time: 1 ms")
         return self

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from amalthea_uros.spec.middleware import Middleware
-from amalthea_uros.spec.os import Os
+from amalthea_uros.spec.os import OsSection
 from amalthea_uros.spec.section import Section
 from amalthea_uros.spec.values import WHOLE_NUMBER, Name
 
@@ -21,7 +21,7 @@ class Rtos(Section):
     """Name by which `os.rtos` refers to it."""
     title: Name
     """Its full name."""
-    os: Os = Field(default_factory=Os)
+    os: OsSection = Field(default_factory=OsSection)
     """Its properties; keys of the platform and of the application override them."""
     middleware: Middleware = Field(default_factory=Middleware)
     """The generic micro-ROS model as ported to it; keys of the platform and of the application override it, key by key."""

@@ -21,7 +21,13 @@ def json_schema() -> dict[str, Any]:
     schema = Description.model_json_schema(by_alias=True, ref_template="#/definitions/{model}")
     definitions: dict[str, Any] = schema.pop("$defs")
     whole: dict[str, Any] = {"$schema": _DRAFT, "$id": _ID, "title": "amuros application"} | _tidied(schema)
-    return whole | {"definitions": {name: _tidied(definitions[name]) for name in sorted(definitions)}}
+    named = {_name(name): _tidied(definition) for name, definition in definitions.items()}
+    return whole | {"definitions": dict(sorted(named.items()))}
+
+
+def _name(definition: str) -> str:
+    """What users call a section: the classes of sections whose plain names are those of the performance model have a longer one."""
+    return definition.removesuffix("Section")
 
 
 def _tidied(schema: Any) -> Any:
@@ -31,6 +37,8 @@ def _tidied(schema: Any) -> Any:
     if not isinstance(schema, dict):
         return schema
     found = {key: _tidied(value) for key, value in schema.items() if key != "title" or not isinstance(value, str)}
+    if "$ref" in found:
+        found["$ref"] = _name(found["$ref"])
     alternatives = found.get("anyOf")
     if alternatives is not None:
         kept = [item for item in alternatives if item != {"type": "null"}]

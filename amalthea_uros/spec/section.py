@@ -9,7 +9,7 @@ from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, PydanticCustomError
 
 from amalthea_uros.diagnostics import Location
-from amalthea_uros.spec.nodes import Mapping, Node, Sequence, Source
+from amalthea_uros.spec.nodes import MappingNode, Node, SequenceNode, SourceText
 
 #: How keys begin that are for other tools, or for anchors; they are ignored.
 EXTENSION = "x-"
@@ -23,7 +23,7 @@ class Section(BaseModel):
         extra="forbid", frozen=True, use_attribute_docstrings=True, protected_namespaces=(), defer_build=True
     )
 
-    _where: tuple[Mapping, Source] | None = PrivateAttr(None)
+    _where: tuple[MappingNode, SourceText] | None = PrivateAttr(None)
     #: The section that gives the keys that this one does not state; see `spec.merging`.
     _base: Section | None = PrivateAttr(None)
 
@@ -58,7 +58,7 @@ class Section(BaseModel):
         node: Node = own
         if key is not None and key in own.items:
             node = own.items[key]
-            if index is not None and isinstance(node, Sequence):
+            if index is not None and isinstance(node, SequenceNode):
                 node = node.items[index]
         return source.location(node.place)
 
@@ -66,7 +66,7 @@ class Section(BaseModel):
         """Give the section and those in it the location of a key of another one, which names the file that they are from."""
         if other._where is not None:
             own, source = other._where
-            attach_locations(self, Mapping(own.items.get(key, own).place, {}, {}), source)
+            attach_locations(self, MappingNode(own.items.get(key, own).place, {}, {}), source)
 
     def states(self, key: str) -> bool:
         """Whether the author wrote the key, or that of the platform."""
@@ -116,21 +116,21 @@ class Shorthand(Section):
         return reference
 
 
-def attach_locations(value: Any, node: Node, source: Source) -> None:
+def attach_locations(value: Any, node: Node, source: SourceText) -> None:
     """Attach their locations to a section and everything in it."""
-    if isinstance(value, Section) and isinstance(node, Mapping):
+    if isinstance(value, Section) and isinstance(node, MappingNode):
         value._where = node, source
         # A section that is not given, or given as a shorthand, has the location of the outer one; in a shorthand also its keys.
-        outer = node if isinstance(value, Shorthand) else Mapping(node.place, {}, {})
+        outer = node if isinstance(value, Shorthand) else MappingNode(node.place, {}, {})
         for name, field in type(value).model_fields.items():
             inner = node.items.get(field.alias or name, outer)
             if inner is not outer or isinstance(getattr(value, name), Section):
                 attach_locations(getattr(value, name), inner, source)
     elif isinstance(value, Section):
-        attach_locations(value, Mapping(node.place, {}, {}), source)
-    elif isinstance(value, list | tuple) and isinstance(node, Sequence):
+        attach_locations(value, MappingNode(node.place, {}, {}), source)
+    elif isinstance(value, list | tuple) and isinstance(node, SequenceNode):
         for item, inner in zip(value, node.items, strict=True):
             attach_locations(item, inner, source)
-    elif isinstance(value, dict) and isinstance(node, Mapping):
+    elif isinstance(value, dict) and isinstance(node, MappingNode):
         for key, item in value.items():
             attach_locations(item, node.items[key], source)

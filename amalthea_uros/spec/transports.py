@@ -6,9 +6,9 @@ from typing import Annotated, Literal, Self
 
 from pydantic import AfterValidator, Field, model_validator
 
-from amalthea_uros.spec.execution_time import ExecutionTime
+from amalthea_uros.spec.execution_time import ExecutionTimeSection
 from amalthea_uros.spec.executors import MessageCost
-from amalthea_uros.spec.os import Overhead
+from amalthea_uros.spec.os import OverheadSection
 from amalthea_uros.spec.section import Section, Shorthand
 from amalthea_uros.spec.values import (
     BaudRate,
@@ -29,7 +29,7 @@ from amalthea_uros.spec.values import (
 _LONGEST_OVERHEAD = 8 * 2**16
 
 
-class Latency(Shorthand):
+class LatencySection(Shorthand):
     """A time, or a mapping with minimum and maximum."""
 
     shorthand = ("min", "max")
@@ -52,21 +52,21 @@ class Interrupt(Shorthand):
 
     name: Name = "CAN_Receive"
     """Name of the interrupt service routine."""
-    execution_time: ExecutionTime
+    execution_time: ExecutionTimeSection
     """Execution time per frame."""
     priority: Priority = 1
     """Priority among interrupt service routines."""
     core: Name | None = None
     """Core that it runs on; default: the core of the executor."""
-    overhead: Overhead | None = None
+    overhead: OverheadSection | None = None
     """Overhead of the operating system per job; default: that of `os`."""
 
     shorthand = ("execution_time",)
     plain_value = "Execution time per frame."
-    nested = ExecutionTime
+    nested = ExecutionTimeSection
 
 
-class ForeignFrame(Section):
+class ForeignFrameSection(Section):
     """A frame that others send on the bus."""
 
     name: Name
@@ -95,7 +95,7 @@ class Can(Section):
     """Identifiers of messages, e.g. `{odometry_topic: 0x120, lift_request: 0x80}`; all others have one that loses against these."""
     interrupt: Interrupt | None = None
     """The interrupt for each received frame; if omitted, its cost is part of other execution times."""
-    foreign: list[ForeignFrame] = Field(default_factory=list)
+    foreign: list[ForeignFrameSection] = Field(default_factory=list)
     """Frames of others on the same bus."""
     dbc: Name | None = None
     """A DBC file with the frames of others, relative to this file; those with a cycle time are foreign traffic."""
@@ -114,7 +114,7 @@ class CanFd(Section):
     """Identifiers of messages; all others have one that loses against these."""
     interrupt: Interrupt | None = None
     """The interrupt for each received frame; if omitted, its cost is part of other execution times."""
-    foreign: list[ForeignFrame] = Field(default_factory=list)
+    foreign: list[ForeignFrameSection] = Field(default_factory=list)
     """Frames of others on the same bus."""
     dbc: Name | None = None
     """A DBC file with the frames of others, relative to this file; those with a cycle time are foreign traffic."""
@@ -164,7 +164,7 @@ class UsbCdc(Section):
 
     throughput: BitRate = 12_000_000
     """Bits per second of the bus; default: full speed."""
-    latency: Latency | None = None
+    latency: LatencySection | None = None
     """Time that the host takes until it polls and passes a packet on, besides its transmission; default: unknown."""
     driver: Driver = Field(default_factory=Driver)
     """How the driver moves bytes."""
@@ -172,12 +172,12 @@ class UsbCdc(Section):
     """The interrupt for each received packet."""
 
 
-class Network(Section):
+class NetworkSection(Section):
     """XRCE-DDS over a network."""
 
     bitrate: BitRate
     """Bit rate of the link of the controller."""
-    latency: Latency | None = None
+    latency: LatencySection | None = None
     """Time in the network besides the transmission on that link: switches, access points, the stack of the host; default: unknown."""
     overhead: SizeOrNothing | None = None
     """Bytes per packet that are not content: headers of the network, preamble, gap; default: those of Ethernet."""
@@ -192,7 +192,7 @@ class TransferTime(Section):
 
     size: Size
     """Length of a message of the middleware, up to which the row holds."""
-    time: Latency
+    time: LatencySection
     """Time that it takes."""
 
 
@@ -214,11 +214,11 @@ class Agent(Section):
 
     name: Name = "Agent"
     """Its name."""
-    to_controller: Latency | None = None
+    to_controller: LatencySection | None = None
     """Time from the publication of a message on the host to its first byte on the wire; default: unknown."""
-    to_host: Latency | None = None
+    to_host: LatencySection | None = None
     """Time from the last byte on the wire until subscribers on the host have the message; default: unknown."""
-    acknowledgement: Latency | None = None
+    acknowledgement: LatencySection | None = None
     """Time from the last byte of a reliable message to the first byte of its acknowledgement; default: unknown."""
 
 
@@ -228,7 +228,7 @@ def _not_too_long(bits: int) -> int:
     return bits
 
 
-class Transport(Section):
+class TransportSection(Section):
     """The transport between the controller and the agent: exactly one wire."""
 
     can: Can | None = None
@@ -237,9 +237,9 @@ class Transport(Section):
     """The CAN FD bus."""
     serial: Serial | None = None
     """The serial line."""
-    udp: Network | None = None
+    udp: NetworkSection | None = None
     """UDP: a message per datagram."""
-    tcp: Network | None = None
+    tcp: NetworkSection | None = None
     """TCP: a stream of messages with a length before each."""
     usb_cdc: UsbCdc | None = None
     """The virtual serial port of USB."""

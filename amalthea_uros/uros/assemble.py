@@ -15,7 +15,7 @@ from amalthea_uros.perf.software import Isr, Label, Software, Task
 from amalthea_uros.perf.stimuli import Stimuli
 from amalthea_uros.perf.system import System
 from amalthea_uros.spec.description import Description
-from amalthea_uros.spec.hardware import Hardware
+from amalthea_uros.spec.hardware import HardwareSection
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.units import Time
@@ -103,7 +103,7 @@ class Assembly(Brief):
 
 
 def assemble(
-    description: Description, hardware: Hardware, platform: str | None, database: Sequence[ForeignFrame] = ()
+    description: Description, hardware: HardwareSection, platform: str | None, database: Sequence[ForeignFrame] = ()
 ) -> Assembly:
     """The system that a description describes.
 
@@ -139,7 +139,7 @@ def _profile(middleware: Middleware, notes: Notes) -> Profile | None:
         return None
 
 
-def _assembly(context: AssemblyContext, hardware: Hardware, database: Sequence[ForeignFrame]) -> Assembly:
+def _assembly(context: AssemblyContext, hardware: HardwareSection, database: Sequence[ForeignFrame]) -> Assembly:
     application, middleware = context.description.application, context.description.middleware
     callbacks = callbacks_of(application, middleware, context.notes)
     messages = bus_messages(callbacks, context.profile)

@@ -32,11 +32,11 @@ class BackgroundTasks:
     converter: DemandConverter
     notes: Notes
     registry: StimulusRegistry
-    tasks: Mapping[str, spec.Task]
+    tasks: Mapping[str, spec.TaskSection]
     runnables: dict[str, Runnable] = field(default_factory=dict)
     _sections: dict[str, spec.Steps] = field(default_factory=dict)
 
-    def task(self, section: spec.Task, core: str, triggered_by: Iterable[spec.Process]) -> PlannedTask:
+    def task(self, section: spec.TaskSection, core: str, triggered_by: Iterable[spec.ProcessSection]) -> PlannedTask:
         """A task.
 
         Parameters
@@ -58,7 +58,7 @@ class BackgroundTasks:
             origin=section.location(),
         )
 
-    def isr(self, section: spec.Isr, core: str) -> PlannedIsr:
+    def isr(self, section: spec.IsrSection, core: str) -> PlannedIsr:
         """An interrupt service routine."""
         return PlannedIsr(
             name=section.name,
@@ -71,7 +71,7 @@ class BackgroundTasks:
             origin=section.location(),
         )
 
-    def stimuli(self, section: spec.Process, is_triggered: bool) -> tuple[str, ...]:
+    def stimuli(self, section: spec.ProcessSection, is_triggered: bool) -> tuple[str, ...]:
         """The names of the stimuli that activate a process."""
         kinds = [kind for kind in _ACTIVATIONS if getattr(section, kind) is not None]
         self._check_activation(section, kinds, is_triggered)
@@ -80,12 +80,12 @@ class BackgroundTasks:
             found.append(self.registry.add(perf.InterProcess(name=trigger_name(section.name), origin=section.location())))
         return tuple(found)
 
-    def _check_activation(self, section: spec.Process, kinds: list[str], is_triggered: bool) -> None:
+    def _check_activation(self, section: spec.ProcessSection, kinds: list[str], is_triggered: bool) -> None:
         if len(kinds) > 1:
             message = f"{section.name!r} has more than one activation: {' and '.join(map(repr, kinds))}"
             self.notes.error("APP003", message, section.location(kinds[1]), "Remove all but one.")
         if not kinds and not is_triggered:
-            trigger = ", or list it under 'triggers' of another process" if isinstance(section, spec.Task) else ""
+            trigger = ", or list it under 'triggers' of another process" if isinstance(section, spec.TaskSection) else ""
             advice = f"Set one of {', '.join(_ACTIVATIONS)}{trigger}; e.g. 'period: 10 ms'."
             self.notes.error("APP003", f"{section.name!r} has no activation", section.location(), advice)
         for key in ("offset", "jitter"):
@@ -93,7 +93,7 @@ class BackgroundTasks:
                 message = f"{key!r} of {section.name!r} has no effect without 'period'"
                 self.notes.error("APP003", message, section.location(key), f"Set 'period', or remove {key!r}.")
 
-    def periodic(self, section: spec.Process) -> str:
+    def periodic(self, section: spec.ProcessSection) -> str:
         """The stimulus of `period`."""
         assert section.period is not None
         if section.jitter is None:
@@ -108,7 +108,7 @@ class BackgroundTasks:
             )
         )
 
-    def sporadic(self, section: spec.Process) -> str:
+    def sporadic(self, section: spec.ProcessSection) -> str:
         """The stimulus of `sporadic`."""
         assert section.sporadic is not None
         lower, upper = section.sporadic.min, section.sporadic.max or section.sporadic.min
@@ -125,7 +125,7 @@ class BackgroundTasks:
             )
         )
 
-    def burst(self, section: spec.Process) -> str:
+    def burst(self, section: spec.ProcessSection) -> str:
         """The stimulus of `burst`."""
         burst = section.burst
         assert burst is not None
@@ -148,7 +148,7 @@ class BackgroundTasks:
             )
         )
 
-    def times(self, section: spec.Process) -> str:
+    def times(self, section: spec.ProcessSection) -> str:
         """The stimulus of `times`."""
         times = section.times
         assert times is not None
@@ -166,11 +166,11 @@ class BackgroundTasks:
             )
         )
 
-    def once(self, section: spec.Process) -> str:
+    def once(self, section: spec.ProcessSection) -> str:
         """The stimulus of `once`."""
         return self.registry.add(perf.Single(name=_stimulus_name(section), time=section.once or 0, origin=section.location()))
 
-    def activities(self, section: spec.Process, core: str) -> tuple[Activity, ...]:
+    def activities(self, section: spec.ProcessSection, core: str) -> tuple[Activity, ...]:
         """The activities of a process: calls of its runnables."""
         keys = [key for key in spec.Steps.model_fields if section.states(key)]
         if section.runnables:
@@ -188,7 +188,7 @@ class BackgroundTasks:
         self._add(name, section, core)
         return (Call(runnable=name),)
 
-    def _call(self, section: spec.Runnable, core: str) -> Call:
+    def _call(self, section: spec.RunnableSection, core: str) -> Call:
         self._add(section.name, section, core)
         if section.every == 1 and section.first <= 1:
             return Call(runnable=section.name)
@@ -218,7 +218,7 @@ class BackgroundTasks:
 
 
 #: Kind of activation, by the key of a process -> creates its stimulus.
-_ACTIVATIONS: Mapping[str, Callable[[BackgroundTasks, spec.Process], str]] = {
+_ACTIVATIONS: Mapping[str, Callable[[BackgroundTasks, spec.ProcessSection], str]] = {
     "period": BackgroundTasks.periodic,
     "sporadic": BackgroundTasks.sporadic,
     "burst": BackgroundTasks.burst,
@@ -227,7 +227,7 @@ _ACTIVATIONS: Mapping[str, Callable[[BackgroundTasks, spec.Process], str]] = {
 }
 
 
-def _stimulus_name(section: spec.Process) -> str:
+def _stimulus_name(section: spec.ProcessSection) -> str:
     return f"activation_of_{section.name}"
 
 
@@ -249,7 +249,7 @@ def add_background_tasks(context: AssemblyContext) -> None:
     context.runnables |= background.runnables
 
 
-def min_interarrival(section: spec.Process) -> Time | None:
+def min_interarrival(section: spec.ProcessSection) -> Time | None:
     """The minimum time between two activations; None for a single activation or a trigger."""
     if section.period is not None:
         return section.period
@@ -263,9 +263,9 @@ def min_interarrival(section: spec.Process) -> Time | None:
     return None
 
 
-def triggering_processes(processes: Iterable[spec.Process]) -> dict[str, list[spec.Process]]:
+def triggering_processes(processes: Iterable[spec.ProcessSection]) -> dict[str, list[spec.ProcessSection]]:
     """For each task that is triggered, the processes that trigger it."""
-    found: dict[str, list[spec.Process]] = {}
+    found: dict[str, list[spec.ProcessSection]] = {}
     for process in processes:
         for section in (process, *process.runnables):
             for task in section.triggers:

@@ -8,7 +8,7 @@ from amalthea_uros.perf.activities import Call
 from amalthea_uros.perf.network import Direction
 from amalthea_uros.perf.software import Runnable
 from amalthea_uros.perf.stimuli import InterProcess
-from amalthea_uros.spec.executors import Executor
+from amalthea_uros.spec.executors import ExecutorSection
 from amalthea_uros.units import Time
 from amalthea_uros.uros.application.callbacks import Callback, body_name, registration_order
 from amalthea_uros.uros.application.phases import ExecutorPhases, own_task_counter
@@ -61,7 +61,7 @@ def add_callbacks(context: AssemblyContext, callbacks: Sequence[Callback]) -> tu
     return tuple(choices)
 
 
-def _add_looping(context: AssemblyContext, executor: Executor, callbacks: Sequence[Callback]) -> Iterator[PeriodChoice]:
+def _add_looping(context: AssemblyContext, executor: ExecutorSection, callbacks: Sequence[Callback]) -> Iterator[PeriodChoice]:
     """Add an executor with a loop, and the tasks of callbacks that do not run in it: it activates those without a period."""
     core = context.core(executor.core, executor.location("core"))
     bodies = {callback.name: _body(context, callback, core) for callback in callbacks}
@@ -81,7 +81,7 @@ def _add_looping(context: AssemblyContext, executor: Executor, callbacks: Sequen
 
 
 def _add_periodic(
-    context: AssemblyContext, executor: Executor, callbacks: Sequence[Callback], inside: Sequence[Callback]
+    context: AssemblyContext, executor: ExecutorSection, callbacks: Sequence[Callback], inside: Sequence[Callback]
 ) -> tuple[PeriodChoice, ...]:
     """Add an executor that is activated with a period, and the tasks of callbacks that do not run in it.
 
@@ -124,7 +124,7 @@ def _check_phases(context: AssemblyContext, callbacks: Sequence[Callback], phase
 
 def _executor_calls(
     context: AssemblyContext,
-    executor: Executor,
+    executor: ExecutorSection,
     outside: Sequence[Callback],
     inside: Sequence[Callback],
     bodies: dict[str, Runnable],
@@ -139,7 +139,9 @@ def _executor_calls(
     ]
 
 
-def _add_executor(context: AssemblyContext, executor: Executor, calls: Sequence[PlannedCall], period: Time, core: str) -> None:
+def _add_executor(
+    context: AssemblyContext, executor: ExecutorSection, calls: Sequence[PlannedCall], period: Time, core: str
+) -> None:
     context.runnables |= {call.runnable.name: call.runnable for call in calls}
     context.tasks.append(
         PlannedTask(

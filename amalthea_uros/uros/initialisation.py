@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from amalthea_uros.spec.application import Application, Node
+from amalthea_uros.spec.application import Application, NodeSection
 from amalthea_uros.spec.middleware import ResponseTime
 from amalthea_uros.units import Time
 
@@ -57,7 +57,7 @@ def entities_of(application: Application) -> tuple[Entity, ...]:
     return (Entity(kind="session", name="client"), *(entity for node in application.nodes for entity in _of_node(node)))
 
 
-def _of_node(node: Node) -> Iterator[Entity]:
+def _of_node(node: NodeSection) -> Iterator[Entity]:
     yield Entity(kind="participant", name=node.name)
     for publisher in node.publishers:
         yield from _of_topic(publisher.topic, "publisher", "datawriter")

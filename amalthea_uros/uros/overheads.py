@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.perf.activities import Activity, Call
 from amalthea_uros.perf.software import IsrCategory, Runnable
-from amalthea_uros.spec.os import Overhead, OverheadTime
+from amalthea_uros.spec.os import OverheadSection, OverheadTime
 from amalthea_uros.uros.assembly.context import AssemblyContext
 from amalthea_uros.uros.assembly.tasks import PlannedIsr, PlannedTask
 
@@ -23,7 +23,7 @@ class _Times:
     activation: OverheadTime | None
     termination: OverheadTime | None
 
-    def overridden(self, own: Overhead | None) -> _Times:
+    def overridden(self, own: OverheadSection | None) -> _Times:
         """The same with the times that a process states itself."""
         if own is None:
             return self

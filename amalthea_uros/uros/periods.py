@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from amalthea_uros.spec.executors import Executor
+from amalthea_uros.spec.executors import ExecutorSection
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.units import Time, time_text
 from amalthea_uros.uros.application.callbacks import Callback, CallbackKind
@@ -54,7 +54,7 @@ class PeriodCandidates:
         return self.periods or (callback.min_interval,)
 
 
-def period_candidates(middleware: Middleware, executor: Executor) -> PeriodCandidates:
+def period_candidates(middleware: Middleware, executor: ExecutorSection) -> PeriodCandidates:
     """The task periods that the middleware allows for callbacks that an executor serves."""
     return PeriodCandidates(tuple(sorted(set(middleware.task_periods), reverse=True)), executor.period)
 
@@ -139,7 +139,11 @@ def check_callbacks_in_executor(callbacks: Iterable[Callback], converter: Demand
 
 
 def choose_executor_period(
-    executor: Executor, candidates: PeriodCandidates, tasks: Iterable[PeriodChoice], inside: Iterable[Callback], notes: Notes
+    executor: ExecutorSection,
+    candidates: PeriodCandidates,
+    tasks: Iterable[PeriodChoice],
+    inside: Iterable[Callback],
+    notes: Notes,
 ) -> PeriodChoice | None:
     """The period of the executor; it may not exceed the period of any task that it notifies or callback that it runs.
 

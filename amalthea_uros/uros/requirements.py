@@ -21,7 +21,7 @@ _METRICS = {
 
 
 def requirements(
-    sections: Iterable[spec.Requirement], elements: Mapping[str, ChainElement], notes: Notes
+    sections: Iterable[spec.RequirementSection], elements: Mapping[str, ChainElement], notes: Notes
 ) -> Iterator[Requirement]:
     """The requirements of the description, one for each limit."""
     for section in sections:
@@ -32,7 +32,7 @@ def requirements(
         yield from _limits(section, element)
 
 
-def _limits(section: spec.Requirement, element: ChainElement) -> Iterator[Requirement]:
+def _limits(section: spec.RequirementSection, element: ChainElement) -> Iterator[Requirement]:
     for name, limit, origin in _stated(section):
         yield Requirement(
             name=name,
@@ -44,10 +44,10 @@ def _limits(section: spec.Requirement, element: ChainElement) -> Iterator[Requir
         )
 
 
-def _stated(section: spec.Requirement) -> Iterator[tuple[str, Limit, Location | None]]:
+def _stated(section: spec.RequirementSection) -> Iterator[tuple[str, Limit, Location | None]]:
     """Each limit with its name, which all limits of one requirement can share, and where it is stated."""
     for key, metric in _METRICS.items():
-        limits: spec.Limits | None = getattr(section, key)
+        limits: spec.LimitsSection | None = getattr(section, key)
         if limits is None:
             continue
         name = section.name or f"{section.process}_{key}"

@@ -12,14 +12,14 @@ from pathlib import Path
 from amalthea_uros._internal.addresses import page_of_finding
 from amalthea_uros.findings import catalogue
 from amalthea_uros.findings.kind import FindingKind
-from amalthea_uros.validate.rule import ModelRule, Profile, SystemRule
+from amalthea_uros.validate.rule import ModelRule, RuleProfile, SystemRule
 from amalthea_uros.validate.user_rules import check_id, installed_rules
 
 #: The families of findings that are selected like rules, although something else reports them.
-_FAMILIES = {Profile.SCHEMA: "XSD", Profile.MICRO_ROS: "UR"}
+_FAMILIES = {RuleProfile.SCHEMA: "XSD", RuleProfile.MICRO_ROS: "UR"}
 
 #: The profiles whose rules are part of this package.
-_BUILT_IN = tuple(profile for profile in Profile if profile is not Profile.USER)
+_BUILT_IN = tuple(profile for profile in RuleProfile if profile is not RuleProfile.USER)
 
 #: The part of a file that defines the id of a rule.
 _ID = re.compile(r'^ +id="([^"]+)",$', re.MULTILINE)
@@ -40,7 +40,7 @@ def add(rules: Iterable[ModelRule]) -> None:
         _added[new.id] = new
 
 
-def ids(profiles: Iterable[Profile] = Profile) -> Iterator[str]:
+def ids(profiles: Iterable[RuleProfile] = RuleProfile) -> Iterator[str]:
     """The ids of the rules of some profiles, in order.
 
     Raises
@@ -48,13 +48,13 @@ def ids(profiles: Iterable[Profile] = Profile) -> Iterator[str]:
     ReadError : rules of an installed package cannot be loaded.
     """
     for profile in profiles:
-        yield from sorted(_user_rules() if profile is Profile.USER else _built_in(profile))
+        yield from sorted(_user_rules() if profile is RuleProfile.USER else _built_in(profile))
 
 
-def profile_of(identifier: str) -> Profile | None:
+def profile_of(identifier: str) -> RuleProfile | None:
     """The profile of a rule; None if there is no such rule."""
     built_in = _built_in_profile(identifier)
-    return Profile.USER if built_in is None and identifier in _user_rules() else built_in
+    return RuleProfile.USER if built_in is None and identifier in _user_rules() else built_in
 
 
 def rule_url(identifier: str) -> str | None:
@@ -73,7 +73,7 @@ def rule(identifier: str) -> FindingKind:
     profile = profile_of(identifier)
     if profile is None:
         raise KeyError(identifier)
-    if profile is Profile.USER:
+    if profile is RuleProfile.USER:
         return _user_rules()[identifier]
     if profile in _FAMILIES:
         return next(kind for kind in catalogue.kinds(_FAMILIES[profile]) if kind.id == identifier)
@@ -111,17 +111,17 @@ def _taken(by_users: Iterable[str]) -> Iterator[str]:
     return chain(by_users, catalogue.ids(), *map(_built_in, _BUILT_IN))
 
 
-def _built_in_profile(identifier: str) -> Profile | None:
+def _built_in_profile(identifier: str) -> RuleProfile | None:
     return next((profile for profile in _BUILT_IN if identifier in _built_in(profile)), None)
 
 
-def _built_in(profile: Profile) -> Collection[str]:
+def _built_in(profile: RuleProfile) -> Collection[str]:
     """The ids of the rules of a profile that are part of this package."""
     return catalogue.ids_of(_FAMILIES[profile]) if profile in _FAMILIES else _modules(profile)
 
 
 @cache
-def _modules(profile: Profile) -> Mapping[str, str]:
+def _modules(profile: RuleProfile) -> Mapping[str, str]:
     """The names of the modules of the rules of a profile, by id."""
     files = (Path(__file__).parent / "rules" / profile).glob("*.py")
     return {identifier: file.stem for file in files for identifier in _ID.findall(file.read_text(encoding="utf-8"))}

@@ -19,7 +19,7 @@ from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.system_context import SystemContext
 
 
-class Profile(StrEnum):
+class RuleProfile(StrEnum):
     """A set of rules for a purpose; the folder in which they are has its name, those of users are elsewhere."""
 
     SCHEMA = "schema"
@@ -77,7 +77,7 @@ class ModelRule(FindingKind):
     in_canonical_form: bool = False
 
 
-class Problem(NamedTuple):
+class SystemProblem(NamedTuple):
     """What is wrong with an object of a system."""
 
     item: Located
@@ -95,4 +95,4 @@ class SystemRule(FindingKind):
     check : finds the problems of a system
     """
 
-    check: Callable[[SystemContext], Iterator[Problem]]
+    check: Callable[[SystemContext], Iterator[SystemProblem]]

@@ -8,7 +8,7 @@ from fnmatch import fnmatchcase
 
 from amalthea_uros.findings import catalogue
 from amalthea_uros.validate import registry
-from amalthea_uros.validate.rule import Profile
+from amalthea_uros.validate.rule import RuleProfile
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -22,13 +22,13 @@ class Selection:
     ignored : ids of the rules and other findings to leave out
     """
 
-    profiles: tuple[Profile, ...] = ()
+    profiles: tuple[RuleProfile, ...] = ()
     selected: frozenset[str] | None = None
     ignored: frozenset[str] = frozenset()
 
     def rules(self) -> list[str]:
         """The ids of the selected rules."""
-        return [identifier for identifier in registry.ids(self.profiles or Profile) if self._is_selected(identifier)]
+        return [identifier for identifier in registry.ids(self.profiles or RuleProfile) if self._is_selected(identifier)]
 
     def _is_selected(self, identifier: str) -> bool:
         return identifier not in self.ignored and (self.selected is None or identifier in self.selected)
@@ -48,7 +48,7 @@ class UnknownPatternError(Exception):
         super().__init__(pattern)
 
 
-def select(profiles: Iterable[Profile], selected: Iterable[str], ignored: Iterable[str]) -> Selection:
+def select(profiles: Iterable[RuleProfile], selected: Iterable[str], ignored: Iterable[str]) -> Selection:
     """The selection of some profiles and patterns: an id, the first characters of ids, or a text in which `*` matches anything.
 
     Raises

@@ -8,7 +8,7 @@ from command import amuros
 from junitparser import JUnitXml
 from support import DATA, MODEL
 
-from amalthea_uros.validate.rule import Profile
+from amalthea_uros.validate.rule import RuleProfile
 
 SCHEMA = json.loads((DATA / "sarif-2.1.0-part.schema.json").read_text())
 
@@ -24,7 +24,7 @@ def model(tmp_path):
 
 
 #: Findings of all severities count only where the importer is asked for.
-ALL = ("--profile", ",".join(Profile))
+ALL = ("--profile", ",".join(RuleProfile))
 
 
 def found(model):

@@ -7,7 +7,7 @@ from support import MODEL, ROOT
 from amalthea_uros import check
 from amalthea_uros.errors import ReadError
 from amalthea_uros.validate import registry, user_rules
-from amalthea_uros.validate.rule import Profile
+from amalthea_uros.validate.rule import RuleProfile
 from amalthea_uros.validate.user_rules import rules_of_file
 from amalthea_uros.xmi.load import load
 
@@ -50,8 +50,8 @@ def test_the_rules_of_an_installed_package(clean, model, tmp_path):
     (info / "METADATA").write_text("Metadata-Version: 2.1\nName: acme\nVersion: 1.0\n")
     (info / "entry_points.txt").write_text("[amuros.rules]\nall = acme\n")
     clean.syspath_prepend(str(package))
-    assert list(registry.ids([Profile.USER])) == ["ACME-TASK-NAME"]
-    assert registry.profile_of("ACME-TASK-NAME") is Profile.USER
+    assert list(registry.ids([RuleProfile.USER])) == ["ACME-TASK-NAME"]
+    assert registry.profile_of("ACME-TASK-NAME") is RuleProfile.USER
     assert [finding.object for finding in check(load(model), ["ACME-TASK-NAME"])] == ["Control"]
     # One that cannot be loaded is named.
     (info / "entry_points.txt").write_text("[amuros.rules]\nall = acme:NOTHING\n")

@@ -3,7 +3,7 @@
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.findings.targets import TARGETS, split, summary, target_of
 from amalthea_uros.validate import registry
-from amalthea_uros.validate.rule import Profile
+from amalthea_uros.validate.rule import RuleProfile
 
 INCHRON, TA = TARGETS
 
@@ -12,7 +12,7 @@ def test_a_target_tool_is_the_profile_with_its_rules():
     for identifier in registry.ids():
         profile = registry.profile_of(identifier)
         assert target_of(identifier) == next((target for target in TARGETS if target.name == profile), None)
-    assert {target.name for target in TARGETS} <= set(Profile)
+    assert {target.name for target in TARGETS} <= set(RuleProfile)
 
 
 def test_what_concerns_a_tool_counts_only_where_it_is_asked_for():

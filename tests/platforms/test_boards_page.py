@@ -5,14 +5,14 @@ from pathlib import Path
 from support import ROOT
 
 from amalthea_uros._internal.resources import RTOSES, known_platforms, known_rtoses
-from amalthea_uros.spec.application import Application, Node
+from amalthea_uros.spec.application import Application, NodeSection
 from amalthea_uros.spec.description import Description
-from amalthea_uros.spec.executors import Loop
-from amalthea_uros.spec.hardware import Hardware
+from amalthea_uros.spec.executors import LoopSection
+from amalthea_uros.spec.hardware import HardwareSection
 from amalthea_uros.spec.platforms import complete
 from amalthea_uros.spec.read import read_section
 from amalthea_uros.spec.rtos import Rtos
-from amalthea_uros.spec.transports import Transport
+from amalthea_uros.spec.transports import TransportSection
 from amalthea_uros.units import data_size_text, frequency_text, time_text
 
 PAGE = ROOT / "docs" / "boards.md"
@@ -43,8 +43,8 @@ def row(*cells):
 
 
 def board(name):
-    application = Application(nodes=[Node(name="n")])
-    description = Description(amuros=1, name="a", hardware=Hardware(platform=name), application=application)
+    application = Application(nodes=[NodeSection(name="n")])
+    description = Description(amuros=1, name="a", hardware=HardwareSection(platform=name), application=application)
     whole = complete(description, Path()).description
     hardware, os, middleware = whole.hardware, whole.os, whole.middleware
     memories = [memory for memory in hardware.memories or () if memory.kind == "SRAM"]
@@ -56,7 +56,7 @@ def board(name):
         os.rtos,
         time_text(os.tick) if os.tick else "",
         looping(loop) if loop else "",
-        next((key for key in Transport.model_fields if middleware.transport.states(key)), ""),
+        next((key for key in TransportSection.model_fields if middleware.transport.states(key)), ""),
         "/".join(str(getattr(limits, f"RMW_UXRCE_MAX_{key}")) for key in LIMITS)
         if limits.states("RMW_UXRCE_MAX_NODES")
         else "",
@@ -64,7 +64,7 @@ def board(name):
 
 
 def looping(loop):
-    return ", ".join(f"{key} {time_text(getattr(loop, key))}" for key in Loop.model_fields if loop.states(key))
+    return ", ".join(f"{key} {time_text(getattr(loop, key))}" for key in LoopSection.model_fields if loop.states(key))
 
 
 def system(name):

@@ -7,7 +7,7 @@ from amalthea_uros import build
 from amalthea_uros._internal.resources import PLATFORMS, known_platforms
 from amalthea_uros.errors import ReadError
 from amalthea_uros.spec.description import Description
-from amalthea_uros.spec.hardware import Hardware, Platform
+from amalthea_uros.spec.hardware import HardwareSection, Platform
 from amalthea_uros.spec.platforms import complete
 from amalthea_uros.spec.read import read_section
 
@@ -23,14 +23,14 @@ class TestPlatform:
         assert all(clock.frequency for clock in system.hardware.clocks)
 
     def test_it_is_documented(self, name):
-        assert f"`{name}`" in Hardware.model_fields["platform"].description
+        assert f"`{name}`" in HardwareSection.model_fields["platform"].description
         assert f"`{name}`" in (ROOT / "docs" / "app-yaml.md").read_text()
 
 
 def test_a_platform_file_describes_the_whole_hardware(tmp_path):
     (tmp_path / "mine.yaml").write_text("amuros: 1\nplatform: mine\nhardware: {platform: generic, cores: 2}\n")
     with pytest.raises(ReadError) as error:
-        complete(Description(amuros=1, name="a", hardware=Hardware(platform="./mine.yaml")), tmp_path)
+        complete(Description(amuros=1, name="a", hardware=HardwareSection(platform="./mine.yaml")), tmp_path)
     (finding,) = error.value.findings
     assert finding.message == "the platform 'mine' refers to another platform, 'generic'"
     assert (finding.location.path, finding.location.line) == (tmp_path / "mine.yaml", 3)

@@ -4,7 +4,7 @@ import pytest
 
 from amalthea_uros import analyze
 from amalthea_uros.perf.os import Duration
-from amalthea_uros.spec.os import Os, SleepTicks
+from amalthea_uros.spec.os import OsSection, SleepTicks
 from amalthea_uros.timing.basics.settings import MemoryModel, Settings
 from amalthea_uros.units import MICROSECOND, MILLISECOND
 from amalthea_uros.uros.assembly.rtos import slept
@@ -42,7 +42,7 @@ TASKS = """
     ],
 )
 def test_a_sleep_is_counted_in_ticks(sleep, tick, ticks, expected):
-    assert slept(sleep, Os.model_construct(tick=tick, sleep_ticks=SleepTicks(**ticks) if ticks else None)) == expected
+    assert slept(sleep, OsSection.model_construct(tick=tick, sleep_ticks=SleepTicks(**ticks) if ticks else None)) == expected
 
 
 def test_a_sleep_of_part_of_a_tick_is_reported_at_its_place(author):

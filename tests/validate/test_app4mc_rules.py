@@ -4,7 +4,7 @@ import pytest
 from app4mc_excerpts import ECU, assert_said, cases, messages, module, port
 
 from amalthea_uros.validate import registry
-from amalthea_uros.validate.rule import Profile
+from amalthea_uros.validate.rule import RuleProfile
 
 CLOCK = '<stimuliModel><clocks xsi:type="am:ClockFunction" name="C">{}</clocks></stimuliModel>'
 VALUES = [
@@ -81,7 +81,7 @@ def test_each_object_of_a_name_is_reported(excerpts, count, tmp_path):
 
 
 def test_documented_constraints_are_not_said_to_be_reported():
-    for identifier in registry.ids([Profile.APP4MC]):
+    for identifier in registry.ids([RuleProfile.APP4MC]):
         rationale = registry.rule(identifier).rationale
         assert rationale.endswith("APP4MC's validation also reports it.") is identifier.startswith("AM-")
         assert ("The APP4MC documentation requires" in rationale) is identifier.startswith("DOC-")

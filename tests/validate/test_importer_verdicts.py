@@ -16,12 +16,12 @@ from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.validate import registry
-from amalthea_uros.validate.rule import Profile
+from amalthea_uros.validate.rule import RuleProfile
 
 FOLDER = SHARED / "vectors" / "am2inc"
 TABLE = SHARED / "reference" / "inchron-constraints.md"
 VERDICTS = json.loads((FOLDER / "verdicts.json").read_text()) if FOLDER.exists() else {}
-RULES = list(registry.ids([Profile.INCHRON]))
+RULES = list(registry.ids([RuleProfile.INCHRON]))
 
 #: Models that are taken over as they are, apart from what an information tells.
 SOUND = {

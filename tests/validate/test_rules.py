@@ -12,7 +12,7 @@ from amalthea_uros.diagnostics import Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.validate import registry
 from amalthea_uros.validate.engine import run
-from amalthea_uros.validate.rule import Profile, SystemRule
+from amalthea_uros.validate.rule import RuleProfile, SystemRule
 
 IDS = list(registry.ids())
 
@@ -45,11 +45,11 @@ def test_a_rule(identifier, tmp_path):
 def found_in(rule, example, folder):
     """What a rule finds in one of its examples."""
     profile = registry.profile_of(rule.id)
-    if profile is Profile.MICRO_ROS:
+    if profile is RuleProfile.MICRO_ROS:
         path = folder / "app.yaml"
         path.write_text(example)
         return [finding for finding in told_of(path) if finding.rule == rule.id]
-    if profile is Profile.SCHEMA:
+    if profile is RuleProfile.SCHEMA:
         path = folder / "model.amxmi"
         path.write_text(example)
         return check(load(path), [rule.id])
@@ -79,13 +79,13 @@ LETTERS = {Severity.ERROR: "E", Severity.WARNING: "W", Severity.INFO: "I"}
 
 
 def found_by_rules(model):
-    return {(finding.rule, LETTERS[finding.severity]) for finding in check(model, registry.ids([Profile.INCHRON]))}
+    return {(finding.rule, LETTERS[finding.severity]) for finding in check(model, registry.ids([RuleProfile.INCHRON]))}
 
 
 def test_every_row_of_the_reference_table_is_a_rule():
     # The severity of a rule is that of the worst that it finds.
     rows = {rule: min(letter for other, letter, _ in inchron.ROWS if other == rule) for rule, _, _ in inchron.ROWS}
-    assert rows == {rule: LETTERS[registry.rule(rule).severity] for rule in registry.ids([Profile.INCHRON])}
+    assert rows == {rule: LETTERS[registry.rule(rule).severity] for rule in registry.ids([RuleProfile.INCHRON])}
 
 
 PATHS = [*sorted((ROOT / "samples").glob("*.amxmi")), *sorted((SHARED / "vectors" / "am2inc").glob("*.amxmi"))]

@@ -30,7 +30,7 @@ from amalthea_uros.measure.markers import (
     refuse_overlap,
 )
 from amalthea_uros.measure.series import MeasuredKind
-from amalthea_uros.spec.nodes import Mapping, Node, Place, Scalar, Source, read_nodes
+from amalthea_uros.spec.nodes import MappingNode, Node, NodePlace, ScalarNode, SourceText, read_nodes
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.units import Time, parse_duration, parse_time
 
@@ -48,7 +48,7 @@ _QUANTITIES = ("duration", *JobMetric)
 class _WrongError(Exception):
     """Something at a place is wrong."""
 
-    def __init__(self, place: Place, message: str, advice: str = "") -> None:
+    def __init__(self, place: NodePlace, message: str, advice: str = "") -> None:
         self.place, self.message, self.advice = place, message, advice
 
 
@@ -84,14 +84,14 @@ def counter_of(text: str, signals: Signals) -> MarkerCounter:
 
 @dataclass(slots=True)
 class _Reader:
-    source: Source
+    source: SourceText
     signals: Signals
     findings: list[Finding]
     _nodes: dict[str, Node] = field(default_factory=dict)
 
     def objects(self, node: Node) -> tuple[Measurable, ...]:
         """All objects; those with an error are left out, and a finding is added."""
-        if not isinstance(node, Mapping) or not node.items:
+        if not isinstance(node, MappingNode) or not node.items:
             self._add(
                 _WrongError(node.place, "a file with markers names objects", "An example: Task: {start: 0x101, end: 0x102}")
             )
@@ -110,7 +110,7 @@ class _Reader:
         self.findings.append(Finding("MEA010", Severity.ERROR, error.message, location, error.advice))
 
     def _object(self, name: str, node: Node) -> Measurable:
-        if not isinstance(node, Mapping):
+        if not isinstance(node, MappingNode):
             raise _WrongError(node.place, f"{name!r} must have keys", "An example: {start: 0x101, end: 0x102}")
         form = next((form for form in _FORMS if form in node.items), None)
         if form is None:
@@ -119,7 +119,7 @@ class _Reader:
             if key not in _FORMS[form]:
                 advice = did_you_mean(key, _FORMS[form]) or f"known: {', '.join(_FORMS[form])}"
                 raise _WrongError(node.keys[key], f"{name!r} has an unknown key {key!r}", advice)
-        build: dict[str, Callable[[str, Mapping], Measurable]] = {
+        build: dict[str, Callable[[str, MappingNode], Measurable]] = {
             "start": self._pair,
             "from": self._chain,
             "value": self._value,
@@ -129,7 +129,7 @@ class _Reader:
 
     # The forms of objects.
 
-    def _pair(self, name: str, node: Mapping) -> MarkerPair:
+    def _pair(self, name: str, node: MappingNode) -> MarkerPair:
         start, end = self._marker(name, node, "start"), self._marker(name, node, "end")
         self._refuse_overlap(start, end, node.items["end"].place)
         return MarkerPair(
@@ -141,38 +141,38 @@ class _Reader:
             **self._common(name, node),
         )
 
-    def _chain(self, name: str, node: Mapping) -> MarkerChain:
+    def _chain(self, name: str, node: MappingNode) -> MarkerChain:
         stimulus, response = self._end_of_chain(name, node, "from", "start"), self._end_of_chain(name, node, "to", "end")
         self._refuse_overlap(stimulus, response, node.items["to"].place)
         return MarkerChain(name=name, stimulus=stimulus, response=response, counter=self._counter(name, node))
 
-    def _refuse_overlap(self, first: Marker, second: Marker, place: Place) -> None:
+    def _refuse_overlap(self, first: Marker, second: Marker, place: NodePlace) -> None:
         try:
             refuse_overlap(first, second)
         except ValueError as error:
             raise _WrongError(place, str(error)) from None
 
-    def _end_of_chain(self, name: str, node: Mapping, key: str, default: str) -> Marker:
+    def _end_of_chain(self, name: str, node: MappingNode, key: str, default: str) -> Marker:
         """A marker, or that of another object: `Task`, `Task.start`, `Task.end`."""
         text = self._text(name, node, key)
         other, _, which = text.partition(".")
         found = self._nodes.get(other)
-        if isinstance(found, Mapping) and (which or default) in found.items and (which or default) in ("start", "end"):
+        if isinstance(found, MappingNode) and (which or default) in found.items and (which or default) in ("start", "end"):
             return self._marker(other, found, which or default)
         try:
             return parse_marker(text)
         except ValueError:
-            names = [each for each, item in self._nodes.items() if isinstance(item, Mapping) and "start" in item.items]
+            names = [each for each, item in self._nodes.items() if isinstance(item, MappingNode) and "start" in item.items]
             advice = did_you_mean(other, names) or f"known: {', '.join(names)}"
             message = f"{text!r} in {name!r} is neither a marker nor an object with a start and an end"
             raise _WrongError(node.items[key].place, message, advice) from None
 
-    def _value(self, name: str, node: Mapping) -> ReportedValue:
+    def _value(self, name: str, node: MappingNode) -> ReportedValue:
         (value,), marker = self._reported(name, node, ("value",))
         assert value is not None
         return ReportedValue(name=name, marker=marker, value=value, **self._common(name, node))
 
-    def _statistics(self, name: str, node: Mapping) -> ReportedStatistics:
+    def _statistics(self, name: str, node: MappingNode) -> ReportedStatistics:
         keys = ("min", "mean", "max", "deviation", "count")
         (low, mean, high, deviation, count), marker = self._reported(name, node, keys)
         if low is None or mean is None or high is None:
@@ -182,7 +182,7 @@ class _Reader:
             name=name, marker=marker, min=low, mean=mean, max=high, deviation=deviation, count=count, **common
         )
 
-    def _reported(self, name: str, node: Mapping, keys: Iterable[str]) -> tuple[list[Decoder | None], Marker]:
+    def _reported(self, name: str, node: MappingNode, keys: Iterable[str]) -> tuple[list[Decoder | None], Marker]:
         """What decodes the values, as picoseconds but for the count, and the frame with all of them."""
         unit = self._unit(name, node)
         values = [self._place(name, node, key) if key in node.items else None for key in keys]
@@ -200,7 +200,7 @@ class _Reader:
 
     # Keys.
 
-    def _common(self, name: str, node: Mapping) -> dict[str, Any]:
+    def _common(self, name: str, node: MappingNode) -> dict[str, Any]:
         kind = self._choice(
             name, node, "kind", [each for each in MeasuredKind if each is not MeasuredKind.CHAIN], MeasuredKind.INTERVAL
         )
@@ -212,7 +212,7 @@ class _Reader:
             raise _WrongError(node.items["baseline"].place, message, advice)
         return {"kind": MeasuredKind(kind), "quantity": quantity, "baseline": baseline}
 
-    def _choice(self, name: str, node: Mapping, key: str, choices: Iterable[str], default: str) -> str:
+    def _choice(self, name: str, node: MappingNode, key: str, choices: Iterable[str], default: str) -> str:
         if key not in node.items:
             return default
         text, known = self._text(name, node, key), list(map(str, choices))
@@ -221,32 +221,32 @@ class _Reader:
             raise _WrongError(node.items[key].place, f"{text!r} is no {key} of {name!r}", advice)
         return text
 
-    def _text(self, name: str, node: Mapping, key: str) -> str:
+    def _text(self, name: str, node: MappingNode, key: str) -> str:
         value = node.items.get(key)
         if value is None:
             raise _WrongError(node.place, f"{name!r} has no key {key!r}")
-        if not isinstance(value, Scalar) or value.value is None or isinstance(value.value, bool):
+        if not isinstance(value, ScalarNode) or value.value is None or isinstance(value.value, bool):
             raise _WrongError(value.place, f"{key!r} of {name!r} must be a text")
         return str(value.value)
 
-    def _marker(self, name: str, node: Mapping, key: str) -> Marker:
+    def _marker(self, name: str, node: MappingNode, key: str) -> Marker:
         found: Marker = self._parsed(name, node, key, parse_marker)
         return found
 
-    def _place(self, name: str, node: Mapping, key: str) -> Value:
+    def _place(self, name: str, node: MappingNode, key: str) -> Value:
         found: Value = self._parsed(name, node, key, self.signals.value)
         return found
 
-    def _counter(self, name: str, node: Mapping) -> MarkerCounter | None:
+    def _counter(self, name: str, node: MappingNode) -> MarkerCounter | None:
         if "counter" not in node.items:
             return None
         found: MarkerCounter = self._parsed(name, node, "counter", lambda text: counter_of(text, self.signals))
         return found
 
-    def _period(self, name: str, node: Mapping) -> Time | None:
+    def _period(self, name: str, node: MappingNode) -> Time | None:
         return None if "period" not in node.items else self._parsed(name, node, "period", parse_duration)
 
-    def _unit(self, name: str, node: Mapping) -> Fraction:
+    def _unit(self, name: str, node: MappingNode) -> Fraction:
         """The picoseconds of the unit: `us`, or `0.1 us`."""
         if "unit" not in node.items:
             raise _WrongError(node.place, f"{name!r} has no unit", "State the unit of the values: unit: us")
@@ -254,7 +254,7 @@ class _Reader:
         time: Time = self._parsed(name, node, "unit", lambda _: parse_time(text if text[:1].isdigit() else f"1 {text}"))
         return Fraction(time)
 
-    def _parsed(self, name: str, node: Mapping, key: str, parse: Callable[[str], Any]) -> Any:
+    def _parsed(self, name: str, node: MappingNode, key: str, parse: Callable[[str], Any]) -> Any:
         text = self._text(name, node, key)
         try:
             return parse(text)

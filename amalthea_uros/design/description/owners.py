@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from amalthea_uros.design.description.text_edits import Path
-from amalthea_uros.spec.application import Callback, MessageCallback, Timer
+from amalthea_uros.spec.application import CallbackSection, MessageCallback, Timer
 from amalthea_uros.spec.description import Description
-from amalthea_uros.spec.executors import Executor
+from amalthea_uros.spec.executors import ExecutorSection
 from amalthea_uros.spec.section import Section
 from amalthea_uros.uros.application.callbacks import body_name
 from amalthea_uros.uros.assembly.executor_runnables import spin_name
@@ -70,7 +70,7 @@ def owners(description: Description) -> Iterator[Owner]:
         yield Owner(f"{can.interrupt.name}_Frame", OwnerKind.INTERRUPT, path, can.interrupt)
 
 
-def executors(description: Description) -> Iterator[tuple[Path, Executor]]:
+def executors(description: Description) -> Iterator[tuple[Path, ExecutorSection]]:
     """All executors with their places."""
     if not description.middleware.executors:
         yield ("middleware", "executor"), description.middleware.executor
@@ -78,7 +78,7 @@ def executors(description: Description) -> Iterator[tuple[Path, Executor]]:
         yield ("middleware", "executors", index), executor
 
 
-def callbacks(description: Description) -> Iterator[tuple[Path, Callback]]:
+def callbacks(description: Description) -> Iterator[tuple[Path, CallbackSection]]:
     """All callbacks with their places."""
     for index, node in enumerate(description.application.nodes):
         for kind in _CALLBACKS:

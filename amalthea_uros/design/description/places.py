@@ -13,11 +13,11 @@ from amalthea_uros.design.description.text_edits import Path
 from amalthea_uros.design.description.yaml_values import Value
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.names import require
-from amalthea_uros.spec.application import Callback, MessageCallback, Timer
+from amalthea_uros.spec.application import CallbackSection, MessageCallback, Timer
 from amalthea_uros.spec.description import Description
-from amalthea_uros.spec.execution_time import ExecutionTime
-from amalthea_uros.spec.executors import Executor
-from amalthea_uros.spec.processes import Process
+from amalthea_uros.spec.execution_time import ExecutionTimeSection
+from amalthea_uros.spec.executors import ExecutorSection
+from amalthea_uros.spec.processes import ProcessSection
 from amalthea_uros.spec.transports import Interrupt
 from amalthea_uros.units import SECOND, Time, data_size_text, parse_time, time_text
 from amalthea_uros.uros.application import callbacks as uros
@@ -122,10 +122,10 @@ class Places:
 
     def _execution_time(self, owner: Owner) -> StatedTime:
         section, path = owner.section, (*owner.path, "execution_time")
-        if isinstance(section, Process) and section.runnables:
+        if isinstance(section, ProcessSection) and section.runnables:
             names = ", ".join(f"{runnable.name}.execution_time" for runnable in section.runnables)
             raise InvalidArgumentError(f"the execution time of {owner.name!r} is that of its runnables; change {names}")
-        if isinstance(section, Executor):
+        if isinstance(section, ExecutorSection):
             path, time, elsewhere = self._spin(owner, section)
         elif owner.kind is OwnerKind.TAKE:
             path, time, elsewhere = self._take(owner)
@@ -138,7 +138,7 @@ class Places:
             path, time, elsewhere = path if is_mapping else owner.path, section.execution_time, 0
         else:
             time = getattr(section, "execution_time", None)
-            elsewhere = self._publishing(section) if isinstance(section, Callback) else 0
+            elsewhere = self._publishing(section) if isinstance(section, CallbackSection) else 0
         if time is not None and time.on is not None:
             path, time = self._on(path, time, owner)
         return StatedTime(self._target(path), path, time, elsewhere)
@@ -153,7 +153,7 @@ class Places:
             map(str, (getattr(holder.section, "name", holder.name), *(path[len(holder.path) :] or ["execution_time"])))
         )
 
-    def _spin(self, owner: Owner, section: Executor) -> tuple[Path, ExecutionTime | None, Time]:
+    def _spin(self, owner: Owner, section: ExecutorSection) -> tuple[Path, ExecutionTimeSection | None, Time]:
         """The base of the cost of the executor, and its other parts in every activation."""
         cost, path = section.execution_time, (*owner.path, "execution_time")
         parts = [
@@ -168,12 +168,12 @@ class Places:
         checked = [*[cost.per_timer] * timer_count(served), *[cost.per_handle] * sum(map(handle_count, served))]
         return ((*path, "base") if is_mapping or parts else path), cost.base, _constant(checked, owner.name)
 
-    def _serving(self, owner: Owner) -> tuple[Path, Executor]:
+    def _serving(self, owner: Owner) -> tuple[Path, ExecutorSection]:
         """The executor that serves a callback, with its place."""
         name = next(each.executor for each in self.callbacks if each.section is owner.section)
         return next((place, executor) for place, executor in executors(self.description) if executor.name == name)
 
-    def _take(self, owner: Owner) -> tuple[Path, ExecutionTime | None, Time]:
+    def _take(self, owner: Owner) -> tuple[Path, ExecutionTimeSection | None, Time]:
         """The fixed part of the cost of a message, and the other parts that a callback's message has."""
         place, executor = self._serving(owner)
         cost = executor.execution_time
@@ -186,7 +186,7 @@ class Places:
         )
         return ((*path, "fixed") if is_mapping else path), cost.per_message.fixed, others
 
-    def _on(self, path: Path, time: ExecutionTime, owner: Owner) -> tuple[Path, ExecutionTime | None]:
+    def _on(self, path: Path, time: ExecutionTimeSection, owner: Owner) -> tuple[Path, ExecutionTimeSection | None]:
         """The value of an execution time for this hardware."""
         assert time.on is not None
         core = str(getattr(owner.section, "core", None))
@@ -201,7 +201,7 @@ class Places:
         assert name is not None
         return (*path, "on", name), time.on.get(name, time.on.get("default"))
 
-    def _publishing(self, section: Callback) -> Time:
+    def _publishing(self, section: CallbackSection) -> Time:
         """What publishing adds to the execution time of a callback."""
         sent = next((each.outgoing for each in self.callbacks if each.section is section), ())
         publish = self.description.middleware.publish
@@ -213,7 +213,7 @@ class Places:
         return uros.callbacks_of(self.description.application, self.description.middleware, Notes())
 
 
-def _constant(parts: Iterable[ExecutionTime | Time | None], name: str) -> Time:
+def _constant(parts: Iterable[ExecutionTimeSection | Time | None], name: str) -> Time:
     """The sum of costs that do not vary.
 
     Raises
@@ -222,7 +222,7 @@ def _constant(parts: Iterable[ExecutionTime | Time | None], name: str) -> Time:
     """
     total = 0
     for part in parts:
-        if isinstance(part, ExecutionTime):
+        if isinstance(part, ExecutionTimeSection):
             if part.min is None or part.min != part.max or part.distribution is not None:
                 raise InvalidArgumentError(f"a part of the execution time of {name!r} is stated elsewhere, and varies")
             total += part.min
@@ -301,7 +301,7 @@ def _write_timer_period(places: Places, owner: Owner, change: Change) -> Iterabl
 
 def _write_process_period(_places: Places, owner: Owner, change: Change) -> Iterable[Assignment]:
     section = owner.section
-    assert isinstance(section, Process)
+    assert isinstance(section, ProcessSection)
     for key in ("period", "burst", "times"):
         if getattr(section, key) is not None:
             path = (*owner.path, key) if key == "period" else (*owner.path, key, "period")

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from amalthea_uros.design.description.text_edits import Path
 from amalthea_uros.design.description.yaml_values import Value
-from amalthea_uros.spec.execution_time import ExecutionTime
+from amalthea_uros.spec.execution_time import ExecutionTimeSection
 from amalthea_uros.units import Time, time_text
 
 
@@ -23,7 +23,7 @@ class StatedTime:
 
     target: str
     path: Path
-    value: ExecutionTime | None
+    value: ExecutionTimeSection | None
     elsewhere: Time = 0
 
     def bounds(self, lower: Time, upper: Time) -> Value:

@@ -15,7 +15,7 @@ from amalthea_uros.design.optimize.designs import Structure
 from amalthea_uros.design.optimize.space import Choice, Kind
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.system import System
-from amalthea_uros.spec.executors import Executor
+from amalthea_uros.spec.executors import ExecutorSection
 from amalthea_uros.uros.application.callbacks import Callback, callbacks_of, registration_order
 from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.application.serving import stated_executors
@@ -47,7 +47,7 @@ class DescribedCallbacks:
         return cls(*source, describe_text(*source))
 
     @property
-    def executor(self) -> Executor:
+    def executor(self) -> ExecutorSection:
         """The first executor."""
         return stated_executors(self.whole.description.middleware)[0]
 

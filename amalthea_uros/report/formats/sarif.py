@@ -17,7 +17,7 @@ from amalthea_uros.report.escape import write_json
 from amalthea_uros.report.findings import profile_name, relative
 
 if TYPE_CHECKING:
-    from amalthea_uros.findings.presentation import Entry
+    from amalthea_uros.findings.presentation import FindingEntry
     from amalthea_uros.services.check import CheckResult
 
 RENDERS = ("CheckResult",)
@@ -62,7 +62,7 @@ def _rule(identifier: str) -> dict[str, Any]:
     }
 
 
-def _result(entry: Entry, index: int, artifact: Callable[[Path], dict[str, str]]) -> dict[str, Any]:
+def _result(entry: FindingEntry, index: int, artifact: Callable[[Path], dict[str, str]]) -> dict[str, Any]:
     from amalthea_uros.findings.fingerprint import fingerprint
 
     finding = entry.finding

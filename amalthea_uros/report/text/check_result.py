@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.findings.grouping import Group
+from amalthea_uros.findings.grouping import FindingGroup
 from amalthea_uros.findings.presentation import Presentation
 from amalthea_uros.findings.targets import summary
 from amalthea_uros.report.terminal import Terminal
@@ -40,7 +40,7 @@ def write_closing(result: CheckResult, terminal: Terminal) -> None:
     terminal.line(findings_text(result.presentation.shown))
 
 
-def _write_rest(group: Group, terminal: Terminal) -> None:
+def _write_rest(group: FindingGroup, terminal: Terminal) -> None:
     """The other rules that report the same flaw, and how much follows from it."""
     if group.also:
         terminal.line(f"  {terminal.style('also:', '36')} {', '.join(group.also)}")

@@ -19,14 +19,14 @@ from amalthea_uros.spec.application import (
     Client,
     Lifecycle,
     MessageCallback,
-    Node,
+    NodeSection,
     ParameterServer,
-    Service,
+    ServiceSection,
     Subscription,
     Timer,
 )
-from amalthea_uros.spec.application import Callback as Section
-from amalthea_uros.spec.executors import Executor
+from amalthea_uros.spec.application import CallbackSection as Section
+from amalthea_uros.spec.executors import ExecutorSection
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.units import SECOND, DataSize, Frequency, Time
 from amalthea_uros.uros.application.entities import PARAMETER_SERVICES
@@ -86,7 +86,7 @@ class Callback:
 
     section: Section
     kind: CallbackKind
-    node: Node
+    node: NodeSection
     interval: Time | None
     executor: str
     in_executor: bool
@@ -138,7 +138,7 @@ def callbacks_of(application: Application, middleware: Middleware, notes: Notes)
     return tuple(found)
 
 
-def sections_of(node: Node) -> Iterator[tuple[CallbackKind, Section]]:
+def sections_of(node: NodeSection) -> Iterator[tuple[CallbackKind, Section]]:
     """The sections of all callbacks of a node."""
     for kind, sections in (
         (CallbackKind.SUBSCRIPTION, node.subscriptions),
@@ -164,7 +164,7 @@ def _of_middleware(name: str, section: ParameterServer | Lifecycle) -> Section:
     return found
 
 
-def _callback(kind: CallbackKind, section: Section, node: Node, serving: Serving, notes: Notes) -> Callback | None:
+def _callback(kind: CallbackKind, section: Section, node: NodeSection, serving: Serving, notes: Notes) -> Callback | None:
     executor, in_executor = serving.place(section, node, is_of_middleware=kind in _OF_MIDDLEWARE)
     needs_interval = not _may_be_unknown(section, kind) or executor.loop is None
     interval = _interval(section, needs_interval, notes)
@@ -234,7 +234,7 @@ def _incoming(section: Section, interval: Time) -> Message | None:
             interval -= section.jitter or 0
             topic, size, reliable = section.topic, section.message_size, section.reliability == "reliable"
             channel = _topic_channel(topic)
-        case Service():
+        case ServiceSection():
             topic, size, reliable = section.name, section.request_size, True
             channel = _request_channel(topic)
         case Client():
@@ -257,7 +257,7 @@ def _incoming(section: Section, interval: Time) -> Message | None:
     )
 
 
-def _outgoing(section: Section, node: Node, interval: Time, notes: Notes) -> Iterator[Message]:
+def _outgoing(section: Section, node: NodeSection, interval: Time, notes: Notes) -> Iterator[Message]:
     """What a callback sends: messages to topics, requests to services and goals to actions, and the responses of its own ones.
 
     An action server sends a feedback message and the result for each goal.
@@ -294,7 +294,7 @@ def _outgoing(section: Section, node: Node, interval: Time, notes: Notes) -> Ite
                 yield message(service, _request_channel(service), size, True, client.location())
             case ActionClient(action=action, goal_size=size) as client:
                 yield message(action, _request_channel(action), size, True, client.location())
-    if isinstance(section, Service):
+    if isinstance(section, ServiceSection):
         yield message(section.name, _response_channel(section.name), section.response_size, True, section.location())
     if isinstance(section, ActionServer):
         yield message(section.name, _topic_channel(section.name), section.feedback_size, True, section.location())
@@ -324,7 +324,7 @@ def internal_channels(callbacks: Sequence[Callback]) -> Mapping[str, Channel]:
     }
 
 
-def registration_order(callbacks: Iterable[Callback], executor: Executor, notes: Notes) -> tuple[Callback, ...]:
+def registration_order(callbacks: Iterable[Callback], executor: ExecutorSection, notes: Notes) -> tuple[Callback, ...]:
     """Callbacks in the order in which they are added to the executor."""
     by_name = {callback.name: callback for callback in callbacks}
     for index, name in enumerate(executor.order):

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from amalthea_uros.perf.named import Brief
-from amalthea_uros.spec.application import Application, Node
-from amalthea_uros.spec.executors import Executor
+from amalthea_uros.spec.application import Application, NodeSection
+from amalthea_uros.spec.executors import ExecutorSection
 from amalthea_uros.spec.middleware import Middleware
 
 #: An action server has services for goals, results and cancelling, and publishes feedback and its status; an action client has their
@@ -62,23 +62,23 @@ def entities_of(application: Application, middleware: Middleware) -> Entities:
     )
 
 
-def executors_of(middleware: Middleware) -> list[Executor]:
+def executors_of(middleware: Middleware) -> list[ExecutorSection]:
     """The executors: several, or the only one."""
     return middleware.executors or [middleware.executor]
 
 
-def _publishers(node: Node) -> int:
+def _publishers(node: NodeSection) -> int:
     changes = node.parameter_server is not None and node.parameter_server.events
     return len(node.publishers) + ACTION_TOPICS * len(node.action_servers) + changes + (node.lifecycle is not None)
 
 
-def _services(node: Node) -> int:
+def _services(node: NodeSection) -> int:
     parameters = PARAMETER_SERVICES if node.parameter_server is not None else 0
     lifecycle = LIFECYCLE_SERVICES if node.lifecycle is not None else 0
     return len(node.services) + ACTION_SERVICES * len(node.action_servers) + parameters + lifecycle
 
 
-def _has_handles(node: Node) -> bool:
+def _has_handles(node: NodeSection) -> bool:
     kinds = (node.subscriptions, node.timers, node.services, node.clients)
     more = (node.guard_conditions, node.action_servers, node.action_clients)
     return any(kinds) or any(more) or node.parameter_server is not None or node.lifecycle is not None

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from amalthea_uros.perf.stimuli import Arrivals, Counter
-from amalthea_uros.spec.executors import Executor
+from amalthea_uros.spec.executors import ExecutorSection
 from amalthea_uros.units import Time, time_text
 from amalthea_uros.uros.application.callbacks import Callback
 from amalthea_uros.uros.application.notes import Notes
@@ -26,13 +26,13 @@ class ExecutorPhases:
     jitters : the jitters of messages, by callback; 0 for timers
     """
 
-    executor: Executor
+    executor: ExecutorSection
     period: Time
     stated: Mapping[str, Time]
     jitters: Mapping[str, Time]
 
     @classmethod
-    def of(cls, executor: Executor, period: Time, callbacks: Iterable[Callback]) -> ExecutorPhases:
+    def of(cls, executor: ExecutorSection, period: Time, callbacks: Iterable[Callback]) -> ExecutorPhases:
         """The phases that callbacks state."""
         of_all = tuple(callbacks)
         stated = {c.name: c.section.phase for c in of_all if c.section.phase is not None}

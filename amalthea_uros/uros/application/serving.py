@@ -5,21 +5,21 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from amalthea_uros.spec.application import Callback, Node
+from amalthea_uros.spec.application import CallbackSection, NodeSection
 from amalthea_uros.spec.description import Description
-from amalthea_uros.spec.executors import Executor
+from amalthea_uros.spec.executors import ExecutorSection
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.uros.application.notes import Notes
 
 _OWN_TASK, _FIRST = "own-task", "executor"
 
 
-def stated_executors(middleware: Middleware) -> tuple[Executor, ...]:
+def stated_executors(middleware: Middleware) -> tuple[ExecutorSection, ...]:
     """The executors of a description; the first one serves callbacks that name no other."""
     return tuple(middleware.executors) or (middleware.executor,)
 
 
-def is_in_executor_by_default(executor: Executor) -> bool:
+def is_in_executor_by_default(executor: ExecutorSection) -> bool:
     """Whether callbacks that do not say where they run do so in the executor."""
     if executor.loop is not None and not executor.states("callbacks"):
         return True
@@ -49,7 +49,7 @@ def placement(description: Description, platform: str | None) -> str:
 class Serving:
     """The executors of a description."""
 
-    executors: tuple[Executor, ...]
+    executors: tuple[ExecutorSection, ...]
     notes: Notes
 
     @classmethod
@@ -62,7 +62,7 @@ class Serving:
             notes.error("APP003", message, middleware.location("executor"), advice)
         return cls(stated_executors(middleware), notes)
 
-    def place(self, section: Callback, node: Node, *, is_of_middleware: bool) -> tuple[Executor, bool]:
+    def place(self, section: CallbackSection, node: NodeSection, *, is_of_middleware: bool) -> tuple[ExecutorSection, bool]:
         """The executor that has the handle of a callback, and whether it runs the callback.
 
         Parameters
@@ -84,7 +84,7 @@ class Serving:
             inside = True
         return executor, inside
 
-    def _named(self, name: str, section: Callback | Node) -> tuple[Executor, bool]:
+    def _named(self, name: str, section: CallbackSection | NodeSection) -> tuple[ExecutorSection, bool]:
         """What `runs_in` says."""
         named = next((executor for executor in self.executors if executor.name == name), None)
         if named is not None:
@@ -97,5 +97,5 @@ class Serving:
         return (_OWN_TASK, _FIRST, *(executor.name for executor in self.executors))
 
 
-def _same_file(*executors: Executor) -> bool:
+def _same_file(*executors: ExecutorSection) -> bool:
     return len({location.path for each in executors if (location := each.location()) is not None}) <= 1

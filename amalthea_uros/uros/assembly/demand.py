@@ -23,13 +23,13 @@ from amalthea_uros.perf.distributions import (
     Weibull,
     highest,
 )
-from amalthea_uros.spec.execution_time import ExecutionTime
+from amalthea_uros.spec.execution_time import ExecutionTimeSection
 from amalthea_uros.units import Frequency, Time, down, ticks_of_time, time_text, up
 from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.assembly.hardware import Controller
 
 
-def times_of(execution_time: ExecutionTime) -> Distribution[int]:
+def times_of(execution_time: ExecutionTimeSection) -> Distribution[int]:
     """The distribution of an execution time that is not given per platform, in picoseconds."""
     if execution_time.histogram is not None:
         return Histogram(tuple(Bucket(lower=b.min, upper=b.max, occurrences=b.count) for b in execution_time.histogram))
@@ -107,7 +107,7 @@ class DemandConverter:
     controller: Controller
     notes: Notes
 
-    def on_platform(self, execution_time: ExecutionTime) -> ExecutionTime | None:
+    def on_platform(self, execution_time: ExecutionTimeSection) -> ExecutionTimeSection | None:
         """The execution time on the platform; None, with a finding, if there is none. Core types are left to `demand`."""
         if execution_time.on is None:
             return execution_time
@@ -121,17 +121,17 @@ class DemandConverter:
         self.notes.error("APP006", f"no execution time for {target}", execution_time.location(), f"Add {choices} under 'on'.")
         return None
 
-    def _types(self, execution_time: ExecutionTime) -> dict[str, ExecutionTime]:
+    def _types(self, execution_time: ExecutionTimeSection) -> dict[str, ExecutionTimeSection]:
         types = self.controller.core_types.values()
         return {name: time for name, time in (execution_time.on or {}).items() if name in types}
 
-    def wcet(self, execution_time: ExecutionTime) -> Time:
+    def wcet(self, execution_time: ExecutionTimeSection) -> Time:
         """The worst-case execution time on any core; 0 if it is unknown."""
         types = self._types(execution_time)
         times = list(types.values()) if types else filter(None, [self.on_platform(execution_time)])
         return max((highest(times_of(time)) or 0 for time in times), default=0)
 
-    def demand(self, execution_time: ExecutionTime, core: str) -> Demand | None:
+    def demand(self, execution_time: ExecutionTimeSection, core: str) -> Demand | None:
         """The demand on a core, by core type if the execution time depends on it; None if it has no value for the core."""
         types = self._types(execution_time)
         if not types:
@@ -142,7 +142,7 @@ class DemandConverter:
         default = (execution_time.on or {}).get("default")
         return Demand(None if default is None else self._ticks(default, core), by_type)
 
-    def _ticks(self, execution_time: ExecutionTime, core: str) -> Distribution[int]:
+    def _ticks(self, execution_time: ExecutionTimeSection, core: str) -> Distribution[int]:
         times, frequency = times_of(execution_time), self.controller.frequencies[core]
         if isinstance(times, Constant):
             self._check_rounding(times.value, core, execution_time.location())
@@ -155,7 +155,7 @@ class DemandConverter:
             self.notes.info("APP007", message, location)
 
     def execute(
-        self, parts: Iterable[ExecutionTime | Time | None], core: str, location: Location | None
+        self, parts: Iterable[ExecutionTimeSection | Time | None], core: str, location: Location | None
     ) -> tuple[Execute, ...]:
         """Computation that consists of parts: the sum of all constant ones first, then the others one by one.
 

@@ -18,8 +18,8 @@ from amalthea_uros.perf.activities import AccessKind, Activity, Call, LabelAcces
 from amalthea_uros.perf.network import Direction
 from amalthea_uros.perf.software import Runnable
 from amalthea_uros.perf.stimuli import Counter
-from amalthea_uros.spec.execution_time import ExecutionTime
-from amalthea_uros.spec.executors import Executor, MessageCost
+from amalthea_uros.spec.execution_time import ExecutionTimeSection
+from amalthea_uros.spec.executors import ExecutorSection, MessageCost
 from amalthea_uros.units import DataSize, Time
 from amalthea_uros.uros.application.callbacks import Callback, CallbackKind, handle_count
 from amalthea_uros.uros.application.phases import ExecutorPhases
@@ -47,7 +47,7 @@ class PlannedCall:
 class ExecutorRunnables:
     """Creates the runnables of the executor, with their cost on its core."""
 
-    executor: Executor
+    executor: ExecutorSection
     context: AssemblyContext
     core: str
 
@@ -90,7 +90,7 @@ def notification_name(callback: Callback) -> str:
     return f"{'Take' if callback.incoming else 'Notify'}_{callback.name}"
 
 
-def message_cost(cost: MessageCost, size: DataSize | None) -> list[ExecutionTime | Time | None]:
+def message_cost(cost: MessageCost, size: DataSize | None) -> list[ExecutionTimeSection | Time | None]:
     """The parts of the cost of a message; none without a message."""
     if size is None:
         return []
@@ -136,7 +136,7 @@ def in_executor_calls(
 
 
 def _triggered_counter(
-    callback: Callback, callbacks: Sequence[Callback], executor: Executor, phases: ExecutorPhases
+    callback: Callback, callbacks: Sequence[Callback], executor: ExecutorSection, phases: ExecutorPhases
 ) -> Counter | None:
     """The counter of the call of a callback under the trigger condition; callbacks that wait for the same event are due together."""
     trigger = executor.trigger

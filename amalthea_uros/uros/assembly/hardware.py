@@ -50,7 +50,7 @@ class Controller:
         return next(iter(self.frequencies))
 
 
-def controller_of(name: str, section: spec.Hardware, platform: str | None, notes: Notes) -> Controller | None:
+def controller_of(name: str, section: spec.HardwareSection, platform: str | None, notes: Notes) -> Controller | None:
     """The controller; None, with findings, if its description is invalid.
 
     Parameters
@@ -58,7 +58,7 @@ def controller_of(name: str, section: spec.Hardware, platform: str | None, notes
     name : of the application, which becomes the name of the system
     section : the hardware, completed by its platform
     """
-    cores = section.cores or [spec.Core(name="Core_0")]
+    cores = section.cores or [spec.CoreSection(name="Core_0")]
     frequencies: dict[str, Frequency] = {}
     for core in cores:
         frequency = core.frequency or section.frequency
@@ -94,11 +94,11 @@ def controller_of(name: str, section: spec.Hardware, platform: str | None, notes
     )
 
 
-def _origin(core: spec.Core, section: spec.Hardware) -> Location | None:
+def _origin(core: spec.CoreSection, section: spec.HardwareSection) -> Location | None:
     return core.location() or section.location()
 
 
-def _label_memory(section: spec.Hardware, notes: Notes) -> str | None:
+def _label_memory(section: spec.HardwareSection, notes: Notes) -> str | None:
     names = [memory.name for memory in section.memories or ()]
     if section.label_memory is not None:
         if section.label_memory not in names:
@@ -108,7 +108,11 @@ def _label_memory(section: spec.Hardware, notes: Notes) -> str | None:
 
 
 def _hardware(
-    name: str, section: spec.Hardware, cores: list[spec.Core], frequencies: Mapping[str, Frequency], default_type: str
+    name: str,
+    section: spec.HardwareSection,
+    cores: list[spec.CoreSection],
+    frequencies: Mapping[str, Frequency],
+    default_type: str,
 ) -> Hardware:
     clocks = _clocks(frequencies)
     types = dict.fromkeys(core.type or default_type for core in cores)
@@ -146,13 +150,13 @@ def _clocks(frequencies: Mapping[str, Frequency]) -> dict[Frequency, Clock]:
     return {f: Clock(name=f"Clock_{frequency_text(f).replace(' ', '_')}", frequency=f) for f in different}
 
 
-def _memory(memory: spec.Memory) -> Memory:
+def _memory(memory: spec.MemorySection) -> Memory:
     kinds = {"flash": MemoryKind.FLASH, "SRAM": MemoryKind.SRAM, "DRAM": MemoryKind.DRAM, "PCM": MemoryKind.PCM}
     kind = kinds[memory.kind] if memory.kind else None
     return Memory(name=memory.name, size=memory.size, kind=kind, origin=memory.location())
 
 
-def _accesses(core: str, memories: Iterable[spec.Memory]) -> Iterator[Access]:
+def _accesses(core: str, memories: Iterable[spec.MemorySection]) -> Iterator[Access]:
     """What it costs a core to access the memories of which that is known."""
     for memory in memories:
         cycles = _cycles(core, memory)
@@ -161,7 +165,7 @@ def _accesses(core: str, memories: Iterable[spec.Memory]) -> Iterator[Access]:
             yield Access(memory=memory.name, latency=Latency(read=read, write=write))
 
 
-def _cycles(core: str, memory: spec.Memory) -> tuple[int | None, int | None]:
+def _cycles(core: str, memory: spec.MemorySection) -> tuple[int | None, int | None]:
     """Cycles of a read and of a write: those of the core, else those of all cores."""
     for own in memory.accesses:
         if core in own.cores:
@@ -169,7 +173,7 @@ def _cycles(core: str, memory: spec.Memory) -> tuple[int | None, int | None]:
     return memory.read_cycles, memory.write_cycles
 
 
-def _check_accesses(memories: Iterable[spec.Memory], cores: Mapping[str, Frequency], notes: Notes) -> None:
+def _check_accesses(memories: Iterable[spec.MemorySection], cores: Mapping[str, Frequency], notes: Notes) -> None:
     """Report undefined cores, and those for which a memory states two costs."""
     for memory in memories:
         seen: set[str] = set()

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from amalthea_uros.spec.description import Description
-from amalthea_uros.spec.executors import Executor
-from amalthea_uros.spec.os import Os, SleepTicks
+from amalthea_uros.spec.executors import ExecutorSection
+from amalthea_uros.spec.os import OsSection, SleepTicks
 from amalthea_uros.units import Time, time_text
 from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.assembly.tasks import PlannedTask
@@ -30,7 +30,7 @@ class Sleep(NamedTuple):
     pace: Time
 
 
-def slept(sleep: Time, os: Os) -> Sleep:
+def slept(sleep: Time, os: OsSection) -> Sleep:
     """How long a thread sleeps when it asks for some time.
 
     Ticks come independently of when the thread starts to sleep. So `vTaskDelay(1)` of FreeRTOS, which ends at the next tick, sleeps
@@ -70,7 +70,7 @@ class PriorityScale:
 HIGHER_IS_MORE_URGENT = PriorityScale()
 
 
-def priority_scale(os: Os, tasks: Iterable[PlannedTask]) -> PriorityScale:
+def priority_scale(os: OsSection, tasks: Iterable[PlannedTask]) -> PriorityScale:
     """The scale of priorities: from the highest number of the operating system, or one that leaves room for all tasks."""
     if os.priorities != "lower-is-more-urgent":
         return HIGHER_IS_MORE_URGENT
@@ -80,7 +80,7 @@ def priority_scale(os: Os, tasks: Iterable[PlannedTask]) -> PriorityScale:
     return PriorityScale(max((task.priority for task in planned if task.priority is not None), default=0) + len(planned))
 
 
-def check_priority(task: PlannedTask, number: int, os: Os, notes: Notes) -> None:
+def check_priority(task: PlannedTask, number: int, os: OsSection, notes: Notes) -> None:
     """Report a priority that the operating system does not have."""
     allowed = os.priority_range
     if allowed is None or allowed.lowest <= number <= allowed.highest:
@@ -110,10 +110,10 @@ def check_sleeps(description: Description, notes: Notes) -> None:
         notes.warning("UR161", message, executor.loop.location("sleep"), advice)
 
 
-def _executors(description: Description) -> Iterator[Executor]:
+def _executors(description: Description) -> Iterator[ExecutorSection]:
     middleware = description.middleware
     yield from middleware.executors or [middleware.executor]
 
 
-def _system(os: Os) -> str:
+def _system(os: OsSection) -> str:
     return "the operating system" if os.rtos is None else repr(os.rtos)

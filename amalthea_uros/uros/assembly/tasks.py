@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.perf.activities import Activity
 from amalthea_uros.perf.software import IsrCategory, Preemption
-from amalthea_uros.spec.os import Overhead
+from amalthea_uros.spec.os import OverheadSection
 from amalthea_uros.units import Time
 
 
@@ -34,7 +34,7 @@ class PlannedTask:
     preemption: Preemption = Preemption.PREEMPTIVE
     activation_limit: int = 1
     wins_ties: bool = False
-    overhead: Overhead | None = None
+    overhead: OverheadSection | None = None
     origin: Location | None = None
 
 
@@ -48,5 +48,5 @@ class PlannedIsr:
     activities: tuple[Activity, ...]
     priority: int
     category: IsrCategory = IsrCategory.CATEGORY_2
-    overhead: Overhead | None = None
+    overhead: OverheadSection | None = None
     origin: Location | None = None

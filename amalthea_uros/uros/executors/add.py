@@ -9,7 +9,7 @@ from amalthea_uros.perf.distributions import Boundaries, lowest
 from amalthea_uros.perf.executors import Executor, Handle, Loop, LoopKind, Waiting
 from amalthea_uros.perf.software import Runnable
 from amalthea_uros.spec import executors as spec
-from amalthea_uros.spec.os import Os
+from amalthea_uros.spec.os import OsSection
 from amalthea_uros.units import SECOND, Time, down, ticks_of_time, up
 from amalthea_uros.uros.application.callbacks import Callback
 from amalthea_uros.uros.assembly.context import AssemblyContext
@@ -28,7 +28,7 @@ _UNLIMITED = 1_000_000
 
 def add_looping_executor(
     context: AssemblyContext,
-    section: spec.Executor,
+    section: spec.ExecutorSection,
     callbacks: Sequence[Callback],
     bodies: Mapping[str, Runnable],
     activates: Mapping[str, Sequence[str]],
@@ -70,7 +70,7 @@ def add_looping_executor(
 
 def _executor(
     context: AssemblyContext,
-    section: spec.Executor,
+    section: spec.ExecutorSection,
     callbacks: Sequence[Callback],
     bodies: Mapping[str, Runnable],
     activates: Mapping[str, Sequence[str]],
@@ -105,7 +105,7 @@ def _executor(
     )
 
 
-def _loop(section: spec.Loop, waiting: Waiting, os: Os) -> Loop:
+def _loop(section: spec.LoopSection, waiting: Waiting, os: OsSection) -> Loop:
     """The loop that a section describes, on an operating system that counts sleeps in ticks.
 
     See ros2/rclc `rclc/src/rclc/executor.c`: `rclc_executor_spin` is an endless `spin_some`; `rclc_executor_spin_period` calls

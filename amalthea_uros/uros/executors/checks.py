@@ -21,7 +21,7 @@ from amalthea_uros.uros.application.notes import Notes
 _ACTIONS = (HandleKind.ACTION_SERVER, HandleKind.ACTION_CLIENT)
 
 
-def check_executor(executor: Executor, section: spec.Executor, notes: Notes) -> None:
+def check_executor(executor: Executor, section: spec.ExecutorSection, notes: Notes) -> None:
     """Report what is wrong with an executor with a loop, or will surprise."""
     _check_keys(executor, section, notes)
     _check_handle_limit(executor, section, notes)
@@ -31,7 +31,7 @@ def check_executor(executor: Executor, section: spec.Executor, notes: Notes) -> 
     _check_guard_conditions(executor, section, notes)
 
 
-def _check_keys(executor: Executor, section: spec.Executor, notes: Notes) -> None:
+def _check_keys(executor: Executor, section: spec.ExecutorSection, notes: Notes) -> None:
     """Keys of an executor that a period activates."""
     if section.period is not None:
         message = f"'period' and 'loop' of {executor.name!r} exclude each other"
@@ -41,7 +41,7 @@ def _check_keys(executor: Executor, section: spec.Executor, notes: Notes) -> Non
         notes.error("APP003", message, section.location("offset"), "Remove 'offset'.")
 
 
-def _check_handle_limit(executor: Executor, section: spec.Executor, notes: Notes) -> None:
+def _check_handle_limit(executor: Executor, section: spec.ExecutorSection, notes: Notes) -> None:
     """`rclc_executor_init` allocates the handles once; each `rclc_executor_add_*` beyond them returns an error."""
     count, limit = len(executor.handles), section.max_handles
     if limit is not None and count > limit:
@@ -50,7 +50,7 @@ def _check_handle_limit(executor: Executor, section: spec.Executor, notes: Notes
         notes.error("EXE001", message, section.location("max_handles"), f"Set 'max_handles' and rclc_executor_init to {count}.")
 
 
-def _check_timeout(executor: Executor, section: spec.Executor, notes: Notes) -> None:
+def _check_timeout(executor: Executor, section: spec.ExecutorSection, notes: Notes) -> None:
     """`rclc_executor_spin_one_period` waits for the timeout of the executor (1 s, though a comment in executor.h says 100 ms)."""
     loop = executor.loop
     if loop.kind is LoopKind.PERIODIC and not is_paced(executor) and loop.period is not None and section.loop is not None:
@@ -62,7 +62,7 @@ def _check_timeout(executor: Executor, section: spec.Executor, notes: Notes) -> 
         notes.warning("EXE002", message, section.loop.location("timeout"), advice)
 
 
-def _check_polling(executor: Executor, section: spec.Executor, notes: Notes) -> None:
+def _check_polling(executor: Executor, section: spec.ExecutorSection, notes: Notes) -> None:
     """Loops that never wait.
 
     Timeouts are cut to whole milliseconds (micro-ROS/rmw_microxrcedds `rmw_wait.c`); a due timer makes the timeout 0 (ros2/rcl
@@ -91,7 +91,7 @@ def _check_polling(executor: Executor, section: spec.Executor, notes: Notes) -> 
         notes.warning("EXE003", message, where, f"Set a timeout of {time_text(resolution)} or more; or 0, if that is meant.")
 
 
-def _check_one(executor: Executor, section: spec.Executor, notes: Notes) -> None:
+def _check_one(executor: Executor, section: spec.ExecutorSection, notes: Notes) -> None:
     """`rclc_executor_trigger_one` answers false at the first handle that is ready and of a type that it does not know, an action."""
     if executor.trigger.kind is not TriggerKind.ONE or not executor.trigger.sets:
         return
@@ -107,7 +107,7 @@ def _check_one(executor: Executor, section: spec.Executor, notes: Notes) -> None
         notes.warning("EXE004", message, location, f"Add {_listed(sorted(waited_for))} to the executor before the actions.")
 
 
-def _check_guard_conditions(executor: Executor, section: spec.Executor, notes: Notes) -> None:
+def _check_guard_conditions(executor: Executor, section: spec.ExecutorSection, notes: Notes) -> None:
     """The middleware clears a guard condition when it has seen it (micro-ROS/rmw_microxrcedds `rmw_wait.c`)."""
     for guard in (handle for handle in executor.handles if handle.kind is HandleKind.GUARD_CONDITION):
         if _can_be_lost(guard, executor):
@@ -146,7 +146,7 @@ def check_threads(executors: Iterable[str], sending_tasks: Sequence[Callback], m
     notes.warning("EXE008", message, middleware.location("multithread") or middleware.location(), advice)
 
 
-def check_order(section: spec.Executor, notes: Notes) -> None:
+def check_order(section: spec.ExecutorSection, notes: Notes) -> None:
     """Report callbacks that are listed twice: each is added once."""
     for index, name in enumerate(section.order):
         if name in section.order[:index]:

@@ -9,11 +9,11 @@ from collections.abc import Collection, Mapping, Sequence
 from itertools import chain
 
 from amalthea_uros.perf.executors import TriggerCondition, TriggerKind
-from amalthea_uros.spec.executors import Executor
+from amalthea_uros.spec.executors import ExecutorSection
 from amalthea_uros.uros.application.notes import Notes
 
 
-def trigger_of(executor: Executor, handles: Mapping[str, Sequence[str]], notes: Notes) -> TriggerCondition:
+def trigger_of(executor: ExecutorSection, handles: Mapping[str, Sequence[str]], notes: Notes) -> TriggerCondition:
     """The trigger condition of an executor.
 
     Parameters
@@ -32,7 +32,7 @@ def trigger_of(executor: Executor, handles: Mapping[str, Sequence[str]], notes: 
     return TriggerCondition(kind=TriggerKind(section.when))
 
 
-def _check(names: Collection[str], known: Collection[str], executor: Executor, key: str, notes: Notes) -> None:
+def _check(names: Collection[str], known: Collection[str], executor: ExecutorSection, key: str, notes: Notes) -> None:
     for name in names:
         if name not in known:
             owner = f"the executor {executor.name!r}"

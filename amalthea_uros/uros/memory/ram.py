@@ -10,7 +10,7 @@ from amalthea_uros.perf.named import Brief
 from amalthea_uros.perf.system import System
 from amalthea_uros.spec.application import Application
 from amalthea_uros.spec.description import Description
-from amalthea_uros.spec.hardware import Hardware
+from amalthea_uros.spec.hardware import HardwareSection
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.uros.application.entities import executors_of
 from amalthea_uros.uros.application.notes import Notes
@@ -52,7 +52,7 @@ class Memory(Brief):
         return not self.stacks.unknown and all(use.is_bounded for use in self.uses)
 
 
-def memory_of(description: Description, hardware: Hardware, system: System, profile: Profile) -> Memory:
+def memory_of(description: Description, hardware: HardwareSection, system: System, profile: Profile) -> Memory:
     """The memory of an application.
 
     Parameters
@@ -73,7 +73,7 @@ def memory_of(description: Description, hardware: Hardware, system: System, prof
     )
 
 
-def check_memory(memory: Memory, hardware: Hardware, notes: Notes) -> None:
+def check_memory(memory: Memory, hardware: HardwareSection, notes: Notes) -> None:
     """Report memory that exceeds the budget of the platform, or else all that the board has."""
     limit = memory.ram if memory.budget is None else memory.budget
     needed = memory.total if memory.budget is None else memory.total - memory.other_stacks

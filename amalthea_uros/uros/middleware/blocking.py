@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from amalthea_uros.spec.executors import Executor
+from amalthea_uros.spec.executors import ExecutorSection
 from amalthea_uros.units import Time, time_text
 from amalthea_uros.uros.application.callbacks import Callback
 from amalthea_uros.uros.application.notes import Notes
@@ -65,7 +65,7 @@ def _check_recovery(callbacks: Sequence[Callback], profile: Profile, notes: Note
                 notes.warning("UR124", text, message.origin, advice)
 
 
-def _check_threads(senders: Iterable[Callback], loops: Sequence[Executor], profile: Profile, notes: Notes) -> None:
+def _check_threads(senders: Iterable[Callback], loops: Sequence[ExecutorSection], profile: Profile, notes: Notes) -> None:
     """Report threads that keep others from sending; that nothing protects the session is reported with the executors."""
     how = profile.sending
     if how.holds_session_while_waiting:
@@ -79,7 +79,7 @@ def _check_threads(senders: Iterable[Callback], loops: Sequence[Executor], profi
             )
 
 
-def _timeout(executor: Executor, default: Time) -> Time:
+def _timeout(executor: ExecutorSection, default: Time) -> Time:
     loop = executor.loop
     if loop is None:
         return 0

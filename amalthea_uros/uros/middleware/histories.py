@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from amalthea_uros.spec.application import Application, MessageCallback, Node, Subscription
-from amalthea_uros.spec.application import Callback as Section
+from amalthea_uros.spec.application import Application, MessageCallback, NodeSection, Subscription
+from amalthea_uros.spec.application import CallbackSection as Section
 from amalthea_uros.uros.application.callbacks import Callback
 from amalthea_uros.uros.application.entities import ACTION_SERVICES, ACTION_TOPICS, LIFECYCLE_SERVICES, PARAMETER_SERVICES
 from amalthea_uros.uros.application.notes import Notes
@@ -29,7 +29,7 @@ def kept_messages(application: Application) -> int:
     return sum(count * (depth_of(section) or 0) for node in application.nodes for section, count in _receivers(node))
 
 
-def _receivers(node: Node) -> Iterator[tuple[Section, int]]:
+def _receivers(node: NodeSection) -> Iterator[tuple[Section, int]]:
     """The callbacks with messages of a node, with the entities that receive them."""
     yield from ((section, 1) for section in (*node.subscriptions, *node.services, *node.clients))
     yield from ((section, ACTION_SERVICES) for section in node.action_servers)

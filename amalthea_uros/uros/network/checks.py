@@ -9,7 +9,7 @@ from itertools import pairwise
 from amalthea_uros.perf.executors import Executor
 from amalthea_uros.perf.network import Direction, Purpose
 from amalthea_uros.spec.description import Description
-from amalthea_uros.spec.transports import Can, CanFd, CustomTransport, Driver, Serial, Transport, UsbCdc
+from amalthea_uros.spec.transports import Can, CanFd, CustomTransport, Driver, Serial, TransportSection, UsbCdc
 from amalthea_uros.units import SECOND, Time, data_size_text, percent_text, time_text
 from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.network.queueing import Queued
@@ -206,7 +206,7 @@ def check_foreign(frames: Iterable[ForeignFrame], notes: Notes) -> None:
             notes.warning("UR133", text, frame.origin, advice)
 
 
-def check_load(plan: WirePlan, transport: Transport, notes: Notes) -> None:
+def check_load(plan: WirePlan, transport: TransportSection, notes: Notes) -> None:
     """Report an overload of a wire, with what would fit."""
     loads = dict(_loads(plan))
     worst = max(loads, key=lambda core: loads[core], default="")

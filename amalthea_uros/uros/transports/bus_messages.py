@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from amalthea_uros.perf.network import Direction
 from amalthea_uros.perf.stimuli import Burst, Periodic, Stimulus
-from amalthea_uros.spec.transports import Can, Transport
+from amalthea_uros.spec.transports import Can, TransportSection
 from amalthea_uros.units import SECOND, Time, percent_text
 from amalthea_uros.uros.application.callbacks import Callback, Message
 from amalthea_uros.uros.application.notes import Notes
@@ -79,7 +79,7 @@ def _bus_message(sent: WireMessage, can: Can) -> BusMessage:
     )
 
 
-def check_bus_load(messages: Iterable[BusMessage], transport: Transport, notes: Notes) -> None:
+def check_bus_load(messages: Iterable[BusMessage], transport: TransportSection, notes: Notes) -> None:
     """Report an overload of the bus."""
     load = float(sum(message.bus_load for message in messages))
     if load > 1 and transport.can is not None:
@@ -88,7 +88,7 @@ def check_bus_load(messages: Iterable[BusMessage], transport: Transport, notes: 
         notes.warning("UR131", text, transport.can.location("bitrate"), advice)
 
 
-def check_identifiers(messages: Iterable[BusMessage], transport: Transport, notes: Notes) -> None:
+def check_identifiers(messages: Iterable[BusMessage], transport: TransportSection, notes: Notes) -> None:
     """Report identifiers of messages that do not exist, and those with too many bits."""
     can = transport.can
     if can is None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from amalthea_uros.perf.network import WireKind
-from amalthea_uros.spec.application import Node
+from amalthea_uros.spec.application import NodeSection
 from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.transports import Can, CanFd, CustomTransport, Driver, Serial, UsbCdc
 from amalthea_uros.units import Time
@@ -98,7 +98,7 @@ def _topics(description: Description) -> Iterator[str]:
         yield from (publisher.topic for publisher in node.publishers)
 
 
-def _named(node: Node) -> Iterator[str]:
+def _named(node: NodeSection) -> Iterator[str]:
     """The callbacks of a node, and the labels that they read and write."""
     for callback in (*node.subscriptions, *node.timers, *node.services, *node.clients):
         yield from (callback.name, *callback.reads, *callback.writes)

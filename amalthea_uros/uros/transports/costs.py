@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from amalthea_uros.perf.network import Direction
 from amalthea_uros.spec.description import Description
-from amalthea_uros.spec.execution_time import ExecutionTime
+from amalthea_uros.spec.execution_time import ExecutionTimeSection
 from amalthea_uros.spec.transports import CustomTransport, Driver, Serial, UsbCdc
 from amalthea_uros.units import Time
 from amalthea_uros.uros.application.callbacks import Callback
@@ -19,7 +19,7 @@ from amalthea_uros.uros.transports.messages import opposite, wire_messages
 
 def driver_costs(
     description: Description, callback: Callback, direction: Direction, profile: Profile
-) -> Iterator[ExecutionTime | Time]:
+) -> Iterator[ExecutionTimeSection | Time]:
     """The parts of the execution time that the driver needs for the messages of a callback in a direction, and their acknowledgements.
 
     They are those of its calls, and of copying bytes if it polls.
@@ -35,7 +35,7 @@ def driver_costs(
             yield from _of_part(part.acknowledgement, opposite(direction), line, driver)
 
 
-def _of_part(length: int, direction: Direction, line: Line, driver: Driver) -> Iterator[ExecutionTime | Time]:
+def _of_part(length: int, direction: Direction, line: Line, driver: Driver) -> Iterator[ExecutionTimeSection | Time]:
     """The parts for a message of the middleware; escaped bytes need more calls and time."""
     cost = driver.write_cost if direction is Direction.TO_AGENT else driver.read_cost
     sizes = (least_frame(length), longest_frame(length)) if _is_framed(line) else (length, length)
@@ -49,8 +49,8 @@ def _of_part(length: int, direction: Direction, line: Line, driver: Driver) -> I
         yield _between(*time_on(line, line.frames(length, direction)))
 
 
-def _between(least: Time, most: Time) -> ExecutionTime | Time:
-    return most if least == most else ExecutionTime.model_construct(min=least, max=most)
+def _between(least: Time, most: Time) -> ExecutionTimeSection | Time:
+    return most if least == most else ExecutionTimeSection.model_construct(min=least, max=most)
 
 
 def _calls(sizes: tuple[int, int], direction: Direction, line: Line, length: int) -> tuple[int, int]:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from amalthea_uros.perf.network import Direction, Span, WireKind
-from amalthea_uros.spec.transports import CustomTransport, Latency
+from amalthea_uros.spec.transports import CustomTransport, LatencySection
 from amalthea_uros.units import NANOSECOND, SECOND, Time
 from amalthea_uros.uros.transports.driver import read_wait, written
 from amalthea_uros.uros.transports.framing import OVERHEAD, least_frame, longest_frame, reads
@@ -41,7 +41,7 @@ class CustomLine:
             return written((frame,), self.section.driver, self.tick, self.ticks_per_second)
         return (frame,)
 
-    def _time(self, length: int) -> Latency:
+    def _time(self, length: int) -> LatencySection:
         """The time of the first row that is long enough, or of the last one."""
         rows = self.section.table
         return next((row.time for row in rows if row.size >= 8 * length), rows[-1].time)

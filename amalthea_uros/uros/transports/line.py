@@ -7,11 +7,21 @@ from dataclasses import dataclass
 from typing import Protocol, TypeAlias
 
 from amalthea_uros.perf.network import Direction, Span, WireKind
-from amalthea_uros.spec.transports import Can, CanFd, CustomTransport, Interrupt, Latency, Network, Serial, Transport, UsbCdc
+from amalthea_uros.spec.transports import (
+    Can,
+    CanFd,
+    CustomTransport,
+    Interrupt,
+    LatencySection,
+    NetworkSection,
+    Serial,
+    TransportSection,
+    UsbCdc,
+)
 from amalthea_uros.units import SECOND, Time
 
 #: The sections of wires in a description.
-WireSection: TypeAlias = Can | CanFd | Serial | Network | UsbCdc | CustomTransport
+WireSection: TypeAlias = Can | CanFd | Serial | NetworkSection | UsbCdc | CustomTransport
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -85,7 +95,7 @@ class Line(Protocol):
         ...
 
 
-def wire_sections(transport: Transport) -> Iterator[tuple[str, WireSection]]:
+def wire_sections(transport: TransportSection) -> Iterator[tuple[str, WireSection]]:
     """The wires of a description by their keys; a valid one has one at most."""
     sections: dict[str, WireSection | None] = {
         "can": transport.can,
@@ -99,17 +109,17 @@ def wire_sections(transport: Transport) -> Iterator[tuple[str, WireSection]]:
     yield from ((key, section) for key, section in sections.items() if section is not None)
 
 
-def describes_wire(transport: Transport) -> bool:
+def describes_wire(transport: TransportSection) -> bool:
     """Whether a description says what the messages are sent on."""
     return any(True for _ in wire_sections(transport))
 
 
-def receive_interrupt(transport: Transport) -> Interrupt | None:
+def receive_interrupt(transport: TransportSection) -> Interrupt | None:
     """The interrupt that receives messages; None if none is described."""
     return next((section.interrupt for _, section in wire_sections(transport) if section.interrupt is not None), None)
 
 
-def span_of(latency: Latency | None) -> Span:
+def span_of(latency: LatencySection | None) -> Span:
     """A stated latency; one that is not stated has no maximum."""
     return Span() if latency is None else Span(least=latency.min, most=latency.max)
 

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from amalthea_uros.perf.network import Direction, Span, WireKind
-from amalthea_uros.spec.transports import Network
+from amalthea_uros.spec.transports import NetworkSection
 from amalthea_uros.units import Time
 from amalthea_uros.uros.transports.driver import read_wait, written
 from amalthea_uros.uros.transports.ethernet import MTU, packet_bytes
@@ -28,7 +28,7 @@ _BITS = 8
 class TcpLine:
     """The link of the controller; both directions can send at the same time. Its clock ticks once per bit."""
 
-    section: Network
+    section: NetworkSection
     tick: Time | None
 
     kind = WireKind.TCP

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from amalthea_uros.perf.network import Direction, Span
-from amalthea_uros.spec.transports import CanFd, CustomTransport, Network, Serial, UsbCdc
+from amalthea_uros.spec.transports import CanFd, CustomTransport, NetworkSection, Serial, UsbCdc
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
 from amalthea_uros.uros.transports import framing
@@ -138,7 +138,7 @@ def test_a_short_foreign_frame_on_can_fd_can_be_a_classic_one():
 
 
 def network(kind, **keys):
-    return kind(section=Network.model_validate({"bitrate": "10 Mbit/s", **keys}), tick=None)
+    return kind(section=NetworkSection.model_validate({"bitrate": "10 Mbit/s", **keys}), tick=None)
 
 
 def test_udp():

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from itertools import repeat
 
 from amalthea_uros.perf.named import Brief
-from amalthea_uros.spec.application import Application, Node
+from amalthea_uros.spec.application import Application, NodeSection
 from amalthea_uros.units import DataSize
 from amalthea_uros.uros.middleware.profile import MessageKind, Part, Profile, whole_bytes
 from amalthea_uros.uros.middleware.xrce_dds.build import Build
@@ -50,7 +50,7 @@ def contents_of(application: Application) -> list[Content]:
     ]
 
 
-def _messages(node: Node) -> Iterator[tuple[MessageKind, DataSize, str]]:
+def _messages(node: NodeSection) -> Iterator[tuple[MessageKind, DataSize, str]]:
     for each in node.subscriptions:
         yield MessageKind.DELIVERY, each.message_size, each.reliability
     for publisher in node.publishers:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from amalthea_uros.spec.application import Application, Node
+from amalthea_uros.spec.application import Application, NodeSection
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.uros.application.entities import Entities, entities_of, executors_of
 from amalthea_uros.uros.middleware.options import Option
@@ -84,7 +84,7 @@ def _waiting_messages(application: Application, entities: Entities, middleware: 
     return min(entities.receivers, 1) if takes_each else entities.receivers
 
 
-def _sends_reliably(node: Node) -> bool:
+def _sends_reliably(node: NodeSection) -> bool:
     """Whether a node waits for acknowledgements; requests and responses are always reliable."""
     services = (node.services, node.clients, node.action_servers, node.action_clients)
     more = node.parameter_server is not None or node.lifecycle is not None

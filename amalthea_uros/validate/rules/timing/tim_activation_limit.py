@@ -6,11 +6,11 @@ from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.timing.event_models.stimuli import event_model_of
-from amalthea_uros.validate.rule import Problem, SystemRule
+from amalthea_uros.validate.rule import SystemProblem, SystemRule
 from amalthea_uros.validate.system_context import SystemContext
 
 
-def _check(context: SystemContext) -> Iterator[Problem]:
+def _check(context: SystemContext) -> Iterator[SystemProblem]:
     system = context.system
     for task in system.software.tasks:
         for stimulus in (system.stimuli_by_name[name] for name in task.stimuli if name in system.stimuli_by_name):
@@ -21,7 +21,7 @@ def _check(context: SystemContext) -> Iterator[Problem]:
                     f"{stimulus.name!r} may activate {task.name!r} {count} times at once, "
                     f"but its activation limit is {task.activation_limit}"
                 )
-                yield Problem(task, message)
+                yield SystemProblem(task, message)
 
 
 RULE = SystemRule(

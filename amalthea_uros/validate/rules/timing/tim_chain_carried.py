@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.validate.rule import Problem, SystemRule
+from amalthea_uros.validate.rule import SystemProblem, SystemRule
 from amalthea_uros.validate.system_context import SystemContext
 from amalthea_uros.validate.unlinked_steps import unlinked_steps
 
 
-def _check(context: SystemContext) -> Iterator[Problem]:
+def _check(context: SystemContext) -> Iterator[SystemProblem]:
     for step in unlinked_steps(context):
         message = f"no data flow or trigger connects {step.first!r} to {step.then!r}"
-        yield Problem(step.item, message, step.chain)
+        yield SystemProblem(step.item, message, step.chain)
 
 
 RULE = SystemRule(

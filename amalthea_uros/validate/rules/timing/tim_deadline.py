@@ -7,18 +7,18 @@ from collections.abc import Iterator
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.timing.activation.releases import response_time_limits
 from amalthea_uros.units import Time, time_text
-from amalthea_uros.validate.rule import Problem, SystemRule
+from amalthea_uros.validate.rule import SystemProblem, SystemRule
 from amalthea_uros.validate.system_context import SystemContext
 
 
-def _check(context: SystemContext) -> Iterator[Problem]:
+def _check(context: SystemContext) -> Iterator[SystemProblem]:
     for name, deadline in _deadlines(context).items():
         process, rate = context.system.processes.get(name), context.rates.get(name)
         if process is not None and rate and deadline * rate > 1:
             message = (
                 f"the deadline of {name!r} is {time_text(deadline)}, longer than the {time_text(1 / rate)} between activations"
             )
-            yield Problem(process, message)
+            yield SystemProblem(process, message)
 
 
 def _deadlines(context: SystemContext) -> dict[str, Time]:

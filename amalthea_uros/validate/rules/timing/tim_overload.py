@@ -9,17 +9,17 @@ from math import ceil
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.units import number_text
 from amalthea_uros.validate.examples import SCHEDULER
-from amalthea_uros.validate.rule import Problem, SystemRule
+from amalthea_uros.validate.rule import SystemProblem, SystemRule
 from amalthea_uros.validate.system_context import SystemContext
 from amalthea_uros.validate.wording import joined
 
 
-def _check(context: SystemContext) -> Iterator[Problem]:
+def _check(context: SystemContext) -> Iterator[SystemProblem]:
     for core, total in context.certain_loads.items():
         if total > 1:
             largest = sorted(context.loads.get(core, {}).items(), key=lambda item: item[1], reverse=True)
             parts = joined(f"{_percent(share)} by {process!r}" for process, share in largest)
-            yield Problem(
+            yield SystemProblem(
                 context.system.cores[core], f"overload: the worst-case load of {core!r} is {_percent(total)}: {parts}"
             )
 

@@ -6,16 +6,16 @@ from collections.abc import Iterator
 
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.timing.scheduling.shared_priorities import sharing_a_priority
-from amalthea_uros.validate.rule import Problem, SystemRule
+from amalthea_uros.validate.rule import SystemProblem, SystemRule
 from amalthea_uros.validate.system_context import SystemContext
 from amalthea_uros.validate.wording import joined
 
 
-def _check(context: SystemContext) -> Iterator[Problem]:
+def _check(context: SystemContext) -> Iterator[SystemProblem]:
     for allocation, priority, others in sharing_a_priority(context.system, context.cores):
         have = "has" if len(others) == 1 else "have"
         message = f"{allocation.task!r} has the priority {priority}, as {joined(map(repr, others))} {have}"
-        yield Problem(allocation, message, allocation.task)
+        yield SystemProblem(allocation, message, allocation.task)
 
 
 RULE = SystemRule(

@@ -8,18 +8,18 @@ from amalthea_uros.diagnostics import Severity
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.events import EventSet
 from amalthea_uros.timing.dataflow.chains import events_of
-from amalthea_uros.validate.rule import Problem, SystemRule
+from amalthea_uros.validate.rule import SystemProblem, SystemRule
 from amalthea_uros.validate.system_context import SystemContext
 from amalthea_uros.validate.wording import joined
 
 
-def _check(context: SystemContext) -> Iterator[Problem]:
+def _check(context: SystemContext) -> Iterator[SystemProblem]:
     for chain in context.system.events.chains:
         controllers = (_controller(event, context) for event in events_of(chain, context.system))
         found = sorted({controller for controller in controllers if controller is not None})
         if len(found) > 1:
             names = joined(map(repr, found))
-            yield Problem(chain, f"{chain.name!r} goes through {names}, which have no common clock")
+            yield SystemProblem(chain, f"{chain.name!r} goes through {names}, which have no common clock")
 
 
 def _controller(name: str, context: SystemContext) -> str | None:

@@ -13,7 +13,7 @@ from amalthea_uros.perf.software import Label
 from amalthea_uros.timing.blocking.critical_sections import exclusively_held
 from amalthea_uros.timing.jobs.positions import ActivityPosition
 from amalthea_uros.timing.scheduling.allocation import operating_system_of
-from amalthea_uros.validate.rule import Problem, SystemRule
+from amalthea_uros.validate.rule import SystemProblem, SystemRule
 from amalthea_uros.validate.system_context import SystemContext
 from amalthea_uros.validate.wording import joined
 
@@ -29,7 +29,7 @@ class _Writing(NamedTuple):
 _Kind = tuple[frozenset[str], frozenset[str]]
 
 
-def _check(context: SystemContext) -> Iterator[Problem]:
+def _check(context: SystemContext) -> Iterator[SystemProblem]:
     protected = {label for group in context.system.constraints.data_groups for label in group.labels}
     stated = _by_operating_system(context)
     for name, writings in _writings(context).items():
@@ -40,7 +40,7 @@ def _check(context: SystemContext) -> Iterator[Problem]:
         if _may_collide(exposed, context):
             processes = dict.fromkeys(writing.position.process.name for writing in exposed)
             names = joined(f"{process!r} on {'/'.join(sorted(context.cores[process]))}" for process in processes)
-            yield Problem(label, f"{name!r} is written by {names} without a common semaphore or a stated protection")
+            yield SystemProblem(label, f"{name!r} is written by {names} without a common semaphore or a stated protection")
 
 
 def _writings(context: SystemContext) -> dict[str, list[_Writing]]:
