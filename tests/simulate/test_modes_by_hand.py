@@ -7,6 +7,7 @@ from hand_made_systems import READ, WRITE, Proc, access, ticks
 from amalthea_uros.perf.activities import (
     Call,
     Case,
+    Count,
     Loop,
     ModeAccess,
     ModeOperation,
@@ -18,11 +19,21 @@ from amalthea_uros.perf.activities import (
     Trigger,
 )
 from amalthea_uros.perf.conditions import ChannelFillIs, Condition, ModeAssignment, ModeLabelsAre, ModeValueIs, Relation
-from amalthea_uros.perf.events import CustomEvent, LabelChange, LabelEvent, RunnableChange, RunnableEvent
+from amalthea_uros.perf.events import (
+    CustomEvent,
+    EventChain,
+    LabelChange,
+    LabelEvent,
+    ProcessChange,
+    ProcessEvent,
+    RunnableChange,
+    RunnableEvent,
+)
 from amalthea_uros.perf.software import Channel, Label, Mode, ModeLabel, Runnable
 from amalthea_uros.perf.stimuli import Counter, EventTriggered, InterProcess, Periodic
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.system import simulate_system
+from amalthea_uros.timing.basics.quantities import ChainQuantity
 from amalthea_uros.units import MICROSECOND as US
 
 STATE = Mode(name="State", literals=("off", "slow", "fast"))
@@ -188,3 +199,37 @@ def test_stimuli_react_to_events(event, activations):
     found = play(built(Proc("T", body, 20, **TASK), then, second, stimuli=(reacts, rarely), **parts), 60)
     assert [activation for activation, _, _ in found["then"]] == activations
     assert [activation for activation, _, _ in found["second"]] == [activations[1]]
+
+
+@pytest.mark.parametrize(
+    ("repeated", "seconds"),
+    [
+        # Counting leaves out four calls of five, which then raise no event.
+        ({"counter": Counter(prescaler=5, offset=1)}, 20),
+        # A call that stands for three raises its events each time.
+        ({"times": Count(least=3, mean=3, most=3)}, 300),
+    ],
+)
+def test_a_call_raises_its_events_as_often_as_it_takes_place(repeated, seconds):
+    """The task calls a runnable every millisecond, whose end activates another task."""
+    first = Proc("first", (Call(runnable="work", **repeated), ticks(10)), 1000, priority=2)
+    second = Proc("second", (ticks(10),), stimuli=("at the end",), priority=1, task={"activation_limit": 10})
+    events = (
+        RunnableEvent(name="starts", runnable="work", change=RunnableChange.START),
+        RunnableEvent(name="ends", runnable="work", change=RunnableChange.TERMINATE),
+        ProcessEvent(name="finished", process="second", change=ProcessChange.TERMINATE),
+    )
+    model = built(
+        first,
+        second,
+        stimuli=(EventTriggered(name="at the end", events=("ends",)),),
+        runnables=(Runnable(name="work", activities=(ticks(10),)),),
+        events=events,
+        chains=(EventChain(name="way", stimulus="starts", response="finished"),),
+    )
+    found = simulate_system(model, Options(duration=100_000 * US))
+    assert (found["first"].jobs, found["second"].jobs) == (100, seconds)
+    if "counter" in repeated:
+        # From the start of the call: it takes 10 us, the rest of the job 10 us, and the job that its end activates 10 us.
+        latency = found.chains["way"].quantities[ChainQuantity.REDUCED_REACTION_TIME]
+        assert (latency.count, latency.min, latency.max) == (20, 30 * US, 30 * US)

@@ -1,6 +1,10 @@
 """What simulated systems do with events, runnables and labels, and the verdicts on constraints of them."""
 
+from dataclasses import replace
+
+import hand_made_systems
 import pytest
+from hand_made_systems import Proc, ticks
 
 from amalthea_uros.judge.verdict import ObservedVerdict
 from amalthea_uros.perf.activities import (
@@ -8,8 +12,6 @@ from amalthea_uros.perf.activities import (
     Call,
     Chance,
     Communication,
-    Demand,
-    Execute,
     LabelAccess,
     ProbabilitySwitch,
     RaiseEvent,
@@ -33,11 +35,9 @@ from amalthea_uros.perf.constraints import (
     TimeLimit,
     TimeMetric,
 )
-from amalthea_uros.perf.distributions import Constant
 from amalthea_uros.perf.events import (
     CustomEvent,
     EventChain,
-    Events,
     EventSet,
     LabelChange,
     LabelEvent,
@@ -49,12 +49,9 @@ from amalthea_uros.perf.events import (
     SemaphoreEvent,
     StimulusEvent,
 )
-from amalthea_uros.perf.hardware import Clock, Core, Hardware, Structure, StructureKind
-from amalthea_uros.perf.mapping import Mapping, TaskAllocation
-from amalthea_uros.perf.os import OperatingSystem, Os, Scheduler, Semaphore
-from amalthea_uros.perf.software import Label, Runnable, Software, Task
-from amalthea_uros.perf.stimuli import Counter, InterProcess, Periodic, Stimuli
-from amalthea_uros.perf.system import System
+from amalthea_uros.perf.os import Semaphore
+from amalthea_uros.perf.software import Label, Runnable
+from amalthea_uros.perf.stimuli import Counter, Periodic, Stimuli
 from amalthea_uros.simulate.kernel import machine_code
 from amalthea_uros.simulate.options import ALL_LABELS, Options
 from amalthea_uros.simulate.system import simulate_system
@@ -62,13 +59,8 @@ from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
-from amalthea_uros.units import Frequency
 
 OK, MISSED, NOT_OBSERVED = ObservedVerdict.OK, ObservedVerdict.MISSED, ObservedVerdict.NOT_OBSERVED
-
-
-def work(microseconds):
-    return Execute(demand=Demand(ticks=Constant(microseconds)))
 
 
 def access(label, kind, communication=None):
@@ -78,51 +70,31 @@ def access(label, kind, communication=None):
 def system(bodies, *, periods, runnables=None, offsets=None, cores=None, events=(), chains=(), **demanded):
     """Tasks at 1 MHz, the first one the most urgent; `periods` in milliseconds, a task without one is triggered."""
     runnables, offsets, cores = runnables or {}, offsets or {}, cores or {}
-    names = sorted({cores.get(name, "C0") for name in bodies})
-    stimuli = tuple(
-        Periodic(name=f"every {name}", period=periods[name] * MS, offset=offsets.get(name, 0) * US)
-        if name in periods
-        else InterProcess(name=f"go {name}")
-        for name in bodies
-    )
+    processes = [
+        Proc(
+            name,
+            tuple(body),
+            periods.get(name, 0) * 1000,
+            offsets.get(name, 0),
+            stimuli=() if name in periods else (f"go {name}",),
+            priority=len(bodies) - number,
+            scheduler=f"s{cores.get(name, 'c0')[1:]}",
+            task={"activation_limit": 9},
+        )
+        for number, (name, body) in enumerate(bodies.items())
+    ]
     every = [activity for body in (*bodies.values(), *runnables.values()) for activity in body]
     labels = dict.fromkeys(each.label for each in every if isinstance(each, LabelAccess))
-    return System(
-        hardware=Hardware(
-            clocks=(Clock(name="clock", frequency=Frequency(10**6)),),
-            structures=(
-                Structure(name="ECU", kind=StructureKind.ECU, cores=tuple(Core(name=name, clock="clock") for name in names)),
-            ),
-        ),
-        os=Os(
-            systems=(
-                OperatingSystem(
-                    name="OS",
-                    schedulers=tuple(
-                        Scheduler(name=f"S{name}", policy="FixedPriorityPreemptive", cores=(name,)) for name in names
-                    ),
-                ),
-            ),
-            semaphores=(Semaphore(name="mutex"),),
-        ),
-        stimuli=Stimuli(stimuli=stimuli),
-        software=Software(
-            tasks=tuple(
-                Task(name=name, stimuli=(stimulus.name,), activities=tuple(body), activation_limit=9)
-                for (name, body), stimulus in zip(bodies.items(), stimuli, strict=True)
-            ),
-            runnables=tuple(Runnable(name=name, activities=tuple(body)) for name, body in runnables.items()),
-            labels=tuple(Label(name=name) for name in labels),
-        ),
-        mapping=Mapping(
-            tasks=tuple(
-                TaskAllocation(task=name, scheduler=f"S{cores.get(name, 'C0')}", priority=len(bodies) - number)
-                for number, name in enumerate(bodies)
-            )
-        ),
-        events=Events(events=tuple(events), chains=tuple(chains)),
-        constraints=Constraints(**demanded),
+    model = hand_made_systems.system(
+        *processes,
+        triggers=[f"go {name}" for name in bodies if name not in periods],
+        runnables=tuple(Runnable(name=name, activities=tuple(body)) for name, body in runnables.items()),
+        labels=tuple(Label(name=name) for name in labels),
+        semaphores=(Semaphore(name="mutex"),),
+        events=tuple(events),
+        chains=chains,
     )
+    return replace(model, constraints=Constraints(**demanded))
 
 
 def simulated(model, milliseconds=100, labels=(), communication=None):
@@ -138,20 +110,20 @@ def verdicts(model, **options):
 
 
 BODIES = {
-    "High": [work(100)],
+    "High": [ticks(100)],
     "Low": [
-        work(200),
+        ticks(200),
         SemaphoreAccess(semaphore="mutex", operation=SemaphoreOperation.REQUEST),
-        work(100),
+        ticks(100),
         Call(runnable="Step"),
         SemaphoreAccess(semaphore="mutex", operation=SemaphoreOperation.RELEASE),
         Trigger(stimulus="go Next"),
         RaiseEvent(event="custom"),
     ],
-    "Next": [work(50)],
+    "Next": [ticks(50)],
 }
 #: Step writes 30 us after its start at 400 us; High, which comes 150 us after Low, takes 100 us in between.
-RUNNABLES = {"Step": [work(30), access("x", "write"), work(20)]}
+RUNNABLES = {"Step": [ticks(30), access("x", "write"), ticks(20)]}
 
 
 @pytest.mark.parametrize(
@@ -162,15 +134,15 @@ RUNNABLES = {"Step": [work(30), access("x", "write"), work(20)]}
         (ProcessEvent(name="e", process="Low", change=ProcessChange.PREEMPT), 150),
         (ProcessEvent(name="e", process="Low", change=ProcessChange.RESUME), 250),
         (ProcessEvent(name="e", process="Low", change=ProcessChange.TERMINATE), 450),
-        (ProcessEvent(name="e", process="Low", change=ProcessChange.RESUME, core="C0"), 250),
+        (ProcessEvent(name="e", process="Low", change=ProcessChange.RESUME, core="c0"), 250),
         (ProcessEvent(name="e", process="High"), 150),
-        (StimulusEvent(name="e", stimulus="every High"), 150),
+        (StimulusEvent(name="e", stimulus="High_tick"), 150),
         (StimulusEvent(name="e", stimulus="go Next"), 450),
         (SemaphoreEvent(name="e", semaphore="mutex", change=SemaphoreChange.LOCK), 300),
-        (SemaphoreEvent(name="e", semaphore="mutex", change=SemaphoreChange.UNLOCK, process="Low", core="C0"), 450),
+        (SemaphoreEvent(name="e", semaphore="mutex", change=SemaphoreChange.UNLOCK, process="Low", core="c0"), 450),
         (RunnableEvent(name="e", runnable="Step", change=RunnableChange.START), 400),
         (RunnableEvent(name="e", runnable="Step", change=RunnableChange.TERMINATE, process="Low"), 450),
-        (RunnableEvent(name="e", change=RunnableChange.TERMINATE, core="C0"), 450),
+        (RunnableEvent(name="e", change=RunnableChange.TERMINATE, core="c0"), 450),
         (LabelEvent(name="e", label="x", change=LabelChange.WRITE, runnable="Step"), 430),
         (LabelEvent(name="e", label="x", process="Low"), 430),
         (CustomEvent(name="custom"), 450),
@@ -196,7 +168,7 @@ def test_the_delay_up_to_an_event(event, time):
 @pytest.mark.parametrize(
     "event",
     [
-        ProcessEvent(name="e", process="Low", change=ProcessChange.START, core="C1"),
+        ProcessEvent(name="e", process="Low", change=ProcessChange.START, core="c1"),
         LabelEvent(name="e", label="x", change=LabelChange.READ),
         LabelEvent(name="e", label="x", process="High"),
         RunnableEvent(name="e", runnable="Step", change=RunnableChange.SUSPEND),
@@ -211,16 +183,16 @@ def test_what_does_not_occur_is_not_observed(event):
 
 
 def test_the_same_runnable_on_two_cores_is_told_apart_by_its_core():
-    bodies = {"A": [Call(runnable="Step")], "B": [work(7), Call(runnable="Step")]}
+    bodies = {"A": [Call(runnable="Step")], "B": [ticks(7), Call(runnable="Step")]}
     events = (
-        RunnableEvent(name="first", runnable="Step", change=RunnableChange.START, core="C0"),
-        RunnableEvent(name="second", runnable="Step", change=RunnableChange.START, core="C1"),
+        RunnableEvent(name="first", runnable="Step", change=RunnableChange.START, core="c0"),
+        RunnableEvent(name="second", runnable="Step", change=RunnableChange.START, core="c1"),
     )
     model = system(
         bodies,
         periods={"A": 10, "B": 10},
-        cores={"A": "C0", "B": "C1"},
-        runnables={"Step": [work(1)]},
+        cores={"A": "c0", "B": "c1"},
+        runnables={"Step": [ticks(1)]},
         events=events,
         constraints=(EventSynchronization(name="S", events=("first", "second"), tolerance=6 * US),),
     )
@@ -230,7 +202,7 @@ def test_the_same_runnable_on_two_cores_is_told_apart_by_its_core():
 
 
 def test_the_ends_of_two_chains():
-    bodies = {"A": [work(100)], "B": [work(50)]}
+    bodies = {"A": [ticks(100)], "B": [ticks(50)]}
     events = [
         ProcessEvent(name=f"{change} {name}", process=name, change=ProcessChange(change))
         for name in bodies
@@ -278,22 +250,17 @@ def test_events_are_observed_alike_by_machine_code(monkeypatch):
 
 def test_activations_that_no_job_follows_fill_no_more_than_there_is_place_for():
     """More occurrences than are kept at a time, while one job executes."""
-    bodies = {"Long": [work(60_000)], "Short": [work(1)]}
-    event = StimulusEvent(name="s", stimulus="every Short")
+    bodies = {"Long": [ticks(60_000)], "Short": [ticks(1)]}
+    event = StimulusEvent(name="s", stimulus="Short_tick")
     model = system(bodies, periods={"Long": 1000, "Short": 1}, events=(event,), constraints=(repetition_of("s"),))
-    often = Periodic(name="every Short", period=2 * US)
-    model = System(**{**vars_of(model), "stimuli": Stimuli(stimuli=(model.stimuli.stimuli[0], often))})
+    often = Periodic(name="Short_tick", period=2 * US)
+    model = replace(model, stimuli=Stimuli(stimuli=(model.stimuli.stimuli[0], often)))
     (found,) = simulated(model, milliseconds=60).requirements
     assert (found.value, found.verdict) == (2 * US, OK)
 
 
 def repetition_of(event):
     return RepetitionConstraint(name="R", event=event, upper=2 * US)
-
-
-def vars_of(model):
-    names = ("hardware", "os", "stimuli", "software", "mapping", "events", "constraints")
-    return {name: getattr(model, name) for name in names}
 
 
 # Order of runnables
@@ -315,7 +282,7 @@ def vars_of(model):
 def test_the_order_of_runnables(called, ordering, verdict):
     order = OrderConstraint(name="O", groups=(("a",), ("b",)), ordering=ordering)
     bodies = {"Task": [Call(runnable=name) for name in called], "Other": [Call(runnable="x")]}
-    runnables = {name: [work(1)] for name in "abcx"}
+    runnables = {name: [ticks(1)] for name in "abcx"}
     model = system(bodies, periods={"Task": 10, "Other": 10}, runnables=runnables, orders=(order,))
     (found,) = simulated(model).requirements
     assert (found.object, found.quantity, found.verdict) == ("Task", "order of runnables", verdict)
@@ -328,7 +295,7 @@ def test_only_the_jobs_in_another_order_are_wrong():
     model = system(
         {"Task": [ProbabilitySwitch(branches=tuple(branches))]},
         periods={"Task": 1},
-        runnables={"a": [work(1)], "b": [work(1)]},
+        runnables={"a": [ticks(1)], "b": [ticks(1)]},
         orders=(OrderConstraint(name="O", groups=(("a",), ("b",))),),
     )
     (found,) = simulated(model).requirements
@@ -356,12 +323,12 @@ def test_the_times_of_a_runnable():
         for metric, value in limits.items()
     ]
     requirements.append(Requirement(name="R", runnable="Step", limit=CountLimit(metric=CountMetric.PREEMPTIONS, value=0)))
-    bodies = {"High": [work(100)], "Low": [work(400), Call(runnable="Step")]}
+    bodies = {"High": [ticks(100)], "Low": [ticks(400), Call(runnable="Step")]}
     model = system(
         bodies,
         periods={"High": 10, "Low": 10},
         offsets={"High": 420},
-        runnables={"Step": [work(50)]},
+        runnables={"Step": [ticks(50)]},
         requirements=tuple(requirements),
     )
     simulation = simulated(model)
@@ -378,7 +345,7 @@ def test_calls_that_a_counter_skips_are_no_executions():
     model = system(
         bodies,
         periods={"Task": 10},
-        runnables={"Step": [work(50)]},
+        runnables={"Step": [ticks(50)]},
         requirements=(Requirement(name="R", runnable="Step", limit=limit),),
     )
     assert simulated(model).runnables["Step"].executions == 2
@@ -390,11 +357,11 @@ def test_calls_that_a_counter_skips_are_no_executions():
 def reader_and_writer(communication, **options):
     """A writer of 10 ms that writes after 100 of 200 us; a reader of 5 ms, 50 us later, that reads after 30 us."""
     bodies = {
-        "Reader": [work(30), access("x", "read", communication), work(30)],
-        "Writer": [work(100), access("x", "write", communication), work(100)],
+        "Reader": [ticks(30), access("x", "read", communication), ticks(30)],
+        "Writer": [ticks(100), access("x", "write", communication), ticks(100)],
     }
     model = system(
-        bodies, periods={"Reader": 5, "Writer": 10}, offsets={"Reader": 50}, cores={"Reader": "C0", "Writer": "C1"}, **options
+        bodies, periods={"Reader": 5, "Writer": 10}, offsets={"Reader": 50}, cores={"Reader": "c0", "Writer": "c1"}, **options
     )
     return simulated(model, labels=("x",), milliseconds=40)
 
@@ -417,7 +384,7 @@ def test_the_age_of_what_is_read(communication, least, unwritten):
 
 
 def test_the_settings_decide_about_communication():
-    body = [access("x", "read", Communication.LET), work(10), access("x", "write", Communication.LET)]
+    body = [access("x", "read", Communication.LET), ticks(10), access("x", "write", Communication.LET)]
     model = system({"Task": body}, periods={"Task": 10})
     found = {how: simulated(model, labels=(ALL_LABELS,), communication=how).labels["x"] for how in (None, *Communication)}
     # Each job reads what the one before it has written, 10 us before its end at 10 us after its release.
@@ -427,11 +394,11 @@ def test_the_settings_decide_about_communication():
 @pytest.mark.parametrize("first", ["Reader", "Writer"])
 def test_at_a_common_release_what_is_written_under_let_is_there_before_anybody_reads(first):
     bodies = {
-        "Reader": [access("x", "read", Communication.LET), work(1)],
-        "Writer": [work(2), access("x", "write", Communication.LET)],
+        "Reader": [access("x", "read", Communication.LET), ticks(1)],
+        "Writer": [ticks(2), access("x", "write", Communication.LET)],
     }
     order = [first, *(name for name in bodies if name != first)]
-    cores = {"Reader": "C0", "Writer": "C1"}
+    cores = {"Reader": "c0", "Writer": "c1"}
     model = system({name: bodies[name] for name in order}, periods=dict.fromkeys(bodies, 1), cores=cores)
     label = simulated(model, labels=("x",), milliseconds=10).labels["x"]
     # Each job reads at its start what was written 2 us after the release before.
@@ -439,14 +406,14 @@ def test_at_a_common_release_what_is_written_under_let_is_there_before_anybody_r
 
 
 def test_a_job_reads_its_own_implicit_write_but_not_under_let():
-    body = [work(5), access("x", "write"), work(10), access("x", "read")]
+    body = [ticks(5), access("x", "write"), ticks(10), access("x", "read")]
     model = system({"Task": body}, periods={"Task": 10})
     ages = {how: simulated(model, labels=("x",), communication=how).labels["x"].age.max for how in Communication}
     assert ages == {Communication.EXPLICIT: 10 * US, Communication.IMPLICIT: 10 * US, Communication.LET: (10_000 + 10) * US}
 
 
 def test_values_that_nobody_has_read_before_they_are_replaced():
-    bodies = {"Writer": [access("x", "write"), work(1)], "Reader": [access("x", "read"), work(1)]}
+    bodies = {"Writer": [access("x", "write"), ticks(1)], "Reader": [access("x", "read"), ticks(1)]}
     model = system(bodies, periods={"Writer": 1, "Reader": 4}, offsets={"Reader": 500})
     label = simulated(model, labels=("x",), milliseconds=8).labels["x"]
     # Written 8 times, read at 0.5 and 4.5 ms; the last value is not overwritten in the run.
@@ -454,7 +421,7 @@ def test_values_that_nobody_has_read_before_they_are_replaced():
 
 
 def test_labels_are_observed_on_request_only():
-    model = system({"Task": [access("x", "write"), work(1)]}, periods={"Task": 1})
+    model = system({"Task": [access("x", "write"), ticks(1)]}, periods={"Task": 1})
     assert simulated(model).labels == ()
 
 
@@ -463,8 +430,8 @@ def test_labels_are_observed_on_request_only():
 
 def test_the_age_of_what_a_runnable_writes():
     bodies = {
-        "Reader": [work(30), access("x", "read", Communication.EXPLICIT)],
-        "Writer": [Call(runnable="Write"), work(100)],
+        "Reader": [ticks(30), access("x", "read", Communication.EXPLICIT)],
+        "Writer": [Call(runnable="Write"), ticks(100)],
     }
     ages = (
         DataAgeConstraint(name="time", runnable="Write", label="x", earliest=30 * US, latest=2 * MS),
@@ -475,7 +442,7 @@ def test_the_age_of_what_a_runnable_writes():
         bodies,
         periods={"Reader": 5, "Writer": 10},
         offsets={"Reader": 1000},
-        runnables={"Write": [work(10), access("x", "write", Communication.EXPLICIT)]},
+        runnables={"Write": [ticks(10), access("x", "write", Communication.EXPLICIT)]},
         data_ages=ages,
     )
     # Writes at 10 us, reads at 1030 and 6030 us, in each 10 ms.
@@ -491,8 +458,8 @@ def test_the_age_of_what_a_runnable_writes():
 
 def test_an_age_in_cycles_counts_activations_of_the_writer():
     bodies = {
-        "Writer": [Call(runnable="Write", counter=Counter(prescaler=3)), work(1)],
-        "Reader": [access("x", "read"), work(1)],
+        "Writer": [Call(runnable="Write", counter=Counter(prescaler=3)), ticks(1)],
+        "Reader": [access("x", "read"), ticks(1)],
     }
     age = DataAgeConstraint(name="A", runnable="Write", label="x", earliest_cycle=0, latest_cycle=1)
     model = system(

@@ -4,7 +4,8 @@ All runnables take 1 ms; A has the higher priority. The k-th executions of the r
 """
 
 import pytest
-from test_observers import simulated, system, work
+from hand_made_systems import ticks
+from test_observers import simulated, system
 
 from amalthea_uros import analyze_system
 from amalthea_uros.perf.activities import Call, Chance, Group, ProbabilitySwitch, Trigger
@@ -20,7 +21,7 @@ def answers(bodies, groups, *, ordering=Ordering.SUCCESSOR, scope=(), **more):
     called = {
         process: [Call(runnable=each) if isinstance(each, str) else each for each in body] for process, body in bodies.items()
     }
-    model = system(called, runnables={name: [work(1000)] for name in "abcd"}, orders=(order,), **more)
+    model = system(called, runnables={name: [ticks(1000)] for name in "abcd"}, orders=(order,), **more)
     proved = {each.object: str(each.verdict) for each in analyze_system(model).requirements}
     observed = {each.object: str(each.verdict) for each in simulated(model).requirements}
     assert proved.keys() == observed.keys()
@@ -46,7 +47,7 @@ def every(period, **offsets):
         (15, A_THEN_B, ("met", "observed_ok")),
     ],
 )
-@pytest.mark.parametrize("cores", [{}, {"B": "C1"}], ids=["one core", "two cores"])
+@pytest.mark.parametrize("cores", [{}, {"B": "c1"}], ids=["one core", "two cores"])
 def test_an_order_across_tasks_of_the_same_period(offset, groups, expected, cores):
     if cores and offset == 0:
         # On cores of their own, a and b run at the same time.
@@ -86,7 +87,7 @@ def test_a_task_that_the_first_one_triggers():
     for body, cores, observed in (
         (["a", trigger], {}, "observed_ok"),
         ([trigger, "a"], {}, "observed_ok"),
-        ([trigger, "a"], {"B": "C1"}, "observed_missed"),
+        ([trigger, "a"], {"B": "c1"}, "observed_missed"),
     ):
         found = answers({"A": body, "B": ["b"]}, A_THEN_B, periods={"A": 10}, cores=cores)
         assert found == {"A, B": ("unknown", observed)}
@@ -109,7 +110,7 @@ def test_where_it_is_unknown_which_executions_belong_together(bodies, more, reas
         process: [Call(runnable=each) if isinstance(each, str) else each for each in body] for process, body in bodies.items()
     }
     order = OrderConstraint(name="O", groups=A_THEN_B, processes=scope)
-    model = system(called, runnables={"a": [work(1)], "b": [work(1)]}, orders=(order,), **more)
+    model = system(called, runnables={"a": [ticks(1)], "b": [ticks(1)]}, orders=(order,), **more)
     for found in (analyze_system(model), simulated(model)):
         assert reason in found.requirements[0].reason
 
@@ -143,7 +144,7 @@ def test_a_runnable_that_another_one_calls_is_not_overlooked(first):
     """The job executes b after a, within another runnable, or before it."""
     order = OrderConstraint(name="O", groups=A_THEN_B)
     then = "outer" if first == "a" else "a"
-    runnables = {"a": [work(1)], "b": [work(1)], "outer": [Call(runnable="b"), work(1)]}
+    runnables = {"a": [ticks(1)], "b": [ticks(1)], "outer": [Call(runnable="b"), ticks(1)]}
     model = system(
         {"A": [Call(runnable=first), Call(runnable=then)], "B": []}, runnables=runnables, orders=(order,), **every(10)
     )

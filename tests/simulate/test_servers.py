@@ -1,23 +1,19 @@
 """Servers in simulations: no process gets more than the budget in a period, and nothing is later than the analysis claims."""
 
 from collections import Counter
-from fractions import Fraction
 
 import pytest
+from by_hand import built
 from effort import examples
+from hand_made_systems import Proc, ticks
 from hypothesis import given
 from hypothesis import strategies as st
 from opponent.simulation import beyond, record
 
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.perf.activities import Demand, Execute
-from amalthea_uros.perf.distributions import Boundaries, Constant
-from amalthea_uros.perf.hardware import Clock, Core, Hardware, Structure
-from amalthea_uros.perf.mapping import Mapping, TaskAllocation
-from amalthea_uros.perf.os import Duration, OperatingSystem, Os, Parameter, Parent, Policy, Scheduler
-from amalthea_uros.perf.software import Software, Task
-from amalthea_uros.perf.stimuli import RelativePeriodic, Stimuli
-from amalthea_uros.perf.system import System
+from amalthea_uros.perf.distributions import Boundaries
+from amalthea_uros.perf.os import Duration, Parameter, Parent, Policy, Scheduler
+from amalthea_uros.perf.stimuli import RelativePeriodic
 from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.trace.table import EventKind
 from amalthea_uros.units import MICROSECOND as US
@@ -31,36 +27,19 @@ def system(policy, capacity, period, tasks, root=Policy.OSEK):
     is_edf = root is Policy.EARLIEST_DEADLINE_FIRST
     priority = None if is_edf else 5
     schedulers = (
-        Scheduler(name="root", policy=root, cores=("core",)),
+        Scheduler(name="root", policy=root, cores=("c0",)),
         Scheduler(name="server", policy=policy, parent=Parent(scheduler="root", priority=priority), parameters=budget),
     )
-    return System(
-        hardware=Hardware(
-            clocks=(Clock(name="clock", frequency=Fraction(10**6)),),
-            structures=(Structure(name="ECU", cores=(Core(name="core", clock="clock"),)),),
-        ),
-        os=Os(systems=(OperatingSystem(name="OS", schedulers=schedulers),)),
-        stimuli=Stimuli(
-            stimuli=tuple(
-                RelativePeriodic(name=name, distance=Boundaries(lower=distance * US, upper=2 * distance * US))
-                for name, distance, _, _, _ in tasks
-            )
-        ),
-        software=Software(
-            tasks=tuple(
-                Task(name=name, stimuli=(name,), activities=(Execute(demand=Demand(Constant(time))),), activation_limit=99)
-                for name, _, time, _, _ in tasks
-            )
-        ),
-        mapping=Mapping(
-            tasks=tuple(
-                TaskAllocation(task=name, scheduler=scheduler, deadline=rank * US)
-                if is_edf and scheduler == "root"
-                else TaskAllocation(task=name, scheduler=scheduler, priority=rank)
-                for name, _, _, scheduler, rank in tasks
-            )
-        ),
+    stimuli = (
+        RelativePeriodic(name=name, distance=Boundaries(lower=distance * US, upper=2 * distance * US))
+        for name, distance, *_ in tasks
     )
+    processes = []
+    for name, _, time, scheduler, rank in tasks:
+        urgency = {"deadline" if is_edf and scheduler == "root" else "priority": rank}
+        limit = {"activation_limit": 99}
+        processes.append(Proc(name, (ticks(time),), stimuli=(name,), scheduler=scheduler, task=limit, **urgency))
+    return built(*processes, schedulers=schedulers, stimuli=stimuli)
 
 
 def used_by_period(run, names, period):
@@ -94,11 +73,11 @@ def drawn(inside, beside):
 @examples(36)
 @given(st.sampled_from(FIXED), st.integers(1, 5), st.integers(6, 15), tasks_inside, tasks_beside, st.integers(0, 99))
 def test_budgets_are_kept_and_claims_hold(policy, capacity, period, inside, beside, seed):
-    built, duration = system(policy, capacity, period, drawn(inside, beside)), 2000 * US
+    model, duration = system(policy, capacity, period, drawn(inside, beside)), 2000 * US
     options = (Options(duration=duration, mode=mode, seed=seed, traced=(0, duration)) for mode in (Mode.SAMPLED, Mode.WORST))
-    runs = [record(built, each) for each in options]
+    runs = [record(model, each) for each in options]
     assert not any(run.program.left_out for run in runs)
-    assert list(beyond(analyze_system(built), runs, 0)) == []
+    assert list(beyond(analyze_system(model), runs, 0)) == []
     if policy is not Policy.SPORADIC_SERVER:
         names, units = {f"in{number}" for number in range(len(inside))}, runs[0].program.units
         for run in runs:
@@ -110,10 +89,10 @@ def test_budgets_are_kept_and_claims_hold(policy, capacity, period, inside, besi
 def test_a_bandwidth_server_disturbs_others_no_more_than_its_bandwidth(capacity, period, inside, seed):
     # Abeni and Buttazzo 1998, theorem 1: beside a server of bandwidth U, deadlines are met if the load of the others is at most 1 - U.
     beside = ("out", 20, 10, "root", 20)
-    built = system(
+    model = system(
         Policy.CONSTANT_BANDWIDTH_SERVER, capacity, period, [*drawn(inside, []), beside], Policy.EARLIEST_DEADLINE_FIRST
     )
-    run = record(built, Options(duration=2000 * US, seed=seed))
+    run = record(model, Options(duration=2000 * US, seed=seed))
     assert not run.program.left_out
     jobs = run.jobs_of("out")
     assert max(end - activation for activation, _, end in jobs) <= 20 * US

@@ -1,7 +1,10 @@
-"""Lines of candump: each form of `candump.c` and `lib.c` of can-utils, with what it means."""
+"""Logs of candump: each form of `candump.c` and `lib.c` of can-utils, damaged ones, and clocks that step."""
 
 import gzip
+import re
 from contextlib import suppress
+from itertools import pairwise
+from random import Random
 
 import pytest
 from can_frames import DATA, ERROR, EXTENDED, GAP, MS, REMOTE, SECOND, US, read, rows, rules
@@ -284,3 +287,149 @@ def test_reading_twice_is_the_same(tmp_path):
     text = f"{HEAD}123#11\n{HEAD}123##411\n"
     first, _ = read(tmp_path / "run.log", text)
     assert rows(open_can_log(tmp_path / "run.log")) == first
+
+
+LINES = [
+    "(1436509052.249713) can0 123#11223344",
+    "(1436509052.249813)  can1 12345678#1122334455667788 R",
+    "(1436509052.249813) can1 123##41122",
+    "(1436509052.249913) can0 20000004#0001000000000000",
+    "DROPCOUNT: dropped 12 CAN frames on 'can0' socket (total drops 12)",
+    " (1436509053.123456)  can0  123   [4]  11 22 33 44",
+    " (1436509053.123456)  can0  123   [4]  44`33`22`11   ERRORFRAME",
+    " (000.001234)  can0  123   [0] ",
+    " can0  123   [1]  11",
+    " (2026-09-21 10:00:00.123456)  can0  123   [0] ",
+]
+
+
+def mutated(random: Random, line: str) -> str:
+    characters = list(line)
+    for _ in range(random.randrange(4)):
+        place = random.randrange(len(characters) + 1)
+        match random.randrange(4):
+            case 0:
+                del characters[place : place + random.randrange(1, 5)]
+            case 1:
+                characters.insert(place, chr(random.randrange(1, 256)))
+            case 2:
+                characters[place:] = characters[: random.randrange(1, 9)]
+            case _:
+                characters[place : place + 1] = random.choice(["9" * 20, "#", "(", "\x00", " ", "\u0663", "[99]"])
+    return "".join(characters).replace("\n", "")
+
+
+def told(log, rule) -> int:
+    counts = [
+        re.search(r"\((\d+) times, this is the first\)", finding.message) for finding in log.findings if finding.rule == rule
+    ]
+    return sum(int(count[1]) if count else 1 for count in counts)
+
+
+def test_every_line_is_a_frame_or_in_a_finding(tmp_path):
+    random = Random(7)
+    lines = [mutated(random, random.choice(LINES)) for _ in range(4000)]
+    written = [line for line in lines if line.strip("\r")]
+    path = tmp_path / "run.log"
+    path.write_text("\n".join(lines) + "\n", newline="")
+    log = open_can_log(path)
+    tables = list(log)
+    rows = {line: kind for table in tables for line, kind in zip(table.line.tolist(), table.kind.tolist(), strict=True)}
+    assert len(rows) == len(written)
+    lost = sum(kind == GAP for kind in rows.values()) - told(log, "CAN003")
+    assert len(rows) - lost > 100
+    assert lost == told(log, "CAN001")
+
+
+@given(content=st.binary(max_size=300), packed=st.booleans())
+def test_any_bytes(tmp_path_factory, content, packed):
+    path = tmp_path_factory.mktemp("logs") / ("run.log.gz" if packed else "run.log")
+    read(path, content)
+
+
+@given(steps=st.lists(st.integers(-5, 5), max_size=30))
+def test_a_gap_is_wherever_the_clock_steps_back(tmp_path_factory, steps):
+    times, time = [], 500_000
+    for step in steps:
+        time += step
+        times.append(time)
+    path = tmp_path_factory.mktemp("logs") / "run.log"
+    frames, _ = read(path, "".join(f"(1436509052.{time:06}) can0 123#\n" for time in times))
+    # A step of one microsecond is within the resolution.
+    expected = sum(later < earlier - 1 for earlier, later in pairwise(times))
+    assert sum(kind is GAP for _, _, _, kind, _ in frames) == expected
+
+
+def test_damaged_names_of_channels_are_bounded(tmp_path):
+    frames, log = read(tmp_path / "run.log", "".join(f"(1436509052.000000) can{number} 123#\n" for number in range(40_000)))
+    assert sum(kind is not GAP for *_, kind, _ in frames) == 256
+    assert told(log, "CAN001") == 40_000 - 256
+    # Of the channels with the most frames only a few pairs are compared.
+    assert len(log.findings) <= 7
+
+
+def line(time: int, channel: str = "can0", frame: str = "123#11") -> str:
+    return f"({1436509052 + time // 10**6}.{time % 10**6:06}) {channel} {frame}\n"
+
+
+def test_a_step_back_is_a_gap_at_the_time_after_it(tmp_path):
+    frames, log = read(tmp_path / "run.log", line(0) + line(900_000) + line(100_000) + line(200_000))
+    assert [(time, kind is GAP) for time, _, _, kind, _ in frames] == [
+        (0, False),
+        (900_000 * US, False),
+        (100_000 * US, True),
+        (100_000 * US, False),
+        (200_000 * US, False),
+    ]
+    assert [(finding.rule, finding.location.line) for finding in log.findings] == [("CAN009", 3)]
+
+
+def test_frames_of_two_buses_need_not_be_in_the_order_of_their_times(tmp_path):
+    frames, log = read(tmp_path / "run.log", line(0, "can0") + line(500, "can1", "7FF#") + line(200, "can0"))
+    assert len(frames) == 3
+    assert rules(log) == []
+
+
+def test_a_step_between_two_blocks_is_found(tmp_path):
+    text = "".join(line(number) for number in range(60_000))
+    _, log = read(tmp_path / "run.log", text + text)
+    [finding] = log.findings
+    assert (finding.rule, finding.location.line) == ("CAN009", 60_001)
+
+
+def test_a_pause_much_longer_than_all_others_is_told_and_not_judged(tmp_path):
+    times = [*range(0, 10_000_000, 100_000), *range(20_000_000, 21_000_000, 100_000)]
+    frames, log = read(tmp_path / "run.log", "".join(map(line, times)))
+    assert len(frames) == len(times)
+    [finding] = log.findings
+    # From 9.9 s to 20 s.
+    assert (finding.rule, finding.location.line) == ("CAN010", 101)
+    assert "10.1 s" in finding.message
+    _, log = read(tmp_path / "run.log", "".join(map(line, [0, 10_000_000, 30_000_000, 45_000_000])))
+    assert rules(log) == []
+
+
+def test_one_bus_on_two_channels_is_told(tmp_path):
+    text = "".join(
+        line(1000 * number + delay, channel, f"123#{number:04X}")
+        for number in range(50)
+        for channel, delay in (("can0", 0), ("can1", 30))
+    )
+    _, log = read(tmp_path / "run.log", text)
+    [finding] = log.findings
+    assert finding.rule == "CAN011"
+    assert "50 equal frames" in finding.message
+    _, log = read(tmp_path / "run.log", text, channel="can1")
+    assert rules(log) == []
+
+
+def test_two_buses_with_the_same_identifiers_are_told(tmp_path):
+    text = "".join(
+        line(1000 * number, channel, f"{identifier}#{payload}{number:02X}")
+        for number in range(50)
+        for channel, payload, identifier in (("can0", "AA", "123"), ("can1", "BB", "123"), ("can1", "CC", "124"))
+    )
+    _, log = read(tmp_path / "run.log", text)
+    [finding] = log.findings
+    assert finding.rule == "CAN011"
+    assert "1 equal identifiers" in finding.message
