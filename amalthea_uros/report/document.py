@@ -165,17 +165,19 @@ class Section:
     anchor : its address in a page
     lead : a sentence that says how to read it
     blocks : those in which there is something
+    is_detail : whether it is left out on terminals, as it can have a row for each object
     """
 
     anchor: str
     title: str
     lead: str
     blocks: Sequence[Block]
+    is_detail: bool = False
 
 
-def section(title: str, *blocks: Block, lead: str = "", anchor: str = "") -> Section:
+def section(title: str, *blocks: Block, lead: str = "", anchor: str = "", is_detail: bool = False) -> Section:
     """A section with the blocks in which there is something."""
-    return Section(anchor, title, lead, [block for block in blocks if block])
+    return Section(anchor, title, lead, [block for block in blocks if block], is_detail)
 
 
 @dataclass(frozen=True, slots=True)

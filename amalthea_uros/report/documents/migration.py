@@ -102,7 +102,7 @@ def migration_document(result: MigrationResult) -> Document:
     lost = ((each.object, each.location or "", each.message, each.detail) for each in result.lost)
     sections = (
         section("Files", Sentences(list(map(_file_text, result.files)))),
-        section("Lost", table("", ("object", "place", "what", "detail"), ([*map(str, row)] for row in lost))),
+        section("Lost", table("", ("object", "place", "what", "detail"), ([*map(str, row)] for row in lost)), is_detail=True),
         *(section(step.title, table("", _COLUMNS, map(_group_row, step.groups))) for step in steps(result)),
     )
     return document(sections, summary(result), f"Migration to {spelled(result.version)}", findings=result.findings)

@@ -13,7 +13,7 @@ _SPECIAL = re.compile(r"[\\|<>*`\[\]~&]|(?<![^\W_])_|_(?![^\W_])")
 
 
 def lines(document: Document, level: int = 1, most_characters: int | None = None) -> Iterator[str]:
-    """The title, the outcome, and the sections; tables without columns in which there is nothing.
+    """The title, the outcome in bold, what it is about, and the sections; tables without columns in which there is nothing.
 
     Parameters
     ----------
@@ -21,7 +21,10 @@ def lines(document: Document, level: int = 1, most_characters: int | None = None
     most_characters : longer texts in cells are shortened
     """
     yield f"{'#' * level} {escaped(document.title)}"
-    yield from (line for text in (document.opening, document.closing) if text for line in ("", escaped(text)))
+    if document.closing:
+        yield from ("", f"**{escaped(document.closing)}**")
+    if document.opening:
+        yield from ("", escaped(document.opening))
     for section in document.sections:
         yield from ("", f"{'#' * (level + 1)} {escaped(section.title)}")
         for block in section.blocks:

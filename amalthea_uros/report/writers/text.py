@@ -10,7 +10,7 @@ def write_document(document: Document, terminal: Terminal) -> None:
     """Write the opening, the sections, and the outcome."""
     if document.opening:
         terminal.line(document.opening)
-    for number, section in enumerate(document.sections):
+    for number, section in enumerate(each for each in document.sections if not each.is_detail):
         if number or document.opening:
             terminal.line()
         terminal.line(terminal.style(section.title, "1"))
