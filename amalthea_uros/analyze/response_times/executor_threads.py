@@ -6,10 +6,12 @@ one of these, all of whose jobs were activated since t0; or the thread; or the t
 others off, which can happen once after each resumption, because then either the thread or a process of higher rank follows. So t2 -
 t1 is at most the least w with
 
-    w = S + n B + C + sum over the others of C_j(eta_j(w))
+    w = S + n B + C + P + sum over the others of C_j(eta_j(w))
 
 (the busy window of `response_times.fixed_priority`, in which suspensions count like execution). If the thread itself keeps others off,
-what it still executed before it was suspended can delay them, and then count as blocking.
+what it still executed before it was suspended can delay them, and then count as blocking. P is the demand of the jobs of equal rank,
+and of lower ranks that count as others, that can be pending at t1: they waited while the thread executed, and go first when it is
+suspended.
 """
 
 from __future__ import annotations
@@ -21,6 +23,7 @@ from amalthea_uros.analyze.response_times.blocking import Blocking
 from amalthea_uros.analyze.response_times.busy_window import Interference
 from amalthea_uros.analyze.response_times.task import AnalysedTask
 from amalthea_uros.errors import UnknownError
+from amalthea_uros.timing.basics.time_base import Ticks
 from amalthea_uros.timing.scheduling.scheduled import ScheduledProcess
 from amalthea_uros.units import Time
 
@@ -34,6 +37,7 @@ class ExecutorThread:
 
     others: Interference
     blocking: Time
+    waiting: Time
     time_base: int
 
     @classmethod
@@ -73,6 +77,7 @@ class ExecutorThread:
                 [*(AnalysedTask.of(item, solution) for item in above), *AnalysedTask.of_decisions(scheduled.core, solution)]
             ),
             blocking.time(scheduled) + own,
+            sum(_waiting(item, solution) for item in above if item.rank <= scheduled.rank),
             time_base,
         )
 
@@ -86,8 +91,23 @@ class ExecutorThread:
         """
         if suspended is None:
             return None
-        fixed = suspended * self.time_base + resumed * self.blocking + demand
+        fixed = suspended * self.time_base + resumed * self.blocking + self.waiting + demand
         if not fixed and not self.others.task_count:
             return 0
         found = self.others.window(fixed, 0)
         return None if found is None else -(-found // self.time_base)
+
+
+def _waiting(item: ScheduledProcess, solution: Solution) -> Ticks:
+    """The demand of the jobs of a process that can be pending at a time; a thread that loops has one iteration at most."""
+    if any(executor.task == item.name for executor in solution.context.system.executors):
+        count = 1
+    else:
+        response, limit = solution.responses.get(item.name), getattr(item.process, "activation_limit", None)
+        bounds = [limit] if limit is not None else []
+        if response is not None and response.worst is not None:
+            bounds.append(solution.event_models[item.name].eta_plus(response.worst))
+        if not bounds:
+            raise UnknownError(f"the number of pending jobs of {item.name!r}, which has the same priority, is unknown")
+        count = min(bounds)
+    return solution.context.demands[item.name].max_demand(count)

@@ -23,6 +23,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.bounds.backlog import acknowledged, backlog_age, has_unacknowledged, max_heartbeats
 from amalthea_uros.executors.bounds.solved_system import SolvedSystem, ThreadProcessor
 from amalthea_uros.executors.semantics.demand import IterationDemand
@@ -40,6 +41,8 @@ from amalthea_uros.executors.semantics.readiness import (
     independent_handles,
     is_message,
     messages,
+    reads_in_waits,
+    sharing,
     takes_one_message,
 )
 from amalthea_uros.executors.semantics.suspension import NONE, Suspension, in_sequence, longest_of, suspension_of
@@ -120,7 +123,18 @@ class Cycle:
         )
         if not acknowledgements(system):
             return cycle
-        return replace(cycle, backlog_age=backlog_age(cycle.longest, self.sending, self.solved))
+        return replace(cycle, backlog_age=self._backlog_age(cycle.longest))
+
+    def _backlog_age(self, length: Time | None) -> Time | None:
+        """How long a message can wait unread: by the waits of this executor, or of others of the session if its own do not read."""
+        if reads_in_waits(self.executor):
+            return backlog_age(length, self.sending, self.solved)
+        ages = [
+            _age_by(each, self.solved, self.sending)
+            for each in sharing(self.executor, self.solved.context.system.executors)
+            if reads_in_waits(each)
+        ]
+        return min((age for age in ages if age is not None), default=None)
 
     def _writes(self) -> ProtocolWrites:
         """How often a wait writes, if the cycle is like this."""
@@ -284,3 +298,11 @@ class Cycle:
         if self.writing.most is None:
             return f"a wait has no bound: {self.writing.why}"
         return "the processes that preempt it need nearly all of the core"
+
+
+def _age_by(executor: Executor, solved: SolvedSystem, sending: Mapping[str, Span]) -> Time | None:
+    """How long a message can wait unread by the waits of an executor alone; None if there is no bound."""
+    try:
+        return Cycle.of(executor, solved, sending).backlog_age
+    except UnknownError:
+        return None

@@ -43,6 +43,11 @@ def takes_one_message(executor: Executor, executors: Sequence[Executor]) -> bool
     return executor.waiting.messages_per_wait == 1 and not has_backlog(executor, executors)
 
 
+def reads_in_waits(executor: Executor) -> bool:
+    """Whether the waits of an executor read from the receive buffer; with timers only, they may return at once instead."""
+    return bool(messages(executor)) or not executor.waiting.polls_without_messages
+
+
 def has_backlog(executor: Executor, executors: Sequence[Executor]) -> bool:
     """Whether messages can be stored before an iteration that takes them: see `takes_one_message`."""
     return can_defer(executor) or len(sharing(executor, executors)) > 1 or waits_for_acknowledgements(executor)

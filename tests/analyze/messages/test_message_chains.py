@@ -15,18 +15,20 @@ from amalthea_uros.analyze.response_times.propagation import solve
 from amalthea_uros.analyze.results.chains import LatencyQuantity
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.executors.bounds.backlog import Arriving, max_backlog
+from amalthea_uros.executors.bounds.cycle import Cycle
 from amalthea_uros.executors.bounds.publications import sending_times
 from amalthea_uros.executors.bounds.transmissions import arrival_jitter
 from amalthea_uros.executors.results import HopKind
 from amalthea_uros.executors.semantics.loops import timing_context
 from amalthea_uros.judge.verdict import Verdict
-from amalthea_uros.perf.activities import Trigger
+from amalthea_uros.perf.activities import Call, Trigger
 from amalthea_uros.perf.constraints import Constraints, LatencyConstraint, LatencyKind
 from amalthea_uros.perf.distributions import Constant, Uniform
-from amalthea_uros.perf.executors import HandleKind
+from amalthea_uros.perf.executors import Handle, HandleKind
 from amalthea_uros.perf.network import Purpose
 from amalthea_uros.perf.os import Policy, Scheduler
-from amalthea_uros.perf.stimuli import InterProcess, Periodic
+from amalthea_uros.perf.software import Runnable
+from amalthea_uros.perf.stimuli import InterProcess, Periodic, RelativePeriodic
 from amalthea_uros.timing.event_models import SporadicEvents
 
 TO_PWM = ("to pwm", "cmd_published", "on_cmd_end", "speed_written", "pwm_end")
@@ -336,3 +338,34 @@ def test_a_publication_has_no_bound_if_its_write_has_none():
     result = evaluate_executors_and_messages(solution(found))[0]["Executor"]
     assert result.handles["cmd"].response.worst is None
     assert "'odom_out', or what it writes while it waits, takes to be written has no bound" in result.reason
+
+
+def with_timer_only_executor(sleep):
+    """An executor that answers messages, and one of the same session whose waits do not read, with a reliable publication."""
+    found = with_answers(board(publication=Publication(topic="odom", transmission=None)), 50_000, 1000)
+    reader = found.executors[0]
+    loop = replace(reader.loop, sleep=sleep, timeout=0)
+    handles = tuple(replace(handle, publications=()) for handle in reader.handles)
+    reader = replace(reader, loop=loop, session="s", handles=handles)
+    timer = Handle(name="tick", kind=HandleKind.TIMER, runnable="On_tick", interval=1000 * MS, publications=(RELIABLE,))
+    fast = replace(reader, name="Fast", task="Fast", spin="Spin_Fast", loop=replace(loop, sleep=MS), handles=(timer,))
+    calls = (Call(runnable="Spin_Fast"), Call(runnable="On_tick"))
+    task = replace(found.processes["Executor"], name="Fast", stimuli=("iterations",), activities=calls)
+    runnables = (Runnable(name="Spin_Fast", activities=(ticks(10),)), Runnable(name="On_tick", activities=(ticks(10),)))
+    software = found.software
+    software = replace(software, tasks=(*software.tasks, task), runnables=(*software.runnables, *runnables))
+    allocation = next(each for each in found.mapping.tasks if each.task == "Executor")
+    mapping = replace(found.mapping, tasks=(*found.mapping.tasks, replace(allocation, task="Fast", priority=6)))
+    iterations = RelativePeriodic(name="iterations", distance=Constant(MS), has_maximum=False)
+    stimuli = replace(found.stimuli, stimuli=(*found.stimuli.stimuli, iterations))
+    return replace(found, executors=(reader, fast), software=software, mapping=mapping, stimuli=stimuli)
+
+
+@pytest.mark.parametrize(("sleep", "is_bounded"), [(10 * MS, True), (100 * MS, False)])
+def test_what_an_executor_that_does_not_read_finds_unread_is_left_by_the_one_that_reads(sleep, is_bounded):
+    solved = solution(with_timer_only_executor(sleep))
+    sending = sending_times(solved)
+    reader, fast = (Cycle.of(each, solved, sending) for each in solved.context.system.executors)
+    assert fast.longest < reader.longest
+    assert fast.backlog_age == reader.backlog_age
+    assert (fast.backlog_age is not None) is is_bounded
