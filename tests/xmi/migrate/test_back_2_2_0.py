@@ -5,9 +5,6 @@ from inline_models import InlineModels
 
 from amalthea_uros.xmi.migrate.notes import NoteKind
 
-TYPE = '<typeDefinitions t="BaseTypeDefinition" name="unsigned 8"/>'
-TYPE_REF = 't="TypeRef" typeDef="unsigned+8?type=BaseTypeDefinition"'
-
 
 @pytest.fixture
 def models(tmp_path):
@@ -20,45 +17,11 @@ def semaphore(attributes, kept=""):
     return f'<osModel><semaphores name="S" maxValue="1" {attributes}>{content}</semaphores></osModel>'
 
 
-def test_types_of_labels_and_channels_are_parts_again(models):
-    before = f"""<swModel>
-    <labels name="L" dataType="unsigned+8?type=BaseTypeDefinition"/>
-    <labels name="without type"/>
-    <channels name="C" elementType="unsigned+8?type=BaseTypeDefinition"/>
-    {TYPE}</swModel>"""
-    after = f"""<swModel>
-    <labels name="L"><dataType {TYPE_REF}/></labels>
-    <labels name="without type"/>
-    <channels name="C"><elementType {TYPE_REF}/></channels>
-    {TYPE}</swModel>"""
-    assert models.migrate("3.0.0", "2.2.0", before) == models.read("2.2.0", after)
-    assert models.migrate("2.2.0", "3.0.0", after) == models.read("3.0.0", before)
-
-
-def test_a_type_may_be_in_another_file_or_in_none(models):
-    before = """<swModel>
-    <labels name="L"><dataType href="amlt:/#unsigned+8?type=BaseTypeDefinition"/></labels>
-    <labels name="M"><dataType href="amlt:/#missing?type=BaseTypeDefinition"/></labels></swModel>"""
-    after = """<swModel>
-    <labels name="L"><dataType t="TypeRef"><typeDef href="amlt:/#unsigned+8?type=BaseTypeDefinition"/></dataType></labels>
-    <labels name="M"><dataType t="TypeRef"><typeDef href="amlt:/#missing?type=BaseTypeDefinition"/></dataType></labels>
-    </swModel>"""
-    other = f"<swModel>{TYPE}</swModel>"
-    assert models.migrate("3.0.0", "2.2.0", before, other) == models.read("2.2.0", after, other)
-
-
 def test_a_type_that_refers_to_nothing_is_an_error(models):
     content = """<swModel><typeDefinitions t="DataTypeDefinition" name="D"><dataType t="TypeRef"/>
     </typeDefinitions></swModel>"""
     models.migrate("3.0.0", "2.2.0", content)
     assert models.messages(NoteKind.LOST) == ["data type that refers to nothing"]
-
-
-def test_interfaces_have_a_datatype(models):
-    parts = f"""<componentsModel><interfaces name="I" {{0}}="unsigned+8?type=BaseTypeDefinition">
-    <subInterfaces name="J" {{0}}="unsigned+8?type=BaseTypeDefinition"/></interfaces></componentsModel>
-    <swModel>{TYPE}</swModel>"""
-    assert models.migrate("3.0.0", "2.2.0", parts.format("dataType")) == models.read("2.2.0", parts.format("datatype"))
 
 
 @pytest.mark.parametrize(

@@ -23,52 +23,6 @@ def same(tmp_path):
 
 # Priorities
 
-TWO_TASKS = '<swModel><tasks name="A" {}/><tasks name="B" {}/></swModel><mappingModel>{}</mappingModel>'
-
-
-def test_a_default_of_the_allocation_does_not_hide_the_priority_of_its_task(same):
-    notes = same(
-        TWO_TASKS.format('priority="5"', 'priority="1"', '<taskAllocation task="A?type=Task" priority="0"/>'),
-        f'<swModel><tasks name="A">{text_property("priority", 5)}</tasks><tasks name="B">{text_property("priority", 1)}</tasks>'
-        '</swModel><mappingModel><taskAllocation task="A?type=Task"/></mappingModel>',
-    )
-    assert ("priority 0, the old default, left out: the priority of the task applies", "5") in of_kind(
-        notes, NoteKind.CONVERTED
-    )
-    assert not of_kind(notes, NoteKind.LOST)
-
-
-def test_priority_0_of_a_task_is_kept_where_no_allocation_states_one(same):
-    notes = same(
-        TWO_TASKS.format('priority="0"', 'priority="0"', '<taskAllocation task="B?type=Task" priority="3"/>'),
-        f'<swModel><tasks name="A">{text_property("priority", 0)}</tasks><tasks name="B"/></swModel>'
-        '<mappingModel><taskAllocation task="B?type=Task"><schedulingParameters priority="3"/></taskAllocation></mappingModel>',
-    )
-    assert not of_kind(notes, NoteKind.LOST)
-
-
-def test_priority_0_of_a_task_is_kept_for_the_allocation_that_states_none(same):
-    allocations = '<taskAllocation task="A?type=Task"/><taskAllocation task="A?type=Task"{}</mappingModel>'
-    same(
-        '<swModel><tasks name="A" priority="0"/></swModel><mappingModel>' + allocations.format(' priority="3"/>'),
-        f'<swModel><tasks name="A">{text_property("priority", 0)}</tasks></swModel><mappingModel>'
-        + allocations.format('><schedulingParameters priority="3"/></taskAllocation>'),
-    )
-
-
-def test_priority_0_of_an_isr_is_kept_for_the_allocation_that_states_none(same):
-    mapping = '<mappingModel><isrAllocation isr="I?type=ISR"/><isrAllocation isr="I?type=ISR" priority="3"/></mappingModel>'
-    same(
-        f'<swModel><isrs name="I" priority="0"/></swModel>{mapping}',
-        f'<swModel><isrs name="I">{text_property("priority", 0)}</isrs></swModel>{mapping}',
-    )
-
-
-def test_priority_0_of_an_allocation_stays_where_the_isr_states_none(same):
-    model = '<swModel><isrs name="I"/></swModel><mappingModel><isrAllocation isr="I?type=ISR" priority="0"/>'
-    model += '<isrAllocation priority="0"/></mappingModel>'
-    same(model, model)
-
 
 def test_a_custom_property_that_says_the_same_is_enough(same):
     model = f'<swModel><tasks name="T"{{}}>{text_property("priority", 5)}{text_property("osekTaskGroup", 2)}</tasks></swModel>'
@@ -91,19 +45,6 @@ def test_what_becomes_of_priorities_and_groups_is_noted(files):
     ]
 
 
-def test_the_task_may_be_in_another_file(same):
-    same(
-        [
-            '<swModel><tasks name="A B" priority="5"/></swModel>',
-            '<mappingModel><taskAllocation priority="0"><task href="amlt:/#A+B?type=Task"/></taskAllocation></mappingModel>',
-        ],
-        [
-            f'<swModel><tasks name="A B">{text_property("priority", 5)}</tasks></swModel>',
-            '<mappingModel><taskAllocation><task href="amlt:/#A+B?type=Task"/></taskAllocation></mappingModel>',
-        ],
-    )
-
-
 def test_the_task_may_be_in_a_file_of_a_later_version(files):
     newer = files("0.8.1", f'<swModel><tasks name="A">{text_property("priority", 5)}</tasks></swModel>')
     older = files(
@@ -112,27 +53,6 @@ def test_the_task_may_be_in_a_file_of_a_later_version(files):
     models, _ = migrated([*newer, *older], "0.8.1")
     (allocation,) = models.trees[1].root.find("mappingModel", "taskAllocation")
     assert not allocation.children
-
-
-def test_existing_scheduling_parameters_are_used(same):
-    same(
-        '<mappingModel><taskAllocation priority="4"><schedulingParameters><minBudget value="1" unit="ms"/></schedulingParameters>'
-        "</taskAllocation></mappingModel>",
-        '<mappingModel><taskAllocation><schedulingParameters priority="4"><minBudget value="1" unit="ms"/></schedulingParameters>'
-        "</taskAllocation></mappingModel>",
-    )
-
-
-def test_a_default_of_the_allocation_does_not_hide_the_priority_of_its_isr(same):
-    before = "".join(f'<isrs name="{name}" priority="{number}"/>' for name, number in (("I", 9), ("J", 0), ("K", 7), ("L", 6)))
-    after = f'<isrs name="I">{text_property("priority", 9)}</isrs><isrs name="J"/>'
-    after += f'<isrs name="K">{text_property("priority", 7)}</isrs><isrs name="L">{text_property("priority", 6)}</isrs>'
-    allocations = (
-        '</swModel><mappingModel><isrAllocation isr="I?type=ISR" priority="{}"/><isrAllocation isr="J?type=ISR" priority="0"/>'
-    )
-    allocations += '<isrAllocation isr="K?type=ISR" priority="8"/><isrAllocation isr="L?type=ISR"/></mappingModel>'
-    before = f"<swModel>{before}{allocations.format(0)}"
-    same(before, f"<swModel>{after}{allocations.format(9)}")
 
 
 def test_process_prototypes_have_priorities_and_custom_properties_come_first(files):
@@ -185,66 +105,6 @@ def test_a_trigger_of_another_kind_of_stimulus_keeps_it_as_custom_property(same,
     )
 
 
-def test_every_class_of_stimuli_is_renamed_also_in_references_to_no_file(same):
-    names = ("ArrivalCurve", "InterProcess", "Periodic", "Single", "Sporadic", "Synthetic")
-    before = "".join(f'<stimuli t="{name}" name="{name}"/>' for name in (*names, "PeriodicEvent"))
-    after = "".join(f'<stimuli t="{name}Stimulus" name="{name}"/>' for name in names)
-    after += '<stimuli t="VariableRateStimulus" name="PeriodicEvent"/>'
-    task = '<swModel><tasks name="T"><stimuli href="amlt:/#elsewhere?type={}"/></tasks></swModel>'
-    same(
-        f"<stimuliModel>{before}</stimuliModel>{task.format('PeriodicEvent')}",
-        f"<stimuliModel>{after}</stimuliModel>{task.format('VariableRateStimulus')}",
-    )
-
-
-def test_mode_value_lists(same):
-    entry = '<entries{} valueProvider="L?type=ModeLabel" value="M/a?type=ModeLiteral"/>'
-    model = '<swModel><modes name="M"><literals name="a"/></modes><modeLabels name="L"/></swModel><stimuliModel>'
-    model += '<stimuli t="CustomStimulus" name="S">{}</stimuli></stimuliModel>'
-    lists = ("setModeValueList", "enablingModeValueList", "disablingModeValueList")
-
-    def stimulus(typed):
-        return model.format("".join(f"<{name}>{entry.format(typed)}</{name}>" for name in lists))
-
-    same(stimulus(""), stimulus(' t="ModeValue"'))
-    conjunction = model.format(
-        '<enablingModeValueList><entries t="ModeValueConjunction"><entries/></entries></enablingModeValueList>'
-    )
-    same(conjunction, conjunction)
-
-
-# Software
-
-ACTIVATION = '<swModel><runnables name="R" {}="P?type=PeriodicActivation"/><activations t="PeriodicActivation" name="P">'
-
-
-def test_activations(same):
-    same(
-        ACTIVATION.format("activation") + '<deadline value="3" unit="ms"/></activations>'
-        '<activations t="EventActivation" name="E" trigger="e?type=ProcessEvent"/></swModel>'
-        '<eventModel><events t="ProcessEvent" name="e"/></eventModel>',
-        ACTIVATION.format("activations")
-        + '<customProperties key="deadline"><value t="TimeObject" value="3" unit="ms"/></customProperties></activations>'
-        '<activations t="EventActivation" name="E" triggeringEvents="e?type=ProcessEvent"/></swModel>'
-        '<eventModel><events t="ProcessEvent" name="e"/></eventModel>',
-    )
-
-
-def test_the_keys_of_custom_properties_stay_unique(same):
-    model = f'<swModel><activations t="PeriodicActivation" name="P">{text_property("deadline", "x")}{{}}</activations>'
-    model += "</swModel>"
-    same(
-        model.format('<deadline value="3" unit="ms"/>'),
-        model.format('<customProperties key="deadline 2"><value t="TimeObject" value="3" unit="ms"/></customProperties>'),
-    )
-
-
-def test_the_activation_of_a_process_prototype_keeps_its_name(same):
-    model = '<swModel><processPrototypes name="P" activation="A?type=SingleActivation"/>'
-    model += '<activations t="SingleActivation" name="A"/></swModel>'
-    same(model, model)
-
-
 # Schedulers
 
 SYSTEM = '<osModel><operatingSystems name="OS">{}</operatingSystems></osModel>'
@@ -270,17 +130,6 @@ def test_scheduling_units(same, tag):
     assert of_kind(notes, NoteKind.LOST) == [("interrupt controller of a scheduling unit", "C?type=InterruptController")]
 
 
-def test_a_custom_property_without_value_of_a_scheduling_unit_moves_like_others(same):
-    key = "SchedulingHWUnit_CustomProperty__k"
-    same(
-        SYSTEM.format(
-            '<taskSchedulers name="S"><schedulingUnit t="SchedulingHWUnit"><customProperties key="k"/></schedulingUnit>'
-            "</taskSchedulers>"
-        ),
-        SYSTEM.format(f'<taskSchedulers name="S"><customProperties key="{key}"/></taskSchedulers>'),
-    )
-
-
 def test_what_becomes_of_scheduling_units_is_noted(files):
     schedulers = f'<taskSchedulers name="S" scheduleUnitPriority="0"><schedulingUnit priority="3">{text_property("k", "v")}'
     schedulers += '<instructions t="InstructionsConstant" value="1"/></schedulingUnit></taskSchedulers>'
@@ -303,89 +152,9 @@ def test_what_becomes_of_scheduling_units_is_noted(files):
     ]
 
 
-def test_what_else_a_scheduling_unit_states_is_not_lost_silently(same):
-    unit = '<schedulingUnit t="SchedulingHWUnit" priority="0" x="1"><y z="2"/></schedulingUnit>'
-    notes = same(
-        SYSTEM.format(f'<taskSchedulers name="S">{unit}</taskSchedulers>'), SYSTEM.format('<taskSchedulers name="S"/>')
-    )
-    assert of_kind(notes, NoteKind.LOST) == [("other content of a scheduling unit", "x=1, y (z=2)")]
-
-
-def test_parameters_of_a_scheduler_in_its_algorithm(same):
-    model = SYSTEM.format(
-        '<taskSchedulers name="S"><schedulingAlgorithm t="UserSpecificSchedulingAlgorithm"><{0} key="a" value="1"/>'
-        '<{0} key="b" value="2"/></schedulingAlgorithm></taskSchedulers>'
-        '<taskSchedulers name="P"><schedulingAlgorithm t="PfairPD2" quantSizeNs="1000"/></taskSchedulers>'
-    )
-    same(model.format("parameter"), model.format("parameterExtensions"))
-
-
-# Mapping and hardware
-
-
-def test_allocations_of_cores_in_another_file(same):
-    hardware = (
-        '<hwModel><system name="S"><ecus name="E"><microcontrollers name="M"><cores name="C 0"/></microcontrollers></ecus>'
-    )
-    hardware += "</system></hwModel>"
-    mapping = '<mappingModel><{0}><{1} href="amlt:/#C+0?type=Core"/></{0}></mappingModel>'
-    same(
-        [hardware, mapping.format("coreAllocation", "core")],
-        [hardware, mapping.format("schedulerAllocation", "responsibility")],
-    )
-
-
-def test_quartzes_are_collected_in_order_and_lose_their_parts(same):
-    notes = same(
-        '<hwModel><memoryTypes name="T" xAccessPattern="3-1-1"/><system name="S">'
-        '<memories name="m"><prescaler quartz="q2?type=Quartz"/><quartzes name="q1"><frequency value="1"/>'
-        '<quartzes name="q2"/><memories name="gone"><quartzes name="q3"/></memories><ports name="p"/></quartzes></memories>'
-        '<quartzes name="q4"/></system></hwModel>',
-        '<hwModel><memoryTypes name="T"/><system name="S"><memories name="m"><prescaler quartz="q2?type=Quartz"/></memories>'
-        '<quartzes name="q1"><frequency value="1"/></quartzes><quartzes name="q2"/><quartzes name="q3"/><quartzes name="q4"/>'
-        "</system></hwModel>",
-    )
-    assert of_kind(notes, NoteKind.LOST) == [
-        ("access pattern of a memory type", "3-1-1"),
-        ("memories of a quartz", "gone"),
-        ("ports of a quartz", "p"),
-    ]
-    assert of_kind(notes, NoteKind.MOVED) == [("quartz -> system", name) for name in ("q1", "q2", "q3")]
-
-
-def test_a_model_without_system_has_no_quartzes(same):
-    same('<hwModel><coreTypes name="C"/></hwModel>', '<hwModel><coreTypes name="C"/></hwModel>')
-
-
 # Event chains
 
 OUTER = '<eventChains name="outer"><{0} t="{1}"><eventChain name="inner"/></{0}></eventChains>'
-
-
-@pytest.mark.parametrize("tag", ["segments", "strands"])
-def test_inner_chains_of_another_file(same, tag):
-    inner = '<scope href="amlt:/#inner?type=EventChain"/>'
-    scope = '<timingConstraints t="EventChainSynchronizationConstraint" name="c">{}</timingConstraints>'
-    outer = '<scope href="amlt:/#outer?type=EventChain"/>'
-    kept = '<customProperties key="scope"><value t="ListObject"><values t="StringObject" '
-    kept += 'value="amlt:/#inner?type=EventChain"/></value></customProperties>'
-    same(
-        [
-            f"<constraintsModel>{OUTER.format(tag, 'SubEventChain')}</constraintsModel>",
-            f"<constraintsModel>{scope.format(outer + inner)}</constraintsModel>",
-        ],
-        [
-            f"<constraintsModel>{OUTER.format(tag, 'EventChainContainer')}</constraintsModel>",
-            f"<constraintsModel>{scope.format(outer + kept)}</constraintsModel>",
-        ],
-    )
-
-
-def test_a_chain_in_no_file_may_be_an_outer_one(same):
-    model = '<constraintsModel><eventChains name="a"><segments t="EventChainReference">{}</segments></eventChains>'
-    model += "</constraintsModel>"
-    reference = '<eventChain href="amlt:/#b?type=EventChain"/>'
-    same(model.format(reference), model.format(reference))
 
 
 def test_references_to_inner_chains_are_noted(files):

@@ -48,27 +48,6 @@ def test_variable_rate_activations_have_no_deviation_but_sporadic_ones_do(same):
     same(before, model.format(text_property("activationDeviation", KEPT)))
 
 
-def test_references_to_a_clocked_stimulus_follow_in_all_files(same):
-    software = '<swModel><tasks name="T"><stimuli href="amlt:/#P+1?type={0}"/><stimuli href="amlt:/#gone?type={1}"/></tasks>'
-    software += '<isrs name="I"><stimuli href="amlt:/#P+1?type={0}"/></isrs></swModel><eventModel>'
-    software += '<events t="StimulusEvent" name="e"><entity href="amlt:/#P+1?type={0}"/></events></eventModel>'
-    clock = '<stimuliModel><clocks t="ClockMultiplierList" name="c"/></stimuliModel>'
-    same(
-        [
-            software.format("PeriodicStimulus", "SporadicStimulus"),
-            '<stimuliModel><stimuli t="PeriodicStimulus" name="P 1"><clock href="amlt:/#c?type=ClockMultiplierList"/>'
-            "</stimuli></stimuliModel>",
-            clock,
-        ],
-        [
-            software.format("VariableRateStimulus", "RelativePeriodicStimulus"),
-            '<stimuliModel><stimuli t="VariableRateStimulus" name="P 1"><scenario>'
-            '<clock href="amlt:/#c?type=ClockMultiplierList"/></scenario></stimuli></stimuliModel>',
-            clock,
-        ],
-    )
-
-
 def test_what_a_clocked_stimulus_loses_is_noted(files):
     text = '<stimuliModel><stimuli t="PeriodicStimulus" name="P" clock="c?type=ClockSinusFunction">'
     text += '<offset value="1" unit="s"/>'
@@ -76,16 +55,6 @@ def test_what_a_clocked_stimulus_loses_is_noted(files):
     _, notes = migrated(files("0.8.2", text), "0.8.3")
     assert of_kind(notes, NoteKind.LOST) == [("deviation of a periodic stimulus with a clock", KEPT)]
     assert of_kind(notes, NoteKind.KEPT) == [("offset of a periodic stimulus with a clock", "1s")]
-
-
-def test_the_description_of_a_sporadic_stimulus_is_lost_and_noted(same):
-    notes = same(
-        '<stimuliModel><stimuli t="SporadicStimulus" name="S" description="why"/>'
-        '<stimuli t="SporadicStimulus" name="T" description=""/></stimuliModel>',
-        '<stimuliModel><stimuli t="RelativePeriodicStimulus" name="S"/>'
-        '<stimuli t="RelativePeriodicStimulus" name="T"/></stimuliModel>',
-    )
-    assert of_kind(notes, NoteKind.LOST) == [("description of a sporadic stimulus", "'why'")]
 
 
 # Mode switches
@@ -121,26 +90,6 @@ def test_labels_and_literals_of_other_files(same):
     after = task.format(f"{after}</entries>")
     modes = MODES.format("")
     same([before, modes], [after.format(label), modes])
-
-
-def test_labels_and_literals_that_are_no_references_are_lost(same):
-    task = '<tasks name="T"><callGraph><graphEntries t="ModeSwitch"{}</graphEntries></callGraph></tasks>'
-    notes = same(
-        MODES.format(task.format(' valueProvider="L"><entries values="a"/>')),
-        MODES.format(task.format("><entries><condition/></entries>")),
-    )
-    assert of_kind(notes, NoteKind.LOST) == [
-        ("mode label of a switch that is not a reference", "L"),
-        ("mode literal of a switch that is not a reference", "a"),
-    ]
-
-
-def test_an_entry_without_literals_is_never_taken(same):
-    task = '<tasks name="T"><callGraph><graphEntries t="ModeSwitch"{}</graphEntries></callGraph></tasks>'
-    same(
-        MODES.format(task.format(' valueProvider="L?type=ModeLabel"><entries/>')),
-        MODES.format(task.format("><entries><condition/></entries>")),
-    )
 
 
 def test_a_literal_of_a_mode_in_no_file_is_not_taken_for_one_of_the_same_name(files):

@@ -66,21 +66,6 @@ def bound(tag, value, kind="LongObject", more=""):
 # Instructions become ticks
 
 
-def test_the_default_of_instructions_means_other_ticks_where_an_instruction_does_not_take_one_cycle(same):
-    units = hardware(("Fast core", "2.0"), ("Plain", "1.0"), ("Slow", "0.5"))
-    same(
-        runnable(need(default(101))) + units,
-        runnable(
-            ticks(
-                constant(101),
-                of_definition("Fast+core", constant(50, "value")),
-                of_definition("Slow", constant(202, "value")),
-            )
-        )
-        + units,
-    )
-
-
 def test_entries_of_definitions_are_divided_once(same):
     units = hardware(("P", "2.0"), ("Q", "4"))
     same(
@@ -157,40 +142,10 @@ def test_missing_hardware_is_reported(tmp_path, other):
     ]
 
 
-def test_needs_of_other_keys_are_an_item_behind_the_ticks(same):
-    label = '<runnableItems t="RunnableCall"/>'
-    kept = f'<runnableItems t="ExecutionNeed"><needs key="F L">{constant(7, "value")}</needs></runnableItems>'
-    same(
-        runnable(need(default(7, "F L"), default(5)) + label),
-        runnable(ticks(constant(5)) + kept + label),
-    )
-
-
-def test_needs_without_instructions_are_no_ticks(same):
-    kept = f'<runnableItems t="ExecutionNeed"><needs key="FLOP">{constant(7, "value")}</needs></runnableItems>'
-    notes = same(runnable(need(default(7, "FLOP"), extended("P", 3, "FLOP"))), runnable(kept))
-    message = "execution needs of definitions no longer have keys other than instructions"
-    assert (message, "FLOP value=3") in of_kind(notes, NoteKind.LOST)
-
-
 def test_a_need_that_cannot_be_said_is_unknown_and_not_none(same):
     given = runnable(need(extended("P", 3, "FLOP")))
     notes = same(given, runnable(ticks()))
     assert len(of_kind(notes, NoteKind.TO_CHECK)) == len(of_kind(notes, NoteKind.LOST)) == 1
-
-
-def test_needs_in_groups_and_switches_are_found(same):
-    def nest(items):
-        inner = f'<items t="RunnableModeSwitch"><defaultEntry>{items}</defaultEntry></items>'
-        return runnable(f'<runnableItems t="Group" ordered="true">{inner}</runnableItems>')
-
-    same(
-        nest(need(default(5), default(2, "FLOP")).replace("runnableItems", "items")),
-        nest(
-            ticks(constant(5), tag="items")
-            + f'<items t="ExecutionNeed"><needs key="FLOP">{constant(2, "value")}</needs></items>'
-        ),
-    )
 
 
 @pytest.mark.parametrize("scheduler", ["taskSchedulers", "interruptControllers"])
@@ -253,48 +208,6 @@ def test_each_kind_of_values_has_its_classes(same, distribution, result):
     )
 
 
-def activation(name, content):
-    return f'<swModel><activations t="{name}" name="A">{content}</activations></swModel>'
-
-
-def test_the_deviation_of_a_sporadic_activation_is_its_occurrence(same):
-    content = bound("lowerBound", 1, "Time", ' unit="ms"') + bound("upperBound", 2, "Time", ' unit="ms"')
-    uniform = '<distribution t="UniformDistribution"/>'
-    times = '<lowerBound value="1" unit="ms"/><upperBound value="2" unit="ms"/>'
-    same(
-        activation("SporadicActivation", f"<activationDeviation>{content}{uniform}</activationDeviation>"),
-        activation("SporadicActivation", f'<occurrence t="TimeUniformDistribution">{times}</occurrence>'),
-    )
-    same(
-        activation("SporadicActivation", f"<activationDeviation>{content}</activationDeviation>"),
-        activation("SporadicActivation", f'<occurrence t="TimeBoundaries">{times}</occurrence>'),
-    )
-
-
-def test_occurrences_of_an_activation_are_numbers(same):
-    content = bound("lowerBound", "1.5", "DoubleObject") + bound("upperBound", 2, "DoubleObject")
-    same(
-        activation("VariableRateActivation", f"<occurrencesPerStep>{content}</occurrencesPerStep>"),
-        activation(
-            "VariableRateActivation",
-            '<occurrencesPerStep t="ContinuousValueBoundaries" lowerBound="1.5" upperBound="2"/>',
-        ),
-    )
-
-
-def test_measured_deviations_are_times(same):
-    def model(content):
-        return f'<measurementModel><measurements t="TaskMeasurement">{content}</measurements></measurementModel>'
-
-    given = bound("lowerBound", 1, "Time") + bound("upperBound", 2, "Time")
-    weibull = '<distribution t="WeibullEstimators">' + bound("mean", 3, "Time") + "</distribution>"
-    average = '<lowerBound value="1"/><upperBound value="2"/><average value="3"/>'
-    same(
-        model(f"<runtimeDeviation>{given}{weibull}</runtimeDeviation>"),
-        model(f'<runtimeDeviation t="TimeWeibullEstimatorsDistribution">{average}</runtimeDeviation>'),
-    )
-
-
 def test_weibull_parameters_are_kept_as_text(same):
     weibull = '<distribution t="WeibullParameters" kappa="5.0" lambda="6.0"/>'
     given = bound("lowerBound", 10) + bound("upperBound", 20) + weibull
@@ -303,15 +216,6 @@ def test_weibull_parameters_are_kept_as_text(same):
     same(runnable(need(deviation(given))), runnable(ticks(kept, bounds)))
     without_bounds = same(runnable(need(deviation(weibull))), runnable(ticks(kept)))
     assert of_kind(without_bounds, NoteKind.LOST) == [("neither a value nor bounds are specified", "")]
-
-
-def test_bounds_are_kept_where_no_distribution_is_stated(same):
-    def stimulus(content, name="RelativePeriodicStimulus"):
-        return f'<stimuliModel><stimuli t="{name}" name="S">{content}</stimuli></stimuliModel>'
-
-    given = f"<nextOccurrence>{bound('upperBound', 20, 'Time')}</nextOccurrence>"
-    kept = '<nextOccurrence t="TimeBoundaries"><upperBound value="20"/></nextOccurrence>'
-    same(stimulus(given), stimulus(kept))
 
 
 @pytest.mark.parametrize("name", ["lowerBound", "upperBound"])
@@ -354,50 +258,7 @@ def test_a_gauss_distribution_without_bounds_is_not_cut_off(same):
     same(runnable(need(deviation(gauss))), runnable(ticks(plain)))
 
 
-def test_a_constant_without_a_value_and_a_deviation_without_content(same):
-    empty = '<default key="Instructions"><value t="NeedConstant"/></default>'
-    same(runnable(need(empty)), runnable(ticks('<default t="DiscreteValueConstant"/>')))
-    empty = '<default key="Instructions"><value t="NeedDeviation"/></default>'
-    notes = same(runnable(need(empty)), runnable(ticks()))
-    assert of_kind(notes, NoteKind.LOST) == [("neither a value nor bounds are specified", "")]
-
-
 # Stimuli, hardware, operating systems
-
-
-def test_limits_of_a_step_are_attributes(same):
-    def stimulus(attributes, content):
-        return f'<stimuliModel><stimuli t="VariableRateStimulus" {attributes}>{content}</stimuli></stimuliModel>'
-
-    same(
-        stimulus("", '<maxIncreasePerStep value="2.5"/><maxDecreasePerStep/>'),
-        stimulus('maxIncreasePerStep="2.5"', ""),
-    )
-
-
-def test_latencies(same):
-    def access(content):
-        units = f'<modules t="ProcessingUnit" name="P"><accessElements name="a">{content}</accessElements></modules>'
-        return f'<hwModel><structures name="S">{units}</structures></hwModel>'
-
-    given = bound("lowerBound", 1) + bound("upperBound", 4)
-    uniform = '<distribution t="UniformDistribution"/>'
-    same(
-        access(
-            '<readLatency t="LatencyConstant" cycles="9"/>'
-            f'<writeLatency t="LatencyDeviation"><cycles>{given}{uniform}</cycles></writeLatency>'
-        ),
-        access(
-            constant(9, "readLatency") + '<writeLatency t="DiscreteValueUniformDistribution" lowerBound="1" upperBound="4"/>'
-        ),
-    )
-    lost = f'<writeLatency t="LatencyDeviation"><cycles>{given}</cycles></writeLatency>'
-    same(access(lost), access('<writeLatency t="DiscreteValueBoundaries" lowerBound="1" upperBound="4"/>'))
-    memory = '<hwModel><definitions t="MemoryDefinition" name="M">{}</definitions></hwModel>'
-    same(
-        memory.format('<accessLatency t="LatencyConstant" cycles="3"/>'),
-        memory.format(constant(3, "accessLatency")),
-    )
 
 
 def test_chunks(same):
@@ -413,24 +274,6 @@ def test_chunks(same):
 
 def overheads(content, more=""):
     return f'<osModel><osOverheads name="o 1">{content}</osOverheads>{more}</osModel>'
-
-
-def test_overheads_of_operating_systems(same):
-    given = (
-        '<apiOverhead><apiIocRead t="InstructionsConstant"/>'
-        '<apiSetEvent value="4"/><apiWaitEvent t="InstructionsDeviation"><deviation/></apiWaitEvent></apiOverhead>'
-        '<isrCategory2Overhead><postExecutionOverhead t="InstructionsConstant" value="7">'
-        '<fetchStatistic><count t="SingleValueStatistic" value="3"/></fetchStatistic>'
-        "</postExecutionOverhead></isrCategory2Overhead>"
-    )
-    result = (
-        f"<apiOverhead><apiIocRead>{{}}</apiIocRead><apiSetEvent>{constant(4)}</apiSetEvent><apiWaitEvent/></apiOverhead>"
-        f"<isrCategory2Overhead><postExecutionOverhead>{constant(7)}</postExecutionOverhead></isrCategory2Overhead>"
-    )
-    not_stated = '<default t="DiscreteValueConstant"/>'
-    notes = same(overheads(given), overheads(result.format(not_stated)))
-    lost = ("fetch statistics of instructions have no successor", "count(value=3)")
-    assert lost in of_kind(notes, NoteKind.LOST)
 
 
 def test_overheads_are_ticks_of_each_definition(same):
@@ -451,14 +294,6 @@ def test_overheads_with_bounds_beside_custom_properties(same, kind):
     same(overheads(given), overheads(f"<apiOverhead>{own}<apiSetEvent>{own}{uniform}</apiSetEvent></apiOverhead>"))
 
 
-def test_references_to_overheads_follow_also_into_files_that_are_missing(same):
-    system = '<operatingSystems overhead="{}?type={}"/>'
-    same(
-        overheads("", system.format("o+1", "OsInstructions") + system.format("gone", "OsInstructions")),
-        overheads("", system.format("o+1", "OsOverhead") + system.format("gone", "OsOverhead")),
-    )
-
-
 # Snapshots of the development, damaged files, large files
 
 
@@ -470,12 +305,6 @@ def test_a_file_of_the_newer_version_is_converted_where_it_is_old(tmp_path):
     twice, _ = migrated(written(tmp_path, "0.9.3", content.replace(need(default(5)), ticks(constant(5)))), "0.9.3")
     assert meaning(once) == meaning(twice)
     assert not of_kind(notes, NoteKind.LOST)
-
-
-def test_jitter_of_constraints_is_a_time(same):
-    jitter = '<timingConstraints t="RepetitionConstraint"><jitter value="3"/></timingConstraints>'
-    content = f"<constraintsModel>{jitter}</constraintsModel>"
-    same(content, content)
 
 
 @pytest.mark.parametrize(

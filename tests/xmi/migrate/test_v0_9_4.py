@@ -19,39 +19,6 @@ def same(tmp_path):
 # Deadlines
 
 
-def deadline_of(name, text):
-    limit = f'<limit t="TimeRequirementLimit" limitType="UpperLimit" metric="ResponseTime"><limitValue {text}/></limit>'
-    return f'<requirements t="RunnableRequirement" name="deadline" runnable="{name}?type=Runnable">{limit}</requirements>'
-
-
-def test_deadlines_join_the_requirements_that_are_there(same):
-    other = '<requirements t="ProcessRequirement" name="r"/>'
-    runnables = (
-        '<swModel><runnables name="A">{}</runnables><runnables name="B"/><runnables name="C+ 1">{}</runnables></swModel>'
-    )
-    given = runnables.format('<deadline value="2" unit="ms"/>', '<deadline value="3" unit="us"/>')
-    required = other + deadline_of("A", 'value="2" unit="ms"') + deadline_of("C%2B+1", 'value="3" unit="us"')
-    same(
-        f"<constraintsModel>{other}</constraintsModel>{given}",
-        f"<constraintsModel>{required}</constraintsModel>{runnables.format('', '')}",
-    )
-
-
-def test_deadlines_are_requirements_in_their_files(same):
-    def file(name, content, requirement=""):
-        constraints = requirement and f"<constraintsModel>{requirement}</constraintsModel>"
-        return f'<swModel><runnables name="{name}">{content}</runnables></swModel>{constraints}'
-
-    same(
-        [file("A", '<deadline value="1"/>'), file("B", '<deadline value="2"/>'), file("C", "")],
-        [
-            file("A", "", deadline_of("A", 'value="1"')),
-            file("B", "", deadline_of("B", 'value="2"')),
-            file("C", ""),
-        ],
-    )
-
-
 @pytest.mark.parametrize(("target", "left"), [("0.9.5", 1), ("0.9.7", 0)])
 def test_a_deadline_without_value_is_no_requirement_for_0(tmp_path, target, left):
     paths = written(tmp_path, "0.9.3", '<swModel><runnables name="A"><deadline unit="ms"/></runnables></swModel>')
@@ -59,24 +26,6 @@ def test_a_deadline_without_value_is_no_requirement_for_0(tmp_path, target, left
     assert len(models.trees[0].root.find("constraintsModel", "requirements")) == left
     said = [note for note in notes if note.message == "a deadline without value is no requirement"]
     assert [note.kind for note in said] == [NoteKind.CONVERTED] * (1 - left)
-
-
-# Data types and ports
-
-
-def test_aliases_need_not_be_complete(same):
-    types = '<swModel><typeDefinitions t="BaseTypeDefinition" name="t">{}</typeDefinitions></swModel>'
-    same(
-        types.format('<dataMapping platformType="int"/><dataMapping platformName="C" platformType="long"/>'),
-        types.format('<aliases alias="int"/><aliases target="C" alias="long"/>'),
-    )
-
-
-def test_ports_of_modules(same):
-    memory = '<modules t="Memory"><ports name="p" portInterface="{}"/></modules>'
-    ports = f'<hwModel><structures name="S">{memory}</structures></hwModel>'
-    same(ports.format("ABH"), ports.format("AHB"))
-    same(ports.format("AXI"), ports.format("AXI"))
 
 
 # Mode labels
@@ -90,89 +39,6 @@ NEW_MODES = MODES.format('t="EnumMode" ', 't="EnumMode" ')
 
 def software(content, old=True):
     return f"<swModel>{OLD_MODES if old else NEW_MODES}{content}</swModel>"
-
-
-def test_modes_in_another_file(same):
-    same(
-        [
-            software(""),
-            '<swModel><modeLabels name="l"><initialValue href="amlt:/#m+1/on+x?type=ModeLiteral"/></modeLabels></swModel>',
-        ],
-        [
-            software("", old=False),
-            '<swModel><modeLabels name="l" initialValue="on x"><mode href="amlt:/#m+1?type=EnumMode"/></modeLabels></swModel>',
-        ],
-    )
-
-
-def test_modes_in_no_file(same):
-    label = '<swModel><modeLabels name="{}" {}/></swModel>'
-    same(
-        label.format("l", 'initialValue="a+%2B+b/letter+%3CA%3E?type=ModeLiteral"'),
-        label.format("l", 'mode="a+%2B+b?type=EnumMode" initialValue="letter &lt;A>"'),
-    )
-
-
-def test_literals_that_their_mode_lacks(same):
-    label = '<modeLabels name="l" {}/>'
-    same(
-        software(label.format('initialValue="m+1/other?type=ModeLiteral"')),
-        software(label.format('mode="m+1?type=EnumMode" initialValue="other"'), old=False),
-    )
-
-
-def access(data, attributes):
-    return f'<runnableItems t="ModeLabelAccess" data="{data}?type=ModeLabel" {attributes}/>'
-
-
-def test_a_label_without_initial_value_has_the_only_mode_of_its_uses(same):
-    def model(labels, items, old):
-        return software(f'{labels}<runnables name="R">{items}</runnables>', old)
-
-    given = model(
-        '<modeLabels name="a"/><modeLabels name="b"/><modeLabels name="c"/>',
-        access("a", 'access="write" modeValue="m+1/off?type=ModeLiteral"')
-        + access("b", 'access="write" modeValue="m+1/off?type=ModeLiteral"')
-        + access("b", 'access="read" modeValue="n/on+x?type=ModeLiteral"')
-        + access("c", 'access="read"'),
-        old=True,
-    )
-    items = (
-        access("a", 'access="set" value="off"')
-        + access("b", 'access="set" value="off"')
-        + access("b", 'access="read" value="on x"')
-        + access("c", 'access="read"')
-    )
-    with_mode = '<modeLabels name="a" mode="m+1?type=EnumMode"/><modeLabels name="b"/><modeLabels name="c"/>'
-    notes = same(given, model(with_mode, items, old=False))
-    message = "a mode label without initial value has the mode of its uses"
-    assert of_kind(notes, NoteKind.DEFAULTED) == [(message, "m 1")]
-    message = "mode label without initial value: its mode, which is mandatory now, is not known"
-    assert of_kind(notes, NoteKind.TO_CHECK) == [(message, "m 1, n"), (message, "")]
-
-
-def test_a_label_without_initial_value_has_the_mode_of_conditions_and_assignments(same):
-    def model(labels, condition, entry, old):
-        lists = f"<setModeValueList><entries {entry}/></setModeValueList>"
-        switch = f"<entries><condition>{condition}</condition></entries>"
-        process = f'<callGraph><graphEntries t="ModeSwitch">{switch}</graphEntries></callGraph>'
-        stimulus = f'<stimuli t="SingleStimulus" name="S">{lists}</stimuli>'
-        return software(f"{labels}<isrs name='I'>{process}</isrs>", old) + f"<stimuliModel>{stimulus}</stimuliModel>"
-
-    same(
-        model(
-            '<modeLabels name="a"/><modeLabels name="b"/>',
-            '<entries t="ModeValue" valueProvider="a?type=ModeLabel" value="m+1/off?type=ModeLiteral"/>',
-            't="ModeValue" valueProvider="b?type=ModeLabel" value="n/on+x?type=ModeLiteral"',
-            old=True,
-        ),
-        model(
-            '<modeLabels name="a" mode="m+1?type=EnumMode"/><modeLabels name="b" mode="n?type=EnumMode"/>',
-            '<entries t="ModeCondition" label="a?type=ModeLabel" value="off" relation="EQUAL"/>',
-            'label="b?type=ModeLabel" value="on x"',
-            old=False,
-        ),
-    )
 
 
 def test_a_label_without_initial_value_has_the_mode_that_an_older_version_stated(tmp_path):

@@ -8,8 +8,6 @@ from migration import meaning, migrated
 
 from amalthea_uros.xmi.migrate.notes import NoteKind
 
-KEY = "old_definition_v0.9.4"
-
 
 @pytest.fixture
 def same(tmp_path):
@@ -95,20 +93,6 @@ def test_steps_without_a_counter_keep_it_as_text(same, name):
     assert of_kind(notes, NoteKind.KEPT) == [(f"{name} no longer has a counter", "prescaler=2 offset=1")]
 
 
-def test_items_of_runnables_keep_their_order_and_the_rest_of_the_runnable(same):
-    same(
-        '<swModel><runnables name="R" service="true"><runnableItems t="LabelAccess" data="L?type=Label"/><parameters name="p"/>'
-        '<runnableItems t="Group" name="g"><items t="RunnableModeSwitch"/></runnableItems>'
-        "</runnables><labels name='L'/></swModel>",
-        '<swModel><runnables name="R" service="true"><parameters name="p"/><callGraph><items t="LabelAccess" data="L?type=Label"/>'
-        '<items t="Group" name="g"><items t="ModeSwitch"/></items>'
-        "</callGraph></runnables><labels name='L'/></swModel>",
-    )
-
-
-# Clocks
-
-
 def stimuli(content):
     return f"<stimuliModel>{content}</stimuliModel>"
 
@@ -120,71 +104,6 @@ def clock(name, kind, attributes="", content=""):
 def scenario(clock, kind):
     inner = f'<scenario clock="{clock}?type={kind}"/>'
     return f'<stimuli t="VariableRateStimulus" name="V{clock}">{inner}</stimuli>'
-
-
-def test_triangles_and_lists_keep_their_definition_as_text(same):
-    times = '<shift value="5" unit="ms"/><period value="1" unit="s"/>'
-    same(
-        stimuli(
-            clock("t 1", "ClockTriangleFunction", 'max="3" min="-1"', times)
-            + clock("l", "ClockMultiplierList", "", '<entries multiplier="1.5"/><entries multiplier="2"/>')
-        ),
-        stimuli(
-            clock("t 1", "ClockFunction", 'curveType="triangle"', text_property(KEY, "max=3 min=-1 shift=5ms period=1s"))
-            + clock(
-                "l",
-                "ClockStepList",
-                "",
-                f"<entries>{text_property(KEY, 'multiplier=1.5')}</entries><entries>{text_property(KEY, 'multiplier=2')}</entries>",
-            )
-        ),
-    )
-
-
-def test_references_to_clocks_follow(same):
-    given = (
-        scenario("t+1", "ClockTriangleFunction") + scenario("l", "ClockMultiplierList") + scenario("gone", "ClockSinusFunction")
-    )
-    clocks = clock("t 1", "ClockTriangleFunction", 'max="3" min="-1"') + clock("l", "ClockMultiplierList")
-    kept = clock("t 1", "ClockFunction", 'curveType="triangle"', text_property(KEY, "max=3 min=-1")) + clock(
-        "l", "ClockStepList"
-    )
-    result = scenario("t+1", "ClockFunction") + scenario("l", "ClockStepList") + scenario("gone", "ClockFunction")
-    same(stimuli(given + clocks), stimuli(result + kept))
-
-
-def test_clocks_in_another_file(same):
-    def user(kind):
-        inner = f'<scenario><clock href="amlt:/#c?type={kind}"/></scenario>'
-        return stimuli(f'<stimuli t="VariableRateStimulus">{inner}</stimuli>')
-
-    same(
-        [user("ClockMultiplierList"), stimuli(clock("c", "ClockMultiplierList"))],
-        [user("ClockStepList"), stimuli(clock("c", "ClockStepList"))],
-    )
-
-
-def test_clocks_without_numbers(same):
-    given = (
-        scenario("c", "ClockSinusFunction")
-        + clock("c", "ClockSinusFunction", 'amplitude="3"')
-        + clock("d", "ClockSinusFunction")
-    )
-    result = (
-        scenario("c", "ClockFunction")
-        + clock("c", "ClockFunction", 'curveType="sine"', text_property(KEY, "amplitude=3"))
-        + clock("d", "ClockFunction", 'curveType="sine"')
-    )
-    same(stimuli(given), stimuli(result))
-
-
-def test_properties_that_are_there_stay(same):
-    before = text_property("a", "1") + text_property(KEY, "mine")
-    given = f'<scenario>{before}<recurrence value="10"/></scenario>'
-    result = f"<scenario>{before}{text_property(KEY + ' 2', 'recurrence=10')}</scenario>"
-    stimulus = '<stimuli t="VariableRateStimulus">{}</stimuli>'
-    notes = same(stimuli(stimulus.format(given)), stimuli(stimulus.format(result)))
-    assert of_kind(notes, NoteKind.KEPT) == [("the recurrence of a scenario has no successor", "recurrence=10")]
 
 
 # Snapshots of the development, damaged files, large files

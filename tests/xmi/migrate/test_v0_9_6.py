@@ -61,19 +61,6 @@ def test_chains_without_ends_are_to_be_checked_once(models):
     assert len(models.messages(NoteKind.TO_CHECK)) == 2
 
 
-def test_a_file_of_0_9_6_may_have_chains_and_conditions_of_0_9_5(models):
-    before = f"""<eventChains name="c" {ENDS}>
-        <segments t="EventChainReference" eventChain="c?type=EventChain"/></eventChains>"""
-    after = f"""<eventChains name="c" {ENDS} itemType="sequence">
-        <items t="EventChainReference" eventChain="c?type=EventChain"/></eventChains>"""
-    assert models.migrate("0.9.6", "0.9.7", chains(before)) == models.read("0.9.7", chains(after))
-    condition = """<swModel><runnables name="R"><executionCondition>
-      <entries t="ModeConditionConjunction"><entries{} value="on" relation="EQUAL"/></entries>
-      </executionCondition></runnables></swModel>"""
-    typed = condition.format(' t="ModeValueCondition"')
-    assert models.migrate("0.9.6", "0.9.7", condition.format("")) == models.read("0.9.7", typed)
-
-
 @pytest.mark.parametrize("version", ["0.9.5", "0.9.6", "0.9.7"])
 def test_what_is_in_the_new_form_stays(models, version):
     content = f"""<eventChains name="c" {ENDS} itemType="parallel" minItemsCompleted="2">
@@ -89,10 +76,3 @@ def test_conditions_of_isrs_and_stimuli_are_converted_and_entries_of_switches_ar
     before = text.format(graph="callGraph", kind='t="ModeCondition"')
     after = text.format(graph="activityGraph", kind='t="ModeValueCondition"')
     assert models.migrate("0.9.5", "0.9.7", before) == models.read("0.9.7", after)
-
-
-def test_a_snapshot_of_0_9_7_takes_the_step_again(models):
-    text = '<swModel><runnables name="R"><executionCondition><entries t="{}"/></executionCondition></runnables></swModel>'
-    assert models.migrate("0.9.7", "0.9.8", text.format("ModeCondition")) == models.read(
-        "0.9.8", text.format("ModeValueCondition")
-    )

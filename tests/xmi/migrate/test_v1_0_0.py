@@ -38,16 +38,6 @@ def test_comments_on_a_measurement_stay_with_what_was_measured(models):
     assert [task.comments for task in roots[0].find("swModel", "tasks")] == [["<!-- on the bench -->"]]
 
 
-def test_measurements_of_event_chains_and_notes_on_all_of_them_stay(models):
-    note = PROPERTY.format("bench", "A")
-    measurements = f"""<measurementModel>{note}<measurements t="EventChainMeasurement" eventChain="E?type=EventChain">
-      <runtimes value="5" unit="us"/></measurements></measurementModel>"""
-    chains = '<constraintsModel><eventChains name="E">{}</eventChains></constraintsModel>'
-    after = note + chains.format(PROPERTY.format("measured runtimes", "5 us"))
-    assert models.migrate("0.9.9", "1.2.0", chains.format("") + measurements) == models.read("1.2.0", after)
-    assert models.messages(NoteKind.LOST) == []
-
-
 def test_measurements_of_nothing_are_lost_with_a_note(models):
     content = """<measurementModel><measurements t="TaskMeasurement"/>
       <measurements t="RunnableMeasurement" runnable="X?type=Runnable"/></measurementModel>"""
@@ -87,12 +77,3 @@ def test_what_2_1_0_does_not_allow_is_to_be_checked(models):
       <mappingModel><memoryMapping/></mappingModel>"""
     assert models.migrate("2.0.0", "2.1.0", content) == models.read("2.1.0", content)
     assert len(models.messages(NoteKind.TO_CHECK)) == 4
-
-
-def test_what_2_1_0_allows_is_not_to_be_checked(models):
-    content = """<swModel><runnables name="R"><executionCondition>
-        <entries t="ChannelFillCondition" fillLevel="3" relation="EQUAL"/></executionCondition></runnables></swModel>
-      <osModel><semaphores name="S" initialValue="0" maxValue="1"/><semaphores name="T"/></osModel>
-      <mappingModel><memoryMapping memory="what?"/></mappingModel>"""
-    assert models.migrate("2.0.0", "2.1.0", content) == models.read("2.1.0", content)
-    assert models.messages(NoteKind.TO_CHECK) == ["maxValue is not set: the default was 0 and is now 1"]

@@ -88,21 +88,6 @@ def test_known_algorithms_have_parameters(models):
     assert models.migrate("1.2.0", "2.0.0", old_os("StaticCyclic", "OSEK")) == models.read("2.0.0", after)
 
 
-def test_interrupt_controllers_and_priorities_of_isrs(models):
-    before = """<osModel><operatingSystems name="OS"><interruptControllers name="C">
-        <schedulingAlgorithm t="PriorityBased"/></interruptControllers></operatingSystems></osModel>"""
-    after = f"""<osModel><operatingSystems name="OS">
-        <interruptControllers name="C" definition="PriorityBased?type=SchedulerDefinition"/></operatingSystems>
-        <schedulerDefinitions name="PriorityBased" processParameters="priority?type=SchedulingParameterDefinition" {FLAGS}/>
-        {PRIORITY}</osModel>"""
-    mapping = """<mappingModel><isrAllocation isr="I?type=ISR" controller="C?type=InterruptController" {}/>
-      <isrAllocation isr="J?type=ISR" controller="C?type=InterruptController" priority="0"/></mappingModel>"""
-    software = '<swModel><isrs name="I">{}</isrs><isrs name="J">{}</isrs></swModel>'
-    given = software.format(property_("priority", "7"), property_("priority", "3")) + before + mapping.format("")
-    better = software.format("", property_("priority", "3")) + after + mapping.format('priority="7"')
-    assert models.migrate("1.2.0", "2.0.0", given) == models.read("2.0.0", better)
-
-
 @pytest.mark.parametrize("algorithm", ["PfairPD2", "PartlyPFairPD2", "EarlyReleaseFairPD2", "PartlyEarlyReleaseFairPD2"])
 @pytest.mark.parametrize(
     ("attribute", "content"), [('quantSizeNs="500"', ""), ("", '<parameterExtensions key="quantSizeNs" value="500"/>')]
@@ -150,20 +135,6 @@ def test_numbers_of_algorithms_of_the_user_are_new_and_in_order(models):
     assert models.migrate("1.2.0", "2.0.0", before) == models.read("2.0.0", after)
 
 
-def test_a_key_that_occurs_twice_is_one_parameter_of_the_definition(models):
-    extension = '<parameterExtensions key="k" value="{}"/>'
-    before = f"""<osModel><operatingSystems name="OS"><taskSchedulers name="S0">
-      <schedulingAlgorithm t="UserSpecificSchedulingAlgorithm">{extension.format(1)}{extension.format(2)}
-      </schedulingAlgorithm></taskSchedulers></operatingSystems></osModel>"""
-    after = f"""<osModel><operatingSystems name="OS">
-      <taskSchedulers name="S0" definition="UserSpecificSchedulingAlgorithm1?type=SchedulerDefinition">
-      {string("extended: k", "1")}{string("extended: k", "2")}</taskSchedulers></operatingSystems>
-      <schedulerDefinitions name="UserSpecificSchedulingAlgorithm1"
-        algorithmParameters="extended%3A+k?type=SchedulingParameterDefinition"/>
-      <schedulingParameterDefinitions name="extended: k" type="String" many="false" mandatory="false"/></osModel>"""
-    assert models.migrate("1.2.0", "2.0.0", before) == models.read("2.0.0", after)
-
-
 def test_a_quantum_that_is_stated_twice_stays_twice(models):
     before = """<osModel><operatingSystems name="OS"><taskSchedulers name="S0"><schedulingAlgorithm t="PfairPD2"
       quantSizeNs="5"><parameterExtensions key="quantSizeNs" value="6"/></schedulingAlgorithm></taskSchedulers>
@@ -181,18 +152,6 @@ def test_a_newer_file_of_the_set_takes_the_definitions(models):
         for tree in found.trees
         for node in tree.root.find("osModel", "schedulingParameterDefinitions")
     ] == [("os.amxmi", "priority")]
-
-
-@pytest.mark.parametrize(
-    "content",
-    [
-        '<schedulingParameters key="x"><value t="IntegerObject" value="4"/></schedulingParameters>',
-        '<schedulingParameters><value t="IntegerObject" value="4"/></schedulingParameters>',
-    ],
-)
-def test_damaged_parameters_of_2_0_0_stay_in_a_snapshot(models, content):
-    content = tasks("") + new_os("", "X") + allocated(content)
-    assert models.migrate("1.2.0", "2.0.0", content) == models.read("2.0.0", content)
 
 
 def test_a_priority_whose_definition_is_in_no_file_is_stated(models):
@@ -214,14 +173,6 @@ def test_one_set_of_definitions_for_several_files(models):
     assert found == models.read("2.0.0", after, tasks(""), os)
 
 
-def test_without_any_os_model_one_is_made(models):
-    text = (
-        '<mappingModel><taskAllocation task="T?type=Task" scheduler="S?type=TaskScheduler">{}</taskAllocation></mappingModel>'
-    )
-    after = text.format(integer("priority", 4)) + f"<osModel>{PRIORITY}</osModel>"
-    assert models.migrate("1.2.0", "2.0.0", text.format('<schedulingParameters priority="4"/>')) == models.read("2.0.0", after)
-
-
 def test_definitions_that_are_there_are_used(models):
     present = new_os(FPP.replace("name=", 'description="mine" name=') + PRIORITY, "FixedPriorityPreemptive")
     scheduler, end = '<taskSchedulers name="S1"{}</taskSchedulers>', "</operatingSystems>"
@@ -241,27 +192,6 @@ def test_what_is_converted_stays(models, version):
     assert models.migrate(version, "2.1.0", content) == models.read("2.1.0", content)
 
 
-def test_budgets_of_a_task(models):
-    budgets = '<minBudget value="1" unit="ms"/><maxBudget value="2" unit="ms"/><replenishment value="10" unit="ms"/>'
-    definitions = '<schedulerDefinitions name="FixedPriorityPreemptiveWithBudgetEnforcement"/>' + "".join(
-        f'<schedulingParameterDefinitions name="{name}" type="{kind}" many="false" mandatory="{flag}"/>'
-        for name, kind, flag in (
-            ("maxBudget", "Time", "false"),
-            ("minBudget", "Time", "false"),
-            ("priority", "Integer", "true"),
-            ("replenishment", "Time", "false"),
-        )
-    )
-    algorithm = "FixedPriorityPreemptiveWithBudgetEnforcement"
-    before = tasks("") + old_os(algorithm) + allocated(f'<schedulingParameters priority="-3">{budgets}</schedulingParameters>')
-    time = 't="Time" value="{}" unit="ms"'
-    given = integer("priority", -3) + parameter("minBudget", time.format(1)) + parameter("maxBudget", time.format(2))
-    given += parameter("replenishment", time.format(10))
-    assert models.migrate("1.2.0", "2.0.0", before) == models.read(
-        "2.0.0", tasks("") + new_os(definitions, algorithm) + allocated(given)
-    )
-
-
 def test_priorities_in_custom_properties_become_parameters(models):
     before = tasks(
         property_("priority", "0"), property_("priority", "5"), property_("priority", "6"), property_("priority", "high")
@@ -274,19 +204,6 @@ def test_priorities_in_custom_properties_become_parameters(models):
     assert models.migrate("1.2.0", "2.0.0", before) == models.read("2.0.0", after)
     # Once more: nothing is left to do.
     assert models.migrate("1.2.0", "2.0.0", after) == models.read("2.0.0", after)
-
-
-def test_the_priority_of_a_task_without_allocation_stays_a_property(models):
-    content = tasks(property_("priority", "5"), property_("osekTaskGroup", "5"))
-    assert models.migrate("1.2.0", "2.0.0", content) == models.read("2.0.0", content)
-
-
-def test_task_groups_are_for_osek_only(models):
-    content = tasks(property_("osekTaskGroup", "2"))
-    before, after = old_os("FixedPriorityPreemptive"), new_os(FPP + PRIORITY, "FixedPriorityPreemptive")
-    assert models.migrate("1.2.0", "2.0.0", content + before + allocated("")) == models.read(
-        "2.0.0", content + after + allocated("")
-    )
 
 
 def test_task_groups_of_osek(models):
@@ -358,11 +275,3 @@ def test_comments_stay_with_the_scheduler_and_the_allocation(models):
         ("taskAllocation", ["<!--4-->"]),
         ("value", ["<!--5-->"]),
     ]
-
-
-def test_a_written_class_of_a_disjunction_is_renamed(models):
-    text = """<swModel><runnables name="R"><executionCondition t="{}"><entries t="{}"/></executionCondition>
-      </runnables></swModel>"""
-    before = text.format("ModeConditionDisjunction", "ModeConditionConjunction")
-    after = text.format("ConditionDisjunction", "ConditionConjunction")
-    assert models.migrate("1.2.0", "2.0.0", before) == models.read("2.0.0", after)

@@ -1,0 +1,85 @@
+"""Steps of a migration, stated in steps/*.txt as differences between the model before and after.
+
+A line `from A to B` states the versions of a file or of one case, `== TITLE` starts a case, `--` the next one of the same title,
+and `file` the next file of the model. Lines of the model are in both versions, or after "-" in the old one only, or after "+" in the
+new one only. `KIND MESSAGE | DETAIL` is one of the notes, `only KIND ...` lines are all notes of the kind, `no KIND`: there is none.
+"""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import pytest
+from inline_models import written
+from migration import meaning, migrated, opened
+
+
+@dataclass
+class Step:
+    """A case: the contents of the files before and after, and what is stated of the notes."""
+
+    name: str
+    versions: tuple[str, str]
+    before: list[str] = field(default_factory=lambda: [""])
+    after: list[str] = field(default_factory=lambda: [""])
+    notes: list[str] = field(default_factory=list)
+
+
+def read_steps(path):
+    """The cases of a file."""
+    first, *lines = path.read_text("utf-8").splitlines()
+    steps: list[Step] = []
+    for line in lines:
+        mark, text = line[:2], line[2:].strip()
+        if mark == "==":
+            steps.append(Step(f"{path.stem}: {text}", versions_of(first)))
+        elif mark == "--":
+            steps.append(Step(steps[-1].name, versions_of(first)))
+        elif line.startswith("from "):
+            steps[-1].versions = versions_of(line)
+        elif line == "file":
+            steps[-1].before.append("")
+            steps[-1].after.append("")
+        elif mark in ("  ", "- ", "+ "):
+            if mark != "+ ":
+                steps[-1].before[-1] += text
+            if mark != "- ":
+                steps[-1].after[-1] += text
+        elif line and mark != "# ":
+            steps[-1].notes.append(line)
+    return steps
+
+
+def versions_of(line):
+    """The versions of "from 0.9.2 to 0.9.3"."""
+    _, source, _, target = line.split()
+    return source, target
+
+
+STEPS = [step for path in sorted((Path(__file__).parent / "steps").glob("*.txt")) for step in read_steps(path)]
+
+
+@pytest.mark.parametrize("step", STEPS, ids=[step.name for step in STEPS])
+def test_a_step(step, tmp_path):
+    source, target = step.versions
+    models, notes = migrated(written(tmp_path, source, *step.before), target)
+    assert meaning(models) == meaning(opened(*written(tmp_path, target, *step.after)))
+    only: dict[str, list[str]] = {}
+    for line in step.notes:
+        quantity, _, rest = line.partition(" ")
+        if quantity == "no":
+            only[rest] = []
+            continue
+        kind, _, text = (rest if quantity == "only" else line).partition(" ")
+        if quantity == "only":
+            only.setdefault(kind, []).append(text)
+        else:
+            assert text in stated(notes, kind, " |" in text)
+    for kind, texts in only.items():
+        assert stated(notes, kind, any(" |" in text for text in texts)) == texts
+
+
+def stated(notes, kind, with_details):
+    """The notes of a kind, as they are written in a file of steps."""
+    return [
+        f"{note.message} | {note.detail}".rstrip() if with_details else note.message for note in notes if note.kind.name == kind
+    ]
