@@ -64,29 +64,31 @@ def curve(*points):
     )
 
 
-def test_periodic_occurrences():
-    assert times(named(Periodic, period=10, offset=3), 34) == [3, 13, 23, 33]
+@pytest.mark.parametrize(
+    ("stimulus", "limit", "expected"),
+    [
+        (named(Periodic, period=10, offset=3), 34, [3, 13, 23, 33]),
+        (named(Periodic, period=10, min_distance=15), 60, [0, 15, 30, 45]),
+        # The documented burst; others are clipped at their length.
+        (named(Burst, offset=5, period=10, length=5, distance=2, count=3), 30, [5, 7, 9, 15, 17, 19, 25, 27, 29]),
+        (named(Burst, period=100, length=10, distance=4, count=9), 101, [0, 4, 8, 100]),
+        (named(Burst, period=100, length=10, count=2), 101, [0, 0, 100, 100]),
+        # Synthetic times repeat and may exceed the period.
+        (named(Synthetic, offset=5, period=10, times=(3, 1)), 30, [6, 8, 16, 18, 26, 28]),
+        (named(Synthetic, period=10, times=(0, 12)), 31, [0, 10, 12, 20, 22, 30]),
+        (named(Single, time=7), 100, [7]),
+        (named(Single, time=7), 7, []),
+        # Occurrences of a step are evenly distributed, and fractions are carried over.
+        (named(VariableRate, step=100, rate=Constant(4.0)), 201, [25, 50, 75, 100, 125, 150, 175, 200]),
+        (named(VariableRate, step=100, rate=Constant(0.4)), 1001, [250, 500, 750, 1000]),
+    ],
+)
+def test_occurrences_without_chance(stimulus, limit, expected):
+    assert times(stimulus, limit) == expected
+
+
+def test_the_time_base_divides_a_picosecond():
     assert times(named(Periodic, period=10, offset=3), 34, time_base=3) == [9]
-
-
-def test_the_documented_burst():
-    burst = named(Burst, offset=5, period=10, length=5, distance=2, count=3)
-    assert times(burst, 30) == [5, 7, 9, 15, 17, 19, 25, 27, 29]
-
-
-def test_a_burst_is_clipped_at_its_length():
-    assert times(named(Burst, period=100, length=10, distance=4, count=9), 101) == [0, 4, 8, 100]
-    assert times(named(Burst, period=100, length=10, count=2), 101) == [0, 0, 100, 100]
-
-
-def test_synthetic_times_repeat_and_may_exceed_the_period():
-    assert times(named(Synthetic, offset=5, period=10, times=(3, 1)), 30) == [6, 8, 16, 18, 26, 28]
-    assert times(named(Synthetic, period=10, times=(0, 12)), 31) == [0, 10, 12, 20, 22, 30]
-
-
-def test_a_single_occurrence():
-    assert times(named(Single, time=7), 100) == [7]
-    assert times(named(Single, time=7), 7) == []
 
 
 def test_jitter_is_around_the_ideal_grid():
@@ -96,19 +98,12 @@ def test_jitter_is_around_the_ideal_grid():
     assert np.mean(shifts) == pytest.approx(5, abs=1.5)
 
 
-@pytest.mark.parametrize(("mode", "shift"), [(Mode.WORST, 9), (Mode.BEST, 1), (Mode.AVERAGE, 5)])
-def test_jitter_is_constant_in_the_other_modes(mode, shift):
-    periodic = named(Periodic, period=100, jitter=Uniform(lower=1, upper=9))
-    assert times(periodic, 300, mode) == [shift, shift + 100, shift + 200]
-
-
 def test_occurrences_keep_their_minimum_distance():
     # After a late one, an early one has to wait from 10 to 40 after its ideal time.
     jitter = Histogram((Bucket(lower=0, upper=0, occurrences=1), Bucket(lower=90, upper=90, occurrences=1)))
     found = np.array(times(named(Periodic, period=100, jitter=jitter, min_distance=50), 10**5))
     distances = np.diff(found)
     assert set(distances.tolist()) == {50, 60, 100, 150, 190}
-    assert times(named(Periodic, period=10, min_distance=15), 60) == [0, 15, 30, 45]
 
 
 def test_what_jitter_moves_to_before_0_occurs_at_0():
@@ -122,8 +117,12 @@ def test_what_jitter_moves_to_before_0_occurs_at_0():
     assert start(always_early).assumptions == ()
 
 
-@pytest.mark.parametrize(("mode", "distance"), [(Mode.WORST, 20), (Mode.BEST, 40), (Mode.AVERAGE, 30)])
-def test_the_worst_case_of_sporadic_occurrences_is_the_shortest_distance(mode, distance):
+@pytest.mark.parametrize("mode", [Mode.WORST, Mode.BEST, Mode.AVERAGE])
+def test_without_sampling_jitter_and_distances_are_constant(mode):
+    """The worst case of sporadic occurrences is the shortest distance."""
+    shift, distance = {Mode.WORST: (9, 20), Mode.BEST: (1, 40), Mode.AVERAGE: (5, 30)}[mode]
+    periodic = named(Periodic, period=100, jitter=Uniform(lower=1, upper=9))
+    assert times(periodic, 300, mode) == [shift, shift + 100, shift + 200]
     sporadic = named(RelativePeriodic, distance=Uniform(lower=20, upper=40), offset=5)
     assert times(sporadic, 100, mode) == list(range(5, 100, distance))
 
@@ -134,11 +133,6 @@ def test_distances_are_sampled():
     assert np.mean(found) == pytest.approx(30, abs=0.3)
     sporadic = start(named(RelativePeriodic, distance=Boundaries(lower=20, upper=40), has_maximum=False))
     assert len(sporadic.assumptions) == 2
-
-
-def test_occurrences_of_a_step_are_evenly_distributed_and_fractions_are_carried_over():
-    assert times(named(VariableRate, step=100, rate=Constant(4.0)), 201) == [25, 50, 75, 100, 125, 150, 175, 200]
-    assert times(named(VariableRate, step=100, rate=Constant(0.4)), 1001) == [250, 500, 750, 1000]
 
 
 @pytest.mark.parametrize(("mode", "expected"), [(Mode.WORST, 4000), (Mode.BEST, 1000), (Mode.AVERAGE, 2500)])

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from test_thesis import FIGURE, METRICS, cut
 
 from amalthea_uros.simulate.metrics.distributions import MAX_BINS, BinCounts, Distributions
 from amalthea_uros.simulate.metrics.jobs import JobMetrics, add_rows
@@ -43,35 +44,13 @@ def thesis_rows(ticks, long_every=20):
         yield row(CONTROL, k, release, release + executor, release + executor + 4 * US, 4 * US)
 
 
-# S. R. Bappanadu, University of Stuttgart, 2022, figure 6.6: min / avg / max in us, cut off after three digits. Its means show that one
-# job after the last long period is missing: the mean of the slack time is a little below 987.35 us, that of the distance below 1 ms.
-@pytest.mark.parametrize(
-    ("process", "metric", "expected"),
-    [
-        (EXECUTOR, JobMetric.NET_EXECUTION_TIME, ("12.000", "12.650", "25.000")),
-        (EXECUTOR, JobMetric.GROSS_EXECUTION_TIME, ("12.000", "12.650", "25.000")),
-        (EXECUTOR, JobMetric.RESPONSE_TIME, ("12.000", "12.650", "25.000")),
-        (EXECUTOR, JobMetric.PREEMPTION_TIME, ("0.000", "0.000", "0.000")),
-        (EXECUTOR, JobMetric.INITIAL_PENDING_TIME, ("0.000", "0.000", "0.000")),
-        (EXECUTOR, JobMetric.START_TO_START, ("1000.000", "1000.000", "1000.000")),
-        (EXECUTOR, JobMetric.SLACK_TIME, ("975.000", "987.349", "988.000")),
-        (CONTROL, JobMetric.NET_EXECUTION_TIME, ("4.000", "4.000", "4.000")),
-        (CONTROL, JobMetric.GROSS_EXECUTION_TIME, ("4.000", "4.000", "4.000")),
-        (CONTROL, JobMetric.RESPONSE_TIME, ("16.000", "16.650", "29.000")),
-        (CONTROL, JobMetric.PREEMPTION_TIME, ("12.000", "12.650", "25.000")),
-        (CONTROL, JobMetric.INITIAL_PENDING_TIME, ("12.000", "12.650", "25.000")),
-        (CONTROL, JobMetric.START_TO_START, ("987.000", "999.999", "1013.000")),
-        (CONTROL, JobMetric.SLACK_TIME, ("971.000", "983.349", "984.000")),
-    ],
-)
-def test_the_table_of_the_thesis(process, metric, expected):
+@pytest.mark.parametrize(("task", "metric"), METRICS)
+def test_the_table_of_the_thesis(task, metric):
+    """Its means show that one job after the last long period is missing, which makes those of slack and distance a little less."""
+    process = {"Executor_Task": EXECUTOR, "Control_Function": CONTROL}[task]
     found = observed(list(thesis_rows(19_999)), deadlines=(MS, MS))[process][metric]
-    assert tuple(cut_off(value) for value in (found.min, found.mean, found.max)) == expected
-
-
-def cut_off(value):
-    nanoseconds = int(value // 1000)
-    return f"{nanoseconds // 1000}.{nanoseconds % 1000:03}"
+    least, mean, most = FIGURE[task][metric]
+    assert (found.min, cut(found.mean / US), found.max) == (int(least) * US, mean, int(most) * US)
 
 
 def test_extremes_are_found_again():

@@ -99,33 +99,29 @@ def test_numbers_instead_of_names():
     assert lines[-2:] == ["5,1,3,0,1,3,trigger", "5,1,3,1,3,8,activate"]
 
 
-def test_a_task_triggers_the_stimulus_of_another_one():
-    rows = [(7, K.TRIGGER, TASK_A, 2, STI_B, 1), (7, K.ACTIVATE, STI_B, 1, TASK_B, 1)]
-    assert events(written(ENTITIES, rows)) == ["7,Task_A,2,STI,Sti_B,1,trigger", "7,Sti_B,1,T,Task_B,1,activate"]
+MORE = [*ENTITIES, Entity(EntityKind.SEMAPHORE, "Lock"), Entity(EntityKind.OS_EVENT, "Go")]
+LOCK, GO = 7, 8
 
 
-def test_a_spinlock_has_the_events_of_the_subset():
-    entities = [*ENTITIES, Entity(EntityKind.SEMAPHORE, "Lock")]
-    rows = [
-        (1, K.REQUEST_SEMAPHORE, TASK_A, 0, 7, 0),
-        (1, K.LOCK, 7, 0, 7, 0),
-        (1, K.ASSIGNED, TASK_A, 0, 7, 0),
-        (2, K.RELEASED, TASK_A, 0, 7, 0),
-        (2, K.UNLOCK, 7, 0, 7, 0),
-    ]
-    assert events(written(entities, rows)) == [
-        "1,Task_A,0,SEM,Lock,0,requestsemaphore",
-        "1,Lock,0,SEM,Lock,0,lock",
-        "1,Task_A,0,SEM,Lock,0,assigned",
-        "2,Task_A,0,SEM,Lock,0,released",
-        "2,Lock,0,SEM,Lock,0,unlock",
-    ]
-
-
-def test_notes_are_values_of_labels_and_owners_of_os_events():
-    entities = [*ENTITIES, Entity(EntityKind.OS_EVENT, "Go")]
-    rows = [(1, K.WRITE, TASK_A, 0, LABEL, 0, -5), (1, K.SET_EVENT, TASK_A, 0, 7, 0, TASK_B)]
-    assert events(written(entities, rows)) == ["1,Task_A,0,SIG,Label_1,0,write,-5", "1,Task_A,0,EVENT,Go,0,set_event,Task_B"]
+@pytest.mark.parametrize(
+    ("row", "line"),
+    [
+        # A task triggers the stimulus of another one.
+        ((7, K.TRIGGER, TASK_A, 2, STI_B, 1), "7,Task_A,2,STI,Sti_B,1,trigger"),
+        ((7, K.ACTIVATE, STI_B, 1, TASK_B, 1), "7,Sti_B,1,T,Task_B,1,activate"),
+        # The events of a spinlock are those of the subset.
+        ((1, K.REQUEST_SEMAPHORE, TASK_A, 0, LOCK, 0), "1,Task_A,0,SEM,Lock,0,requestsemaphore"),
+        ((1, K.LOCK, LOCK, 0, LOCK, 0), "1,Lock,0,SEM,Lock,0,lock"),
+        ((1, K.ASSIGNED, TASK_A, 0, LOCK, 0), "1,Task_A,0,SEM,Lock,0,assigned"),
+        ((2, K.RELEASED, TASK_A, 0, LOCK, 0), "2,Task_A,0,SEM,Lock,0,released"),
+        ((2, K.UNLOCK, LOCK, 0, LOCK, 0), "2,Lock,0,SEM,Lock,0,unlock"),
+        # Notes are values of labels and owners of OS events.
+        ((1, K.WRITE, TASK_A, 0, LABEL, 0, -5), "1,Task_A,0,SIG,Label_1,0,write,-5"),
+        ((1, K.SET_EVENT, TASK_A, 0, GO, 0, TASK_B), "1,Task_A,0,EVENT,Go,0,set_event,Task_B"),
+    ],
+)
+def test_the_line_of_an_event(row, line):
+    assert events(written(MORE, [row])) == [line]
 
 
 def test_steps_of_chains_are_not_written():
