@@ -1,7 +1,6 @@
 """2.0.0 -> 1.2.0, and what the step up restores."""
 
 import pytest
-from inline_models import InlineModels
 from migration import meaning, migrated, opened
 
 from amalthea_uros.xmi.migrate.model_set import all_below
@@ -10,11 +9,6 @@ from amalthea_uros.xmi.migrate.write import tree_text
 
 PRIORITY = '<schedulingParameterDefinitions name="priority" type="Integer" many="false" mandatory="true"/>'
 OSEK = '<schedulerDefinitions name="OSEK" processParameters="priority?type=SchedulingParameterDefinition"/>'
-
-
-@pytest.fixture
-def models(tmp_path):
-    return InlineModels(tmp_path)
 
 
 def os_model(schedulers, definitions):

@@ -1,14 +1,8 @@
 """2.1.0 -> 2.0.0."""
 
 import pytest
-from inline_models import InlineModels
 
 from amalthea_uros.xmi.migrate.notes import NoteKind
-
-
-@pytest.fixture
-def models(tmp_path):
-    return InlineModels(tmp_path)
 
 
 def condition(content):

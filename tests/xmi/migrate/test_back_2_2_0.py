@@ -1,14 +1,8 @@
 """3.0.0 -> 2.2.0."""
 
 import pytest
-from inline_models import InlineModels
 
 from amalthea_uros.xmi.migrate.notes import NoteKind
-
-
-@pytest.fixture
-def models(tmp_path):
-    return InlineModels(tmp_path)
 
 
 def semaphore(attributes, kept=""):

@@ -2,7 +2,8 @@
 
 A line `from A to B` states the versions of a file or of one case, `== TITLE` starts a case, `--` the next one of the same title,
 and `file` the next file of the model. Lines of the model are in both versions, or after "-" in the old one only, or after "+" in the
-new one only. `KIND MESSAGE | DETAIL` is one of the notes, `only KIND ...` lines are all notes of the kind, `no KIND`: there is none.
+new one only. `KIND MESSAGE | DETAIL` is one of the notes, `only KIND ...` lines are all notes of the kind, `no KIND`
+means that there is none, and `2 KIND` that there are two.
 """
 
 from dataclasses import dataclass, field
@@ -68,6 +69,9 @@ def test_a_step(step, tmp_path):
         quantity, _, rest = line.partition(" ")
         if quantity == "no":
             only[rest] = []
+            continue
+        if quantity.isdigit():
+            assert len(stated(notes, rest, False)) == int(quantity)
             continue
         kind, _, text = (rest if quantity == "only" else line).partition(" ")
         if quantity == "only":

@@ -1,17 +1,11 @@
 """Event chains and conditions about modes."""
 
 import pytest
-from inline_models import InlineModels
 
 from amalthea_uros.xmi.migrate.notes import NoteKind
 
 EVENTS = '<eventModel><events t="ProcessEvent" name="a"/><events t="ProcessEvent" name="b"/></eventModel>'
 ENDS = 'stimulus="a?type=ProcessEvent" response="b?type=ProcessEvent"'
-
-
-@pytest.fixture
-def models(tmp_path):
-    return InlineModels(tmp_path)
 
 
 def chains(content):

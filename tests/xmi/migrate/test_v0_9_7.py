@@ -1,14 +1,6 @@
 """Activity graphs and interfaces of components."""
 
-import pytest
-from inline_models import InlineModels
-
 from amalthea_uros.xmi.migrate.notes import NoteKind
-
-
-@pytest.fixture
-def models(tmp_path):
-    return InlineModels(tmp_path)
 
 
 def test_what_is_mandatory_now_is_to_be_checked_and_not_invented(models):

@@ -1,7 +1,6 @@
 """Schedulers, scheduling parameters and conditions of 2.0.0."""
 
 import pytest
-from inline_models import InlineModels
 from migration import migrated
 
 from amalthea_uros.xmi.migrate.model_set import all_below
@@ -14,11 +13,6 @@ FPP = f"""<schedulerDefinitions name="FixedPriorityPreemptive" processParameters
   {FLAGS}/>"""
 OSEK = f"""<schedulerDefinitions name="OSEK" {FLAGS}
   processParameters="priority?type=SchedulingParameterDefinition taskGroup?type=SchedulingParameterDefinition"/>"""
-
-
-@pytest.fixture
-def models(tmp_path):
-    return InlineModels(tmp_path)
 
 
 def property_(key, text):

@@ -1,16 +1,10 @@
 """Switches, data types, interfaces and semaphores of 3.0.0."""
 
 import pytest
-from inline_models import InlineModels
 from migration import migrated
 
 from amalthea_uros.xmi.migrate.model_set import all_below
 from amalthea_uros.xmi.migrate.notes import NoteKind
-
-
-@pytest.fixture
-def models(tmp_path):
-    return InlineModels(tmp_path)
 
 
 def software(content):
@@ -19,16 +13,6 @@ def software(content):
 
 ARRAY = """<{0} t="Array" numberElements="{1}">
   <dataType t="TypeRef" typeDef="u+8?type=BaseTypeDefinition"/></{0}>"""
-
-
-def test_references_to_nothing_are_dropped_also_inside_of_types(models):
-    before = """<labels name="L"><dataType t="TypeRef"/></labels>
-      <labels name="P"><dataType t="Pointer"><dataType t="TypeRef"/></dataType></labels>"""
-    after = """<labels name="L"/><labels name="P" dataType="P_type?type=DataTypeDefinition"/>"""
-    definition = '<typeDefinitions t="DataTypeDefinition" name="P_type"><dataType t="Pointer"/></typeDefinitions>'
-    expected = software(after).replace("</swModel>", definition + "</swModel>")
-    assert models.migrate("2.2.0", "3.0.0", software(before)) == models.read("3.0.0", expected)
-    assert len(models.messages(NoteKind.LOST)) == 2
 
 
 def test_comments_on_a_type_that_goes_away_stay_with_the_label(models):
