@@ -22,7 +22,7 @@ from amalthea_uros.cli.output import (
     write_outputs,
 )
 from amalthea_uros.cli.parsed import Parsed
-from amalthea_uros.cli.settings_options import Assignment, set_option, settings_options
+from amalthea_uros.cli.settings_options import AssignmentType, set_option, settings_options
 from amalthea_uros.compare.naming import FORM, Meaning, Names, parse_meaning
 from amalthea_uros.compare.results import Comparison, Source
 from amalthea_uros.design.changes.change import Change
@@ -72,7 +72,7 @@ def _uncertainty(text: str) -> Time:
     "--map",
     "renamed",
     multiple=True,
-    type=Assignment("TRACE_NAME=MODEL_NAME", str),
+    type=AssignmentType("TRACE_NAME=MODEL_NAME", str),
     help="Name of an object of the trace in the model; may be repeated.",
 )
 @click.option(

@@ -20,7 +20,7 @@ from amalthea_uros.cli.output import (
     show_findings,
     write_outputs,
 )
-from amalthea_uros.cli.settings_options import Assignment
+from amalthea_uros.cli.settings_options import AssignmentType
 from amalthea_uros.compare.measured.events import chain_starts
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.measure.series import Measurement
@@ -42,7 +42,7 @@ from amalthea_uros.services.subject import system_of
     "--histogram",
     "histograms",
     multiple=True,
-    type=Assignment("NAME=FILE", output_path),
+    type=AssignmentType("NAME=FILE", output_path),
     help="Draw the times of an object, or another of its quantities, e.g. Task.start_to_start=period.svg; may be repeated.",
 )
 @output_option(Measurement)

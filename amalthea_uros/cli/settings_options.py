@@ -21,7 +21,7 @@ T = TypeVar("T")
 _COMMUNICATION = {str(how).lower(): how for how in Communication}
 
 
-class Assignment(click.ParamType[tuple[str, T]]):
+class AssignmentType(click.ParamType[tuple[str, T]]):
     """Text of the form NAME=VALUE; a function that raises a `ValueError` for wrong text converts the value."""
 
     def __init__(self, form: str, convert: Callable[[str], T]) -> None:
@@ -60,7 +60,7 @@ _OPTIONS = (
         "--frequency",
         "frequencies",
         multiple=True,
-        type=Assignment("CORE=FREQUENCY", _clock),
+        type=AssignmentType("CORE=FREQUENCY", _clock),
         help="Clock of a core, e.g. Core_0=300MHz; may be repeated.",
     ),
     click.option(
@@ -88,7 +88,7 @@ _OPTIONS = (
         "--phase",
         "phases",
         multiple=True,
-        type=Assignment("CALLBACK=TIME", _phase),
+        type=AssignmentType("CALLBACK=TIME", _phase),
         help="Time at which the first message of a callback is taken, e.g. Message_Factor=5ms; may be repeated.",
     ),
 )
@@ -141,7 +141,7 @@ def analysis_options(function: Callable[..., None]) -> Callable[..., None]:
         "--mode",
         "modes",
         multiple=True,
-        type=Assignment("LABEL=VALUE", str),
+        type=AssignmentType("LABEL=VALUE", str),
         help="Constant value of a mode label; may be repeated.",
     )
     bus = click.option("--bus", "with_bus", is_flag=True, help="Also analyze the messages on the CAN bus of an app.yaml.")

@@ -26,7 +26,7 @@ from amalthea_uros.cli.output import (
 )
 from amalthea_uros.cli.parsed import Parsed
 from amalthea_uros.cli.pictures import Pictures
-from amalthea_uros.cli.settings_options import Assignment, set_option, settings_options
+from amalthea_uros.cli.settings_options import AssignmentType, set_option, settings_options
 from amalthea_uros.cli.workers_options import workers_options
 from amalthea_uros.design.campaign.run import Outcome, count_runs
 from amalthea_uros.design.campaign.tables import table_format, write_table
@@ -102,14 +102,14 @@ def _labels(text: str) -> tuple[str, ...]:
     "--timeline",
     "timelines",
     multiple=True,
-    type=Assignment("PROCESS=FILE", output_path),
+    type=AssignmentType("PROCESS=FILE", output_path),
     help="Draw the states of a process in a part of the run, as SVG; may be repeated.",
 )
 @click.option(
     "--histogram",
     "histograms",
     multiple=True,
-    type=Assignment("NAME=FILE", output_path),
+    type=AssignmentType("NAME=FILE", output_path),
     help="Draw the response times of a process, the latencies of a chain, or another of its quantities, e.g. "
     "Task.net_execution_time=net.svg; may be repeated.",
 )

@@ -24,7 +24,7 @@ from amalthea_uros.cli.output import (
     write_outputs,
 )
 from amalthea_uros.cli.parsed import Parsed
-from amalthea_uros.cli.settings_options import Assignment, analysis_options, set_option
+from amalthea_uros.cli.settings_options import AssignmentType, analysis_options, set_option
 from amalthea_uros.cli.workers_options import workers_options
 from amalthea_uros.design.campaign.run import Outcome
 from amalthea_uros.design.campaign.sweep_plan import plan_sweep
@@ -67,7 +67,7 @@ from amalthea_uros.timing.basics.settings import Settings
     "--picture",
     "pictures",
     multiple=True,
-    type=Assignment("OBJECT.QUANTITY=FILE", output_path),
+    type=AssignmentType("OBJECT.QUANTITY=FILE", output_path),
     help="Draw a result over one or two swept values, as SVG; may be repeated.",
 )
 @workers_options("analyses")

@@ -9,7 +9,7 @@ from lsprotocol import types
 
 from amalthea_uros._internal.files import overlaid
 from amalthea_uros.diagnostics import Finding, Location, Severity
-from amalthea_uros.editor.document import Document
+from amalthea_uros.editor.document import TextDocument
 from amalthea_uros.errors import ReadError
 from amalthea_uros.findings.grouping import FindingGroup, group
 from amalthea_uros.services.check import check_files
@@ -24,7 +24,7 @@ _SEVERITIES = {
 }
 
 
-def diagnostics_of(document: Document) -> list[types.Diagnostic]:
+def diagnostics_of(document: TextDocument) -> list[types.Diagnostic]:
     """One diagnostic for each flaw, as `amuros check` shows them; none for YAML files of other programs.
 
     A model of several files is checked as a whole.
@@ -47,7 +47,7 @@ def _is_elsewhere(found: FindingGroup, others: Collection[Path]) -> bool:
     return all(place is not None and place.path in others for place in places)
 
 
-def _diagnostic(document: Document, found: FindingGroup) -> types.Diagnostic:
+def _diagnostic(document: TextDocument, found: FindingGroup) -> types.Diagnostic:
     finding = found.shown
     url = rule_url(finding.rule)
     return types.Diagnostic(
@@ -61,21 +61,21 @@ def _diagnostic(document: Document, found: FindingGroup) -> types.Diagnostic:
     )
 
 
-def _message(document: Document, finding: Finding) -> str:
+def _message(document: TextDocument, finding: Finding) -> str:
     """What is wrong and what to do; where, if it is in another file."""
     place = finding.location
     where = f"{place}: " if place is not None and place.path != document.path else ""
     return f"{where}{finding.message}" + (f"\n{finding.help}" if finding.help else "")
 
 
-def _range(document: Document, place: Location | None) -> types.Range:
+def _range(document: TextDocument, place: Location | None) -> types.Range:
     """The word at a place; the start of the text if the place is not in it."""
     if place is None or place.line is None or place.path != document.path:
         return document.token(0, 0)
     return document.token(place.line - 1, (place.column or 1) - 1)
 
 
-def _related(document: Document, found: FindingGroup) -> Iterator[types.DiagnosticRelatedInformation]:
+def _related(document: TextDocument, found: FindingGroup) -> Iterator[types.DiagnosticRelatedInformation]:
     """What else is reported because of the same flaw."""
     for finding in (*found.same[1:], *found.consequences):
         place = finding.location

@@ -21,7 +21,7 @@ _TOKEN = re.compile(r'"[^"]*"|\'[^\']*\'|</?[^\s<>/]+|[^\s,:=<>{}"\'\[\]]+')
 
 
 @dataclass(frozen=True)
-class Document:
+class TextDocument:
     """One version of a text.
 
     Attributes

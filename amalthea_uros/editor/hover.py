@@ -8,7 +8,7 @@ from io import StringIO
 from amalthea_uros._internal.files import overlaid
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.processes import ProcessResult
-from amalthea_uros.editor.document import Document
+from amalthea_uros.editor.document import TextDocument
 from amalthea_uros.errors import AmurosError
 from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.report.text.explanation import write
@@ -22,7 +22,7 @@ MAX_LENGTH = 1_000_000
 TOO_LARGE = "The file is too large to be analyzed while it is edited; save it and run `amuros analyze`."
 
 
-def analysis_of(document: Document) -> AnalysisResult | None:
+def analysis_of(document: TextDocument) -> AnalysisResult | None:
     """The analysis of a text; None if it has errors, or is a YAML file of another program."""
     with overlaid(document.contents):
         if not document.is_ours:

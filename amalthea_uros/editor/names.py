@@ -9,7 +9,7 @@ from urllib.parse import unquote
 
 from lsprotocol import types
 
-from amalthea_uros.editor.document import Document
+from amalthea_uros.editor.document import TextDocument
 from amalthea_uros.errors import ReadError
 from amalthea_uros.spec.nodes import MappingNode, Node, NodePlace, ScalarNode, SequenceNode, read_nodes
 
@@ -43,7 +43,7 @@ class Name:
     range: types.Range
 
 
-def names_at(document: Document, position: types.Position) -> Iterator[Name]:
+def names_at(document: TextDocument, position: types.Position) -> Iterator[Name]:
     """What may be the name at a position, longest first."""
     line = document.lines[position.line] if position.line < len(document.lines) else ""
     column = document.column(position)
@@ -58,7 +58,7 @@ def names_at(document: Document, position: types.Position) -> Iterator[Name]:
                 yield Name(text if document.is_description else unquote(text), where)
 
 
-def symbols_of(document: Document) -> list[types.DocumentSymbol]:
+def symbols_of(document: TextDocument) -> list[types.DocumentSymbol]:
     """The objects of an `app.yaml` by their names; none while the text is not valid YAML."""
     if not document.is_description:
         return []
@@ -69,7 +69,7 @@ def symbols_of(document: Document) -> list[types.DocumentSymbol]:
     return list(_symbols(document, node))
 
 
-def definition_of(document: Document, position: types.Position) -> types.Location | None:
+def definition_of(document: TextDocument, position: types.Position) -> types.Location | None:
     """Where the name at a position is defined."""
     defined = {symbol.name: symbol for symbol in _flat(symbols_of(document))}
     for name in names_at(document, position):
@@ -84,7 +84,7 @@ def _flat(symbols: list[types.DocumentSymbol]) -> Iterator[types.DocumentSymbol]
         yield from _flat(list(symbol.children or ()))
 
 
-def _symbols(document: Document, node: Node) -> Iterator[types.DocumentSymbol]:
+def _symbols(document: TextDocument, node: Node) -> Iterator[types.DocumentSymbol]:
     if not isinstance(node, MappingNode):
         return
     for key, value in node.items.items():
@@ -99,7 +99,7 @@ def _symbols(document: Document, node: Node) -> Iterator[types.DocumentSymbol]:
                     yield _symbol(document, key, str(name.value), name.place, item)
 
 
-def _symbol(document: Document, key: str, name: str, place: NodePlace, node: Node) -> types.DocumentSymbol:
+def _symbol(document: TextDocument, key: str, name: str, place: NodePlace, node: Node) -> types.DocumentSymbol:
     selection = types.Range(
         document.position(place.line, place.column), document.position(place.line, place.column + len(name))
     )

@@ -9,7 +9,7 @@ from lsprotocol import types
 
 from amalthea_uros._internal.files import overlaid
 from amalthea_uros.editor.diagnostics import SOURCE
-from amalthea_uros.editor.document import Document
+from amalthea_uros.editor.document import TextDocument
 from amalthea_uros.errors import AmurosError
 from amalthea_uros.services.fix import fix_files
 from amalthea_uros.services.settings import CheckSettings
@@ -20,7 +20,7 @@ FIX_ALL = f"{types.CodeActionKind.SourceFixAll.value}.{SOURCE}"
 
 
 def quick_fixes(
-    document: Document, diagnostics: Sequence[types.Diagnostic], kinds: Sequence[str] | None
+    document: TextDocument, diagnostics: Sequence[types.Diagnostic], kinds: Sequence[str] | None
 ) -> list[types.CodeAction]:
     """The repairs of the rules of some diagnostics, one for each rule, and all repairs together.
 
@@ -34,7 +34,7 @@ def quick_fixes(
         return [action for action in _actions(document, diagnostics) if _is_wanted(str(action.kind), kinds)]
 
 
-def _actions(document: Document, diagnostics: Sequence[types.Diagnostic]) -> Iterator[types.CodeAction]:
+def _actions(document: TextDocument, diagnostics: Sequence[types.Diagnostic]) -> Iterator[types.CodeAction]:
     for rule in dict.fromkeys(str(found.code) for found in diagnostics if found.source == SOURCE):
         if _is_repairable(rule) and (edit := _edit(document, CheckSettings(select=(rule,)))) is not None:
             yield types.CodeAction(
@@ -58,7 +58,7 @@ def _is_repairable(identifier: str) -> bool:
     return isinstance(rule, ModelRule) and (rule.fix is not None or rule.in_canonical_form)
 
 
-def _edit(document: Document, settings: CheckSettings) -> types.WorkspaceEdit | None:
+def _edit(document: TextDocument, settings: CheckSettings) -> types.WorkspaceEdit | None:
     """What `check --fix` would change, None if it is nothing, or if the text cannot be read."""
     try:
         changed = fix_files(document.path, settings, write=False).changed
@@ -70,7 +70,7 @@ def _edit(document: Document, settings: CheckSettings) -> types.WorkspaceEdit | 
     return types.WorkspaceEdit(changes={document.uri: [_replacement(document, after)]})
 
 
-def _replacement(document: Document, after: str) -> types.TextEdit:
+def _replacement(document: TextDocument, after: str) -> types.TextEdit:
     """The lines that differ."""
     old, new = document.text.splitlines(keepends=True), after.splitlines(keepends=True)
     start = _common(old, new)
@@ -85,7 +85,7 @@ def _common(one: Sequence[str], other: Sequence[str]) -> int:
     return sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], zip(one, other, strict=False)))
 
 
-def _position(document: Document, before: str) -> types.Position:
+def _position(document: TextDocument, before: str) -> types.Position:
     """The position after the beginning of the text."""
-    lines = Document(document.uri, document.path, before, None).lines
+    lines = TextDocument(document.uri, document.path, before, None).lines
     return document.position(len(lines) - 1, len(lines[-1]))

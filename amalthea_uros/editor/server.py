@@ -19,7 +19,7 @@ from pygls.uris import to_fs_path
 from amalthea_uros._internal.failures import failure
 from amalthea_uros._version import __version__
 from amalthea_uros.editor.diagnostics import diagnostics_of
-from amalthea_uros.editor.document import Document
+from amalthea_uros.editor.document import TextDocument
 from amalthea_uros.editor.hover import MAX_LENGTH, TOO_LARGE, analysis_of, hover_text
 from amalthea_uros.editor.names import definition_of, names_at, symbols_of
 from amalthea_uros.editor.quick_fixes import FIX_ALL, quick_fixes
@@ -45,7 +45,7 @@ class OpenText:
     analysis : of this version, once somebody asked for it
     """
 
-    document: Document
+    document: TextDocument
     check: asyncio.Task[None] | None = None
     analysis: asyncio.Task[AnalysisResult | None] | None = None
 
@@ -72,7 +72,7 @@ class AmurosServer(LanguageServer):
         path = to_fs_path(uri)
         if not uri.startswith("file:") or path is None:
             return
-        self.texts[uri] = known = OpenText(Document(uri, Path(path), text, version, self.workspace.position_codec))
+        self.texts[uri] = known = OpenText(TextDocument(uri, Path(path), text, version, self.workspace.position_codec))
         known.check = self._in_background(self._check(known.document))
 
     def closed(self, uri: str) -> None:
@@ -105,7 +105,7 @@ class AmurosServer(LanguageServer):
         """Write to the log of the editor."""
         self.window_log_message(types.LogMessageParams(type=types.MessageType.Error, message=message))
 
-    async def _check(self, document: Document) -> None:
+    async def _check(self, document: TextDocument) -> None:
         await asyncio.sleep(PAUSE)
         self.publish(document.uri, document.version, await self.checks.run(partial(diagnostics_of, document)))
 
@@ -206,6 +206,6 @@ def _names(server: AmurosServer) -> None:
         return await _of_text(server, params.text_document.uri, lambda document: definition_of(document, params.position))
 
 
-async def _of_text(server: AmurosServer, uri: str, ask: Callable[[Document], T]) -> T | None:
+async def _of_text(server: AmurosServer, uri: str, ask: Callable[[TextDocument], T]) -> T | None:
     known = server.texts.get(uri)
     return None if known is None else await server.or_nothing(server.checks.run(partial(ask, known.document)))

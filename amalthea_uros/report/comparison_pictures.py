@@ -16,7 +16,7 @@ from amalthea_uros.report.documents.comparison import (
     quantity_text,
     worst_of,
 )
-from amalthea_uros.report.pictures.compared_times import ComparedQuantity, Interval, compared_times
+from amalthea_uros.report.pictures.compared_times import ComparedQuantity, DrawnInterval, compared_times
 from amalthea_uros.units import Time, time_text
 
 #: More quantities are not drawn.
@@ -46,10 +46,10 @@ def _quantity(rows: Sequence[ComparisonRow]) -> ComparedQuantity:
     return ComparedQuantity(
         name=rows[0].object,
         quantity=quantity_text(rows[0].quantity),
-        measured=Interval(measured.get(Statistic.MIN), measured.get(Statistic.MAX), measured.get(Statistic.MEAN)),
+        measured=DrawnInterval(measured.get(Statistic.MIN), measured.get(Statistic.MAX), measured.get(Statistic.MEAN)),
         values=_values(rows[0]),
         simulated=_simulated(simulated) if simulated else None,
-        bounds=Interval(bounds.get(Statistic.MIN), bounds.get(Statistic.MAX)) if bounds else None,
+        bounds=DrawnInterval(bounds.get(Statistic.MIN), bounds.get(Statistic.MAX)) if bounds else None,
         verdict=str(worst.verdict),
         remark=_remark(worst),
         agrees=worst.verdict in (Agreement.WITHIN, Agreement.DIFFERS),
@@ -64,9 +64,9 @@ def _values(row: ComparisonRow) -> tuple[tuple[Time, int], ...]:
     return tuple(zip(values.tolist(), counts.tolist(), strict=True))
 
 
-def _simulated(rows: Sequence[ComparisonRow]) -> Interval:
+def _simulated(rows: Sequence[ComparisonRow]) -> DrawnInterval:
     predicted = {row.statistic: row.predicted for row in rows}
-    return Interval(predicted.get(Statistic.MIN), predicted.get(Statistic.MAX), predicted.get(Statistic.MEAN))
+    return DrawnInterval(predicted.get(Statistic.MIN), predicted.get(Statistic.MAX), predicted.get(Statistic.MEAN))
 
 
 def _remark(row: ComparisonRow) -> str:

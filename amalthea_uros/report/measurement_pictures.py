@@ -6,8 +6,7 @@ from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.measure.series import MeasuredKind, Measurement, Series
 from amalthea_uros.names import listed, require
 from amalthea_uros.report.documents import measurement as measured
-from amalthea_uros.report.pictures.histogram import Histogram, histogram
-from amalthea_uros.report.pictures.histogram import Series as Bars
+from amalthea_uros.report.pictures.histogram import HistogramPicture, HistogramSeries, histogram
 from amalthea_uros.report.pictures.histogram_marks import Mark, MarkKind
 
 
@@ -36,7 +35,7 @@ def histogram_picture(measurement: Measurement, name: str) -> str:
     edges = tuple(map(int, found.edges))
     things = "jobs" if series.kind is MeasuredKind.PROCESS else "values"
     title = f"{measurement.source}: {words} of {series.name}"
-    return histogram(Histogram(title, edges, (Bars("measured", found.counts),), tuple(marks), words, things))
+    return histogram(HistogramPicture(title, edges, (HistogramSeries("measured", found.counts),), tuple(marks), words, things))
 
 
 def _named(measurement: Measurement, name: str) -> Series:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from amalthea_uros.uros.memory.ram import Memory
+from amalthea_uros.uros.memory.ram import MemoryDemand
 from amalthea_uros.uros.memory.stack import StackUse
 
 
-def memory_rows(memory: Memory) -> list[tuple[str, str, str]]:
+def memory_rows(memory: MemoryDemand) -> list[tuple[str, str, str]]:
     """The parts with sizes and remarks, then total, budget and memory of the board; empty without micro-ROS and stated stacks."""
     rows = [(use.name, f"{use.size} B" if use.is_bounded else "?", use.formula) for use in memory.uses]
     if memory.stacks.users:

@@ -16,7 +16,7 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.report.pictures.chain_paths import DrawnPath
 from amalthea_uros.report.pictures.from_events import chain_path, jobs_of
 from amalthea_uros.report.pictures.gantt import GanttChart, gantt
-from amalthea_uros.report.pictures.histogram import Histogram, Series, histogram
+from amalthea_uros.report.pictures.histogram import HistogramPicture, HistogramSeries, histogram
 from amalthea_uros.report.pictures.histogram_marks import Mark, MarkKind
 from amalthea_uros.report.pictures.jobs import CoreRows, ProcessRow
 from amalthea_uros.report.pictures.state_timeline import StateTimeline, state_timeline
@@ -222,7 +222,9 @@ def _histogram_of(result: SimulationResult, name: str, quantity: str, observed: 
     marks += more
     things = "jobs" if quantity in tuple(JobMetric) else "observations"
     title = _titled(result, f"{words} of {name}")
-    chart = Histogram(title, edges, (Series("simulated", observed.histogram.counts),), tuple(marks), words, things)
+    chart = HistogramPicture(
+        title, edges, (HistogramSeries("simulated", observed.histogram.counts),), tuple(marks), words, things
+    )
     return histogram(chart)
 
 

@@ -25,7 +25,7 @@ from amalthea_uros.uros.application.entities import LIFECYCLE_SERVICES, PARAMETE
 from amalthea_uros.uros.assemble import Assembly, assemble
 from amalthea_uros.uros.colcon_meta import parse_meta
 from amalthea_uros.uros.generated_options import check_meta, values_of, with_generated_options
-from amalthea_uros.uros.memory.ram import Memory
+from amalthea_uros.uros.memory.ram import MemoryDemand
 from amalthea_uros.uros.middleware.options import Option, OptionRole
 from amalthea_uros.uros.profiles import profile_of
 
@@ -55,7 +55,7 @@ class GenerateResult(Brief, Shown):
     folder: Path | None
     assembly: Assembly
     texts: Mapping[str, str]
-    memory: Memory
+    memory: MemoryDemand
 
     @property
     def findings(self) -> tuple[Finding, ...]:
@@ -130,7 +130,7 @@ def check_colcon_meta(path: StrPath, meta: StrPath, platform: str | None = None)
     return MetaCheck(description=Path(path), path=file, findings=findings)
 
 
-def generated_memory(assembly: Assembly) -> Memory:
+def generated_memory(assembly: Assembly) -> MemoryDemand:
     """The memory with the options that are generated."""
     application, profile = assembly.description.application, assembly.profile
     described = profile.memory(application)

@@ -76,7 +76,7 @@ def project_settings(path: Path) -> CheckSettings:
         for name, tables in _PLACES:
             file = folder / name
             if is_file(file) and (settings := _table(file, tables)) is not None:
-                return _Reader(file, ".".join(tables)).settings(settings)
+                return _SettingsReader(file, ".".join(tables)).settings(settings)
     return CheckSettings()
 
 
@@ -101,7 +101,7 @@ def _unreadable(file: Path, message: str, advice: str = "") -> ReadError:
     return ReadError([Finding("CFG001", Severity.ERROR, message, Location(file), advice)])
 
 
-class _Reader:
+class _SettingsReader:
     """Reads settings, and refuses what is not understood: a setting without effect is worse than an error."""
 
     def __init__(self, file: Path, table: str) -> None:
@@ -158,10 +158,10 @@ def _field(key: str) -> str:
 
 
 _READERS: Mapping[str, Any] = {
-    "profile": _Reader.profiles,
-    "select": _Reader.names,
-    "ignore": _Reader.names,
-    "fail-on": _Reader.severity,
-    "baseline": _Reader.path,
-    "targets": _Reader.targets,
+    "profile": _SettingsReader.profiles,
+    "select": _SettingsReader.names,
+    "ignore": _SettingsReader.names,
+    "fail-on": _SettingsReader.severity,
+    "baseline": _SettingsReader.path,
+    "targets": _SettingsReader.targets,
 }

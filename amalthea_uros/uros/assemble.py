@@ -35,7 +35,7 @@ from amalthea_uros.uros.executors.activation import is_triggered, iteration_trig
 from amalthea_uros.uros.executors.handles import deadlines
 from amalthea_uros.uros.initialisation import Initialisation, initialisation
 from amalthea_uros.uros.labels import check_misspelled_labels, labels_of, placements
-from amalthea_uros.uros.memory.ram import Memory, check_memory, memory_of
+from amalthea_uros.uros.memory.ram import MemoryDemand, check_memory, memory_of
 from amalthea_uros.uros.middleware.check import check_middleware
 from amalthea_uros.uros.middleware.options import Option
 from amalthea_uros.uros.middleware.profile import Profile
@@ -82,7 +82,7 @@ class Assembly(Brief):
     bus: CanBus | None
     initialisation: Initialisation | None
     options: tuple[Option, ...]
-    memory: Memory
+    memory: MemoryDemand
     findings: tuple[Finding, ...]
     task_periods: tuple[Time, ...]
     priority_scale: PriorityScale

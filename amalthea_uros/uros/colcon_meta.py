@@ -77,14 +77,14 @@ def parse_meta(path: Path, text: str) -> ColconMeta:
     ------
     ReadError : it is not such a file.
     """
-    reader = _Reader(path, text)
+    reader = _JsonReader(path, text)
     content = reader.content()
     return ColconMeta(
         path=path, definitions=tuple(_definitions(content, reader)), comments=tuple(map(reader.location, reader.comments))
     )
 
 
-def _definitions(content: Any, reader: _Reader) -> Iterator[Definition]:
+def _definitions(content: Any, reader: _JsonReader) -> Iterator[Definition]:
     names = _entry(content, "names")
     if not isinstance(names, list):
         raise reader.mistake("it has no mapping 'names' of packages", 0)
@@ -104,7 +104,7 @@ def _entry(mapping: Any, key: str) -> Any:
     return found[-1] if found else None
 
 
-class _Reader:
+class _JsonReader:
     """Reads JSON with comments and trailing commas: a mapping as a list of pairs, a list as a tuple."""
 
     def __init__(self, path: Path, text: str) -> None:

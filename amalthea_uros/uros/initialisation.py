@@ -16,7 +16,7 @@ from amalthea_uros.units import Time
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Entity:
+class CreatedEntity:
     """An XRCE-DDS entity that the agent creates on request."""
 
     kind: str
@@ -34,7 +34,7 @@ class Initialisation:
     min_cycles, max_cycles : activations of that task from the first request to the last response; the maximum is None if unknown
     """
 
-    entities: tuple[Entity, ...]
+    entities: tuple[CreatedEntity, ...]
     period: Time
     min_cycles: int
     max_cycles: int | None
@@ -50,28 +50,28 @@ class Initialisation:
         return None if self.max_cycles is None else max(0, self.max_cycles - 1) * self.period
 
 
-def entities_of(application: Application) -> tuple[Entity, ...]:
+def entities_of(application: Application) -> tuple[CreatedEntity, ...]:
     """All entities in the order of their creation: the session, then each node with its entities."""
     if not application.nodes:
         return ()
-    return (Entity(kind="session", name="client"), *(entity for node in application.nodes for entity in _of_node(node)))
+    return (CreatedEntity(kind="session", name="client"), *(entity for node in application.nodes for entity in _of_node(node)))
 
 
-def _of_node(node: NodeSection) -> Iterator[Entity]:
-    yield Entity(kind="participant", name=node.name)
+def _of_node(node: NodeSection) -> Iterator[CreatedEntity]:
+    yield CreatedEntity(kind="participant", name=node.name)
     for publisher in node.publishers:
         yield from _of_topic(publisher.topic, "publisher", "datawriter")
     for subscription in node.subscriptions:
         yield from _of_topic(subscription.topic, "subscriber", "datareader")
     for service in node.services:
-        yield Entity(kind="replier", name=service.name)
+        yield CreatedEntity(kind="replier", name=service.name)
     for client in node.clients:
-        yield Entity(kind="requester", name=client.service)
+        yield CreatedEntity(kind="requester", name=client.service)
 
 
-def _of_topic(topic: str, *kinds: str) -> Iterator[Entity]:
-    yield Entity(kind="topic", name=topic)
-    yield from (Entity(kind=kind, name=topic) for kind in kinds)
+def _of_topic(topic: str, *kinds: str) -> Iterator[CreatedEntity]:
+    yield CreatedEntity(kind="topic", name=topic)
+    yield from (CreatedEntity(kind=kind, name=topic) for kind in kinds)
 
 
 def initialisation(application: Application, period: Time, response_time: ResponseTime | None) -> Initialisation:

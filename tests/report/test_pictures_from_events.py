@@ -9,7 +9,7 @@ from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.report.pictures.chain_paths import ChainStep, DrawnPath
 from amalthea_uros.report.pictures.from_events import UNKNOWN_CORE, chain_path, jobs_of
 from amalthea_uros.report.pictures.gantt import GanttChart, gantt
-from amalthea_uros.report.pictures.jobs import CoreRows, Job, ProcessRow, RunnableSpan, Span, State
+from amalthea_uros.report.pictures.jobs import CoreRows, Job, ProcessRow, RunnableSpan, State, StateSpan
 from amalthea_uros.trace.table import NO_NOTE, Entity, EntityKind, EventKind, EventTable
 
 STIMULUS, CORE_0, CORE_1, TASK, ISR, RUNNABLE, INNER, CHAIN = range(8)
@@ -51,7 +51,7 @@ PREEMPTION = (
 
 
 def running(start, end, core="Core_0"):
-    return Span(State.RUNNING, start, end, core)
+    return StateSpan(State.RUNNING, start, end, core)
 
 
 def only(*events, **window):
@@ -62,8 +62,8 @@ def only(*events, **window):
 
 
 def test_jobs_are_in_the_states_between_their_events():
-    task = Job(0, (Span(State.ACTIVE, 0, 0), running(0, 20), Span(State.READY, 20, 30), running(30, 50)), 0, 50)
-    interrupt = Job(4, (Span(State.ACTIVE, 20, 20), running(20, 30)), 20, 30)
+    task = Job(0, (StateSpan(State.ACTIVE, 0, 0), running(0, 20), StateSpan(State.READY, 20, 30), running(30, 50)), 0, 50)
+    interrupt = Job(4, (StateSpan(State.ACTIVE, 20, 20), running(20, 30)), 20, 30)
     assert jobs_of(table(*PREEMPTION)) == (
         CoreRows("Core_0", (ProcessRow("Task", (task,)), ProcessRow("Interrupt", (interrupt,)))),
     )
@@ -95,13 +95,13 @@ def test_the_states_around_a_window_follow_from_its_events(kind, before, after):
 
 def test_the_state_before_a_window_is_taken_from_the_events_before_it():
     job = only(event(0, K.ACTIVATE), event(10, K.START), event(90, K.TERMINATE), start=50, end=80)
-    assert job == Job(0, (Span(State.ACTIVE, 0, 10), running(10, 80)), 0, None)
+    assert job == Job(0, (StateSpan(State.ACTIVE, 0, 10), running(10, 80)), 0, None)
 
 
 def test_what_was_seen_counts_more_than_what_an_event_implies():
     # The release of the waiting task is missing.
     job = only(event(0, K.START), event(10, K.WAIT), event(30, K.RESUME), event(40, K.TERMINATE))
-    assert job.spans[1:] == (running(0, 10), Span(State.WAITING, 10, 30), running(30, 40))
+    assert job.spans[1:] == (running(0, 10), StateSpan(State.WAITING, 10, 30), running(30, 40))
 
 
 def test_jobs_that_end_before_a_window_or_begin_after_it_are_left_out():

@@ -11,7 +11,7 @@ from svg_reading import SVG, assert_readable, parsed, rectangles, scale, texts
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.report.pictures.chain_paths import ChainStep, DrawnPath
 from amalthea_uros.report.pictures.gantt import GanttChart, gantt
-from amalthea_uros.report.pictures.jobs import CoreRows, Job, ProcessRow, RunnableSpan, Span, State
+from amalthea_uros.report.pictures.jobs import CoreRows, Job, ProcessRow, RunnableSpan, State, StateSpan
 from amalthea_uros.units import MICROSECOND, MILLISECOND
 
 US, MS = MICROSECOND, MILLISECOND
@@ -19,7 +19,7 @@ NASTY = """<Task & "friends'>"""
 
 
 def span(state, start, end):
-    return Span(State(state), start * US, end * US, "Core_0")
+    return StateSpan(State(state), start * US, end * US, "Core_0")
 
 
 def chart(*rows, start=0, end=100, chains=(), title="a chart"):
@@ -206,7 +206,8 @@ def test_a_picture_describes_itself_and_follows_the_colour_scheme():
 
 def periodic(number, period, length):
     jobs = (
-        Job(k, (Span(State.RUNNING, k * period, k * period + length),), k * period, k * period + length) for k in range(number)
+        Job(k, (StateSpan(State.RUNNING, k * period, k * period + length),), k * period, k * period + length)
+        for k in range(number)
     )
     return ProcessRow("Task", tuple(jobs))
 
@@ -229,7 +230,7 @@ def test_boxes_that_can_be_told_from_each_other_are_not_merged():
 
 
 def test_a_narrow_box_is_not_merged_with_a_wide_one():
-    row = ProcessRow("Task", (Job(0, (span("running", 0, 50),)), Job(1, (Span(State.RUNNING, 50 * US, 50 * US + 1000),))))
+    row = ProcessRow("Task", (Job(0, (span("running", 0, 50),)), Job(1, (StateSpan(State.RUNNING, 50 * US, 50 * US + 1000),))))
     assert len(rectangles(chart(row), "Task, job")) == 2
 
 

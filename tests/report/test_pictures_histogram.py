@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from svg_reading import SVG, assert_readable, parsed, rectangles, scale, texts
 
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.report.pictures.histogram import Histogram, Series, histogram
+from amalthea_uros.report.pictures.histogram import HistogramPicture, HistogramSeries, histogram
 from amalthea_uros.report.pictures.histogram_marks import Mark, MarkKind, short_time_text
 from amalthea_uros.units import MICROSECOND, MILLISECOND, parse_time
 
@@ -16,8 +16,8 @@ COUNTS = (*range(10), *range(10, 0, -1))
 
 
 def drawn(counts=COUNTS, *others, edges=EDGES, marks=(), is_share=False):
-    series = tuple(Series(f"series {number}", given) for number, given in enumerate((counts, *others)))
-    return histogram(Histogram("Response time", edges, series, tuple(marks), is_share=is_share))
+    series = tuple(HistogramSeries(f"series {number}", given) for number, given in enumerate((counts, *others)))
+    return histogram(HistogramPicture("Response time", edges, series, tuple(marks), is_share=is_share))
 
 
 def contents(picture):
@@ -139,7 +139,7 @@ def test_a_single_value_is_no_wall():
 )
 def test_what_is_no_histogram_is_refused(edges, series, message):
     with pytest.raises(InvalidArgumentError, match=message):
-        Histogram("wrong", edges, tuple(Series("s", counts) for counts in series))
+        HistogramPicture("wrong", edges, tuple(HistogramSeries("s", counts) for counts in series))
 
 
 @pytest.mark.parametrize(("time", "shown"), [(0, "0 s"), (123, "123 ps"), (16_654_321, "16.65 us"), (99_999_999, "100 us")])

@@ -16,7 +16,7 @@ from amalthea_uros.perf.mapping import Mapping, TaskAllocation
 from amalthea_uros.perf.os import OperatingSystem, Os, Scheduler
 from amalthea_uros.perf.software import Label, Software, Task
 from amalthea_uros.perf.system import System
-from amalthea_uros.report.pictures.system_layout import BOX, Wire, lay_out
+from amalthea_uros.report.pictures.system_layout import BOX, LayoutWire, lay_out
 from amalthea_uros.report.pictures.system_picture import MOST_PROCESSES, draw_system
 
 NASTY = """<Task & "friends'>"""
@@ -141,7 +141,7 @@ WIRES = st.lists(
 @given(WIRES, st.integers(0, 9))
 def test_no_line_runs_through_a_box_or_along_another_one(ends, size):
     wires = [
-        Wire(source, tuple(target for target in targets if is_outer or target != source), "label", is_outer)
+        LayoutWire(source, tuple(target for target in targets if is_outer or target != source), "label", is_outer)
         for source, targets, is_outer in ends
     ]
     wires = [wire for wire in wires if wire.targets]
@@ -165,7 +165,7 @@ def test_no_line_runs_through_a_box_or_along_another_one(ends, size):
 
 
 def test_columns_follow_the_longest_path_and_circles_go_back():
-    wires = [Wire("B0", ("B1", "B2"), ""), Wire("B1", ("B2",), ""), Wire("B2", ("B0",), "")]
+    wires = [LayoutWire("B0", ("B1", "B2"), ""), LayoutWire("B1", ("B2",), ""), LayoutWire("B2", ("B0",), "")]
     layout = lay_out([NAMES[:3]], wires, 0, 0)
     lefts = [layout.boxes[name].left for name in NAMES[:3]]
     assert lefts == sorted(set(lefts))

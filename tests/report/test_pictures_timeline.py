@@ -4,7 +4,7 @@ import pytest
 from svg_reading import assert_readable, rectangles, scale, texts
 
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.report.pictures.jobs import Job, ProcessRow, Span, State
+from amalthea_uros.report.pictures.jobs import Job, ProcessRow, State, StateSpan
 from amalthea_uros.report.pictures.state_timeline import StateTimeline, state_timeline
 from amalthea_uros.units import MICROSECOND
 
@@ -12,7 +12,7 @@ US = MICROSECOND
 
 
 def span(state, start, end):
-    return Span(state, start * US, end * US)
+    return StateSpan(state, start * US, end * US)
 
 
 #: Runs for 20 us and 25 us, is preempted for 10 us, and waits for 5 us, in a window of 100 us.
@@ -77,5 +77,5 @@ def test_a_window_without_length_is_refused():
 
 
 def test_hundreds_of_thousands_of_jobs_make_a_small_picture():
-    jobs = tuple(Job(k, (Span(State.RUNNING, k * 300, k * 300 + 100),), k * 300) for k in range(200_000))
+    jobs = tuple(Job(k, (StateSpan(State.RUNNING, k * 300, k * 300 + 100),), k * 300) for k in range(200_000))
     assert len(drawn(*jobs)) < 200_000

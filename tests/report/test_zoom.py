@@ -6,7 +6,7 @@ import pytest
 from support import ROOT
 
 from amalthea_uros.report.pictures.gantt import GanttChart, gantt
-from amalthea_uros.report.pictures.jobs import CoreRows, Job, ProcessRow, Span, State
+from amalthea_uros.report.pictures.jobs import CoreRows, Job, ProcessRow, State, StateSpan
 from amalthea_uros.units import MICROSECOND
 
 SCRIPT = ROOT / "templates" / "report" / "zoom.js"
@@ -15,7 +15,7 @@ US = MICROSECOND
 
 
 def picture():
-    jobs = tuple(Job(number, (Span(State.RUNNING, 20 * number * US, (20 * number + 10) * US),)) for number in range(5))
+    jobs = tuple(Job(number, (StateSpan(State.RUNNING, 20 * number * US, (20 * number + 10) * US),)) for number in range(5))
     return gantt(GanttChart("a chart", 0, 100 * US, (CoreRows("Core_0", (ProcessRow("Task", jobs),)),)))
 
 

@@ -15,13 +15,13 @@ from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
 from amalthea_uros.units import NANOSECOND as NS
 from amalthea_uros.units import SECOND
-from amalthea_uros.uros.network.bus_system import Transmission, with_bus
+from amalthea_uros.uros.network.bus_system import BusTransmission, with_bus
 from amalthea_uros.uros.transports.can import CanBus
 
 
 def message(name, identifier, frames, offset=0, period=SECOND, jitter=0):
     """A message whose frames have a number of data bytes each."""
-    return Transmission(
+    return BusTransmission(
         name=name,
         frames=[(data, data) for data in frames],
         identifier=identifier,

@@ -20,7 +20,7 @@ from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.simulate.system import simulate_system
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import SECOND
-from amalthea_uros.uros.network.bus_system import Transmission, with_bus
+from amalthea_uros.uros.network.bus_system import BusTransmission, with_bus
 from amalthea_uros.uros.transports.can import CanBus, block_bytes, frames
 
 SAMPLES = ROOT / "samples"
@@ -49,7 +49,7 @@ def test_the_thesis_at_250_kbit_per_second():
     [(24, 4), (52, 8), (84, 12), (40, 6), (19, 3), (14, 2)],
 )
 def test_messages_of_the_thesis_that_create_entities(length, count):
-    message = Transmission(name="message", frames=block_bytes(length), stimulus=Single(name="once", time=0))
+    message = BusTransmission(name="message", frames=block_bytes(length), stimulus=Single(name="once", time=0))
     system = with_bus(System(), CanBus(bit_rate=250_000), [message])
     found = simulate_system(system, Options(duration=SECOND, mode=Mode.WORST))
     assert found["message"].response_time.max == count * 540 * US

@@ -4,7 +4,7 @@ import pytest
 
 from amalthea_uros.units import MILLISECOND as MS
 from amalthea_uros.units import parse_time
-from amalthea_uros.uros.initialisation import Entity, response_cycles
+from amalthea_uros.uros.initialisation import CreatedEntity, response_cycles
 
 APP = """
     amuros: 1
@@ -45,7 +45,7 @@ def test_each_cycle_checks_for_the_response(response, cycles):
 def test_entities_in_the_order_of_creation(author):
     start = author.describe(app()).initialisation
     assert start.entities == tuple(
-        Entity(kind=kind, name=name)
+        CreatedEntity(kind=kind, name=name)
         for kind, name in [
             ("session", "client"),
             ("participant", "node"),

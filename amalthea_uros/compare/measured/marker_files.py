@@ -64,7 +64,7 @@ def read_markers(path: Path, signals: Signals) -> tuple[Measurable, ...]:
     except FileError as error:
         raise ReadError([Finding("MEA010", Severity.ERROR, error.reason, Location(path), error.advice)]) from None
     node, source, findings = read_nodes(path, text)
-    reader = _Reader(source, signals, [*findings])
+    reader = _MarkerFileReader(source, signals, [*findings])
     objects = reader.objects(node)
     if reader.findings:
         raise ReadError(reader.findings)
@@ -83,7 +83,7 @@ def counter_of(text: str, signals: Signals) -> MarkerCounter:
 
 
 @dataclass(slots=True)
-class _Reader:
+class _MarkerFileReader:
     source: SourceText
     signals: Signals
     findings: list[Finding]

@@ -10,7 +10,7 @@ from amalthea_uros.services.build import BuildResult
 from amalthea_uros.services.generate import GenerateResult, MetaCheck
 from amalthea_uros.uros.generated_options import values_of
 from amalthea_uros.uros.initialisation import Initialisation
-from amalthea_uros.uros.memory.ram import Memory
+from amalthea_uros.uros.memory.ram import MemoryDemand
 
 
 def _messages(result: BuildResult) -> list[dict[str, Any]]:
@@ -91,7 +91,7 @@ declare(
     ),
 )
 declare(
-    Memory,
+    MemoryDemand,
     ("parts", lambda memory: [{"name": use.name, "bytes": use.size, "formula": use.formula} for use in memory.uses]),
     (
         "stacks",

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
-from amalthea_uros.report.pictures.jobs import Job, ProcessRow, Span, State
+from amalthea_uros.report.pictures.jobs import Job, ProcessRow, State, StateSpan
 from amalthea_uros.report.pictures.style import state_look
 from amalthea_uros.report.pictures.svg import Markup, element, joined, number, tooltip
 from amalthea_uros.report.pictures.time_axis import TimeAxis
@@ -20,7 +20,7 @@ MOST_TOOLTIPS = 1500
 
 
 @dataclass(frozen=True, slots=True)
-class Box:
+class StateBox:
     """A part of a row, in pixels.
 
     Attributes
@@ -32,7 +32,7 @@ class Box:
     left: float
     right: float
     job: Job
-    span: Span
+    span: StateSpan
     count: int = 1
 
     @property
@@ -44,14 +44,14 @@ class Box:
     def _is_narrow(self) -> bool:
         return self.count > 1 or self.right - self.left < NARROW
 
-    def absorbs(self, other: Box) -> bool:
+    def absorbs(self, other: StateBox) -> bool:
         """Whether the next box cannot be told from this one."""
         return self._is_narrow and other._is_narrow and other.left - self.right < _NEAR
 
 
-def boxes_of(row: ProcessRow, state: State, axis: TimeAxis) -> list[Box]:
+def boxes_of(row: ProcessRow, state: State, axis: TimeAxis) -> list[StateBox]:
     """The boxes of a state in the window; those that cannot be told from each other are one."""
-    found: list[Box] = []
+    found: list[StateBox] = []
     for box in _all_boxes(row, state, axis):
         if found and found[-1].absorbs(box):
             last = found[-1]
@@ -61,20 +61,20 @@ def boxes_of(row: ProcessRow, state: State, axis: TimeAxis) -> list[Box]:
     return found
 
 
-def _all_boxes(row: ProcessRow, state: State, axis: TimeAxis) -> Iterable[Box]:
+def _all_boxes(row: ProcessRow, state: State, axis: TimeAxis) -> Iterable[StateBox]:
     for job in row.jobs:
         for span in job.spans:
             if span.state is state and _is_seen(span, axis):
-                yield Box(axis.x(axis.clipped(span.start)), axis.x(axis.clipped(span.end)), job, span)
+                yield StateBox(axis.x(axis.clipped(span.start)), axis.x(axis.clipped(span.end)), job, span)
 
 
-def _is_seen(span: Span, axis: TimeAxis) -> bool:
+def _is_seen(span: StateSpan, axis: TimeAxis) -> bool:
     """Whether it shares more than an end with the window, or has no length and is in it."""
     start, end = axis.clipped(span.start), axis.clipped(span.end)
     return start < end or (span.start == span.end and axis.has(span.start))
 
 
-def draw_boxes(boxes: Sequence[Box], process: str, colour: int, y: float, height: float, *, has_tooltips: bool) -> Markup:
+def draw_boxes(boxes: Sequence[StateBox], process: str, colour: int, y: float, height: float, *, has_tooltips: bool) -> Markup:
     """Boxes of one state, with their upper edge at `y`; those of several spans are paler, because gaps between these are not seen."""
     single, merged = [box for box in boxes if box.count == 1], [box for box in boxes if box.count > 1]
     return joined(
@@ -85,26 +85,26 @@ def draw_boxes(boxes: Sequence[Box], process: str, colour: int, y: float, height
     )
 
 
-def _drawn(boxes: Sequence[Box], y: float, height: float, look: Mapping[str, str]) -> Markup:
+def _drawn(boxes: Sequence[StateBox], y: float, height: float, look: Mapping[str, str]) -> Markup:
     path = "".join(f"M{number(box.left)} {number(y)}h{number(box.width)}v{number(height)}H{number(box.left)}z" for box in boxes)
     return element("path", **look, d=path)
 
 
-def _drawn_with_tooltips(boxes: Sequence[Box], process: str, y: float, height: float, look: Mapping[str, str]) -> Markup:
+def _drawn_with_tooltips(boxes: Sequence[StateBox], process: str, y: float, height: float, look: Mapping[str, str]) -> Markup:
     drawn = (
         element("rect", tooltip(_description(box, process)), x=box.left, y=y, width=box.width, height=height) for box in boxes
     )
     return element("g", joined(drawn), **look)
 
 
-def draw_borders(boxes: Sequence[Box], y: float, height: float) -> Markup:
+def draw_borders(boxes: Sequence[StateBox], y: float, height: float) -> Markup:
     """Gaps between jobs that follow each other at once."""
     touching = [after.left for before, after in pairwise(boxes) if before.right == after.left and before.job is not after.job]
     path = "".join(f"M{number(x)} {number(y)}v{number(height)}" for x in touching)
     return element("path", class_="gap", d=path) if path else Markup("")
 
 
-def _description(box: Box, process: str) -> str:
+def _description(box: StateBox, process: str) -> str:
     if box.count > 1:
         return f"{process}: {box.span.state} {box.count} times from {time_text(box.span.start)} on"
     length = time_text(box.span.end - box.span.start)

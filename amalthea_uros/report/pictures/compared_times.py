@@ -26,7 +26,7 @@ _TICK = 4
 
 
 @dataclass(frozen=True, slots=True)
-class Interval:
+class DrawnInterval:
     """From the least to the greatest value; `middle` is the mean, None if it is not known. Of bounds, an end may be missing."""
 
     low: Fraction | None
@@ -51,10 +51,10 @@ class ComparedQuantity:
 
     name: str
     quantity: str
-    measured: Interval
+    measured: DrawnInterval
     values: tuple[tuple[Time, int], ...]
-    simulated: Interval | None
-    bounds: Interval | None
+    simulated: DrawnInterval | None
+    bounds: DrawnInterval | None
     verdict: str
     remark: str
     agrees: bool
@@ -129,7 +129,7 @@ def _bars(shown: ComparedQuantity, axis: TimeAxis, top: float, base: float) -> M
     return joined((line, element("g", joined(bars), class_="c0 bars")))
 
 
-def _bracket(interval: Interval, style: str, axis: TimeAxis, y: float) -> Markup:
+def _bracket(interval: DrawnInterval, style: str, axis: TimeAxis, y: float) -> Markup:
     """A line from the least to the greatest value with ticks at both, and a dot at the mean; arrows where it goes on."""
     left = axis.left if interval.low is None else max(axis.x(interval.low), axis.left)
     right = axis.right if interval.high is None else min(axis.x(interval.high), axis.right)
@@ -170,7 +170,7 @@ def _description(shown: ComparedQuantity) -> str:
     return f"{shown.quantity} of {shown.name}: {', '.join((*parts, shown.verdict, shown.remark))}"
 
 
-def _interval_text(interval: Interval) -> str:
+def _interval_text(interval: DrawnInterval) -> str:
     low, high = ("?" if end is None else time_text(round(end)) for end in (interval.low, interval.high))
     return f"{low} to {high}"
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.report.pictures.chain_paths import ChainStep, DrawnPath
-from amalthea_uros.report.pictures.jobs import ON_CORE, CoreRows, Job, ProcessRow, RunnableSpan, Span, State
+from amalthea_uros.report.pictures.jobs import ON_CORE, CoreRows, Job, ProcessRow, RunnableSpan, State, StateSpan
 from amalthea_uros.trace.table import Entity, EntityKind, EventKind, EventTable
 from amalthea_uros.units import Time
 
@@ -63,7 +63,7 @@ def jobs_of(
     if not len(table):
         return ()
     first, last = int(table.time[0]), int(table.time[-1])
-    reader = _Reader(table.entities, first if start is None else min(start, first), cores or {})
+    reader = _JobReader(table.entities, first if start is None else min(start, first), cores or {})
     reader.read(table, first if start is None else start, last if end is None else end)
     return reader.rows(last if end is None else end, deadlines or {})
 
@@ -95,7 +95,7 @@ class _OpenJob:
     core: str = ""
     activation: Time | None = None
     end: Time | None = None
-    spans: list[Span] = field(default_factory=list)
+    spans: list[StateSpan] = field(default_factory=list)
     runnables: list[RunnableSpan] = field(default_factory=list)
 
     def change(self, kind: int, time: Time, core: str) -> None:
@@ -117,10 +117,10 @@ class _OpenJob:
 
     def _leave(self, state: State | None, time: Time, core: str) -> None:
         if state is not None:
-            self.spans.append(Span(state, self.since, time, (self.core or core) if state in ON_CORE else ""))
+            self.spans.append(StateSpan(state, self.since, time, (self.core or core) if state in ON_CORE else ""))
 
 
-def _executed(runnable: RunnableSpan, spans: Sequence[Span]) -> Iterator[RunnableSpan]:
+def _executed(runnable: RunnableSpan, spans: Sequence[StateSpan]) -> Iterator[RunnableSpan]:
     """The parts of a runnable in which its job holds a core."""
     first = bisect_left(spans, runnable.start, key=lambda span: span.end)
     for span in takewhile(lambda span: span.start <= runnable.end, spans[first:]):
@@ -130,7 +130,7 @@ def _executed(runnable: RunnableSpan, spans: Sequence[Span]) -> Iterator[Runnabl
 
 
 @dataclass(slots=True)
-class _Reader:
+class _JobReader:
     """What is known after some events.
 
     Attributes

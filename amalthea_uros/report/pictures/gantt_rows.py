@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from amalthea_uros.report.pictures.arrows import Arrows, arrows_at, draw_activations, draw_deadlines, draw_instants, draw_lost
-from amalthea_uros.report.pictures.boxes import Box, boxes_of, draw_borders, draw_boxes
+from amalthea_uros.report.pictures.boxes import StateBox, boxes_of, draw_borders, draw_boxes
 from amalthea_uros.report.pictures.jobs import Job, ProcessRow, RunnableSpan, State
 from amalthea_uros.report.pictures.runnable_boxes import draw_runnables, shown_runnables
 from amalthea_uros.report.pictures.style import PALETTE, SMALL_SIZE
@@ -37,7 +37,7 @@ class DrawnRow:
     row: ProcessRow
     colour: int
     top: float
-    boxes: Mapping[State, list[Box]]
+    boxes: Mapping[State, list[StateBox]]
     activations: Arrows
     deadlines: Arrows
     missed: Arrows

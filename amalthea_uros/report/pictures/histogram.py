@@ -40,7 +40,7 @@ _MARGIN, _FEWEST_BINS = 25, 12
 
 
 @dataclass(frozen=True, slots=True)
-class Series:
+class HistogramSeries:
     """How many values are in each bin; `name` says of what, such as "simulated" or "measured"."""
 
     name: str
@@ -48,7 +48,7 @@ class Series:
 
 
 @dataclass(frozen=True, slots=True)
-class Histogram:
+class HistogramPicture:
     """A histogram.
 
     Attributes
@@ -66,7 +66,7 @@ class Histogram:
 
     title: str
     edges: tuple[Time, ...]
-    series: tuple[Series, ...]
+    series: tuple[HistogramSeries, ...]
     marks: tuple[Mark, ...] = ()
     quantity: str = "response time"
     things: str = "jobs"
@@ -84,7 +84,7 @@ class Histogram:
                 )
 
 
-def histogram(histogram: Histogram) -> str:
+def histogram(histogram: HistogramPicture) -> str:
     """The histogram as SVG; marks that are far from all values are at the edge, with an arrow."""
     drawn = _coarsened(_trimmed(histogram))
     heights = [_heights(series, drawn.is_share) for series in drawn.series]
@@ -107,7 +107,7 @@ def histogram(histogram: Histogram) -> str:
     return document(drawn.title, subtitle, body, height + MARGIN)
 
 
-def _trimmed(histogram: Histogram) -> Histogram:
+def _trimmed(histogram: HistogramPicture) -> HistogramPicture:
     """Without empty bins at its ends."""
     used = [
         index for index, counts in enumerate(zip(*(series.counts for series in histogram.series), strict=True)) if any(counts)
@@ -115,11 +115,11 @@ def _trimmed(histogram: Histogram) -> Histogram:
     if not used:
         return histogram
     first, after = used[0], used[-1] + 1
-    series = tuple(Series(series.name, series.counts[first:after]) for series in histogram.series)
+    series = tuple(HistogramSeries(series.name, series.counts[first:after]) for series in histogram.series)
     return replace(histogram, edges=histogram.edges[first : after + 1], series=series)
 
 
-def _coarsened(histogram: Histogram) -> Histogram:
+def _coarsened(histogram: HistogramPicture) -> HistogramPicture:
     """With so many neighbouring bins put together that they can be told from each other; edges are multiples of the new width."""
     edges = histogram.edges
     fewest = -(-len(edges) // (_MOST_BINS - 1)) if len(edges) > 2 else edges[1] // (edges[1] - edges[0]) // _RESOLUTION
@@ -131,13 +131,13 @@ def _coarsened(histogram: Histogram) -> Histogram:
     return replace(histogram, edges=(start, *edges[size - before : -1 : size], end), series=merged)
 
 
-def _grouped(series: Series, size: int, before: int) -> Series:
+def _grouped(series: HistogramSeries, size: int, before: int) -> HistogramSeries:
     """Groups of so many bins; the first one begins with some that are not there."""
     firsts = range(-before, len(series.counts), size)
-    return Series(series.name, tuple(sum(series.counts[max(first, 0) : first + size]) for first in firsts))
+    return HistogramSeries(series.name, tuple(sum(series.counts[max(first, 0) : first + size]) for first in firsts))
 
 
-def _window(histogram: Histogram) -> tuple[Time, Time]:
+def _window(histogram: HistogramPicture) -> tuple[Time, Time]:
     """The bins, and the marks that are not farther from them than they are wide; with margins."""
     low, high = histogram.edges[0], histogram.edges[-1]
     span = high - low
@@ -148,11 +148,11 @@ def _window(histogram: Histogram) -> tuple[Time, Time]:
     return (start - margin if start < 0 else max(start - margin, 0)), end + margin
 
 
-def _axis(histogram: Histogram, left: float) -> TimeAxis:
+def _axis(histogram: HistogramPicture, left: float) -> TimeAxis:
     return TimeAxis(*_window(histogram), left, WIDTH - max(_RIGHT, MARGIN + label_room(histogram.marks)) - left)
 
 
-def _heights(series: Series, is_share: bool) -> Sequence[int]:
+def _heights(series: HistogramSeries, is_share: bool) -> Sequence[int]:
     """Counts, or shares in millionths."""
     return [count * MILLION // max(sum(series.counts), 1) for count in series.counts] if is_share else series.counts
 
@@ -162,7 +162,7 @@ def _top_of(height: int, count: int, axis: CountAxis) -> float:
     return min(axis.y(height), axis.bottom - _LOWEST) if count else axis.bottom
 
 
-def _bars(histogram: Histogram, heights: Sequence[int], axis: TimeAxis, counts: CountAxis) -> Markup:
+def _bars(histogram: HistogramPicture, heights: Sequence[int], axis: TimeAxis, counts: CountAxis) -> Markup:
     bars = []
     series = histogram.series[0]
     for (low, high), count, height in zip(pairwise(histogram.edges), series.counts, heights, strict=True):
@@ -173,7 +173,7 @@ def _bars(histogram: Histogram, heights: Sequence[int], axis: TimeAxis, counts: 
     return element("g", joined(bars), class_="c0 bars")
 
 
-def _outline(histogram: Histogram, heights: Sequence[int], axis: TimeAxis, counts: CountAxis) -> Markup:
+def _outline(histogram: HistogramPicture, heights: Sequence[int], axis: TimeAxis, counts: CountAxis) -> Markup:
     """The second series as a line of steps around its bins."""
     steps = "".join(
         f"V{number(_top_of(height, count, counts))}H{number(axis.x(high))}"
@@ -188,7 +188,7 @@ def _nothing(axis: TimeAxis, counts: CountAxis) -> Markup:
     return element("text", text("no values"), class_="muted", x=x, y=y, text_anchor="middle")
 
 
-def _caption(histogram: Histogram) -> str:
+def _caption(histogram: HistogramPicture) -> str:
     """What the vertical axis counts, with the width of the bins if all but the last have the same."""
     widths = {
         short_time_text(high - low)
@@ -198,7 +198,7 @@ def _caption(histogram: Histogram) -> str:
     return f"{'share of ' if histogram.is_share else ''}{histogram.things} per {bins}"
 
 
-def _legend(histogram: Histogram) -> list[LegendEntry]:
+def _legend(histogram: HistogramPicture) -> list[LegendEntry]:
     keys = (
         element("rect", class_="c0 bars", x=-9, y=-6, width=18, height=12),
         element("path", class_="t1 steps", d="M-9 6V0H0V-5H9V6"),

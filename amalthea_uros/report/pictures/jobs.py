@@ -24,7 +24,7 @@ ON_CORE = frozenset((State.RUNNING, State.POLLING))
 
 
 @dataclass(frozen=True, slots=True)
-class Span:
+class StateSpan:
     """A job is in a state from `start` to `end`; `core` is where it runs or polls, if that is known."""
 
     state: State
@@ -57,7 +57,7 @@ class Job:
     """
 
     instance: int
-    spans: tuple[Span, ...]
+    spans: tuple[StateSpan, ...]
     activation: Time | None = None
     end: Time | None = None
     deadline: Time | None = None

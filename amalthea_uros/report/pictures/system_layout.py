@@ -29,7 +29,7 @@ Point = tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True)
-class Wire:
+class LayoutWire:
     """A line from one box to others.
 
     Attributes
@@ -44,7 +44,7 @@ class Wire:
 
 
 @dataclass(frozen=True, slots=True)
-class Box:
+class LayoutBox:
     """A box in pixels."""
 
     left: float
@@ -61,7 +61,7 @@ class Box:
 class DrawnWire:
     """The ways of a wire to each of its targets, and the room for its label from its start on."""
 
-    wire: Wire
+    wire: LayoutWire
     ways: Mapping[str, tuple[Point, ...]]
     room: float
 
@@ -75,7 +75,7 @@ class DrawnWire:
 class Layout:
     """Boxes, bands of boxes as (upper edge, height), and wires."""
 
-    boxes: Mapping[str, Box]
+    boxes: Mapping[str, LayoutBox]
     bands: tuple[tuple[float, float], ...]
     wires: tuple[DrawnWire, ...]
     left: float
@@ -83,7 +83,7 @@ class Layout:
     bottom: float
 
 
-def lay_out(bands: Sequence[Sequence[str]], wires: Sequence[Wire], left: float, top: float) -> Layout:
+def lay_out(bands: Sequence[Sequence[str]], wires: Sequence[LayoutWire], left: float, top: float) -> Layout:
     """The layout of boxes in bands, one below the other."""
     rows = [name for band in bands for name in band]
     columns = _columns(rows, [wire for wire in wires if not wire.is_outer])
@@ -91,12 +91,12 @@ def lay_out(bands: Sequence[Sequence[str]], wires: Sequence[Wire], left: float, 
     tracks = _tracks(columns, wires)
     rooms = _rooms(columns, wires)
     lefts, right = _lefts(left, columns, tracks, rooms)
-    boxes: dict[str, Box] = {}
+    boxes: dict[str, LayoutBox] = {}
     drawn_bands, y = [], top
     for band in bands:
         begin, y = y, y + _BAND_HEADER
         for name in band:
-            boxes[name] = Box(lefts[columns[name]], y, ports.height(name))
+            boxes[name] = LayoutBox(lefts[columns[name]], y, ports.height(name))
             y += boxes[name].height + _ROW_GAP
         drawn_bands.append((begin, y - begin))
         y += _BAND_GAP
@@ -106,7 +106,7 @@ def lay_out(bands: Sequence[Sequence[str]], wires: Sequence[Wire], left: float, 
     )
 
 
-def _columns(rows: Sequence[str], wires: Iterable[Wire]) -> dict[str, int]:
+def _columns(rows: Sequence[str], wires: Iterable[LayoutWire]) -> dict[str, int]:
     """The layer of each box, without the wires that would close a circle."""
     graph: nx.DiGraph = nx.DiGraph()
     graph.add_nodes_from(rows)
@@ -118,7 +118,7 @@ def _columns(rows: Sequence[str], wires: Iterable[Wire]) -> dict[str, int]:
     return {name: min(layer, MOST_COLUMNS - 1) for layer, names in layers for name in names}
 
 
-def _turns(wire: Wire, columns: Mapping[str, int]) -> dict[str, int]:
+def _turns(wire: LayoutWire, columns: Mapping[str, int]) -> dict[str, int]:
     """For each target the column after which the wire turns into a track; -1: before the first one."""
     if wire.is_outer:
         return dict.fromkeys(wire.targets, -1)
@@ -126,7 +126,7 @@ def _turns(wire: Wire, columns: Mapping[str, int]) -> dict[str, int]:
     return {target: columns[target] - 1 if columns[target] > start else start for target in wire.targets}
 
 
-def _tracks(columns: Mapping[str, int], wires: Sequence[Wire]) -> dict[int, list[int]]:
+def _tracks(columns: Mapping[str, int], wires: Sequence[LayoutWire]) -> dict[int, list[int]]:
     """The numbers of the wires that have a track after each column."""
     found: dict[int, list[int]] = {}
     for number, wire in enumerate(wires):
@@ -135,7 +135,7 @@ def _tracks(columns: Mapping[str, int], wires: Sequence[Wire]) -> dict[int, list
     return found
 
 
-def _rooms(columns: Mapping[str, int], wires: Iterable[Wire]) -> dict[int, float]:
+def _rooms(columns: Mapping[str, int], wires: Iterable[LayoutWire]) -> dict[int, float]:
     """The room for labels after each column."""
     found: dict[int, float] = {}
     for wire in wires:
@@ -170,7 +170,7 @@ class _Ports:
     left: Mapping[str, Sequence[int]]
 
     @classmethod
-    def of(cls, rows: Sequence[str], columns: Mapping[str, int], wires: Sequence[Wire]) -> _Ports:
+    def of(cls, rows: Sequence[str], columns: Mapping[str, int], wires: Sequence[LayoutWire]) -> _Ports:
         right: dict[str, list[tuple[float, int, str]]] = {name: [] for name in rows}
         left: dict[str, list[tuple[float, int]]] = {name: [] for name in rows}
         place = {name: index for index, name in enumerate(rows)}
@@ -199,13 +199,13 @@ class _Router:
     """Finds the ways of wires."""
 
     columns: Mapping[str, int]
-    boxes: Mapping[str, Box]
+    boxes: Mapping[str, LayoutBox]
     ports: _Ports
     tracks: Mapping[int, Sequence[int]]
     rooms: Mapping[int, float]
     lefts: Sequence[float]
 
-    def drawn(self, number: int, wire: Wire) -> DrawnWire:
+    def drawn(self, number: int, wire: LayoutWire) -> DrawnWire:
         """The ways of a wire to its targets."""
         turns = _turns(wire, self.columns)
         start = self._start(number, wire)
@@ -214,12 +214,12 @@ class _Router:
         }
         return DrawnWire(wire, ways, self.rooms[-1 if wire.is_outer else self.columns[wire.source]])
 
-    def _start(self, number: int, wire: Wire) -> Point:
+    def _start(self, number: int, wire: LayoutWire) -> Point:
         if not wire.is_outer:
             return self.boxes[wire.source].right, self._right_port(wire.source, (number, ""))
         return self.lefts[0] - _gap(-1, self.tracks, self.rooms), self._left_port(wire.targets[0], number)
 
-    def _end(self, number: int, wire: Wire, target: str) -> Point:
+    def _end(self, number: int, wire: LayoutWire, target: str) -> Point:
         box = self.boxes[target]
         if wire.is_outer or self.columns[target] > self.columns[wire.source]:
             return box.left, self._left_port(target, number)

@@ -19,7 +19,7 @@ from amalthea_uros.report.flows import ChainPath, Flow, SystemFlows
 from amalthea_uros.report.pictures.page import MARGIN, TOP, WIDTH, LegendEntry, document, draw_legend
 from amalthea_uros.report.pictures.style import PALETTE, SMALL_SIZE, TEXT_SIZE
 from amalthea_uros.report.pictures.svg import Markup, element, number, text, tooltip
-from amalthea_uros.report.pictures.system_layout import BOX, DrawnWire, Layout, Point, Wire, lay_out
+from amalthea_uros.report.pictures.system_layout import BOX, DrawnWire, Layout, LayoutWire, Point, lay_out
 from amalthea_uros.report.pictures.text_widths import elided
 from amalthea_uros.report.pictures.verdict_marks import MARK, draw_verdict, verdict_entries
 from amalthea_uros.timing.activation.load import activation_rates, loads
@@ -79,7 +79,7 @@ class _Content:
     """What a picture shows, before it has a layout; there is a kind for each wire."""
 
     bands: tuple[_Band, ...]
-    wires: tuple[Wire, ...]
+    wires: tuple[LayoutWire, ...]
     kinds: tuple[LinkKind, ...]
     notes: tuple[str, ...]
     chains: tuple[ChainPath, ...] = field(default=())
@@ -111,8 +111,8 @@ def _of_processes(shown: SystemFlows, analysis: Analysis | None) -> _Content:
     )
     is_dense = len(shown.flows) > MOST_FLOWS
     flows = _united(shown.flows) if is_dense else shown.flows
-    wires = [Wire(flow.source, flow.targets, _names(flow, is_dense)) for flow in flows]
-    outer = [Wire(source.name, source.targets, source.name, is_outer=True) for source in shown.sources]
+    wires = [LayoutWire(flow.source, flow.targets, _names(flow, is_dense)) for flow in flows]
+    outer = [LayoutWire(source.name, source.targets, source.name, is_outer=True) for source in shown.sources]
     kinds = [
         *(flow.kind for flow in flows),
         *(LinkKind.TRIGGER if source.is_stimulus else LinkKind.DATA for source in shown.sources),
@@ -182,7 +182,7 @@ def _of_cores(shown: SystemFlows, analysis: Analysis | None) -> _Content:
     )
     drawn = {_name(core) for core, _ in cores}
     most = [ends for ends, _ in between.most_common() if ends[0] != ends[1] and drawn.issuperset(ends)]
-    wires = tuple(Wire(*_one_target(ends), f"{between[ends]:,}") for ends in sorted(most[:MOST_CORE_FLOWS]))
+    wires = tuple(LayoutWire(*_one_target(ends), f"{between[ends]:,}") for ends in sorted(most[:MOST_CORE_FLOWS]))
     bands = tuple(_Band(_core_text(core, analysis), (_core_node(_name(core), own, between),)) for core, own in cores)
     notes = [
         f"Only cores are shown: there are {counted(len(shown.system.processes), 'process')}. Numbers at arrows count flows.",

@@ -12,7 +12,7 @@ from amalthea_uros.services.build import BuildResult
 from amalthea_uros.units import percent_text, time_text
 from amalthea_uros.uros.assemble import Assembly
 from amalthea_uros.uros.initialisation import Initialisation
-from amalthea_uros.uros.memory.ram import Memory
+from amalthea_uros.uros.memory.ram import MemoryDemand
 from amalthea_uros.uros.middleware.options import Option, OptionRole
 
 
@@ -142,7 +142,7 @@ def _needed(pool: Option) -> str:
     return f"at least {pool.needed}" if pool.role is OptionRole.QUEUE else str(pool.needed)
 
 
-def _memory(terminal: Terminal, memory: Memory) -> None:
+def _memory(terminal: Terminal, memory: MemoryDemand) -> None:
     rows = memory_rows(memory)
     if rows:
         terminal.heading("Memory")

@@ -24,7 +24,7 @@ _PARAMETERS = (11736, 4160)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Memory(Brief):
+class MemoryDemand(Brief):
     """The memory that micro-ROS takes, and the other tasks of the controller with their stacks.
 
     Attributes
@@ -52,7 +52,7 @@ class Memory(Brief):
         return not self.stacks.unknown and all(use.is_bounded for use in self.uses)
 
 
-def memory_of(description: Description, hardware: HardwareSection, system: System, profile: Profile) -> Memory:
+def memory_of(description: Description, hardware: HardwareSection, system: System, profile: Profile) -> MemoryDemand:
     """The memory of an application.
 
     Parameters
@@ -64,7 +64,7 @@ def memory_of(description: Description, hardware: HardwareSection, system: Syste
     static = profile.memory(application)
     stacks = stacks_of(description, system, profile.threads)
     others = {section.name for section in (*description.tasks, *description.isrs)}
-    return Memory(
+    return MemoryDemand(
         uses=(*(static if application.nodes else ()), *handles, *_parameters(application)),
         stacks=stacks,
         other_stacks=sum(user.size or 0 for user in stacks.users if user.name in others) if not stacks.shared else 0,
@@ -73,7 +73,7 @@ def memory_of(description: Description, hardware: HardwareSection, system: Syste
     )
 
 
-def check_memory(memory: Memory, hardware: HardwareSection, notes: Notes) -> None:
+def check_memory(memory: MemoryDemand, hardware: HardwareSection, notes: Notes) -> None:
     """Report memory that exceeds the budget of the platform, or else all that the board has."""
     limit = memory.ram if memory.budget is None else memory.budget
     needed = memory.total if memory.budget is None else memory.total - memory.other_stacks

@@ -31,7 +31,7 @@ _UNLIMITED = 1_000_000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Transmission:
+class BusTransmission:
     """A message on the bus.
 
     Attributes
@@ -48,7 +48,7 @@ class Transmission:
     origin: Location | None = None
 
 
-def with_bus(system: System, bus: CanBus, transmissions: Sequence[Transmission], events: Iterable[Event] = ()) -> System:
+def with_bus(system: System, bus: CanBus, transmissions: Sequence[BusTransmission], events: Iterable[Event] = ()) -> System:
     """A system with a bus and its messages added.
 
     Parameters
@@ -90,7 +90,7 @@ def with_bus(system: System, bus: CanBus, transmissions: Sequence[Transmission],
     )
 
 
-def _task(transmission: Transmission, bus: CanBus) -> Task:
+def _task(transmission: BusTransmission, bus: CanBus) -> Task:
     frames = chain.from_iterable((SchedulePoint(), _frame(data, bus)) for data in transmission.frames)
     return Task(
         name=transmission.name,

@@ -15,7 +15,7 @@ from amalthea_uros.perf.stimuli import Counter, EventTriggered, Periodic, Relati
 from amalthea_uros.perf.system import System
 from amalthea_uros.units import Time
 from amalthea_uros.uros.application.callbacks import body_name
-from amalthea_uros.uros.network.bus_system import Transmission, with_bus
+from amalthea_uros.uros.network.bus_system import BusTransmission, with_bus
 from amalthea_uros.uros.transports.bus_messages import BusMessage
 from amalthea_uros.uros.transports.can import CanBus, block_bytes
 
@@ -35,7 +35,7 @@ def with_traffic(system: System, bus: CanBus, messages: Iterable[BusMessage]) ->
         if not message.incoming:
             events.append(_end_of_callback(message, name))
         transmissions.append(
-            Transmission(
+            BusTransmission(
                 name=name,
                 frames=[frame for part in message.parts for frame in block_bytes(part)],
                 identifier=_OF_CLIENT if message.identifier is None else message.identifier,
