@@ -13,13 +13,14 @@ from amalthea_uros.analyze.chains.messages.evaluate import evaluate_executors_an
 from amalthea_uros.analyze.constraints.evaluator import ConstraintEvaluator
 from amalthea_uros.analyze.constraints.requirements import evaluate_requirements
 from amalthea_uros.analyze.loads import processor_results
-from amalthea_uros.analyze.phases.merged import Phases, merged, merged_chain
+from amalthea_uros.analyze.phases.combinations import Phases
+from amalthea_uros.analyze.phases.merged import merged, merged_chain
 from amalthea_uros.analyze.processes import process_results
 from amalthea_uros.analyze.response_times.propagation import solve
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import ChainResult
-from amalthea_uros.executors.findings import note_executors
+from amalthea_uros.executors.bounds.findings import note_executors
 from amalthea_uros.executors.results import ExecutorResult
 from amalthea_uros.executors.semantics.loops import timing_context
 from amalthea_uros.judge.summary import summarize

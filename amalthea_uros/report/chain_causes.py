@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.analyze.explanations.chains import ProcessHop
+from amalthea_uros.analyze.explanations.chain_results import ProcessHop
 from amalthea_uros.analyze.explanations.hop_causes import CauseKind, LatencyCause
 from amalthea_uros.units import time_text
 

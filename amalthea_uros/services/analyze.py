@@ -30,7 +30,7 @@ from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
-    from amalthea_uros.analyze.explanations.chains import ChainExplanation
+    from amalthea_uros.analyze.explanations.chain_results import ChainExplanation
     from amalthea_uros.analyze.explanations.processes import CallbackExplanation, ProcessExplanation
     from amalthea_uros.analyze.priorities.assignment import Proposal
     from amalthea_uros.analyze.sensitivity import Sensitivity

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from amalthea_uros._internal.failures import failure
 from amalthea_uros.analyze.chains.job_chains import TOO_MANY_JOBS, JobBudget
 from amalthea_uros.analyze.chains.read_write_times import TimedStage
@@ -106,6 +108,18 @@ class ChainEvaluator:
         except UnknownError:
             return []
         return [route for found in paths.values() for route in found]
+
+    def is_one_run(self, chain: EventChain) -> bool:
+        """Whether jobs that a chain passes can only run in one way: with known phases, and best cases that are the worst ones."""
+        if self.occurrences(chain):
+            return False
+        for stage in self.stages(chain):
+            name = stage.process.name
+            core = self.context.scheduled[name].core
+            found = self.timing.schedules.of(core, with_slices=False)
+            if found is None or name not in found.tasks or not np.array_equal(found.best[name].ends, found.worst[name].ends):
+                return False
+        return True
 
     def processes(self, chain: EventChain) -> list[str]:
         """The processes in which the events of a chain occur, in its order; nothing if these cannot be located."""

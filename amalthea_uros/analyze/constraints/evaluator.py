@@ -10,17 +10,15 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from itertools import permutations
 from typing import TypeAlias
-
-import numpy as np
 
 from amalthea_uros._internal.failures import failure
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
+from amalthea_uros.analyze.constraints.ends import LatencyEnds, distance_of, moved, repetition_jitter, spread_of
 from amalthea_uros.analyze.constraints.events import EventWindows, exact_delays
 from amalthea_uros.analyze.constraints.requirements import report_implausible
 from amalthea_uros.analyze.constraints.runnable_orders import holds_across, holds_in_each_job
-from amalthea_uros.analyze.results.chains import ChainResult, LatencyQuantity, LatencyValue
+from amalthea_uros.analyze.results.chains import ChainResult, LatencyQuantity
 from amalthea_uros.analyze.results.requirements import RequirementResult
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.judge.evidence import Ends
@@ -38,16 +36,13 @@ from amalthea_uros.perf.constraints import (
     OrderConstraint,
     RepetitionConstraint,
 )
-from amalthea_uros.perf.events import EventChain, LabelChange, LabelEvent
+from amalthea_uros.perf.events import LabelChange, LabelEvent
 from amalthea_uros.timing.activation.releases import known_releases
-from amalthea_uros.timing.basics.quantities import jitter_of
 from amalthea_uros.timing.dataflow.links import LinkKind
 from amalthea_uros.timing.dataflow.routes import Route, corresponding, routes
 from amalthea_uros.timing.dataflow.runnable_order import are_activated_together, has_counted_effect, order_scope
-from amalthea_uros.timing.event_models import EventModel, PeriodicEvents, can_be_dense, is_strictly_periodic
 from amalthea_uros.timing.jobs.counters import is_always
-from amalthea_uros.timing.response import Claim
-from amalthea_uros.units import Time, time_text
+from amalthea_uros.units import Time
 
 _REACTION = (LatencyQuantity.MIN_FIRST_TO_FIRST, LatencyQuantity.MAX_REDUCED_REACTION_TIME)
 _AGE = (LatencyQuantity.MIN_LAST_TO_LAST, LatencyQuantity.MAX_REDUCED_DATA_AGE)
@@ -110,10 +105,12 @@ class ConstraintEvaluator:
         chain = self.chains.get(constraint.chain)
         if chain is None:
             raise UnknownError(f"the chain {constraint.chain!r} is not defined in the model")
-        latencies = _Latencies(chain.values, *(_AGE if constraint.kind is LatencyKind.AGE else _REACTION))
+        latencies = LatencyEnds(chain.values, *(_AGE if constraint.kind is LatencyKind.AGE else _REACTION))
         for limit in limits:
             if limit.is_jitter:
-                is_one_run = len(chain.routes) == 1 and self._is_one_run(self.evaluation.context.system.chains[chain.name])
+                is_one_run = len(chain.routes) == 1 and self.evaluation.is_one_run(
+                    self.evaluation.context.system.chains[chain.name]
+                )
                 judgement = prove(limit, latencies.jitter(is_one_run), chain.reason)
                 yield limit, replace(judgement, spread=latencies.spread)
             else:
@@ -122,18 +119,6 @@ class ConstraintEvaluator:
                 is_unbounded = limit.is_upper and ends.upper is None
                 cause = chain.reason or (chain.why.removeprefix("bounds: ") if is_unbounded else "")
                 yield limit, prove(limit, ends, cause)
-
-    def _is_one_run(self, chain: EventChain) -> bool:
-        """Whether jobs that a chain passes can only run in one way: with known phases, and best cases that are the worst ones."""
-        if self.evaluation.occurrences(chain):
-            return False
-        for stage in self.evaluation.stages(chain):
-            name = stage.process.name
-            core = self.evaluation.context.scheduled[name].core
-            found = self.evaluation.timing.schedules.of(core, with_slices=False)
-            if found is None or name not in found.tasks or not np.array_equal(found.best[name].ends, found.worst[name].ends):
-                return False
-        return True
 
     def _delay(self, constraint: DelayConstraint, limits: Sequence[SystemLimit]) -> Iterator[_Judged]:
         source, target = self.windows.event(constraint.source), self.windows.event(constraint.target)
@@ -145,14 +130,14 @@ class ConstraintEvaluator:
         self._require_all_sources(constraint.source, found)
         if constraint.matching is not Matching.REACTION:
             self._require_one_to_one(constraint, found)
-        latencies = _Latencies(self.evaluation.worst(found), *_REACTION)
+        latencies = LatencyEnds(self.evaluation.worst(found), *_REACTION)
         if constraint.matching is Matching.REACTION:
             greatest, least = self._to_any_target(constraint, latencies)
             yield from _proved(limits, lambda limit: greatest if limit.is_upper else least)
         else:
             yield from _proved(limits, latencies.limited)
 
-    def _to_any_target(self, constraint: DelayConstraint, latencies: _Latencies) -> tuple[Ends, Ends]:
+    def _to_any_target(self, constraint: DelayConstraint, latencies: LatencyEnds) -> tuple[Ends, Ends]:
         """Between which ends the greatest and the least reaction lie, given those to the targets that the sources cause.
 
         Any target within the limits will do. So another one can come earlier, unless targets are farther apart than that; and one below
@@ -209,7 +194,7 @@ class ConstraintEvaluator:
         is_start = constraint.end is ChainEnd.STIMULUS
         ends = [chain.stimulus if is_start else chain.response for chain in chains]
         if not is_start and len({chain.stimulus for chain in chains}) == 1:
-            spread = _spread([_Latencies(each.values, *_REACTION) for each in found if each is not None])
+            spread = spread_of([LatencyEnds(each.values, *_REACTION) for each in found if each is not None])
         else:
             spread = self.windows.spread([end for end in ends if end is not None])
         yield from _proved(limits, lambda _: spread)
@@ -230,7 +215,7 @@ class ConstraintEvaluator:
         cycle = releases.period if releases is not None else None
         for name in sorted(readers):
             found = routes([written, replace(reading, process=name)], self.evaluation.context.dataflow)
-            latencies = _Latencies(self.evaluation.worst(found), *_AGE)
+            latencies = LatencyEnds(self.evaluation.worst(found), *_AGE)
             here = (replace(limit, object=f"{constraint.label} in {name}") for limit in limits)
             yield from _proved([_in_time(limit, cycle) for limit in here], latencies.limited)
 
@@ -245,9 +230,9 @@ class ConstraintEvaluator:
         moves, span = late - early, max(1, constraint.span)
         for limit in limits:
             if limit.is_jitter:
-                yield limit, prove(limit, *_jitter(constraint, activations, moves))
+                yield limit, prove(limit, *repetition_jitter(constraint, activations, moves))
             else:
-                yield limit, prove(limit, _moved(_distance(activations, span, limit.is_upper), moves))
+                yield limit, prove(limit, moved(distance_of(activations, span, limit.is_upper), moves))
 
     # Order
 
@@ -261,52 +246,6 @@ class ConstraintEvaluator:
         if scope.together:
             holds = partial(holds_across, scope, constraint, self.windows)
             yield _of_order(constraint, ", ".join(scope.processes), holds)
-
-
-@dataclass(frozen=True, slots=True)
-class _Latencies:
-    """Between which ends the maximum and the minimum of a latency lie."""
-
-    values: Sequence[LatencyValue]
-    minimum: LatencyQuantity
-    maximum: LatencyQuantity
-
-    @property
-    def of_maximum(self) -> Ends:
-        """An exact value, or from a lower bound of all latencies up to an upper bound."""
-        lowest, highest = self._find(self.minimum), self._find(self.maximum)
-        if highest is not None and highest.value is not None and highest.claim is Claim.EXACT:
-            return Ends.exactly(highest.value)
-        return Ends(_time(lowest), _time(highest))
-
-    @property
-    def of_minimum(self) -> Ends:
-        """An exact value, or from a lower bound up to an upper bound of all latencies; no latency is negative."""
-        lowest, highest = self._find(self.minimum), self._find(self.maximum)
-        if lowest is not None and lowest.value is not None and lowest.claim is Claim.EXACT:
-            return Ends.exactly(lowest.value)
-        return Ends(_time(lowest) or 0, _time(highest))
-
-    def limited(self, limit: SystemLimit) -> Ends:
-        """Between which ends the limited maximum or minimum lies."""
-        return self.of_maximum if limit.is_upper else self.of_minimum
-
-    @property
-    def spread(self) -> tuple[Time, Time] | None:
-        """A lower bound of the minimum and an upper bound of the maximum; None if one of them is unknown."""
-        lowest, highest = self.of_minimum.lower, self.of_maximum.upper
-        return None if lowest is None or highest is None else (lowest, highest)
-
-    def jitter(self, is_one_run: bool) -> Ends:
-        """Maximum minus minimum; exact values are known to occur together if there is only one run."""
-        if self.spread is None:
-            return Ends()
-        greatest, least, upper = self.of_maximum, self.of_minimum, jitter_of(*self.spread)
-        is_exact = greatest.lower == greatest.upper and least.lower == least.upper
-        return Ends(upper if is_exact and is_one_run else 0, upper)
-
-    def _find(self, quantity: LatencyQuantity) -> LatencyValue | None:
-        return next((value for value in self.values if value.quantity is quantity), None)
 
 
 def _proved(limits: Iterable[SystemLimit], of: Callable[[SystemLimit], Ends]) -> Iterator[_Judged]:
@@ -328,48 +267,6 @@ def _unknown(constraint: EventConstraint, limits: Sequence[SystemLimit], reason:
     return (RequirementResult.of(limit, unknown(reason)) for limit in limits or [without_number(constraint)])
 
 
-def _time(value: LatencyValue | None) -> Time | None:
-    return value.value if value is not None else None
-
-
-def _spread(latencies: Sequence[_Latencies]) -> Ends:
-    """Between which ends the maximum distance of the responses to one stimulus lies.
-
-    In the case of the greatest latency of a chain, another one takes at most its maximum.
-    """
-    latest, earliest = [each.of_maximum for each in latencies], [each.of_minimum for each in latencies]
-    uppers = [ends.upper for ends in latest if ends.upper is not None]
-    lowers = [ends.lower for ends in earliest if ends.lower is not None]
-    upper = max(uppers) - min(lowers) if len(uppers) == len(latest) and lowers else None
-    apart = [
-        one.lower - other.upper for one, other in permutations(latest, 2) if one.lower is not None and other.upper is not None
-    ]
-    return Ends(max(0, *apart) if apart else 0, upper)
-
-
-def _moved(distance: Ends, by: Time) -> Ends:
-    """A distance of activations as one of events that follow them after varying times."""
-    lower, upper = distance.lower, distance.upper
-    return Ends(None if lower is None else max(0, lower - by), None if upper is None else upper + by)
-
-
-def _jitter(constraint: RepetitionConstraint, activations: EventModel, moves: Time) -> tuple[Ends, str]:
-    """Between which ends the jitter of an event lies that follows strictly periodic activations, or why that is unknown."""
-    if not isinstance(activations, PeriodicEvents) or not is_strictly_periodic(activations):
-        return Ends(), "its activations are not strictly periodic"
-    period, distance = activations.period, max(1, constraint.span) * activations.period
-    if constraint.period not in (None, period):
-        return (
-            Ends(),
-            f"the event occurs every {time_text(period)}, not in the stated period, so that no jitter bounds its deviation",
-        )
-    if distance < (constraint.lower or 0) or (constraint.upper is not None and distance > constraint.upper):
-        return Ends(), f"the limits exclude the mean distance of {time_text(distance)}, so that no jitter bounds its deviation"
-    # Ideal points between limits can follow the events; those of a stated period cannot.
-    lower = max(0, activations.jitter - moves) if constraint.period is not None else 0
-    return Ends(lower, activations.jitter + moves), ""
-
-
 def _in_time(limit: SystemLimit, period: Time | None) -> SystemLimit:
     """A limit in cycles of the writer as one of a time."""
     if limit.is_time or limit.limit is None:
@@ -377,18 +274,3 @@ def _in_time(limit: SystemLimit, period: Time | None) -> SystemLimit:
     if period is None:
         raise UnknownError("a limit in cycles needs a writer with a known period")
     return replace(limit, quantity="data age", limit=int(limit.limit) * period, is_time=True)
-
-
-def _distance(events: EventModel, count: int, is_upper: bool) -> Ends:
-    """Between which ends the distance of `count` repetitions lies; event models that are not periodic only bound it."""
-    distance = _longest(events, count) if is_upper else events.delta_min(count + 1)
-    if can_be_dense(events):
-        return Ends(distance, distance)
-    return Ends(None, distance) if is_upper else Ends(distance, None)
-
-
-def _longest(events: EventModel, count: int) -> Time | None:
-    """The maximum time from an event to the one `count` after it."""
-    if isinstance(events, PeriodicEvents) and is_strictly_periodic(events):
-        return count * events.period + events.jitter
-    return None if events.max_interarrival is None else count * events.max_interarrival

@@ -4,23 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from fractions import Fraction
 from itertools import accumulate, pairwise
 from typing import NamedTuple
 
-import numpy as np
-
 from amalthea_uros.analyze.chains import bounds, job_chains
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
-from amalthea_uros.analyze.chains.job_chains import JobBudget, backward, forward
-from amalthea_uros.analyze.chains.read_write_times import ReadWriteTimes, TimedStage, reach
+from amalthea_uros.analyze.chains.read_write_times import TimedStage
 from amalthea_uros.analyze.chains.route_latencies import RouteLatencies
 from amalthea_uros.analyze.chains.stage_timing import StageTiming
+from amalthea_uros.analyze.explanations.chain_results import ChainExplanation, ProcessHop
 from amalthea_uros.analyze.explanations.hop_causes import CauseKind, Execution, HopReasons, LatencyCause, cause
-from amalthea_uros.analyze.phases.merged import Phases
+from amalthea_uros.analyze.explanations.worst_path import REACTIONS, JobPath, worst_path
+from amalthea_uros.analyze.phases.combinations import Phases
 from amalthea_uros.analyze.results.analysis import Analysis
-from amalthea_uros.analyze.results.chains import ChainResult, LatencyQuantity, LatencyValue
-from amalthea_uros.analyze.results.requirements import RequirementResult
+from amalthea_uros.analyze.results.chains import LatencyQuantity, LatencyValue
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.constraints import LatencyConstraint
 from amalthea_uros.perf.events import EventChain
@@ -30,69 +27,6 @@ from amalthea_uros.timing.dataflow.routes import Route, route_text
 from amalthea_uros.timing.dataflow.stages import Stage
 from amalthea_uros.timing.jobs.counters import ALWAYS
 from amalthea_uros.units import Time
-
-_REACTIONS = (LatencyQuantity.MAX_REACTION_TIME, LatencyQuantity.MAX_REDUCED_REACTION_TIME)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ProcessHop:
-    """The contribution of a process to a latency; times are relative to the first read.
-
-    Attributes
-    ----------
-    job : its number, counted from 1 at the start of the system; None if the value is not based on single jobs
-    release, start : of the job; None if they are unknown
-    read, write : when it reads, and when its output is visible
-    wait, run : from the previous output (or the beginning) to the read, and from the read to the output
-    core : that executes it; None if it is unknown
-    period : time from one job that takes part to the next one, at most; None if it is unknown
-    one_in : of so many jobs of the process, one takes part
-    wait_causes, run_causes : why wait and run take their time; they add up to them
-    executions : of it and of those that interfere; empty if they are not the same in each such worst case
-    """
-
-    process: str
-    job: int | None
-    release: Time | None
-    start: Time | None
-    read: Time
-    write: Time
-    wait: Time
-    run: Time
-    core: str | None = None
-    period: Time | None = None
-    one_in: int = 1
-    wait_causes: tuple[LatencyCause, ...] = ()
-    run_causes: tuple[LatencyCause, ...] = ()
-    executions: tuple[Execution, ...] = ()
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ChainExplanation:
-    """A maximum latency of a chain.
-
-    Attributes
-    ----------
-    value : that is explained; None if there is none, for the `reason`
-    route : the events and the links between them
-    hops : of a chain without message hops: their waits and runs, with `overwritten`, add up to the value; empty for the `reason`
-    overwritten : for data age, the time from the last output until the next one
-    requirements : the verdicts on limits of the chain
-    """
-
-    chain: ChainResult
-    quantity: LatencyQuantity
-    value: LatencyValue | None = None
-    route: str = ""
-    hops: tuple[ProcessHop, ...] = ()
-    overwritten: Time = 0
-    reason: str = ""
-    requirements: tuple[RequirementResult, ...] = ()
-
-    def share(self, time: Time) -> Fraction:
-        """The part of the value that a time is."""
-        whole = self.value.value if self.value is not None else None
-        return Fraction(time, whole) if whole else Fraction(0)
 
 
 class _Step(NamedTuple):
@@ -201,7 +135,7 @@ class _RouteExplanation:
         overwritten = 0
         for number, part in enumerate(latencies.parts):
             here, groups = groups[: len(part)], groups[len(part) :]
-            path = _worst_path(part, self._of_part(number, len(latencies.parts)))
+            path = worst_path(part, self._of_part(number, len(latencies.parts)))
             if path is None:
                 return [], 0
             steps = self._of_jobs(path, here, part)
@@ -212,13 +146,13 @@ class _RouteExplanation:
 
     def _of_part(self, number: int, count: int) -> LatencyQuantity:
         """The quantity of the part of the chain on one controller: data from another one arrive just after a read at worst."""
-        if self.quantity in _REACTIONS:
+        if self.quantity in REACTIONS:
             return self.quantity if number == 0 else LatencyQuantity.MAX_REACTION_TIME
         return self.quantity if number == count - 1 else LatencyQuantity.MAX_DATA_AGE
 
     # By job chains
 
-    def _of_jobs(self, path: _Path, groups: Sequence[Sequence[Stage]], part: Sequence[TimedStage]) -> list[_Step]:
+    def _of_jobs(self, path: JobPath, groups: Sequence[Sequence[Stage]], part: Sequence[TimedStage]) -> list[_Step]:
         found: list[_Step] = []
         previous = path.begin
         for job, times, group, timed in zip(path.jobs, path.times, groups, part, strict=True):
@@ -356,39 +290,3 @@ class _RouteExplanation:
         """Causes in picoseconds, which add up to the time from the beginning of the first to the end of the last one."""
         ends = [self._picoseconds(end) for end in accumulate((each.time for each in causes), initial=begin)]
         return tuple(replace(each, time=end - start) for each, (start, end) in zip(causes, pairwise(ends), strict=True))
-
-
-class _Path(NamedTuple):
-    """A job of each task, and when the latency begins."""
-
-    times: Sequence[ReadWriteTimes]
-    jobs: Sequence[int]
-    begin: Time
-    overwritten: Time
-
-
-def _worst_path(part: Sequence[TimedStage], quantity: LatencyQuantity) -> _Path | None:
-    """The job chain with the greatest latency; None if there are no job chains."""
-    known = [timed.read_write for timed in part if timed.read_write is not None]
-    chain = [each.pessimistic for each in known]
-    if len(known) < len(part):
-        return None
-    built = JobBudget().build(chain, max(each.steady_state_start for each in known))
-    if built is None:
-        return None
-    found = built.from_start(is_exact=True)
-    until = int(max(found.ends.max(), found.next_writes.max())) + 2 * reach(chain)
-    times = [task.extended(until) for task in chain]
-    if quantity in _REACTIONS:
-        begins = found.previous_reads if quantity is LatencyQuantity.MAX_REACTION_TIME else found.reads
-        worst = int((found.ends - begins).argmax())
-        jobs = [int(np.searchsorted(times[0].reads, found.reads[worst]))]
-        for writer, reader in pairwise(times):
-            jobs.append(int(forward([writer, reader], np.array(jobs[-1:], dtype=np.int64))[0]))
-        return _Path(times, jobs, int(begins[worst]), 0)
-    ends = found.next_writes if quantity is LatencyQuantity.MAX_DATA_AGE else found.writes
-    worst = int((ends - found.starts).argmax())
-    jobs = [int(np.searchsorted(times[-1].writes, found.writes[worst]))]
-    for writer, reader in list(pairwise(times))[::-1]:
-        jobs.insert(0, int(backward([writer, reader], np.array(jobs[:1], dtype=np.int64))[0]))
-    return _Path(times, jobs, int(found.starts[worst]), int(ends[worst] - found.writes[worst]))

@@ -4,76 +4,29 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from operator import mul
 from typing import Any, TypeVar
 
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.analyze.phases.cases import Cases, PhaseCases
+from amalthea_uros.analyze.phases.cases import PhaseCases
 from amalthea_uros.analyze.response_times import metrics
-from amalthea_uros.analyze.response_times.propagation import solve
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import ChainResult, LatencyValue
 from amalthea_uros.analyze.results.processes import CallbackResult, ProcessResult
 from amalthea_uros.analyze.results.requirements import RequirementResult
-from amalthea_uros.executors.semantics.loops import timing_context
 from amalthea_uros.judge.evidence import Ends
 from amalthea_uros.judge.limits import SystemLimit
 from amalthea_uros.judge.summary import summarize
 from amalthea_uros.judge.verdict import WORST_FIRST, prove
-from amalthea_uros.timing.activation.phases import ExternalInput, phase_combinations, phase_count, with_phases
 from amalthea_uros.timing.basics.quantities import jitter_of
 from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.units import Time
 
-#: With more combinations of phases, or more jobs in all of them, any job can be the one that takes what comes from outside.
-MAX_COMBINATIONS = 1000
-MAX_JOBS = 1_000_000
-
 T = TypeVar("T")
-
-
-@dataclass(frozen=True, slots=True)
-class Phases:
-    """The combinations of phases of a system, each of which makes a solution of its own.
-
-    Attributes
-    ----------
-    solution : for unknown phases
-    first : for the first combination
-    combinations : the first job that takes each occurrence
-    cases : those of the combinations that make a difference
-    """
-
-    solution: Solution
-    first: Solution
-    combinations: Sequence[Mapping[ExternalInput, int]]
-    cases: PhaseCases
-
-    @classmethod
-    def of(cls, solution: Solution, unknown: Sequence[ExternalInput]) -> Phases | None:
-        """The combinations of some unknown phases; None if there are none or too many."""
-        count = phase_count(unknown)
-        if not unknown or count > MAX_COMBINATIONS:
-            return None
-        combinations = list(phase_combinations(unknown))
-        first = _solution(solution, combinations[0])
-        if count * sum(response.jobs for response in first.responses.values()) > MAX_JOBS:
-            return None
-        return cls(solution, first, combinations, PhaseCases(solution, first, combinations))
-
-    def solutions(self, cases: Cases) -> Iterator[tuple[int, Solution]]:
-        """The numbers of the combinations of some cases, and their solutions."""
-        for number in cases:
-            yield number, _solution(self.solution, self.combinations[number]) if number else self.first
-
-
-def _solution(solution: Solution, combination: Mapping[ExternalInput, int]) -> Solution:
-    context = solution.context
-    return solve(timing_context(with_phases(context.system, combination), context.settings))
 
 
 def merged(analyses: Mapping[int, Analysis], cases: PhaseCases, solution: Solution) -> Analysis:

@@ -2,35 +2,24 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 
-from amalthea_uros._internal.plural import counted
 from amalthea_uros.analyze.explanations.processes import ProcessExplanation, explain_process
 from amalthea_uros.analyze.impact import impact
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import ChainResult, LatencyQuantity
 from amalthea_uros.analyze.results.processes import ProcessorResult, ProcessResult
-from amalthea_uros.diagnostics import Finding, Severity, worst
 from amalthea_uros.executors.results import HandleResult
-from amalthea_uros.findings.targets import summary
-from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.report.cells import (
     UNKNOWN,
     at_least,
     at_most,
     badge,
-    by_core_and_priority,
     exactly,
     load_text,
     share_text,
-    tone_of,
     verdict_badge,
-)
-from amalthea_uros.report.cells import (
-    observed as observed_ends,
 )
 from amalthea_uros.report.closing_line import closing_line
 from amalthea_uros.report.document import (
@@ -40,7 +29,6 @@ from amalthea_uros.report.document import (
     Figure,
     Folded,
     Heading,
-    Listing,
     Section,
     Sentences,
     Table,
@@ -56,24 +44,17 @@ from amalthea_uros.report.documents.analysis import (
     methods,
     response_times,
 )
-from amalthea_uros.report.documents.simulation import REMINDER, duration_text
-from amalthea_uros.report.documents.simulation import closing_line as observed_line
+from amalthea_uros.report.documents.application import bus_section, pools_section
+from amalthea_uros.report.documents.findings import findings_section
+from amalthea_uros.report.documents.observed import observed_section
 from amalthea_uros.report.documents.worst_cases import gantt_section, histogram_section, hops_section
 from amalthea_uros.report.judged import judged_rows, limit_text, margin_text, requirements_of, why, worst_chains
 from amalthea_uros.report.latencies import value_text
-from amalthea_uros.report.memory_text import memory_rows
 from amalthea_uros.report.pictures.load_bars import draw_loads
 from amalthea_uros.report.pictures.response_bars import draw_responses
 from amalthea_uros.report.pictures.system_picture import draw_system
-from amalthea_uros.report.wording import findings_text
-from amalthea_uros.services.generate import texts_of
 from amalthea_uros.services.report import ReportContent
-from amalthea_uros.simulate.observations import ChainObservation, ProcessObservation
-from amalthea_uros.simulate.results import Simulation
-from amalthea_uros.timing.basics.quantities import ChainQuantity
 from amalthea_uros.units import Rounding, frequency_text, time_text
-from amalthea_uros.uros.middleware.options import Option
-from amalthea_uros.validate import registry
 
 
 def _changes_section(content: ReportContent) -> Section | None:
@@ -264,101 +245,6 @@ def _terms(handle: HandleResult) -> Folded:
     return Folded(f"What {handle.name} waits for", [terms])
 
 
-#: The quantities of chains that are both computed and observed.
-BOUNDED = {
-    ChainQuantity.REDUCED_REACTION_TIME: LatencyQuantity.MAX_REDUCED_REACTION_TIME,
-    ChainQuantity.REDUCED_DATA_AGE: LatencyQuantity.MAX_REDUCED_DATA_AGE,
-}
-
-
-def _observed_section(content: ReportContent) -> Section | None:
-    """Response times and latencies of a run beside their bounds."""
-    if content.simulation is None:
-        return None
-    simulation = content.simulation.simulation
-    blocks: list[Block] = [Sentences([_run(content, simulation), observed_line(simulation).removesuffix(REMINDER).rstrip()])]
-    ordered = sorted(simulation.processes, key=lambda each: by_core_and_priority(each.core, each.is_isr, each.priority))
-    titles = ("process", ">jobs", ">observed min", ">mean", ">max", ">worst case", ">lost", "observed verdict", "remark")
-    if ordered:
-        blocks.append(table("Response times: observed and worst case", titles, [_process(each, content) for each in ordered]))
-    if simulation.chains:
-        of_chains = ("chain", "latency", ">values", ">observed min", ">mean", ">max", ">worst case", "remark")
-        rows = [row for chain in simulation.chains for row in _chain_of_observations(chain, content)]
-        blocks.append(table("Latencies: observed and worst case", of_chains, rows))
-    lead = "What one simulated run showed, beside the worst case of the analysis: observed values are typical, never a bound."
-    return Section("observed", "Observed in a simulation", lead, blocks)
-
-
-def _run(content: ReportContent, simulation: Simulation) -> str:
-    chosen = ", chosen to limit the work (--duration sets another)" if content.is_duration_chosen else ""
-    jobs = counted(sum(each.jobs for each in simulation.processes), "job")
-    return f"Simulated: {duration_text(simulation.duration)}{chosen}, seed {simulation.seed}, mode {simulation.mode}: {jobs}."
-
-
-def _process(process: ProcessObservation, content: ReportContent) -> tuple[Cell, ...]:
-    response = content.analysis.processes[process.name].response
-    return (
-        process.name,
-        f"{process.jobs:,}",
-        *observed_ends(process.response_time),
-        at_most(response.worst if response is not None else None, process.deadline),
-        f"{process.lost_activations:,}",
-        badge(process.verdict),
-        process.reason,
-    )
-
-
-def _chain_of_observations(chain: ChainObservation, content: ReportContent) -> list[tuple[Cell, ...]]:
-    result = content.analysis.chains[chain.name]
-    rows: list[tuple[Cell, ...]] = []
-    for observed, computed in BOUNDED.items():
-        found = chain.quantities.get(observed)
-        worst = value_text(result.value(computed)).replace("-", "unknown")
-        count = f"{found.count:,}" if found is not None else "0"
-        words = observed.removeprefix("reduced_").replace("_", " ")
-        rows.append((chain.name, words, count, *observed_ends(found), worst, chain.reason))
-    return rows
-
-
-#: Of each rule so many findings are listed.
-_MOST = 20
-_SEVERITIES = tuple(Severity)
-
-
-def _findings_section(content: ReportContent) -> Section | None:
-    """Each rule with its findings, the severest first."""
-    checked = content.check.shown if content.check is not None else []
-    found = list(dict.fromkeys((*checked, *content.findings)))
-    blocks: list[Block] = [Sentences([_total(content, found)])]
-    by_rule: dict[str, list[Finding]] = defaultdict(list)
-    for finding in found:
-        by_rule[finding.rule].append(finding)
-    ordered = sorted(by_rule.items(), key=lambda item: (_SEVERITIES.index(worst(item[1]) or Severity.INFO), item[0]))
-    blocks += [_folded(rule, findings) for rule, findings in ordered]
-    if content.check is not None:
-        others = [summary(target, (group.shown for group in groups)) for target, groups in content.check.targets.items()]
-        if others:
-            blocks.append(Sentences(others))
-    lead = "What the rules report about the model, with what to do about it; amuros explain RULE says more."
-    return Section("findings", "Findings", lead, blocks)
-
-
-def _total(content: ReportContent, found: Sequence[Finding]) -> str:
-    total = f"{findings_text(found)[:1].upper()}{findings_text(found)[1:]}."
-    if content.check is None:
-        return f"{total} The rules check files and models, not systems of the library."
-    return f"{total} The files were checked without the changes." if content.before is not None else total
-
-
-def _folded(rule: str, findings: Sequence[Finding]) -> Folded:
-    kind = registry.kind(rule)
-    severity = worst(findings) or Severity.INFO
-    title = f"{rule}{f': {kind.title}' if kind is not None else ''} ({counted(len(findings), 'finding')})"
-    rows = [(str(each.location or each.object or "-"), each.message, each.help) for each in findings[:_MOST]]
-    caption = f"Findings of {rule}" + (f", the first {_MOST} of {len(findings):,}" if len(findings) > _MOST else "")
-    return Folded(title, [table(caption, ("where", "what", "help"), rows)], badge(severity))
-
-
 def _methods_section(content: ReportContent) -> Section | None:
     """What the numbers rest on."""
     simulated = content.simulation.simulation.assumptions if content.simulation is not None else ()
@@ -375,54 +261,6 @@ def _methods_section(content: ReportContent) -> Section | None:
     return Section("methods", "Assumptions and methods", lead, blocks) if blocks else None
 
 
-def _bus_section(content: ReportContent) -> Section | None:
-    """What an `app.yaml` sends and receives."""
-    if content.assembly is None or not content.assembly.messages:
-        return None
-    rows = [
-        (
-            each.message.topic,
-            "received" if each.incoming else "sent",
-            time_text(each.message.interval),
-            f"{each.length} B",
-            f"{each.frames}",
-            "common" if each.identifier is None else f"0x{each.identifier:X}",
-            time_text(each.transmission_time),
-            load_text(each.bus_load, Rounding.UP),
-        )
-        for each in content.assembly.messages
-    ]
-    titles = ("topic", "direction", ">interval", ">with headers", ">frames", ">identifier", ">transmission", ">bus load")
-    total = load_text(sum((each.bus_load for each in content.assembly.messages), Fraction(0)), Rounding.UP)
-    lead = f"Each message with its headers and maximum bit stuffing; together they need at most {total} of the bus."
-    return Section("messages", "Messages on the CAN bus", lead, [table("Messages of the application", titles, rows)])
-
-
-def _pools_section(content: ReportContent) -> Section | None:
-    """The pools that the application needs, the files for a build with the right sizes, and the memory."""
-    assembly = content.assembly
-    if assembly is None or not assembly.description.application.nodes:
-        return None
-    rows = [
-        (each.name, f"{each.needed}", f"{each.available}", _origin(each), _verdict(each))
-        for each in assembly.pools
-        if each.needed
-    ]
-    sizes = table("Pools of the middleware", ("option", ">needed", ">available", "set by", "verdict"), rows)
-    memory = table("Memory", ("part", ">size", "how it is computed"), memory_rows(assembly.memory))
-    lead = "The middleware takes its objects from pools of fixed size; these files set those that the application needs in the build."
-    files = [Listing(name, text.splitlines()) for name, text in texts_of(assembly).items() if not name.endswith(".h")]
-    return Section("pools", "Static pools", lead, [sizes, memory, *files])
-
-
-def _origin(option: Option) -> str:
-    return "app.yaml" if option.is_stated else "default"
-
-
-def _verdict(option: Option) -> Badge:
-    return Badge("too small", Tone.BAD) if option.is_exceeded else Badge("sufficient", Tone.GOOD)
-
-
 #: The sections in their order; those that have nothing to show are left out.
 _SECTIONS: Sequence[Callable[[ReportContent], Section | None]] = (
     _changes_section,
@@ -432,73 +270,18 @@ _SECTIONS: Sequence[Callable[[ReportContent], Section | None]] = (
     _load_section,
     _response_times_section,
     _executors_section,
-    _observed_section,
+    observed_section,
     gantt_section,
     histogram_section,
     hops_section,
-    _findings_section,
+    findings_section,
     _methods_section,
-    _bus_section,
-    _pools_section,
+    bus_section,
+    pools_section,
 )
-
-#: What is missed or unknown is listed up to so many items.
-_MOST_REASONS = 12
-#: More names that have one reason are only counted.
-_MOST_NAMES = 4
-_WORDS = {Tone.GOOD: "Schedulable", Tone.BAD: "Not schedulable", Tone.UNKNOWN: "Unknown whether schedulable"}
-
-
-@dataclass(frozen=True, slots=True)
-class Opening:
-    """What the page says first.
-
-    Attributes
-    ----------
-    word, line : in a few words, and the closing line of an analysis
-    reasons : what is missed or unknown, and why
-    """
-
-    tone: Tone
-    word: str
-    line: str
-    reasons: Sequence[tuple[str, str]]
-    left_out: int
 
 
 def page_sections(content: ReportContent) -> list[Section]:
     """The sections in which there is something."""
     made = (make(content) for make in _SECTIONS)
     return [each for each in made if each is not None and each.blocks]
-
-
-def facts(content: ReportContent) -> str:
-    """How large the system is."""
-    system = content.system
-    numbers = {"core": len(system.cores), "task": len(system.software.tasks), "interrupt": len(system.software.isrs)}
-    numbers |= {"runnable": len(system.software.runnables), "event chain": len(system.chains)}
-    numbers |= {"limit": len(judged_rows(content.analysis))}
-    return ", ".join(counted(number, noun) for noun, number in numbers.items() if number)
-
-
-def _together(reasons: Iterable[tuple[str, str]]) -> Iterator[tuple[str, str]]:
-    """Each reason once, with the names of all that have it."""
-    names: dict[str, list[str]] = {}
-    for name, reason in reasons:
-        names.setdefault(reason, []).append(name)
-    for reason, found in names.items():
-        distinct = list(dict.fromkeys(found))
-        more = f" and {len(distinct) - _MOST_NAMES} more" if len(distinct) > _MOST_NAMES else ""
-        yield ", ".join(distinct[:_MOST_NAMES]) + more, reason
-
-
-def opening(content: ReportContent) -> Opening:
-    """The verdict, and what is missed or unknown."""
-    summary = content.analysis.summary
-    tone = tone_of(summary.schedulable)
-    overloads = [(core.name, "the core is overloaded") for core in summary.overloaded]
-    rows = (row.item for row in judged_rows(content.analysis) if row.item.verdict is not Verdict.MET)
-    others = _together((item.name, ": ".join(filter(None, (verdict_badge(item).word, why(item))))) for item in rows)
-    warnings = [(each.rule, each.message) for each in content.warnings]
-    reasons = list(dict.fromkeys((*overloads, *others, *warnings)))
-    return Opening(tone, _WORDS[tone], closing_line(summary), reasons[:_MOST_REASONS], max(0, len(reasons) - _MOST_REASONS))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from amalthea_uros.analyze.explanations.chains import ChainExplanation, ProcessHop
+from amalthea_uros.analyze.explanations.chain_results import ChainExplanation, ProcessHop
 from amalthea_uros.analyze.explanations.execution_shares import ExecutionShare
 from amalthea_uros.analyze.explanations.hop_causes import Execution, LatencyCause
 from amalthea_uros.analyze.explanations.processes import CallbackExplanation, ProcessExplanation

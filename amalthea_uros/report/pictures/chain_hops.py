@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.analyze.explanations.chains import ChainExplanation, ProcessHop
+from amalthea_uros.analyze.explanations.chain_results import ChainExplanation, ProcessHop
 from amalthea_uros.report.pictures.arrows import arrows_at, draw_activations
 from amalthea_uros.report.pictures.page import MARGIN, TOP, WIDTH, LegendEntry, document, draw_legend
 from amalthea_uros.report.pictures.style import ARROW_END, PALETTE, SMALL_SIZE, TEXT_SIZE

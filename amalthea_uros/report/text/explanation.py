@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.analyze.explanations.chains import ChainExplanation
+from amalthea_uros.analyze.explanations.chain_results import ChainExplanation
 from amalthea_uros.analyze.explanations.execution_shares import ExecutionShare
 from amalthea_uros.analyze.explanations.origins import OriginKind
 from amalthea_uros.analyze.explanations.processes import CallbackExplanation, ProcessExplanation

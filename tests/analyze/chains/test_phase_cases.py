@@ -14,7 +14,7 @@ from amalthea_uros.analyze import system as analyses
 from amalthea_uros.analyze.chains import job_chains
 from amalthea_uros.analyze.chains.job_chains import JobBudget
 from amalthea_uros.analyze.phases.cases import PhaseCases, least_rotation
-from amalthea_uros.analyze.phases.merged import Phases
+from amalthea_uros.analyze.phases.combinations import Phases
 from amalthea_uros.analyze.response_times.propagation import solve
 from amalthea_uros.perf.activities import Call
 from amalthea_uros.perf.constraints import Bound, Constraints, LatencyConstraint, Requirement, TimeLimit, TimeMetric

@@ -1,0 +1,78 @@
+"""What a report says first: the verdict with its causes, and how large the system is."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+
+from amalthea_uros._internal.plural import counted
+from amalthea_uros.judge.verdict import Verdict
+from amalthea_uros.report.cells import (
+    tone_of,
+    verdict_badge,
+)
+from amalthea_uros.report.closing_line import closing_line
+from amalthea_uros.report.document import (
+    Tone,
+)
+from amalthea_uros.report.judged import judged_rows, why
+from amalthea_uros.services.report import ReportContent
+
+#: What is missed or unknown is listed up to so many items.
+_MOST_REASONS = 12
+
+
+#: More names that have one reason are only counted.
+_MOST_NAMES = 4
+
+
+_WORDS = {Tone.GOOD: "Schedulable", Tone.BAD: "Not schedulable", Tone.UNKNOWN: "Unknown whether schedulable"}
+
+
+@dataclass(frozen=True, slots=True)
+class Opening:
+    """What the page says first.
+
+    Attributes
+    ----------
+    word, line : in a few words, and the closing line of an analysis
+    reasons : what is missed or unknown, and why
+    """
+
+    tone: Tone
+    word: str
+    line: str
+    reasons: Sequence[tuple[str, str]]
+    left_out: int
+
+
+def facts(content: ReportContent) -> str:
+    """How large the system is."""
+    system = content.system
+    numbers = {"core": len(system.cores), "task": len(system.software.tasks), "interrupt": len(system.software.isrs)}
+    numbers |= {"runnable": len(system.software.runnables), "event chain": len(system.chains)}
+    numbers |= {"limit": len(judged_rows(content.analysis))}
+    return ", ".join(counted(number, noun) for noun, number in numbers.items() if number)
+
+
+def _together(reasons: Iterable[tuple[str, str]]) -> Iterator[tuple[str, str]]:
+    """Each reason once, with the names of all that have it."""
+    names: dict[str, list[str]] = {}
+    for name, reason in reasons:
+        names.setdefault(reason, []).append(name)
+    for reason, found in names.items():
+        distinct = list(dict.fromkeys(found))
+        more = f" and {len(distinct) - _MOST_NAMES} more" if len(distinct) > _MOST_NAMES else ""
+        yield ", ".join(distinct[:_MOST_NAMES]) + more, reason
+
+
+def opening(content: ReportContent) -> Opening:
+    """The verdict, and what is missed or unknown."""
+    summary = content.analysis.summary
+    tone = tone_of(summary.schedulable)
+    overloads = [(core.name, "the core is overloaded") for core in summary.overloaded]
+    rows = (row.item for row in judged_rows(content.analysis) if row.item.verdict is not Verdict.MET)
+    others = _together((item.name, ": ".join(filter(None, (verdict_badge(item).word, why(item))))) for item in rows)
+    warnings = [(each.rule, each.message) for each in content.warnings]
+    reasons = list(dict.fromkeys((*overloads, *others, *warnings)))
+    return Opening(tone, _WORDS[tone], closing_line(summary), reasons[:_MOST_REASONS], max(0, len(reasons) - _MOST_REASONS))
