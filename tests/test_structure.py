@@ -1,0 +1,257 @@
+"""How the code stays small and clear: lines of a room, imports of a file, one owner of a class name, folders without circles.
+
+A change may raise a limit of a table below only on purpose: for a capability that cannot be had by changing or removing what is there.
+"""
+
+import ast
+from collections import Counter, defaultdict
+from functools import cache
+
+import networkx as nx
+import pytest
+from draw_rooms import PACKAGE, circles, module_imports, room_of
+from support import ROOT
+
+#: Room -> lines of code at most: neither blank lines nor comments nor docstrings.
+LINES = {
+    "__init__": 229,
+    "__main__": 3,
+    "_internal": 664,
+    "_version": 1,
+    "am": 2,
+    "analyze": 7439,
+    "bridge": 2862,
+    "cli": 2266,
+    "compare": 2232,
+    "design": 4903,
+    "diagnostics": 34,
+    "difference": 802,
+    "editor": 507,
+    "errors": 13,
+    "executors": 1456,
+    "findings": 494,
+    "judge": 561,
+    "measure": 1100,
+    "metamodel": 3329,
+    "names": 17,
+    "perf": 1712,
+    "platforms": 0,
+    "report": 8294,
+    "services": 3170,
+    "simulate": 6318,
+    "source": 1911,
+    "spec": 1855,
+    "timing": 5326,
+    "trace": 4884,
+    "units": 164,
+    "uros": 6222,
+    "validate": 7880,
+    "xmi": 8462,
+}
+
+#: Files may import from this many modules at most; those of the table do so still, and none more.
+IMPORTS = 25
+MORE_IMPORTS = {
+    "analyze/chains/stage_timing.py": 33,
+    "analyze/system.py": 30,
+    "design/space/choices.py": 29,
+    "report/documents/worst_cases.py": 26,
+    "report/records.py": 31,
+    "services/analyze.py": 32,
+    "services/calibrate.py": 26,
+    "services/check.py": 30,
+    "services/compare.py": 41,
+    "services/generate.py": 28,
+    "services/measure.py": 29,
+    "services/report.py": 36,
+    "services/simulate.py": 36,
+    "timing/context.py": 30,
+    "timing/demand/model.py": 29,
+    "uros/assemble.py": 51,
+    "xmi/migrate/load.py": 26,
+}
+#: The public interface imports what it exports.
+WITHOUT_LIMIT = {f"{PACKAGE}/__init__.py"}
+
+#: The classes of a modelling language have the names of that language.
+LANGUAGES = (f"{PACKAGE}/metamodel/classes/",)
+
+#: Rooms whose folders still import each other.
+CIRCULAR = {"bridge", "design", "metamodel", "report", "simulate", "trace", "xmi"}
+
+#: Class names that still have several owners, without an underscore at the beginning.
+SHARED_NAMES = {
+    "Allocations",
+    "Build",
+    "Chains",
+    "Column",
+    "Comparison",
+    "Content",
+    "Context",
+    "Core",
+    "Dimension",
+    "Distributions",
+    "Document",
+    "Ends",
+    "Evaluation",
+    "Function",
+    "Index",
+    "Kind",
+    "Level",
+    "Loop",
+    "Named",
+    "Names",
+    "Node",
+    "Outcome",
+    "Part",
+    "Place",
+    "Row",
+    "Rule",
+    "Run",
+    "Scale",
+    "Scheduling",
+    "Section",
+    "Source",
+    "SourceText",
+    "Step",
+    "Steps",
+    "Stimuli",
+    "Structure",
+    "Subscription",
+    "Table",
+    "Thread",
+    "Times",
+    "Token",
+    "Use",
+    "Waiting",
+    "Writer",
+}
+
+#: Each for callers that act differently.
+EXCEPTIONS = {
+    "AmurosError",
+    "EndedError",
+    "FileEncodingError",
+    "FileError",
+    "FileTooLargeError",
+    "InvalidArgumentError",
+    "Missing",
+    "NotAModelError",
+    "ReadError",
+    "TopicError",
+    "UnknownError",
+    "UnknownPatternError",
+    "UnlinkedError",
+    "UnraisedError",
+    "UnreadableError",
+    "UnwritableError",
+    "WriteError",
+    "_Found",
+    "_WrongError",
+}
+
+
+def files():
+    """Each file of the package."""
+    return sorted((ROOT / PACKAGE).rglob("*.py"))
+
+
+def name_of(path):
+    return str(path.relative_to(ROOT))
+
+
+def room_of_file(path):
+    return path.relative_to(ROOT / PACKAGE).parts[0].removesuffix(".py")
+
+
+@cache
+def parsed(path):
+    return ast.parse(path.read_text(encoding="utf-8"))
+
+
+def lines_of_code(path):
+    """The lines of a file that are neither blank nor a comment nor part of a docstring."""
+    without = {
+        number
+        for node in ast.walk(parsed(path))
+        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str)
+        for number in range(node.lineno, node.end_lineno + 1)
+    }
+    lines = path.read_text(encoding="utf-8").splitlines()
+    return sum(
+        1 for number, line in enumerate(lines, 1) if line.strip() and not line.strip().startswith("#") and number not in without
+    )
+
+
+def test_no_room_grows_unnoticed():
+    counts = Counter()
+    for path in files():
+        counts[room_of_file(path)] += lines_of_code(path)
+    assert {room: count for room, count in counts.items() if count > LINES.get(room, 0)} == {}
+
+
+@pytest.mark.parametrize("room", sorted({room_of_file(path) for path in files()}))
+def test_no_limit_is_far_above_what_a_room_has(room):
+    count = sum(lines_of_code(path) for path in files() if room_of_file(path) == room)
+    assert LINES[room] <= count + max(40, count // 20)
+
+
+def test_no_file_imports_from_too_many_modules():
+    counts = {name_of(path): len({*imports(path)}) for path in files() if name_of(path) not in WITHOUT_LIMIT}
+    allowed = {f"{PACKAGE}/{name}": count for name, count in MORE_IMPORTS.items()}
+    assert {name: count for name, count in counts.items() if count > IMPORTS} == allowed
+
+
+def imports(path):
+    """The modules that a file imports from anywhere in it."""
+    for node in ast.walk(parsed(path)):
+        if isinstance(node, ast.ImportFrom):
+            yield node.module
+        elif isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+
+
+def test_a_class_name_exists_once():
+    owners = defaultdict(list)
+    for path in files():
+        if not name_of(path).startswith(LANGUAGES):
+            for node in parsed(path).body:
+                if isinstance(node, ast.ClassDef):
+                    owners[node.name.lstrip("_")].append(name_of(path))
+    assert {name for name, paths in owners.items() if len(paths) > 1} == SHARED_NAMES
+
+
+def test_exceptions_are_few():
+    bases = {
+        node.name: [ast.unparse(base) for base in node.bases]
+        for path in files()
+        for node in parsed(path).body
+        if isinstance(node, ast.ClassDef)
+    }
+    found = set()
+
+    def is_exception(name):
+        return name.endswith(("Exception", "Error")) if name not in bases else any(is_exception(base) for base in bases[name])
+
+    for name in bases:
+        if any(is_exception(base) for base in bases[name]):
+            found.add(name)
+    assert found == EXCEPTIONS
+
+
+@pytest.mark.parametrize(
+    "room", sorted({room_of_file(path) for path in files() if len(path.relative_to(ROOT / PACKAGE).parts) > 1})
+)
+def test_no_folders_of_a_room_import_each_other(room):
+    # A module in the room itself is in no folder; it is above or below a folder like any other.
+    graph = nx.DiGraph()
+    for module, target in module_imports().edges:
+        if room_of(module) == room_of(target) == room and folder(module) != folder(target):
+            graph.add_edge(folder(module), folder(target))
+    assert bool(circles(graph)) is (room in CIRCULAR)
+
+
+def folder(module):
+    """The folder of a module: `amalthea_uros.timing.dataflow` for `amalthea_uros.timing.dataflow.links`."""
+    is_package = (ROOT / module.replace(".", "/")).is_dir()
+    return module if is_package else module.rpartition(".")[0]
