@@ -133,13 +133,13 @@ def application(folder, callbacks, topic):
         (
             "own-task",
             ("Publish", "On_State"),
-            "Publish_start -[a topic state_topic]-> Take_On_State_finish -[data On_State_message]-> On_State_finish",
+            "Publish_start -[a message state_topic]-> Take_On_State_finish -[data On_State_message]-> On_State_finish",
             (("state_topic",), ("On_State_message",)),
         ),
         (
             "in-executor",
             ("Publish_Callback", "On_State_Callback"),
-            "Publish_start -[a topic state_topic]-> Take_On_State_finish -[the same job]-> On_State_finish",
+            "Publish_start -[a message state_topic]-> Take_On_State_finish -[the same job]-> On_State_finish",
             (("state_topic",),),
         ),
     ],

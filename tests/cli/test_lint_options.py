@@ -227,7 +227,7 @@ def test_a_file_with_a_sub_model_as_its_root_is_a_model(amuros, tmp_path, namesp
     path.write_text(f'{start}<tasks name="Control"/></sw:SWModel>')
     assert "  Control  task" in amuros("info", path).stdout
     assert "TIM-STIMULUS warning: " in amuros("check", path, "--select", "TIM").stdout
-    assert "  Control  ?" in amuros("analyze", path).stdout
+    assert "  Control  unknown" in amuros("analyze", path).stdout
     assert amuros("migrate", path, "-o", tmp_path / "new.amxmi").code == 0
     assert '<tasks xmi:id="Control?type=Task"' in (tmp_path / "new.amxmi").read_text()
 

@@ -34,7 +34,7 @@ WRONG_TYPES = {
     "a path instead of a model": (lambda m: amuros.check("app.amxmi"), r"not str; use check_files\(\)"),
     "one selected rule": (lambda m: amuros.CheckSettings(select="TIM-*"), r"select must be a list, e.g. \['TIM-\*'\]"),
     "an unknown communication": (lambda m: amuros.Settings(communication="foo"), "'foo'; expected one of .*Communication.LET"),
-    "an unknown memory": (lambda m: amuros.Settings(memory="slow"), "'slow'; expected one of Memory.NONE"),
+    "an unknown memory": (lambda m: amuros.Settings(memory="slow"), "'slow'; expected one of MemoryModel.NONE"),
     "a text instead of a number": (lambda m: am.Time("2 ms"), r"e.g. Time\(2, 'ms'\), not the text '2 ms'; parse_time\(\)"),
 }
 
