@@ -26,7 +26,7 @@ from amalthea_uros.perf.network import Span
 from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.units import Time, time_text
 
-SOURCE = "ros2/rclc executor.c; micro-ROS/rmw_microxrcedds rmw_wait.c"
+SOURCE = "proof in docs/proofs/executor-cycle.md; ros2/rclc executor.c; micro-ROS/rmw_microxrcedds rmw_wait.c"
 
 
 def handle_result(handle: Handle, cycle: Cycle, extra_jitter: Mapping[str, Time | None]) -> HandleResult:
