@@ -1,4 +1,4 @@
-"""A core with fixed priorities on which threads run step by step: generators that ask for what they need next."""
+"""A core with fixed priorities, first come first served within one; its threads are generators that ask for what they need next."""
 
 import heapq
 from dataclasses import dataclass, field
@@ -51,6 +51,7 @@ class Thread:
     priority: int
     work: int = 0
     is_ready: bool = True
+    since: int = 0
     turn: int = 0
     done: bool = False
 
@@ -66,6 +67,7 @@ class Kernel:
 
     def start(self, steps, priority):
         self.threads.append(Thread(steps, priority))
+        self._wake(self.threads[-1])
 
     def at(self, time, what):
         """Do something at a point in time."""
@@ -81,7 +83,8 @@ class Kernel:
         if mutex.waiting:
             first = max(mutex.waiting, key=lambda thread: thread.priority)
             mutex.waiting.remove(first)
-            mutex.owner, first.is_ready = first, True
+            mutex.owner = first
+            self._wake(first)
 
     def wake(self, signal):
         for thread in signal.waiting:
@@ -92,7 +95,9 @@ class Kernel:
         while self.now < horizon:
             while self._events and self._events[0][0] <= self.now:
                 heapq.heappop(self._events)[2]()
-            thread = max((each for each in self.threads if each.is_ready), key=lambda each: each.priority, default=None)
+            thread = max(
+                (each for each in self.threads if each.is_ready), key=lambda each: (each.priority, -each.since), default=None
+            )
             if thread is None:
                 if not self._events:
                     return
@@ -136,6 +141,6 @@ class Kernel:
 
         self.at(end, over)
 
-    @staticmethod
-    def _wake(thread):
-        thread.is_ready = True
+    def _wake(self, thread):
+        self._number += 1
+        thread.is_ready, thread.since = True, self._number

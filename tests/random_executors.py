@@ -228,8 +228,11 @@ def application(random: Random, executors=None) -> Application:
         period = random.choice((2, 7, 10, 100)) * 1000
         span = _span(random, (100, 500, 1500 if period > 2000 else 300), varying)
         offset = random.randint(0, period)
-        preempting.append((8 + number, period * US, offset * US, span[0] * US, span[1] * US))
-        processes.append(Proc(f"P{number}", (_execute(span),), period=period, offset=offset, priority=8 + number))
+        # One of equal priority runs when an executor is suspended, with all of its jobs that wait.
+        priority = random.choice((8 + number, 8 + number, 5))
+        preempting.append((priority, period * US, offset * US, span[0] * US, span[1] * US))
+        task = {"activation_limit": 1000}
+        processes.append(Proc(f"P{number}", (_execute(span),), period=period, offset=offset, priority=priority, task=task))
     found = system(*processes, runnables=tuple(runnables))
     found = replace(found, executors=tuple(models), stimuli=Stimuli(stimuli=(*found.stimuli.stimuli, *stimuli)))
     scaled = {name: (low * US, most * US) for name, (low, most) in costs.items()}

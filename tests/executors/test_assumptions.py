@@ -4,7 +4,6 @@ from dataclasses import replace
 from itertools import count
 from random import Random
 
-import executor_kernel
 import played_executors
 import pytest
 from hypothesis import given
@@ -87,7 +86,7 @@ def base(*others, loop=LOOP, **parts):
 
 
 def exceeded(analysed, played=None, costs=(1000, 500), preempting=(), priority=5):
-    """What exceeds the bounds of a system if such executors are played."""
+    """The bounds of a system that are exceeded when executors are simulated step by step."""
     executors = played or analysed.executors
     sending = {each.transmission: (0, MS) for handle in analysed.executors[0].handles for each in handle.publications}
     results = [evaluate(analysed, sending={name: Span(least=0, most=most) for name, (_, most) in sending.items()})]
@@ -186,22 +185,8 @@ def test_a_session_that_is_passed_on_by_priority_is_kept_for_longer():
     assert exceeded(analysed, analysed.executors)
 
 
-def test_jobs_of_equal_rank_that_wait_are_counted(monkeypatch):
+def test_jobs_of_equal_rank_that_wait_are_counted():
     # While messages keep the thread executing, jobs of its rank wait, and all of them execute when a publication waits.
-    class InOrder(executor_kernel.Kernel):
-        """A kernel that serves threads of one priority in the order in which they became ready."""
-
-        def __init__(self):
-            super().__init__()
-            self.order = count()
-
-        def start(self, steps, priority):
-            super().start(steps, _Ordered(priority, next(self.order)))
-
-        def _wake(self, thread):
-            super()._wake(thread)
-            thread.priority = _Ordered(thread.priority.value, next(self.order))
-
     def analysed(limit):
         publication = waiting_publication(timeout=2 * MS, transmission="tx")
         return looping(
@@ -213,18 +198,7 @@ def test_jobs_of_equal_rank_that_wait_are_counted(monkeypatch):
             others=(Proc("equal", (ticks(1000),), period=4000, priority=5, task={"activation_limit": limit}),),
         )
 
-    monkeypatch.setattr(played_executors, "Kernel", InOrder)
     played = {"costs": (2000, 100, 0), "preempting": ((5, 4 * MS, 0, MS, MS),)}
     assert not exceeded(analysed(100), **played)
     # C1: more jobs wait than may be pending.
     assert any(text.startswith("t: ") for text in exceeded(analysed(1), **played))
-
-
-class _Ordered:
-    """A priority, and the order of threads that have it."""
-
-    def __init__(self, value, turn):
-        self.value, self.turn = value, turn
-
-    def __gt__(self, other):
-        return (self.value, -self.turn) > (other.value, -other.turn)
