@@ -126,7 +126,7 @@ class Cycle:
         return replace(cycle, backlog_age=self._backlog_age(cycle.longest))
 
     def _backlog_age(self, length: Time | None) -> Time | None:
-        """How long a message can wait unread: by the waits of this executor, or of others of the session if its own do not read."""
+        """The greatest age of a message in the receive buffer; if this executor does not read in its waits, that of one that does."""
         if reads_in_waits(self.executor):
             return backlog_age(length, self.sending, self.solved)
         ages = [
@@ -301,7 +301,7 @@ class Cycle:
 
 
 def _age_by(executor: Executor, solved: SolvedSystem, sending: Mapping[str, Span]) -> Time | None:
-    """How long a message can wait unread by the waits of an executor alone; None if there is no bound."""
+    """The greatest age of a message in the receive buffer that only one executor reads; None if there is no bound."""
     try:
         return Cycle.of(executor, solved, sending).backlog_age
     except UnknownError:

@@ -153,7 +153,7 @@ def gantt_section(content: ReportContent) -> Section | None:
         blocks.append(Folded(counted(len(charts[_SHOWN_OF_GANTT:]), "more chart"), charts[_SHOWN_OF_GANTT:]))
     if missing:
         blocks.append(Sentences(missing))
-    lead = "What each task does around the longest observed times; a line from task to task is the way of a chain's effect."
+    lead = "What each task does around the longest observed times; lines between tasks show the path of an event chain."
     return Section("worst-observed", "Worst observed cases", lead, blocks)
 
 

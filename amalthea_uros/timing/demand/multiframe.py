@@ -145,7 +145,7 @@ def _sum(same: Sequence[DemandFrame]) -> DemandFrame:
 
 
 def _certain_part(occurring: int, frames: Iterable[DemandFrame]) -> Ticks | None:
-    """The field of a frame that is made of others; None if all of them certainly occur."""
+    """The field `least` of a frame that sums up others: the demand that certainly occurs; None if all of it does."""
     return None if all(frame.least is None for frame in frames) else Ticks(occurring)
 
 

@@ -106,7 +106,7 @@ class Option(OptionRow):
 
     @property
     def is_exceeded(self) -> bool:
-        """Whether the application needs more than there is, or something else."""
+        """Whether the application needs a greater or a different value."""
         if self.needed is None:
             return False
         return self.needed != self.available if self.words else self.needed > self.available

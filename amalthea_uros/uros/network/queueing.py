@@ -102,7 +102,7 @@ class Queueing:
                 yield self._answer(heartbeat, direction)
 
     def foreign(self, frame: ForeignFrame) -> Queued:
-        """A frame of others."""
+        """A foreign frame."""
         return Queued(
             transmission=Transmission(
                 name=frame.name,

@@ -61,7 +61,7 @@ class CanFdLine:
         return (self._frame(data_bytes(min(length, LARGEST)), extended=self.section.identifier == "extended"),)
 
     def foreign(self, data_bytes: int, *, extended: bool) -> Frame:
-        """A frame of others; a short one can also be a classic one."""
+        """A foreign frame; a short one can also be a classic one."""
         fast = self._frame(next(size for size in SIZES if size >= data_bytes), extended=extended)
         if data_bytes > 8:
             return fast

@@ -36,7 +36,7 @@ class CanLine:
         return tuple(Frame(least=bus.min_frame_bits(low), most=bus.max_frame_bits(high)) for low, high in block_bytes(length))
 
     def foreign(self, data_bytes: int, *, extended: bool) -> Frame:
-        """A frame of others."""
+        """A foreign frame."""
         bus = bus_of(self.section.model_copy(update={"identifier": "extended" if extended else "standard"}))
         return Frame(least=bus.min_frame_bits(data_bytes), most=bus.max_frame_bits(data_bytes))
 

@@ -17,7 +17,7 @@ _EXTENSION_BITS = 18
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ForeignFrame:
-    """A frame of others.
+    """A foreign frame: one that neither the controller nor the agent sends.
 
     Attributes
     ----------
