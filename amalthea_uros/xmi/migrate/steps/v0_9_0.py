@@ -12,14 +12,10 @@ from amalthea_uros.xmi.migrate.node import Node, remove_all
 from amalthea_uros.xmi.migrate.notes import StepNotes
 from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.tools import attributes_text, whole_number
-from amalthea_uros.xmi.migrate.steps.v0_9_0_parts import (
-    INSTRUCTIONS,
-    Clocks,
-    HardwareDefinitions,
-    Structures,
-    frequency_of,
-    is_cache,
-)
+from amalthea_uros.xmi.migrate.steps.v0_9_0_clocks import Clocks, frequency_of
+from amalthea_uros.xmi.migrate.steps.v0_9_0_definitions import INSTRUCTIONS, HardwareDefinitions
+from amalthea_uros.xmi.migrate.steps.v0_9_0_shapes import is_cache
+from amalthea_uros.xmi.migrate.steps.v0_9_0_structures import Structures
 
 # References to hardware from other parts of the model
 
