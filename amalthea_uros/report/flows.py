@@ -15,7 +15,7 @@ from amalthea_uros.report.activation_text import activation_text
 from amalthea_uros.timing.context import ProcessPlacement, TimingContext
 from amalthea_uros.timing.dataflow.chains import unfold
 from amalthea_uros.timing.dataflow.links import LinkKind, reads, writes
-from amalthea_uros.timing.dataflow.routes import routes_of_ways
+from amalthea_uros.timing.dataflow.routes import routes_of_paths
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,7 +137,7 @@ class SystemFlows:
 
     def _path(self, name: str) -> ChainPath:
         try:
-            ways = routes_of_ways(unfold(self.system.chains[name], self.context.system)[0], self.context.dataflow)
+            ways = routes_of_paths(unfold(self.system.chains[name], self.context.system)[0], self.context.dataflow)
         except UnknownError as error:
             return ChainPath(name, (), str(error))
         route, *_ = next(iter(ways.values()))

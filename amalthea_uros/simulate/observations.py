@@ -213,7 +213,7 @@ class ProcessObservation(Shown):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RouteObservation:
-    """A way through a chain.
+    """A path through a chain.
 
     Attributes
     ----------
@@ -241,7 +241,7 @@ class ChainObservation(Shown):
     Attributes
     ----------
     quantities : over all values of all routes, so that the worst route counts; those without any value are absent
-    routes : the ways through the chain
+    routes : the paths through the chain
     reason : why something was not observed
     """
 

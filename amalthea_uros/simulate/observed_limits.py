@@ -261,15 +261,15 @@ def _of_requirement(
 def _of_chain(
     limit: SystemLimit, constraint: LatencyConstraint, chains: Results[ChainObservation], system: System
 ) -> ObservedValues:
-    """What a latency constraint limits; the ways through a fork are observed one by one, although only some of them decide."""
+    """What a latency constraint limits; the paths through a fork are observed one by one, although only some of them decide."""
     chain = system.chains.get(constraint.chain)
     if constraint.kind is LatencyKind.REACTION and chain is not None and _decide_some(chain, limit, system):
-        return ObservedValues(reason="only some of the ways through the chain decide, and each of them is observed by itself")
+        return ObservedValues(reason="only some of the paths through the chain decide, and each of them is observed by itself")
     return _of_latency(limit, constraint, chains)
 
 
 def _decide_some(chain: EventChain, limit: SystemLimit, system: System) -> bool:
-    """Whether the longest way through a chain, or the shortest one for a lower limit, does not decide on a reaction."""
+    """Whether the longest path through a chain, or the shortest one for a lower limit, does not decide on a reaction."""
     try:
         found = list(forks(unfold(chain, system)[0]))
     except UnknownError:

@@ -21,7 +21,7 @@ from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.dataflow.chains import Unfolded, combined, empty_sets, sequences, unfold
 from amalthea_uros.timing.dataflow.events import UnraisedError
 from amalthea_uros.timing.dataflow.links import LinkKind
-from amalthea_uros.timing.dataflow.routes import Route, UnlinkedError, route_text, routes_of_ways
+from amalthea_uros.timing.dataflow.routes import Route, UnlinkedError, route_text, routes_of_paths
 from amalthea_uros.timing.dataflow.stages import Stage, common_communication, stages
 from amalthea_uros.timing.response import Claim
 from amalthea_uros.timing.scheduling.allocation import controller_of_core
@@ -59,7 +59,7 @@ class ChainEvaluator:
     def _chain(self, chain: EventChain) -> ChainResult:
         try:
             unfolded, left_out = unfold(chain, self.context.system)
-            paths = routes_of_ways(unfolded, self.context.dataflow)
+            paths = routes_of_paths(unfolded, self.context.dataflow)
         except UnknownError as error:
             self._note_unknown(chain, error)
             return ChainResult(name=chain.name, communication="", reason=str(error))
@@ -104,7 +104,7 @@ class ChainEvaluator:
     def routes(self, chain: EventChain) -> list[Route]:
         """The routes of all paths through a chain; nothing if it cannot be evaluated."""
         try:
-            paths = routes_of_ways(unfold(chain, self.context.system)[0], self.context.dataflow)
+            paths = routes_of_paths(unfold(chain, self.context.system)[0], self.context.dataflow)
         except UnknownError:
             return []
         return [route for found in paths.values() for route in found]

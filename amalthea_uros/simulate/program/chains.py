@@ -15,7 +15,7 @@ from amalthea_uros.simulate.program.resources import Resources
 from amalthea_uros.timing.dataflow.chains import unfold
 from amalthea_uros.timing.dataflow.events import JobPhase
 from amalthea_uros.timing.dataflow.links import LinkKind
-from amalthea_uros.timing.dataflow.routes import Route, crosses, route_text, routes_of_ways
+from amalthea_uros.timing.dataflow.routes import Route, crosses, route_text, routes_of_paths
 from amalthea_uros.timing.dataflow.stages import At, Fire, Pass, Read, Stage, Write, stages
 from amalthea_uros.timing.jobs.positions import ActivityPosition
 from amalthea_uros.trace.table import EntityKind
@@ -29,11 +29,11 @@ _RESPONSE_TIMES = {JobPhase.ACTIVATION: layout.ACTIVATION, JobPhase.START: layou
 
 @dataclass(frozen=True, slots=True)
 class FollowedRoute:
-    """A way through a chain that is followed; its number is that in observations.
+    """A path through a chain that is followed; its number is that in observations.
 
     Attributes
     ----------
-    text : the events of the way, of all ways through the chain; with the links between them if these are not the only ones
+    text : the events of the path; with the links between them if these are not the only ones
     """
 
     chain: str
@@ -69,7 +69,7 @@ class ChainCompiler:
             return
         try:
             context = self.resources.context
-            ways = routes_of_ways(unfold(chain, context.system)[0], context.dataflow)
+            ways = routes_of_paths(unfold(chain, context.system)[0], context.dataflow)
             for route in (route for found in ways.values() for route in found):
                 self._check(route)
             for events, found in ways.items():

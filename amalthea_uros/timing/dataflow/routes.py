@@ -38,7 +38,7 @@ class UnlinkedError(UnknownError):
 
 @dataclass(frozen=True, slots=True)
 class Route:
-    """A way through a chain: occurrences of its events, and the links between them."""
+    """A path through a chain: occurrences of its events, and the links between them."""
 
     events: tuple[str, ...]
     occurrences: tuple[EventOccurrence, ...]
@@ -80,8 +80,8 @@ def routes(events: Sequence[Event], dataflow: Dataflow) -> list[Route]:
     return found
 
 
-def routes_of_ways(unfolded: Unfolded, dataflow: Dataflow) -> dict[tuple[str, ...], list[Route]]:
-    """The possible routes of all ways through a chain, by their events.
+def routes_of_paths(unfolded: Unfolded, dataflow: Dataflow) -> dict[tuple[str, ...], list[Route]]:
+    """The possible routes of all paths through a chain, by their events.
 
     Raises
     ------
@@ -90,9 +90,9 @@ def routes_of_ways(unfolded: Unfolded, dataflow: Dataflow) -> dict[tuple[str, ..
     events = dataflow.system.events_by_name
     found: dict[tuple[str, ...], list[Route]] = {}
     gaps: list[tuple[str, str]] = []
-    for way in sequences(unfolded):
+    for path in sequences(unfolded):
         try:
-            found[way] = routes([events[name] for name in way], dataflow)
+            found[path] = routes([events[name] for name in path], dataflow)
         except UnlinkedError as error:
             gaps += error.gaps
     if gaps:
@@ -149,13 +149,13 @@ def route_text(route: Route) -> str:
 
 
 def crosses(chain: EventChain, dataflow: Dataflow) -> bool:
-    """Whether a chain passes a wire or an executor that loops, so that its latency is that of a way."""
+    """Whether a chain passes a wire or an executor that loops, so that its latency is a sum of message hops."""
     system = dataflow.system
     if not system.executors and not system.transmissions:
         return False
     try:
         unfolded = unfold(chain, system)[0]
-        names = {name for way in sequences(unfolded) for name in way}
+        names = {name for path in sequences(unfolded) for name in path}
     except UnknownError:
         return False  # the analysis of chains reports it
     return any(
