@@ -169,6 +169,7 @@ def parsed(path):
     return ast.parse(path.read_text(encoding="utf-8"))
 
 
+@cache
 def lines_of_code(path):
     """The lines of a file that are neither blank nor a comment nor part of a docstring."""
     without = {
