@@ -6,7 +6,7 @@ import re
 from migration import meaning, migrated, model, opened
 
 from amalthea_uros.xmi.migrate.chain import migrate as take_on
-from amalthea_uros.xmi.migrate.notes import StepNotes
+from amalthea_uros.xmi.tree.notes import StepNotes
 
 # Files
 

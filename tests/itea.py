@@ -2,7 +2,7 @@
 
 from migration import meaning
 
-from amalthea_uros.xmi.migrate.notes import StepNotes
+from amalthea_uros.xmi.tree.notes import StepNotes
 
 PACKAGES = (
     *("central", "common", "components", "config", "constraints", "events", "hw", "mapping", "os", "propertyconstraints"),

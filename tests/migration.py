@@ -2,10 +2,10 @@
 
 from collections import Counter
 
-from amalthea_uros.xmi.files import read_text
+from amalthea_uros.xmi.emf.files import read_text
 from amalthea_uros.xmi.migrate.chain import migrate
-from amalthea_uros.xmi.migrate.notes import StepNotes
-from amalthea_uros.xmi.migrate.read_set import read_set
+from amalthea_uros.xmi.tree.link import read_set
+from amalthea_uros.xmi.tree.notes import StepNotes
 
 MAX_SIZE = 100_000_000
 

@@ -16,9 +16,9 @@ from amalthea_uros.metamodel.factfile import FeatureKind
 from amalthea_uros.metamodel.features import features_of
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.metamodel.versions import facts, supported_versions
-from amalthea_uros.xmi.files import FileText
-from amalthea_uros.xmi.reader import read
-from amalthea_uros.xmi.references import resolve
+from amalthea_uros.xmi.emf.files import FileText
+from amalthea_uros.xmi.emf.reader import read
+from amalthea_uros.xmi.emf.references import resolve
 
 FLOAT_TYPES = {"EDouble", "EDoubleObject", "EFloat", "PositiveDouble", "NonNegativeDouble"}
 PIECES = [

@@ -37,7 +37,7 @@ LINES = {
     "perf": 1712,
     "platforms": 0,
     "report": 8294,
-    "services": 3170,
+    "services": 2962,
     "simulate": 6318,
     "source": 1911,
     "spec": 1855,
@@ -46,7 +46,7 @@ LINES = {
     "units": 164,
     "uros": 6222,
     "validate": 7880,
-    "xmi": 8476,
+    "xmi": 8635,
 }
 
 #: Files may import from this many modules at most; those of the table do so still, and none more.
@@ -68,7 +68,6 @@ MORE_IMPORTS = {
     "timing/context.py": 30,
     "timing/demand/model.py": 29,
     "uros/assemble.py": 51,
-    "xmi/migrate/load.py": 26,
 }
 #: The public interface imports what it exports.
 WITHOUT_LIMIT = {f"{PACKAGE}/__init__.py"}
@@ -77,7 +76,7 @@ WITHOUT_LIMIT = {f"{PACKAGE}/__init__.py"}
 LANGUAGES = (f"{PACKAGE}/metamodel/classes/",)
 
 #: Rooms whose folders still import each other.
-CIRCULAR = {"bridge", "design", "metamodel", "report", "simulate", "trace", "xmi"}
+CIRCULAR = {"bridge", "design", "metamodel", "report", "simulate", "trace"}
 
 #: Class names that still have several owners, without an underscore at the beginning.
 SHARED_NAMES = {
@@ -95,7 +94,6 @@ SHARED_NAMES = {
     "Ends",
     "Evaluation",
     "Function",
-    "Index",
     "Kind",
     "Level",
     "Loop",
@@ -124,7 +122,6 @@ SHARED_NAMES = {
     "Token",
     "Use",
     "Waiting",
-    "Writer",
 }
 
 #: Each for callers that act differently.

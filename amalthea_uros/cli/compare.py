@@ -144,7 +144,7 @@ def command(
     show_differences(result.differences)
     if picture is not None:
         from amalthea_uros.report.comparison_pictures import comparison_picture
-        from amalthea_uros.xmi.files import FileText, write_text
+        from amalthea_uros.xmi.emf.files import FileText, write_text
 
         write_text(picture, FileText(comparison_picture(result)))
     write_outputs(outputs, replace(result, with_all=with_all))

@@ -72,7 +72,7 @@ def command(
     show_findings(found.findings)
     if histograms:
         from amalthea_uros.report.measurement_pictures import histogram_picture
-        from amalthea_uros.xmi.files import FileText, write_text
+        from amalthea_uros.xmi.emf.files import FileText, write_text
 
         pictures = [(path, histogram_picture(found, name)) for name, path in histograms]
         for path, picture in pictures:

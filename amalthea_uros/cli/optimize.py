@@ -171,6 +171,6 @@ def _progress(designs: int) -> Iterator[Callable[[int], None]]:
 
 def _draw(result: Optimization, path: Path) -> None:
     from amalthea_uros.report.pictures.pareto import draw_pareto
-    from amalthea_uros.xmi.files import FileText, write_text
+    from amalthea_uros.xmi.emf.files import FileText, write_text
 
     write_text(path, FileText(draw_pareto(result)))

@@ -159,7 +159,7 @@ def refuse_unwritable(path: Path) -> None:
     try:
         check_writable(path)
     except FileError as error:
-        from amalthea_uros.xmi.files import not_writable
+        from amalthea_uros.xmi.emf.files import not_writable
 
         raise not_writable(error) from None
 
@@ -179,7 +179,7 @@ def shows_text(outputs: Iterable[Output]) -> bool:
 
 
 def _write_file(path: Path, name: str, result: object) -> None:
-    from amalthea_uros.xmi.files import FileText, write_text
+    from amalthea_uros.xmi.emf.files import FileText, write_text
 
     text = StringIO()
     formats.write(name, result, text)

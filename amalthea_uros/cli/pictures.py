@@ -91,7 +91,7 @@ class Pictures:
         """
         if not self.paths:
             return
-        from amalthea_uros.xmi.files import FileText, write_text
+        from amalthea_uros.xmi.emf.files import FileText, write_text
 
         for path, draw in self._drawings():
             write_text(path, FileText(draw(result)))

@@ -140,7 +140,7 @@ def _draw(result: SweepResult, pictures: tuple[tuple[str, Path], ...]) -> None:
     if not pictures:
         return
     from amalthea_uros.report.sweep_picture import sweep_picture
-    from amalthea_uros.xmi.files import FileText, write_text
+    from amalthea_uros.xmi.emf.files import FileText, write_text
 
     for quantity, path in pictures:
         write_text(path, FileText(sweep_picture(result, quantity)))

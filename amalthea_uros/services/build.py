@@ -141,7 +141,7 @@ def _beside(description: Path, force: bool) -> Path:
     ------
     WriteError : it has content that `build` would not write.
     """
-    from amalthea_uros.xmi.load import SUFFIX
+    from amalthea_uros.xmi.emf.files import SUFFIX
 
     if description == STANDARD_INPUT:
         return STANDARD_OUTPUT
@@ -157,8 +157,8 @@ def _is_built(path: Path) -> bool:
     """Whether a file has exactly the text that is built from the system in it; a model that others made or edited has more."""
     from amalthea_uros.bridge.build import build_model
     from amalthea_uros.bridge.extract import extract
+    from amalthea_uros.xmi.emf.writer import document_text
     from amalthea_uros.xmi.load import load
-    from amalthea_uros.xmi.writer import document_text
 
     try:
         (document,) = load(path).documents

@@ -165,7 +165,7 @@ def write_baseline(result: CheckResult, path: StrPath) -> None:
     ------
     WriteError : the file cannot be written.
     """
-    from amalthea_uros.xmi.files import FileText, write_text
+    from amalthea_uros.xmi.emf.files import FileText, write_text
 
     write_text(Path(path), FileText(baseline_text(result.findings)))
 

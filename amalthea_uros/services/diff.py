@@ -19,7 +19,7 @@ from amalthea_uros.perf.named import Brief
 from amalthea_uros.perf.system import System
 from amalthea_uros.services.inputs import ModelInput, open_model
 from amalthea_uros.services.migrate import migrate
-from amalthea_uros.xmi.migrate.load import announcements
+from amalthea_uros.xmi.migrate.losses import announcements
 
 if TYPE_CHECKING:
     from amalthea_uros.analyze.impact import Impact

@@ -27,7 +27,7 @@ def files_of_model(path: Path) -> tuple[Path, ...]:
 
 
 def _other_models(path: Path) -> list[Path]:
-    from amalthea_uros.xmi.load import is_model_name
+    from amalthea_uros.xmi.emf.files import is_model_name
 
     try:
         return [other for other in list_directory(path.parent) if other != path and is_model_name(other)]

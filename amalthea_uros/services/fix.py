@@ -94,8 +94,8 @@ def fix_files(
 
 
 def _repair(paths: tuple[Path, ...], model: Model, rules: Collection[str], write: bool) -> ModelRepairs:
+    from amalthea_uros.xmi.emf.writer import document_text
     from amalthea_uros.xmi.save import save_documents
-    from amalthea_uros.xmi.writer import document_text
 
     repairs = repair(model, [rule for rule in registry.rules_with_checks(rules) if isinstance(rule, ModelRule)])
     changed = tuple(

@@ -13,9 +13,9 @@ from amalthea_uros.errors import ReadError, WriteError
 from amalthea_uros.metamodel.versions import spelled
 from amalthea_uros.services.file_changes import FileChange
 from amalthea_uros.services.inputs import as_paths, refuse_descriptions
+from amalthea_uros.xmi.emf.writer import document_text
 from amalthea_uros.xmi.load import load, model_files
 from amalthea_uros.xmi.save import save
-from amalthea_uros.xmi.writer import document_text
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -238,7 +238,7 @@ def _in_comment(text: str) -> str:
 
 def _write(texts: Mapping[Path, str], force: bool) -> None:
     """Write all files, or none."""
-    from amalthea_uros.xmi.files import FileText, write_texts
+    from amalthea_uros.xmi.emf.files import FileText, write_texts
 
     foreign = [path for path in texts if not force and _is_foreign(path)]
     if foreign:

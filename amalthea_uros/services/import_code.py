@@ -52,7 +52,7 @@ def import_code(
     from amalthea_uros.source.files import read_sources
     from amalthea_uros.source.read import read_facts
     from amalthea_uros.spec.middleware import PoolSizes
-    from amalthea_uros.xmi.files import FileText, write_texts
+    from amalthea_uros.xmi.emf.files import FileText, write_texts
 
     given = [Path(paths)] if isinstance(paths, str | PathLike) else [Path(path) for path in paths]
     file = None if target is None else Path(target)

@@ -162,7 +162,7 @@ def _place(target: Path) -> Path:
 
 def _write(texts: Mapping[Path, str], force: bool) -> None:
     """Write all files, or none."""
-    from amalthea_uros.xmi.files import FileText, write_texts
+    from amalthea_uros.xmi.emf.files import FileText, write_texts
 
     advice = "Use --force to replace it, or name another file."
     found = [path for path in texts if not force and not is_stream(path) and path.exists()]

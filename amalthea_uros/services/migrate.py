@@ -2,30 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
+from itertools import chain
 from pathlib import Path
 
 from amalthea_uros._internal.garbage import paused_garbage_collection
-from amalthea_uros._internal.limits import MODEL_SIZE
 from amalthea_uros._internal.paths import StrPath
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.diagnostics import Finding
-from amalthea_uros.errors import AmurosError, ReadError, WriteError
+from amalthea_uros.errors import AmurosError
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.metamodel.versions import newest_version
 from amalthea_uros.names import require
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.services.inputs import as_paths, refuse_descriptions
-from amalthea_uros.services.migrated_paths import Destination, given_files
-from amalthea_uros.services.migration import FileState, MigratedFile, MigrationChange, NoteKind
-from amalthea_uros.services.migration_writer import Writer
-from amalthea_uros.xmi.files import FileText
-from amalthea_uros.xmi.load import SUFFIX
-from amalthea_uros.xmi.migrate.load import MigratedSet, failed, losses_of_going_back, migrate_set
-from amalthea_uros.xmi.migrate.sets import InputFile, sets_of
-from amalthea_uros.xmi.migrate.versions import VERSIONS
-from amalthea_uros.xmi.writer import document_text
+from amalthea_uros.xmi.emf.versions import VERSIONS
+from amalthea_uros.xmi.migrate.load import MigratedSet, failed
+from amalthea_uros.xmi.migrate.output import Destination
+from amalthea_uros.xmi.migrate.output import FileState as FileState
+from amalthea_uros.xmi.migrate.output import MigratedFile as MigratedFile
+from amalthea_uros.xmi.migrate.sets import InputFile, migrate_inputs, refuse_unreadable, set_of_model, sets_of
+from amalthea_uros.xmi.tree.notes import MigrationChange as MigrationChange
+from amalthea_uros.xmi.tree.notes import NoteKind as NoteKind
 
 #: The versions in which models can be written; nothing was ever migrated to the first one.
 TARGETS = VERSIONS[1:]
@@ -96,12 +95,8 @@ class MigrationResult(Brief, Shown):
         ------
         WriteError : a file exists or cannot be written; then no file of its model is written.
         """
-        goal = Destination.of(self.given, self.version, Path(target) if target is not None else None, in_place=in_place)
-        writer = Writer(goal, force, compress, is_dry_run=False)
-        files: list[MigratedFile] = []
-        for one in self.sets:
-            files += writer.write(one)
-        return replace(self, files=tuple(files))
+        goal = Destination.of(self.given, self.version, target, in_place=in_place, force=force, compress=compress)
+        return replace(self, files=tuple(chain.from_iterable(map(goal.write, self.sets))))
 
 
 def migrate(source: Model | StrPath | Iterable[StrPath], to: str | None = None) -> MigrationResult:
@@ -121,20 +116,22 @@ def migrate(source: Model | StrPath | Iterable[StrPath], to: str | None = None) 
     version = _required(to)
     with paused_garbage_collection():
         if isinstance(source, Model):
-            sets = [tuple(_of_model(source, version))]
+            sets = [set_of_model(source, version)]
             given = tuple(file.path for file in sets[0])
         else:
             given = as_paths(source)
-            sets = _sets(given, version, ())
-        wrong = [finding for files in sets for file in files for finding in file.findings]
-        if wrong:
-            raise ReadError(wrong)
-        migrated = [_migrate(files, version) for files in sets]
+            sets = sets_of(given, version)
+        refuse_unreadable(chain.from_iterable(sets))
+        migrated = [migrate_inputs(files, version) for files in sets]
     return MigrationResult(
         version=version,
-        files=tuple(file for one in migrated for file in _files(one, FileState.MIGRATED)),
-        changes=tuple(change for one in migrated for change in _changes(one)),
-        findings=tuple(finding for one in migrated for finding in _findings(one)),
+        files=tuple(
+            MigratedFile(path=tree.path, version=before, state=FileState.MIGRATED)
+            for one in migrated
+            for tree, before in zip(one.models.trees, one.versions, strict=True)
+        ),
+        changes=tuple(change for one in migrated for change in one.changes()),
+        findings=tuple(finding for one in migrated if one.model is not None for finding in one.model.findings),
         sets=tuple(migrated),
         given=given,
     )
@@ -168,31 +165,27 @@ def migrate_files(
     version = _required(to)
     given = as_paths(paths)
     refuse_descriptions(given)
-    goal = Destination.of(given, version, Path(target) if target is not None else None, in_place=in_place)
+    goal = Destination.of(given, version, target, in_place=in_place, force=force, compress=compress, is_dry_run=is_dry_run)
     with paused_garbage_collection():
-        sets = _sets(given, version, goal.folders())
+        sets = sets_of(given, version, goal.folders())
         if target is None and all(file.version == version for files in sets for file in files):
             goal = replace(goal, in_place=True)  # nothing to do, so nothing to copy
-        writer = Writer(goal, force, compress, is_dry_run)
         done: list[MigratedFile] = []
         changes: list[MigrationChange] = []
         findings: list[Finding] = []
         for files in track(sets):
             try:
-                wrong = [finding for file in files for finding in file.findings]
-                if wrong:
-                    raise ReadError(wrong)
-                migrated = _migrate(files, version)
+                migrated = migrate_inputs(files, version)
                 # Before the changes: nothing is lost from files that are not written.
-                done += writer.write(migrated)
-                changes += _changes(migrated)
-                findings += _findings(migrated)
+                done += goal.write(migrated)
+                changes += migrated.changes()
+                findings += migrated.model.findings if migrated.model is not None else ()
+                continue
             except AmurosError as error:
                 findings += error.findings
-                done += _failed(files)
             except Exception as error:  # one bad file never stops the rest
                 findings.append(failed(files[0].path, error))
-                done += _failed(files)
+            done += (MigratedFile(path=file.path, version=file.version, state=FileState.FAILED) for file in files)
     return MigrationResult(version=version, files=tuple(done), changes=tuple(changes), findings=tuple(findings))
 
 
@@ -201,52 +194,3 @@ def _required(to: str | None) -> str:
         return newest_version()
     require("AMALTHEA version", [to], TARGETS)
     return to
-
-
-def _sets(paths: Sequence[Path], version: str, excluded: Collection[Path]) -> list[tuple[InputFile, ...]]:
-    inputs = (InputFile.read(file.path, file.scope, version, MODEL_SIZE) for file in given_files(paths, excluded))
-    return sets_of(inputs, version, MODEL_SIZE)
-
-
-def _of_model(model: Model, version: str) -> Iterable[InputFile]:
-    """The documents of a model as they would be saved."""
-    for number, document in enumerate(model.documents):
-        path = document.path or Path(f"model{number or ''}{SUFFIX}")
-        zip_entry = document.source.zip_entry if document.source else None
-        yield InputFile.of(path, None, FileText(document_text(document), zip_entry=zip_entry), version)
-
-
-def _migrate(files: Sequence[InputFile], version: str) -> MigratedSet:
-    contents = [(file.path, file.content) for file in files if file.content is not None]
-    migrated = migrate_set(contents, version, MODEL_SIZE)
-    lost = losses_of_going_back(migrated)
-    if lost:
-        raise WriteError(lost)
-    return migrated
-
-
-def _changes(migrated: MigratedSet) -> Iterable[MigrationChange]:
-    origins = migrated.models.origins
-    for note in migrated.notes:
-        yield MigrationChange(
-            kind=note.kind,
-            step=note.version,
-            message=note.message,
-            detail=note.detail,
-            object=origins.object_name(note.origin),
-            location=origins.location(note.origin, note.attribute),
-        )
-
-
-def _findings(migrated: MigratedSet) -> Sequence[Finding]:
-    return migrated.model.findings if migrated.model is not None else ()
-
-
-def _files(migrated: MigratedSet, state: FileState) -> Iterable[MigratedFile]:
-    for tree, version in zip(migrated.models.trees, migrated.versions, strict=True):
-        yield MigratedFile(path=tree.path, version=version, target=None, state=state)
-
-
-def _failed(files: Iterable[InputFile]) -> Iterable[MigratedFile]:
-    for file in files:
-        yield MigratedFile(path=file.path, version=file.version, target=None, state=FileState.FAILED)

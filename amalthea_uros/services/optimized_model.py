@@ -41,7 +41,7 @@ def _write_description(paths: Sequence[Path], changes: Sequence[Change], path: S
     from amalthea_uros._internal.files import read_text
     from amalthea_uros._internal.limits import DESCRIPTION_SIZE
     from amalthea_uros.design.description.edit import edit_description
-    from amalthea_uros.xmi.files import FileText, write_text
+    from amalthea_uros.xmi.emf.files import FileText, write_text
 
     if len(paths) != 1 or not is_description(paths[0]):
         raise InvalidArgumentError(

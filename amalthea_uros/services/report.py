@@ -253,6 +253,6 @@ def save_text(path: StrPath, text: str) -> None:
     ------
     WriteError : the file cannot be written.
     """
-    from amalthea_uros.xmi.files import FileText, write_text
+    from amalthea_uros.xmi.emf.files import FileText, write_text
 
     write_text(Path(path), FileText(text))

@@ -9,7 +9,7 @@ from pathlib import Path
 from amalthea_uros._internal.files import FileError, is_directory, list_directory, read_bytes
 from amalthea_uros._internal.limits import DESCRIPTION_SIZE
 from amalthea_uros._internal.paths import is_description
-from amalthea_uros.xmi.load import is_model_name
+from amalthea_uros.xmi.emf.files import is_model_name
 
 #: A platform file that a description names. It is looked for as text, because it shall be found also while the rest is being edited.
 _PLATFORM = re.compile(rb"""\bplatform["']?[ \t]*:[ \t]*["']?([^\s"',}#]+\.ya?ml)\b""")

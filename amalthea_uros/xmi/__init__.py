@@ -1,1 +1,1 @@
-"""The file format: reading, writing, references, multi-file models, compression."""
+"""Models in files: the format, the migration between versions, loading and saving."""

@@ -3,28 +3,22 @@
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from amalthea_uros._internal.files import FileError, is_directory, list_directory
 from amalthea_uros._internal.garbage import paused_garbage_collection
 from amalthea_uros._internal.limits import MODEL_SIZE
+from amalthea_uros._internal.paths import StrPath
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import ReadError
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Model
-from amalthea_uros.xmi.files import FileText, not_readable, read_text
-from amalthea_uros.xmi.migrate.versions import is_older, version_of
-from amalthea_uros.xmi.reader import ReadResult, read
-from amalthea_uros.xmi.references import resolve
-
-SUFFIX = ".amxmi"
-
-#: Also those of the sub-models of ITEA versions, such as `.amxmi-sw`.
-_SUFFIXES = re.compile(r"\.amxmi(?:-[a-z]+)?")
-
-StrPath = str | os.PathLike[str]
+from amalthea_uros.metamodel.versions import newest_version
+from amalthea_uros.xmi.emf.files import SUFFIX, FileText, is_model_name, not_readable, read_text
+from amalthea_uros.xmi.emf.reader import ReadResult, read
+from amalthea_uros.xmi.emf.references import resolve
+from amalthea_uros.xmi.emf.versions import is_older, version_of
 
 
 def load(*paths: StrPath | Iterable[StrPath], max_size: int = MODEL_SIZE) -> Model:
@@ -69,15 +63,18 @@ def _read(paths: Iterable[Path], max_size: int) -> tuple[list[ReadResult], dict[
         except ReadError as error:
             refused += error.findings
     if older:
-        from amalthea_uros.xmi.migrate.load import read_migrated
+        from amalthea_uros.xmi.migrate.load import migrate_set
+        from amalthea_uros.xmi.migrate.losses import announcements
 
         try:
-            migrated = read_migrated(older, max_size, [result.document.path for result in results if result.document.path])
+            as_they_are = [result.document.path for result in results if result.document.path]
+            migrated = migrate_set(older, newest_version(), max_size, elsewhere=as_they_are)
+            migrated_results, linked = migrated.read()
         except ReadError as error:
             refused += error.findings
         else:
             if not refused:
-                return [*results, *migrated.results], migrated.linked, migrated.findings
+                return [*results, *migrated_results], linked, announcements(migrated)
     if refused:
         raise ReadError(refused)
     return results, {}, []
@@ -89,11 +86,6 @@ def _flat(paths: Iterable[StrPath | Iterable[StrPath]]) -> Iterator[StrPath]:
             yield path
         else:
             yield from path
-
-
-def is_model_name(path: Path) -> bool:
-    """Whether the name of a file is that of a model."""
-    return _SUFFIXES.fullmatch(path.suffix) is not None
 
 
 def model_files(paths: Iterable[StrPath]) -> list[Path]:

@@ -6,14 +6,14 @@ from collections.abc import Collection, Iterable
 from pathlib import Path
 
 from amalthea_uros._internal import files
+from amalthea_uros._internal.paths import StrPath
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import WriteError
 from amalthea_uros.metamodel.model import Document, Model
 from amalthea_uros.metamodel.versions import spelled
-from amalthea_uros.xmi.files import ZIP_ENTRY, FileText, not_writable, write_text
-from amalthea_uros.xmi.load import SUFFIX, StrPath
-from amalthea_uros.xmi.migrate.versions import migrated_name
-from amalthea_uros.xmi.writer import document_text, usable_source
+from amalthea_uros.xmi.emf.files import SUFFIX, ZIP_ENTRY, FileText, not_writable, write_text
+from amalthea_uros.xmi.emf.versions import migrated_name
+from amalthea_uros.xmi.emf.writer import document_text, usable_source
 
 
 def save(

@@ -13,13 +13,12 @@ from amalthea_uros.diagnostics import Severity
 from amalthea_uros.services.fix import fix_files
 from amalthea_uros.services.format import format_files
 from amalthea_uros.services.info import info
-from amalthea_uros.services.migrate import migrate_files
-from amalthea_uros.services.migration import FileState
+from amalthea_uros.services.migrate import FileState, migrate_files
+from amalthea_uros.xmi.emf.versions import version_of
 from amalthea_uros.xmi.migrate import chain
 from amalthea_uros.xmi.migrate.chain import _UP
-from amalthea_uros.xmi.migrate.notes import NoteKind
-from amalthea_uros.xmi.migrate.step import Step
-from amalthea_uros.xmi.migrate.versions import version_of
+from amalthea_uros.xmi.tree.model_set import Step
+from amalthea_uros.xmi.tree.notes import NoteKind
 
 ITEA = "http://www.amalthea.itea2.org/model/"
 

@@ -15,7 +15,7 @@ from amalthea_uros.services.migrate import migrate_files
 from amalthea_uros.services.simulate import plan_simulation, simulate_plan
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.units import MILLISECOND
-from amalthea_uros.xmi.migrate.versions import is_older
+from amalthea_uros.xmi.emf.versions import is_older
 
 CORPUS = SHARED / "corpus"
 VERDICTS = SHARED / "vectors" / "verdicts"

@@ -12,8 +12,8 @@ from support import ROOT
 
 from amalthea_uros import build
 from amalthea_uros.errors import ReadError
+from amalthea_uros.xmi.emf.writer import document_text
 from amalthea_uros.xmi.schema import validate
-from amalthea_uros.xmi.writer import document_text
 
 SAMPLES = sorted((ROOT / "samples").glob("*.yaml"))
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from amalthea_uros.xmi.data_types import (
+from amalthea_uros.xmi.emf.data_types import (
     format_double,
     format_float,
     parse_address,
@@ -15,7 +15,7 @@ from amalthea_uros.xmi.data_types import (
     parse_float,
     parse_integer,
 )
-from amalthea_uros.xmi.escape import escape, impossible_character, unescape
+from amalthea_uros.xmi.emf.escape import escape, impossible_character, unescape
 
 
 @pytest.mark.parametrize(

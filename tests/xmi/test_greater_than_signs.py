@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from amalthea_uros.xmi import handlers
-from amalthea_uros.xmi.handlers import has_character_data
+from amalthea_uros.xmi.emf import handlers
+from amalthea_uros.xmi.emf.handlers import has_character_data
 
 
 @pytest.mark.parametrize(

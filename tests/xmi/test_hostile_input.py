@@ -226,8 +226,8 @@ def test_elements_are_counted_before_objects_are_made(tmp_path, monkeypatch):
 
 
 def test_a_larger_size_allows_more_elements(tmp_path, monkeypatch):
-    monkeypatch.setattr("amalthea_uros.xmi.files.MODEL_ELEMENTS", 10)
-    monkeypatch.setattr("amalthea_uros.xmi.files.MODEL_SIZE", 1000)
+    monkeypatch.setattr("amalthea_uros.xmi.emf.files.MODEL_ELEMENTS", 10)
+    monkeypatch.setattr("amalthea_uros.xmi.emf.files.MODEL_SIZE", 1000)
     path = file(tmp_path, root("<swModel>" + "<tasks/>" * 10 + "</swModel>").encode())
     with pytest.raises(ReadError, match="more than 10 elements"):
         load(path, max_size=1000)
@@ -235,7 +235,7 @@ def test_a_larger_size_allows_more_elements(tmp_path, monkeypatch):
 
 
 def test_references_in_lists_are_counted(tmp_path, monkeypatch):
-    monkeypatch.setattr("amalthea_uros.xmi.reader.MODEL_REFERENCES", 5)
+    monkeypatch.setattr("amalthea_uros.xmi.emf.reader.MODEL_REFERENCES", 5)
     many = "<swModel>" + '<tasks name="T" stimuli="a b c"/>' * 2 + "</swModel>"
     with pytest.raises(ReadError, match="more than 5 references in lists"):
         load(file(tmp_path, root(many).encode()))

@@ -12,7 +12,7 @@ from amalthea_uros import load, save
 from amalthea_uros.am import PeriodicStimulus, Task, Time
 from amalthea_uros.errors import WriteError
 from amalthea_uros.metamodel.element import extras_of
-from amalthea_uros.xmi.writer import document_text
+from amalthea_uros.xmi.emf.writer import document_text
 
 AMALTHEA = "http://app4mc.eclipse.org/amalthea/3.3.0"
 XSI = "http://www.w3.org/2001/XMLSchema-instance"

@@ -15,7 +15,7 @@ from amalthea_uros.metamodel import classes
 from amalthea_uros.metamodel.factfile import FeatureKind
 from amalthea_uros.metamodel.features import features_of
 from amalthea_uros.metamodel.versions import supported_versions
-from amalthea_uros.xmi.writer import document_text
+from amalthea_uros.xmi.emf.writer import document_text
 
 MARK = re.compile(r"mark\d+\.")
 

@@ -12,7 +12,7 @@ from typing import TypeAlias
 from amalthea_uros._internal.files import STANDARD_OUTPUT, FileError, write_bytes
 from amalthea_uros.design.campaign.run import Record, Value
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.xmi.files import not_writable
+from amalthea_uros.xmi.emf.files import not_writable
 
 #: The content of a file with a table: columns, rows -> bytes.
 TableFormat: TypeAlias = Callable[[Sequence[str], Sequence[Record]], bytes]

@@ -15,8 +15,7 @@ from amalthea_uros.report.findings import joined, profile_name
 from amalthea_uros.services.check import CheckResult
 from amalthea_uros.services.diff import DiffResult
 from amalthea_uros.services.info import InfoResult
-from amalthea_uros.services.migrate import MigrationResult
-from amalthea_uros.services.migration import MigratedFile, MigrationChange
+from amalthea_uros.services.migrate import MigratedFile, MigrationChange, MigrationResult
 from amalthea_uros.services.rules import RulesResult
 
 #: Declares differences and impacts.

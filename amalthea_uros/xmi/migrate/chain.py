@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from amalthea_uros.xmi.migrate.model_set import ModelSet, Tree, all_below
-from amalthea_uros.xmi.migrate.notes import StepNotes, report_postponed, restore_postponed
-from amalthea_uros.xmi.migrate.step import Step
+from amalthea_uros.xmi.emf.versions import position
 from amalthea_uros.xmi.migrate.steps import DOWN, UP
-from amalthea_uros.xmi.migrate.versions import position
+from amalthea_uros.xmi.tree.model_set import ModelSet, Step, Tree
+from amalthea_uros.xmi.tree.node import all_below
+from amalthea_uros.xmi.tree.notes import StepNotes, report_postponed, restore_postponed
 
 _UP = {step.source: step for step in UP}
 _DOWN = {step.source: step for step in DOWN}

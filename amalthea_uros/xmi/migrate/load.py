@@ -2,32 +2,30 @@
 
 from __future__ import annotations
 
-import re
-from collections import Counter
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
-from typing import NamedTuple
 
 from amalthea_uros._internal.failures import failure
+from amalthea_uros._internal.limits import MODEL_SIZE
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Model
-from amalthea_uros.metamodel.versions import newest_version, spelled
-from amalthea_uros.xmi.files import FileText
+from amalthea_uros.metamodel.versions import spelled
+from amalthea_uros.xmi.emf.files import FileText
+from amalthea_uros.xmi.emf.reader import ReadResult, read
+from amalthea_uros.xmi.emf.references import resolve
+from amalthea_uros.xmi.emf.versions import VERSIONS, is_known, is_older, position
+from amalthea_uros.xmi.emf.writer import document_text
 from amalthea_uros.xmi.migrate.chain import migrate, version_of_content
-from amalthea_uros.xmi.migrate.model_set import ModelSet, Tree
-from amalthea_uros.xmi.migrate.notes import Note, NoteKind, StepNotes
-from amalthea_uros.xmi.migrate.read_set import read_set
 from amalthea_uros.xmi.migrate.steps import DOWN
-from amalthea_uros.xmi.migrate.tree_reader import read_trees
-from amalthea_uros.xmi.migrate.versions import VERSIONS, is_known, is_older, position
-from amalthea_uros.xmi.migrate.write import tree_text
-from amalthea_uros.xmi.reader import ReadResult, read
-from amalthea_uros.xmi.references import resolve
-from amalthea_uros.xmi.writer import document_text
+from amalthea_uros.xmi.tree.link import read_set
+from amalthea_uros.xmi.tree.model_set import ModelSet, Tree
+from amalthea_uros.xmi.tree.notes import MigrationChange, Note, StepNotes
+from amalthea_uros.xmi.tree.tree_reader import read_trees
+from amalthea_uros.xmi.tree.write import tree_text
 
 
 class MigratedSet:
@@ -86,6 +84,19 @@ class MigratedSet:
         """Whether a file had the new version before, and refers to no file that had another one."""
         return place in self._as_is
 
+    def changes(self) -> Iterator[MigrationChange]:
+        """What was done, with the objects to which it was done."""
+        origins = self.models.origins
+        for note in self.notes:
+            yield MigrationChange(
+                kind=note.kind,
+                step=note.version,
+                message=note.message,
+                detail=note.detail,
+                object=origins.object_name(note.origin),
+                location=origins.location(note.origin, note.attribute),
+            )
+
     def texts(self) -> list[FileText]:
         """The content of each file in the new version.
 
@@ -107,7 +118,7 @@ class MigratedSet:
 def migrate_set(
     files: Sequence[tuple[Path, FileText]],
     target: str,
-    max_size: int,
+    max_size: int = MODEL_SIZE,
     elsewhere: Collection[Path] = (),
 ) -> MigratedSet:
     """Migrate files, and those to which they refer by file names.
@@ -198,150 +209,3 @@ def _refers_to_others(models: ModelSet, place: int, same: set[int]) -> bool:
             if any(not target.is_proxy and target.root not in unchanged for target in targets):
                 return True
     return False
-
-
-class MigratedFiles(NamedTuple):
-    """Files of older versions as documents of the newest one.
-
-    Attributes
-    ----------
-    linked : objects by the texts of the references to them
-    findings : that the files were migrated, and what was lost
-    """
-
-    results: list[ReadResult]
-    linked: dict[str, Element]
-    findings: list[Finding]
-
-
-def read_migrated(files: Sequence[tuple[Path, FileText]], max_size: int, elsewhere: Collection[Path]) -> MigratedFiles:
-    """Read files of older versions, and those to which they refer by file names.
-
-    Parameters
-    ----------
-    elsewhere : files that are read as they are
-
-    Raises
-    ------
-    ReadError : a file cannot be read; carries the findings of all of them.
-    """
-    migrated = migrate_set(files, newest_version(), max_size, elsewhere=elsewhere)
-    results, linked = migrated.read()
-    return MigratedFiles(results, linked, announcements(migrated))
-
-
-def announcements(migrated: MigratedSet) -> list[Finding]:
-    """That files were migrated in memory, and what was lost."""
-    models = migrated.models
-    places = [place for place in range(len(models.trees)) if not migrated.is_unchanged(place)]
-    if not places:
-        return []
-    first = models.trees[places[0]]
-    others = f" ({len(places)} files)" if len(places) > 1 else ""
-    stated = ", ".join(dict.fromkeys(spelled(migrated.versions[place]) for place in places))
-    files = "the files are" if len(places) > 1 else "the file is"
-    message = f"{stated} was migrated to {migrated.target} in memory{others}; {files} unchanged"
-    help_text = "`amuros migrate` writes the model in a newer version, with a report of what was converted."
-    where = models.origins.location(first.root.origin)
-    return [Finding("XMI008", Severity.INFO, message, where, help_text), *_losses(migrated)]
-
-
-#: So many kinds of lost content are named; the report of the command names all.
-_NAMED = 4
-
-
-def _losses(migrated: MigratedSet) -> list[Finding]:
-    """What the migration could not keep, in one finding at the first place."""
-    lost = [note for note in migrated.notes if note.kind is NoteKind.LOST]
-    if not lost:
-        return []
-    first = lost[0]
-    numbers = Counter(note.message for note in lost)
-    if len(numbers) == 1:
-        detail = f": {first.detail}" if first.detail else ""
-        what = f"{first.message}{detail}" + (f" ({len(lost):,} times, this is the first)" if len(lost) > 1 else "")
-    else:
-        named = [f"{message} ({number:,})" for message, number in numbers.most_common(_NAMED)]
-        rest = f" and {len(numbers) - _NAMED} more kinds" if len(numbers) > _NAMED else ""
-        what = f"{', '.join(named)}{rest}; this is the first place"
-    origins = migrated.models.origins
-    help_text = "The new version has no place for it. `amuros migrate --dry-run` lists everything that is converted or lost."
-    where = origins.location(first.origin, first.attribute)
-    message = f"lost in the migration to {migrated.target}: {what}"
-    return [Finding("XMI009", Severity.WARNING, message, where, help_text, origins.object_name(first.origin))]
-
-
-# Migration back: why it is refused
-
-#: What the reader says about content that is not in the model: unknown, misplaced, wrong or given twice.
-_NOT_IN_THE_MODEL = frozenset({"XMI010", "XMI011", "XMI012", "XMI013", "XMI014"})
-
-#: So many objects are named for each thing that is lost; the others are counted.
-_NAMED_OBJECTS = 20
-
-_TIMES = re.compile(r" \((\d[\d,]*) times, this is the first\)$")
-_VERSION = re.compile(r" ?\(?(?:of )?AMALTHEA [\d.]+\)?")
-
-
-def losses_of_going_back(migrated: MigratedSet) -> list[Finding]:
-    """An error for each thing that a set of files would lose; none if no file of it was newer before."""
-    if not migrated.is_down:
-        return []
-    help_text = f"Remove it from the model, or choose a version newer than {migrated.target}."
-    lost = list(_noted(migrated))
-    places = {_place(where) for _, where, _ in lost}
-    before = Counter(_keys(_findings_before(migrated)))
-    for finding in migrated.model.findings if migrated.model else ():
-        if finding.rule in _NOT_IN_THE_MODEL:
-            key, number = _key(finding)
-            # A step knows better than the reader what is lost.
-            if number > before[key] and _place(finding.location) not in places:
-                lost.append((finding.message, finding.location, finding.object))
-    return [
-        Finding("XMI102", Severity.ERROR, f"AMALTHEA {migrated.target} cannot hold this: {message}", where, help_text, name)
-        for message, where, name in lost
-    ]
-
-
-def _place(where: Location | None) -> tuple[str, int | None, int | None] | None:
-    return (str(where.path), where.line, where.column) if where is not None else None
-
-
-def _noted(migrated: MigratedSet) -> Iterable[tuple[str, Location | None, str]]:
-    origins = migrated.models.origins
-    notes = [note for note in migrated.notes if note.kind is NoteKind.LOST and note.version]
-    total = Counter(note.message for note in notes)
-    named: Counter[str] = Counter()
-    for note in notes:
-        named[note.message] += 1
-        if named[note.message] > _NAMED_OBJECTS:
-            continue
-        rest = total[note.message] - _NAMED_OBJECTS
-        more = f" (and {rest:,} more of this kind)" if named[note.message] == _NAMED_OBJECTS and rest > 0 else ""
-        message = f"{note.message}: {note.detail}" if note.detail else note.message
-        yield message + more, origins.location(note.origin, note.attribute), origins.object_name(note.origin)
-
-
-def _findings_before(migrated: MigratedSet) -> Iterable[Finding]:
-    """What the files say in their own version."""
-    for tree, version in zip(migrated.models.trees, migrated.versions, strict=True):
-        if not is_older(version):
-            try:
-                yield from read(tree.path, tree.content).findings
-            except ReadError:
-                continue
-
-
-def _keys(findings: Iterable[Finding]) -> dict[str, int]:
-    found: dict[str, int] = {}
-    for finding in findings:
-        key, number = _key(finding)
-        found[key] = found.get(key, 0) + number
-    return found
-
-
-def _key(finding: Finding) -> tuple[str, int]:
-    """What a finding is about, whatever the version, and how often it occurs."""
-    times = _TIMES.search(finding.message)
-    text = _VERSION.sub("", _TIMES.sub("", finding.message))
-    return f"{finding.rule} {text}", int(times[1].replace(",", "")) if times else 1

@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
+import os
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import unquote, unquote_plus
 from xml.sax.saxutils import unescape
 
-from amalthea_uros._internal.files import is_file, resolved
+from amalthea_uros._internal.files import FileError, is_directory, is_file, resolved
 from amalthea_uros.diagnostics import Finding
-from amalthea_uros.errors import ReadError
+from amalthea_uros.errors import ReadError, WriteError
+from amalthea_uros.metamodel.model import Model
 from amalthea_uros.metamodel.naming import TYPE_MARK
-from amalthea_uros.xmi.files import FileText, read_text
-from amalthea_uros.xmi.migrate.link import file_of
-from amalthea_uros.xmi.migrate.load import refusals
-from amalthea_uros.xmi.migrate.read_set import SUFFIX
-from amalthea_uros.xmi.migrate.versions import version_of
+from amalthea_uros.xmi.emf.files import SUFFIX, FileText, is_model_name, not_readable, read_text
+from amalthea_uros.xmi.emf.versions import version_of
+from amalthea_uros.xmi.emf.writer import document_text
+from amalthea_uros.xmi.migrate.load import MigratedSet, migrate_set, refusals
+from amalthea_uros.xmi.migrate.losses import losses_of_going_back
+from amalthea_uros.xmi.tree.link import file_of
 
 _HREF = re.compile(r"""\shref\s*=\s*(?:"([^"]*)"|'([^']*)')""")
 _NAME = re.compile(r"""\sname\s*=\s*(?:"([^"]*)"|'([^']*)')""")
@@ -42,10 +45,10 @@ class InputFile:
     findings: tuple[Finding, ...] = ()
 
     @classmethod
-    def read(cls, path: Path, scope: Path | None, target: str, max_size: int) -> InputFile:
+    def read(cls, path: Path, scope: Path | None, target: str) -> InputFile:
         """Read a file; what is wrong with it becomes its findings."""
         try:
-            content = read_text(path, max_size)
+            content = read_text(path)
         except ReadError as error:
             return cls(path, scope, None, "", error.findings)
         return cls.of(path, scope, content, target)
@@ -58,14 +61,54 @@ class InputFile:
         return cls(path, scope, None if findings else content, version, findings)
 
 
-def sets_of(files: Iterable[InputFile], target: str, max_size: int) -> list[tuple[InputFile, ...]]:
-    """The files in sets, with those to which they refer by file names; in the order of the first file of each."""
-    return _Sets(list(files), target, max_size).sets()
+def sets_of(paths: Iterable[Path], target: str, excluded: Collection[Path] = ()) -> list[tuple[InputFile, ...]]:
+    """The files that some paths stand for, and those to which they refer by file names, in the order of the first file of each set.
+
+    Parameters
+    ----------
+    paths : files and folders; a folder stands for all models in it and in its folders
+    target : the version to which they are migrated
+    excluded : folders that are left out
+
+    Raises
+    ------
+    ReadError : a folder has no models.
+    """
+    scopes: dict[Path, tuple[Path, Path | None]] = {}
+    for path in paths:
+        if not is_directory(path):
+            scopes.setdefault(resolved(path), (path, None))
+            continue
+        models = list(_models_below(path, excluded))
+        for file in models:
+            scopes.setdefault(resolved(file), (file, file.parent))
+        if not models:
+            raise not_readable(FileError(path, f"the directory contains no {SUFFIX} file"))
+    return _Sets([InputFile.read(path, scope, target) for path, scope in scopes.values()], target).sets()
+
+
+def _models_below(folder: Path, excluded: Collection[Path]) -> Iterator[Path]:
+    for name, folders, files in os.walk(folder):
+        holder = Path(name)
+        folders[:] = sorted(each for each in folders if not each.startswith(".") and resolved(holder / each) not in excluded)
+        models = (holder / file for file in sorted(files) if is_model_name(Path(file)))
+        # Reading a pipe never ends; a link that leads nowhere is reported.
+        yield from (file for file in models if is_file(file) or file.is_symlink())
+
+
+def set_of_model(model: Model, target: str) -> tuple[InputFile, ...]:
+    """The documents of a model as they would be saved."""
+    inputs = []
+    for number, document in enumerate(model.documents):
+        path = document.path or Path(f"model{number or ''}{SUFFIX}")
+        zip_entry = document.source.zip_entry if document.source else None
+        inputs.append(InputFile.of(path, None, FileText(document_text(document), zip_entry=zip_entry), target))
+    return tuple(inputs)
 
 
 class _Sets:
-    def __init__(self, files: list[InputFile], target: str, max_size: int) -> None:
-        self.files, self.target, self.max_size = files, target, max_size
+    def __init__(self, files: list[InputFile], target: str) -> None:
+        self.files, self.target = files, target
         self.places = {resolved(file.path): place for place, file in reversed(list(enumerate(files)))}
         #: The representative of the set of each file.
         self.leaders = list(range(len(files)))
@@ -99,7 +142,7 @@ class _Sets:
             found = self.places.get(resolved(path))
             if found is None:
                 found = self.places[resolved(path)] = len(self.files)
-                self.files.append(InputFile.read(path, path.parent, self.target, self.max_size))
+                self.files.append(InputFile.read(path, path.parent, self.target))
                 self.leaders.append(found)
             self.join(place, found)
         return names
@@ -148,3 +191,26 @@ def _name(href: str) -> str:
     if TYPE_MARK not in text:
         text = unquote(text)
     return unquote_plus(text.rpartition(TYPE_MARK)[0].rpartition("/")[2])
+
+
+def refuse_unreadable(files: Iterable[InputFile]) -> None:
+    """Raise a `ReadError` with everything that keeps files from being read or migrated."""
+    findings = [finding for file in files for finding in file.findings]
+    if findings:
+        raise ReadError(findings)
+
+
+def migrate_inputs(files: Sequence[InputFile], target: str) -> MigratedSet:
+    """Migrate the files of a set.
+
+    Raises
+    ------
+    ReadError : a file cannot be read, or no migration leads to the version.
+    WriteError : an older version cannot hold something.
+    """
+    refuse_unreadable(files)
+    migrated = migrate_set([(file.path, file.content) for file in files if file.content is not None], target)
+    lost = losses_of_going_back(migrated)
+    if lost:
+        raise WriteError(lost)
+    return migrated

@@ -3,9 +3,9 @@
 import pytest
 from migration import meaning, migrated, opened
 
-from amalthea_uros.xmi.migrate.model_set import all_below
-from amalthea_uros.xmi.migrate.notes import NoteKind
-from amalthea_uros.xmi.migrate.write import tree_text
+from amalthea_uros.xmi.tree.node import all_below
+from amalthea_uros.xmi.tree.notes import NoteKind
+from amalthea_uros.xmi.tree.write import tree_text
 
 PRIORITY = '<schedulingParameterDefinitions name="priority" type="Integer" many="false" mandatory="true"/>'
 OSEK = '<schedulerDefinitions name="OSEK" processParameters="priority?type=SchedulingParameterDefinition"/>'

@@ -2,7 +2,7 @@
 
 import pytest
 
-from amalthea_uros.xmi.migrate.notes import NoteKind
+from amalthea_uros.xmi.tree.notes import NoteKind
 
 
 def semaphore(attributes, kept=""):

@@ -5,7 +5,7 @@ import pytest
 from migration import migrated
 
 from amalthea_uros import load
-from amalthea_uros.xmi.migrate.notes import NoteKind
+from amalthea_uros.xmi.tree.notes import NoteKind
 
 
 @pytest.mark.parametrize(

@@ -6,9 +6,8 @@ from unittest.mock import patch
 from hypothesis import given
 from hypothesis import strategies as st
 
-from amalthea_uros.xmi.migrate import model_set as index_module
-from amalthea_uros.xmi.migrate.model_set import NodeIndex
-from amalthea_uros.xmi.migrate.node import Node, remove_all
+from amalthea_uros.xmi.tree import node as index_module
+from amalthea_uros.xmi.tree.node import Node, NodeIndex, remove_all
 
 _TAGS = ("a", "b", "c")
 _CHANGES = ("tag", "type", "add", "insert", "take", "set", "remove", "remove all", "wrap", "replace", "nothing")

@@ -5,10 +5,10 @@ from pathlib import Path
 import pytest
 from migration import model
 
-from amalthea_uros.xmi.files import FileText
-from amalthea_uros.xmi.migrate.model_set import Origins
-from amalthea_uros.xmi.migrate.notes import StepNotes
-from amalthea_uros.xmi.migrate.parse import parse
+from amalthea_uros.xmi.emf.files import FileText
+from amalthea_uros.xmi.tree.model_set import Origins
+from amalthea_uros.xmi.tree.notes import StepNotes
+from amalthea_uros.xmi.tree.parse import parse
 
 _ITEA = "http://www.amalthea.itea2.org/model/1.2.0"
 

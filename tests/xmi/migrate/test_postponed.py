@@ -5,7 +5,7 @@ import pytest
 from inline_models import written
 from migration import migrated
 
-from amalthea_uros.xmi.migrate.notes import NoteKind
+from amalthea_uros.xmi.tree.notes import NoteKind
 
 SOFTWARE = '<swModel><tasks name="T">{}</tasks><labels name="L" initialValue="5"/></swModel>'
 

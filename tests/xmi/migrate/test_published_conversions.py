@@ -11,8 +11,8 @@ from migration import meaning, migrated, opened
 from support import SHARED
 
 from amalthea_uros import diff, load
+from amalthea_uros.xmi.emf.versions import is_older, position
 from amalthea_uros.xmi.migrate import steps
-from amalthea_uros.xmi.migrate.versions import is_older, position
 
 VECTORS = SHARED / "vectors" / "migration"
 CORPUS = SHARED / "corpus"

@@ -7,7 +7,7 @@ from migration import migrated
 
 import amalthea_uros as amuros
 from amalthea_uros.perf.activities import Execute
-from amalthea_uros.xmi.migrate.notes import NoteKind
+from amalthea_uros.xmi.tree.notes import NoteKind
 
 # Clocks
 

@@ -16,15 +16,15 @@ from amalthea_uros import describe
 from amalthea_uros.bridge.build import build_model
 from amalthea_uros.errors import ReadError, WriteError
 from amalthea_uros.metamodel.model import Model
-from amalthea_uros.xmi.files import read_text
+from amalthea_uros.xmi.emf.files import read_text
+from amalthea_uros.xmi.emf.references import resolve
 from amalthea_uros.xmi.load import load
 from amalthea_uros.xmi.migrate.chain import migrate
-from amalthea_uros.xmi.migrate.notes import NoteKind, StepNotes
-from amalthea_uros.xmi.migrate.read_set import read_set
-from amalthea_uros.xmi.migrate.tree_reader import read_trees
-from amalthea_uros.xmi.references import resolve
 from amalthea_uros.xmi.save import save
 from amalthea_uros.xmi.schema import validate
+from amalthea_uros.xmi.tree.link import read_set
+from amalthea_uros.xmi.tree.notes import NoteKind, StepNotes
+from amalthea_uros.xmi.tree.tree_reader import read_trees
 
 SAMPLES = sorted((ROOT / "samples").glob("*.yaml"))
 OLDER = ("2.2.0", "2.0.0", "1.2.0")

@@ -5,7 +5,7 @@ from itea import all_of, messages, model, only, twice, write
 from migration import migrated
 
 from amalthea_uros.xmi.migrate.steps.v0_7_0 import STEP
-from amalthea_uros.xmi.migrate.write import tree_text
+from amalthea_uros.xmi.tree.write import tree_text
 
 TARGET = "0.7.0"
 

@@ -3,7 +3,7 @@
 import pytest
 from migration import meaning, migrated, model, opened
 
-from amalthea_uros.xmi.migrate.notes import NoteKind
+from amalthea_uros.xmi.tree.notes import NoteKind
 
 QUARTZ = '<quartzes name="Q"><frequency value="100.0" unit="MHz"/></quartzes>'
 

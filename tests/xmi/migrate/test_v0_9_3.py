@@ -6,7 +6,7 @@ import pytest
 from inline_models import check_step, of_kind, text_property, written
 from migration import meaning, migrated
 
-from amalthea_uros.xmi.migrate.notes import NoteKind
+from amalthea_uros.xmi.tree.notes import NoteKind
 
 
 @pytest.fixture

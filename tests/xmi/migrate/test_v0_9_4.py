@@ -7,7 +7,7 @@ from inline_models import check_step, of_kind, text_property, written
 from migration import meaning, migrated, opened
 
 from amalthea_uros.xmi.migrate.chain import migrate
-from amalthea_uros.xmi.migrate.notes import NoteKind, StepNotes
+from amalthea_uros.xmi.tree.notes import NoteKind, StepNotes
 
 
 @pytest.fixture

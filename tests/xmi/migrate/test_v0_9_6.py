@@ -2,7 +2,7 @@
 
 import pytest
 
-from amalthea_uros.xmi.migrate.notes import NoteKind
+from amalthea_uros.xmi.tree.notes import NoteKind
 
 EVENTS = '<eventModel><events t="ProcessEvent" name="a"/><events t="ProcessEvent" name="b"/></eventModel>'
 ENDS = 'stimulus="a?type=ProcessEvent" response="b?type=ProcessEvent"'

@@ -1,6 +1,6 @@
 """Activity graphs and interfaces of components."""
 
-from amalthea_uros.xmi.migrate.notes import NoteKind
+from amalthea_uros.xmi.tree.notes import NoteKind
 
 
 def test_what_is_mandatory_now_is_to_be_checked_and_not_invented(models):

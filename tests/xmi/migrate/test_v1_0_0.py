@@ -3,7 +3,7 @@
 import pytest
 from migration import migrated
 
-from amalthea_uros.xmi.migrate.notes import NoteKind
+from amalthea_uros.xmi.tree.notes import NoteKind
 
 PROPERTY = '<customProperties key="{}"><value t="StringObject" value="{}"/></customProperties>'
 

@@ -3,8 +3,8 @@
 import pytest
 from migration import migrated
 
-from amalthea_uros.xmi.migrate.model_set import all_below
-from amalthea_uros.xmi.migrate.notes import NoteKind
+from amalthea_uros.xmi.tree.node import all_below
+from amalthea_uros.xmi.tree.notes import NoteKind
 
 
 def software(content):

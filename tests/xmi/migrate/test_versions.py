@@ -4,7 +4,7 @@ import pytest
 from migration import model
 
 from amalthea_uros import ReadError, load
-from amalthea_uros.xmi.migrate.versions import version_of
+from amalthea_uros.xmi.emf.versions import version_of
 
 
 @pytest.mark.parametrize("version", ["0.7.2", "3.3.0"])

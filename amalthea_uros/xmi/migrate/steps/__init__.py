@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps import (
     back,
     itea_1_2,
@@ -22,6 +21,7 @@ from amalthea_uros.xmi.migrate.steps import (
     v2_0_0,
     v3_0_0,
 )
+from amalthea_uros.xmi.tree.model_set import Step
 
 #: From the oldest version to the newest.
 UP = (

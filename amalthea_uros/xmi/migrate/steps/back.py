@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from amalthea_uros.xmi.migrate.model_set import ModelSet
-from amalthea_uros.xmi.migrate.node import Node, remove_all
-from amalthea_uros.xmi.migrate.notes import StepNotes
-from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.back_scheduling import change_scheduling
 from amalthea_uros.xmi.migrate.steps.kept import OWNERSHIP, TAGS, keep, references, refuse_stale
+from amalthea_uros.xmi.tree.model_set import ModelSet, Step
+from amalthea_uros.xmi.tree.node import Node, remove_all
+from amalthea_uros.xmi.tree.notes import StepNotes
 
 # 3.0.0 -> 2.2.0: data types of labels and channels are parts again, semaphores have no owner
 

@@ -11,10 +11,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TypeAlias
 
-from amalthea_uros.xmi.files import FileText
-from amalthea_uros.xmi.migrate.model_set import ModelSet, Origins, Tree
-from amalthea_uros.xmi.migrate.node import Node, remove_all
-from amalthea_uros.xmi.migrate.notes import StepNotes
+from amalthea_uros.xmi.emf.files import FileText
 from amalthea_uros.xmi.migrate.steps.kept import (
     DEFINITION,
     DEFINITIONS,
@@ -39,6 +36,9 @@ from amalthea_uros.xmi.migrate.steps.scheduling import (
     AddedDefinitions,
 )
 from amalthea_uros.xmi.migrate.steps.tools import keep_comments, text_value
+from amalthea_uros.xmi.tree.model_set import ModelSet, Origins, Tree
+from amalthea_uros.xmi.tree.node import Node, remove_all
+from amalthea_uros.xmi.tree.notes import StepNotes
 
 # Definitions that the step up makes of the algorithm classes anyway, so that nothing of them needs to be kept
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from amalthea_uros.xmi.migrate.model_set import ModelSet, Tree
-from amalthea_uros.xmi.migrate.node import Node
-from amalthea_uros.xmi.migrate.notes import StepNotes
+from amalthea_uros.xmi.tree.model_set import ModelSet, Tree
+from amalthea_uros.xmi.tree.node import Node
+from amalthea_uros.xmi.tree.notes import StepNotes
 
 _MICROCONTROLLER = ("hwModel", "system", "ecus", "microcontrollers")
 _OPERATING_SYSTEM = ("osModel", "operatingSystems")

@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import partial
 
-from amalthea_uros.xmi.migrate.classes import local_name
-from amalthea_uros.xmi.migrate.model_set import ModelSet
-from amalthea_uros.xmi.migrate.node import Node
-from amalthea_uros.xmi.migrate.notes import BEYOND_ITEA, NoteKind, Postponed, StepNotes
-from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.itea_tools import is_isr, sub_models
 from amalthea_uros.xmi.migrate.steps.tools import attributes_text
+from amalthea_uros.xmi.tree.classes import local_name
+from amalthea_uros.xmi.tree.model_set import ModelSet, Step
+from amalthea_uros.xmi.tree.node import Node
+from amalthea_uros.xmi.tree.notes import BEYOND_ITEA, NoteKind, Postponed, StepNotes
 
 
 def change(models: ModelSet, notes: StepNotes) -> None:

@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from functools import partial
 
-from amalthea_uros.xmi.migrate.classes import local_name
-from amalthea_uros.xmi.migrate.model_set import ModelSet, Tree
-from amalthea_uros.xmi.migrate.node import Node, remove_all
-from amalthea_uros.xmi.migrate.notes import BEYOND_ITEA, NoteKind, Postponed, StepNotes
-from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.file_roots import wrap_objects
 from amalthea_uros.xmi.migrate.steps.itea_tools import SUB_MODELS, by_root, sub_model_or_new, trees_of
 from amalthea_uros.xmi.migrate.steps.tools import add_property
+from amalthea_uros.xmi.tree.classes import local_name
+from amalthea_uros.xmi.tree.model_set import ModelSet, Step, Tree
+from amalthea_uros.xmi.tree.node import Node, remove_all
+from amalthea_uros.xmi.tree.notes import BEYOND_ITEA, NoteKind, Postponed, StepNotes
 
 # Defaults: all enumerations got `_undefined_` as their first literal, which thereby became the default
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from amalthea_uros.xmi.migrate.classes import local_name
-from amalthea_uros.xmi.migrate.model_set import ModelSet, Tree
-from amalthea_uros.xmi.migrate.node import Node
+from amalthea_uros.xmi.tree.classes import local_name
+from amalthea_uros.xmi.tree.model_set import ModelSet, Tree
+from amalthea_uros.xmi.tree.node import Node
 
 #: Sub-models by the class that is the root of a file which holds nothing else.
 SUB_MODELS = {

@@ -6,9 +6,6 @@ from collections.abc import Iterable, Sequence
 from itertools import count
 from typing import NamedTuple
 
-from amalthea_uros.xmi.migrate.model_set import ModelSet
-from amalthea_uros.xmi.migrate.node import Node
-from amalthea_uros.xmi.migrate.notes import StepNotes
 from amalthea_uros.xmi.migrate.steps.tools import (
     add_property,
     keep_comments,
@@ -17,6 +14,9 @@ from amalthea_uros.xmi.migrate.steps.tools import (
     property_text,
     whole_number,
 )
+from amalthea_uros.xmi.tree.model_set import ModelSet
+from amalthea_uros.xmi.tree.node import Node
+from amalthea_uros.xmi.tree.notes import StepNotes
 
 PRIORITY, TASK_GROUP, QUANTUM = "priority", "taskGroup", "quantSize"
 

@@ -6,12 +6,12 @@ import re
 from collections.abc import Collection, Iterable, Mapping
 from itertools import chain, count
 
-from amalthea_uros.xmi.escape import escape
-from amalthea_uros.xmi.header import XSI_NAMESPACE
-from amalthea_uros.xmi.migrate.classes import reference_text
-from amalthea_uros.xmi.migrate.model_set import ModelSet
-from amalthea_uros.xmi.migrate.node import Node, remove_all
-from amalthea_uros.xmi.migrate.notes import StepNotes
+from amalthea_uros.xmi.emf.escape import escape
+from amalthea_uros.xmi.emf.header import XSI_NAMESPACE
+from amalthea_uros.xmi.tree.classes import reference_text
+from amalthea_uros.xmi.tree.model_set import ModelSet
+from amalthea_uros.xmi.tree.node import Node, remove_all
+from amalthea_uros.xmi.tree.notes import StepNotes
 
 # Custom properties: `<customProperties key="k"><value xsi:type="am:StringObject" value="v"/></customProperties>`
 

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from functools import partial
 
-from amalthea_uros.xmi.migrate.classes import local_name
-from amalthea_uros.xmi.migrate.model_set import ModelSet
-from amalthea_uros.xmi.migrate.node import Node, remove_all
-from amalthea_uros.xmi.migrate.notes import BEYOND_ITEA, NoteKind, Postponed, StepNotes
-from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.itea_tools import is_isr
 from amalthea_uros.xmi.migrate.steps.tools import add_property, add_value
+from amalthea_uros.xmi.tree.classes import local_name
+from amalthea_uros.xmi.tree.model_set import ModelSet, Step
+from amalthea_uros.xmi.tree.node import Node, remove_all
+from amalthea_uros.xmi.tree.notes import BEYOND_ITEA, NoteKind, Postponed, StepNotes
 
 # Attributes and features of hardware nodes -> custom properties
 

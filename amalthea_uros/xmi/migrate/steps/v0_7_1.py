@@ -6,12 +6,11 @@ from collections.abc import Iterable
 from decimal import Decimal
 from math import isfinite
 
-from amalthea_uros.xmi.migrate.model_set import ModelSet
-from amalthea_uros.xmi.migrate.node import Node, remove_all
-from amalthea_uros.xmi.migrate.notes import StepNotes
-from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.file_roots import wrap_roots
 from amalthea_uros.xmi.migrate.steps.tools import content_of, free_key, names_of, remove_and_keep
+from amalthea_uros.xmi.tree.model_set import ModelSet, Step
+from amalthea_uros.xmi.tree.node import Node, remove_all
+from amalthea_uros.xmi.tree.notes import StepNotes
 
 # Sections: their members name them, and no longer the other way round
 

@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-from amalthea_uros.xmi.migrate.model_set import ModelSet
-from amalthea_uros.xmi.migrate.node import Node, remove_all
-from amalthea_uros.xmi.migrate.notes import StepNotes
-from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.file_roots import wrap_roots
 from amalthea_uros.xmi.migrate.steps.tools import (
     content_of,
@@ -14,6 +10,9 @@ from amalthea_uros.xmi.migrate.steps.tools import (
     removed_key,
     xml_text,
 )
+from amalthea_uros.xmi.tree.model_set import ModelSet, Step
+from amalthea_uros.xmi.tree.node import Node, remove_all
+from amalthea_uros.xmi.tree.notes import StepNotes
 
 _UNITS = {"kibit": "Kibit", "byte": "B", "kibitPerSecond": "KibitPerSecond", "bytePerSecond": "BPerSecond"}
 

@@ -3,11 +3,6 @@
 from __future__ import annotations
 
 from amalthea_uros.metamodel.naming import TYPE_MARK
-from amalthea_uros.xmi.migrate.classes import class_of, reference_text
-from amalthea_uros.xmi.migrate.model_set import ModelSet
-from amalthea_uros.xmi.migrate.node import Node, remove_all
-from amalthea_uros.xmi.migrate.notes import StepNotes
-from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.kept import strings
 from amalthea_uros.xmi.migrate.steps.tools import (
     add_property,
@@ -21,6 +16,10 @@ from amalthea_uros.xmi.migrate.steps.tools import (
     put_property,
     text_value,
 )
+from amalthea_uros.xmi.tree.classes import class_of, reference_text
+from amalthea_uros.xmi.tree.model_set import ModelSet, Step
+from amalthea_uros.xmi.tree.node import Node, remove_all
+from amalthea_uros.xmi.tree.notes import StepNotes
 
 # Event chains in event chains, which cannot be referred to any more
 

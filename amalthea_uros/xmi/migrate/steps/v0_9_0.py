@@ -6,16 +6,15 @@ from collections.abc import Callable
 from fractions import Fraction
 from math import ceil, floor
 
-from amalthea_uros.xmi.migrate.classes import class_of
-from amalthea_uros.xmi.migrate.model_set import ModelSet
-from amalthea_uros.xmi.migrate.node import Node, remove_all
-from amalthea_uros.xmi.migrate.notes import StepNotes
-from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.tools import attributes_text, whole_number
 from amalthea_uros.xmi.migrate.steps.v0_9_0_clocks import Clocks, frequency_of
 from amalthea_uros.xmi.migrate.steps.v0_9_0_definitions import INSTRUCTIONS, HardwareDefinitions
 from amalthea_uros.xmi.migrate.steps.v0_9_0_shapes import is_cache
 from amalthea_uros.xmi.migrate.steps.v0_9_0_structures import Structures
+from amalthea_uros.xmi.tree.classes import class_of
+from amalthea_uros.xmi.tree.model_set import ModelSet, Step
+from amalthea_uros.xmi.tree.node import Node, remove_all
+from amalthea_uros.xmi.tree.notes import StepNotes
 
 # References to hardware from other parts of the model
 

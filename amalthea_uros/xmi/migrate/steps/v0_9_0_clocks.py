@@ -6,12 +6,12 @@ from fractions import Fraction
 from math import isfinite
 
 from amalthea_uros.units import FREQUENCY
-from amalthea_uros.xmi.data_types import format_double, parse_float
-from amalthea_uros.xmi.migrate.model_set import ModelSet
-from amalthea_uros.xmi.migrate.node import Node
-from amalthea_uros.xmi.migrate.notes import StepNotes
+from amalthea_uros.xmi.emf.data_types import format_double, parse_float
 from amalthea_uros.xmi.migrate.steps.tools import free_key
 from amalthea_uros.xmi.migrate.steps.v0_9_0_shapes import Shape, hash_order
+from amalthea_uros.xmi.tree.model_set import ModelSet
+from amalthea_uros.xmi.tree.node import Node
+from amalthea_uros.xmi.tree.notes import StepNotes
 
 _DOMAIN = Shape("quartzes", parts=frozenset({"defaultValue"}))
 _HERTZ = {"": 1, "_undefined_": 1, **FREQUENCY.units}

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from functools import partial
 
-from amalthea_uros.xmi.migrate.model_set import ModelSet
-from amalthea_uros.xmi.migrate.node import Node, remove_all
-from amalthea_uros.xmi.migrate.notes import BEYOND_CONVERTERS, NoteKind, Postponed, StepNotes
 from amalthea_uros.xmi.migrate.steps.tools import add_property
 from amalthea_uros.xmi.migrate.steps.v0_9_0_shapes import Shape, hash_order
+from amalthea_uros.xmi.tree.model_set import ModelSet
+from amalthea_uros.xmi.tree.node import Node, remove_all
+from amalthea_uros.xmi.tree.notes import BEYOND_CONVERTERS, NoteKind, Postponed, StepNotes
 
 INSTRUCTIONS = "Instructions"
 

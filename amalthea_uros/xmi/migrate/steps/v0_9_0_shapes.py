@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from amalthea_uros.xmi.migrate.node import Node, remove_all
-from amalthea_uros.xmi.migrate.notes import StepNotes
 from amalthea_uros.xmi.migrate.steps.tools import content_of, names_of
+from amalthea_uros.xmi.tree.node import Node, remove_all
+from amalthea_uros.xmi.tree.notes import StepNotes
 
 #: Values by which EMF states that nothing is stated.
 _NOTHING = frozenset({"", "0", "0.0", "0x0", "false", "_undefined_"})

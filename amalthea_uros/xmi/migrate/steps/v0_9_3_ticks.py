@@ -7,12 +7,12 @@ from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from functools import partial
 
-from amalthea_uros.xmi.data_types import parse_float
-from amalthea_uros.xmi.migrate.model_set import ModelSet
-from amalthea_uros.xmi.migrate.node import Node, remove_all
-from amalthea_uros.xmi.migrate.notes import BEYOND_CONVERTERS, NoteKind, Postponed, StepNotes
+from amalthea_uros.xmi.emf.data_types import parse_float
 from amalthea_uros.xmi.migrate.steps.tools import insert_after, keep_comments, whole_number
 from amalthea_uros.xmi.migrate.steps.v0_9_3_values import Values
+from amalthea_uros.xmi.tree.model_set import ModelSet
+from amalthea_uros.xmi.tree.node import Node, remove_all
+from amalthea_uros.xmi.tree.notes import BEYOND_CONVERTERS, NoteKind, Postponed, StepNotes
 
 #: The key of needs that are instructions, and the category of the feature that says how many of them a cycle executes.
 _INSTRUCTIONS = "Instructions"

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from amalthea_uros.xmi.migrate.node import Node
-from amalthea_uros.xmi.migrate.notes import StepNotes
 from amalthea_uros.xmi.migrate.steps.tools import add_property, attributes_text, keep_comments
+from amalthea_uros.xmi.tree.node import Node
+from amalthea_uros.xmi.tree.notes import StepNotes
 
 DISCRETE, CONTINUOUS, TIME = "DiscreteValue", "ContinuousValue", "Time"
 

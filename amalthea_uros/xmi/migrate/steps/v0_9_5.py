@@ -6,11 +6,10 @@ from decimal import Decimal, InvalidOperation
 from functools import partial
 from typing import NamedTuple
 
-from amalthea_uros.xmi.migrate.model_set import ModelSet
-from amalthea_uros.xmi.migrate.node import Node
-from amalthea_uros.xmi.migrate.notes import BEYOND_CONVERTERS, NoteKind, Postponed, StepNotes
-from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.tools import add_property, attributes_text, by_class, keep_comments, quantity_text
+from amalthea_uros.xmi.tree.model_set import ModelSet, Step
+from amalthea_uros.xmi.tree.node import Node
+from amalthea_uros.xmi.tree.notes import BEYOND_CONVERTERS, NoteKind, Postponed, StepNotes
 
 # Clocks: they are described by frequencies now, whose units the older version does not state
 

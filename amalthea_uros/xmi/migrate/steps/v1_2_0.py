@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from functools import partial
 
-from amalthea_uros.xmi.migrate.model_set import ModelSet
-from amalthea_uros.xmi.migrate.node import Node
-from amalthea_uros.xmi.migrate.notes import NoteKind, Postponed, StepNotes
-from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.tools import add_property, keep_comments, make_positive, move_properties
+from amalthea_uros.xmi.tree.model_set import ModelSet, Step
+from amalthea_uros.xmi.tree.node import Node
+from amalthea_uros.xmi.tree.notes import NoteKind, Postponed, StepNotes
 
 #: References from a measurement to what was measured.
 _MEASURED = ("runnable", "task", "eventChain")

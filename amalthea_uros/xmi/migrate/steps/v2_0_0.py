@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-from amalthea_uros.xmi.migrate.model_set import ModelSet
-from amalthea_uros.xmi.migrate.node import Node
-from amalthea_uros.xmi.migrate.notes import StepNotes
-from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.kept import restore_2_0_0
 from amalthea_uros.xmi.migrate.steps.scheduling import (
     AddedDefinitions,
@@ -14,6 +10,9 @@ from amalthea_uros.xmi.migrate.steps.scheduling import (
     convert_properties,
 )
 from amalthea_uros.xmi.migrate.steps.v0_9_7 import conditions_below
+from amalthea_uros.xmi.tree.model_set import ModelSet, Step
+from amalthea_uros.xmi.tree.node import Node
+from amalthea_uros.xmi.tree.notes import StepNotes
 
 
 def change(models: ModelSet, notes: StepNotes) -> None:

@@ -6,13 +6,12 @@ from collections.abc import Iterator
 from itertools import count
 from typing import TypeAlias
 
-from amalthea_uros.xmi.migrate.model_set import ModelSet
-from amalthea_uros.xmi.migrate.node import Node
-from amalthea_uros.xmi.migrate.notes import StepNotes
-from amalthea_uros.xmi.migrate.step import Step
 from amalthea_uros.xmi.migrate.steps.kept import restore_3_0_0
 from amalthea_uros.xmi.migrate.steps.tools import keep_comments, make_positive, move_properties, whole_number
 from amalthea_uros.xmi.migrate.steps.v0_9_7 import CONDITIONS, conditions_below
+from amalthea_uros.xmi.tree.model_set import ModelSet, Step
+from amalthea_uros.xmi.tree.node import Node
+from amalthea_uros.xmi.tree.notes import StepNotes
 
 
 def change_2_0_0(models: ModelSet, notes: StepNotes) -> None:

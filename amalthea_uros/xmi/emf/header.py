@@ -13,7 +13,7 @@ from amalthea_uros.metamodel.versions import (
     newest_version,
     version_key,
 )
-from amalthea_uros.xmi.migrate.versions import namespace_version
+from amalthea_uros.xmi.emf.versions import namespace_version
 
 XMI_NAMESPACE = "http://www.omg.org/XMI"
 XSI_NAMESPACE = "http://www.w3.org/2001/XMLSchema-instance"

@@ -20,13 +20,13 @@ from amalthea_uros.metamodel.containment import ContainmentList
 from amalthea_uros.metamodel.element import Element, extras_of
 from amalthea_uros.metamodel.model import Document
 from amalthea_uros.metamodel.source import Prefixes, SourceText
-from amalthea_uros.xmi import refusals
-from amalthea_uros.xmi.escape import WHITE_SPACE, escape_text
-from amalthea_uros.xmi.files import FileText
-from amalthea_uros.xmi.finding_collector import CollectedFinding, FindingCollector
-from amalthea_uros.xmi.handlers import Handlers, connect, disconnect
-from amalthea_uros.xmi.header import XSI_NAMESPACE, ModelHeader, NotAModelError, read_header
-from amalthea_uros.xmi.plan import TYPE_PREFIX, ClassPlan, FeaturePlan, plans, reference_texts
+from amalthea_uros.xmi.emf import refusals
+from amalthea_uros.xmi.emf.escape import WHITE_SPACE, escape_text
+from amalthea_uros.xmi.emf.files import FileText
+from amalthea_uros.xmi.emf.finding_collector import CollectedFinding, FindingCollector
+from amalthea_uros.xmi.emf.handlers import Handlers, connect, disconnect
+from amalthea_uros.xmi.emf.header import XSI_NAMESPACE, ModelHeader, NotAModelError, read_header
+from amalthea_uros.xmi.emf.plan import TYPE_PREFIX, ClassPlan, FeaturePlan, plans, reference_texts
 
 _KEPT = "Unknown content is ignored, but preserved when the file is saved."
 

@@ -15,13 +15,13 @@ from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Document
 from amalthea_uros.metamodel.source import Prefixes, SourceText
 from amalthea_uros.metamodel.versions import NAMESPACE_PREFIX, version_key
-from amalthea_uros.xmi.emf_serializer import Child, ChildPart, EmfSerializer, KeptContent, WritePlan, used_prefixes
-from amalthea_uros.xmi.escape import escape
-from amalthea_uros.xmi.header import XMI_NAMESPACE, XSI_NAMESPACE
-from amalthea_uros.xmi.plan import ClassPlan, FeaturePlan
-from amalthea_uros.xmi.read_back import check_read_back
-from amalthea_uros.xmi.refusals import MAX_DEPTH
-from amalthea_uros.xmi.source_merger import SourceMerger
+from amalthea_uros.xmi.emf.escape import escape
+from amalthea_uros.xmi.emf.header import XMI_NAMESPACE, XSI_NAMESPACE
+from amalthea_uros.xmi.emf.plan import ClassPlan, FeaturePlan
+from amalthea_uros.xmi.emf.read_back import check_read_back
+from amalthea_uros.xmi.emf.refusals import MAX_DEPTH
+from amalthea_uros.xmi.emf.serializer import Child, ChildPart, EmfSerializer, KeptContent, WritePlan, used_prefixes
+from amalthea_uros.xmi.emf.source_merger import SourceMerger
 
 _DECLARATION = '<?xml version="1.0" encoding="UTF-8"?>'
 _INDENT = "  "

@@ -9,11 +9,11 @@ from dataclasses import replace
 
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.versions import NAMESPACE_PREFIX
-from amalthea_uros.xmi.header import XMI_NAMESPACE, XSI_NAMESPACE
-from amalthea_uros.xmi.migrate.classes import reference_text
-from amalthea_uros.xmi.migrate.model_set import ModelSet, Origins, Tree
-from amalthea_uros.xmi.migrate.node import Node
-from amalthea_uros.xmi.reader import ReadResult, read_events
+from amalthea_uros.xmi.emf.header import XMI_NAMESPACE, XSI_NAMESPACE
+from amalthea_uros.xmi.emf.reader import ReadResult, read_events
+from amalthea_uros.xmi.tree.classes import reference_text
+from amalthea_uros.xmi.tree.model_set import ModelSet, Origins, Tree
+from amalthea_uros.xmi.tree.node import Node
 
 
 def read_trees(models: ModelSet, versions: Sequence[str]) -> tuple[list[ReadResult], dict[str, Element]]:

@@ -8,14 +8,14 @@ from pathlib import Path
 from typing import Any, NamedTuple
 from xml.parsers import expat
 
-from amalthea_uros.xmi import refusals
-from amalthea_uros.xmi.files import FileText
-from amalthea_uros.xmi.handlers import Handlers, connect, disconnect
-from amalthea_uros.xmi.header import XMI_NAMESPACE, XSI_NAMESPACE
-from amalthea_uros.xmi.migrate.model_set import Origins, Tree
-from amalthea_uros.xmi.migrate.node import Node
-from amalthea_uros.xmi.migrate.notes import StepNotes
-from amalthea_uros.xmi.migrate.versions import itea_package, namespace_version
+from amalthea_uros.xmi.emf import refusals
+from amalthea_uros.xmi.emf.files import FileText
+from amalthea_uros.xmi.emf.handlers import Handlers, connect, disconnect
+from amalthea_uros.xmi.emf.header import XMI_NAMESPACE, XSI_NAMESPACE
+from amalthea_uros.xmi.emf.versions import itea_package, namespace_version
+from amalthea_uros.xmi.tree.model_set import Origins, Tree
+from amalthea_uros.xmi.tree.node import Node
+from amalthea_uros.xmi.tree.notes import StepNotes
 
 _new = object.__new__
 

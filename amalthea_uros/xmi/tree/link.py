@@ -7,17 +7,21 @@ mostly a UUID (ITEA 1.1.0 and 1.2.0); a position (`//@swModel/@tasks.0`). In `hr
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from itertools import chain
 from pathlib import Path
 from urllib.parse import unquote, unquote_plus
 
+from amalthea_uros._internal.files import is_file, resolved
+from amalthea_uros.diagnostics import Finding
+from amalthea_uros.errors import ReadError
 from amalthea_uros.metamodel.naming import NO_NAME, TYPE_MARK
-from amalthea_uros.xmi.migrate.classes import is_of, local_name, may_be
-from amalthea_uros.xmi.migrate.model_set import ModelSet, Origins
-from amalthea_uros.xmi.migrate.node import Node, proxy
-from amalthea_uros.xmi.migrate.notes import StepNotes
-from amalthea_uros.xmi.migrate.parse import ParsedFile, PendingHref
+from amalthea_uros.xmi.emf.files import SUFFIX, FileText, read_text
+from amalthea_uros.xmi.tree.classes import is_of, local_name, may_be
+from amalthea_uros.xmi.tree.model_set import ModelSet, Origins
+from amalthea_uros.xmi.tree.node import Node, proxy
+from amalthea_uros.xmi.tree.notes import StepNotes
+from amalthea_uros.xmi.tree.parse import ParsedFile, PendingHref, parse
 
 #: Attributes that are text in all classes of all versions, whatever they look like.
 _TEXT = frozenset(
@@ -33,9 +37,6 @@ _TEXT_KEYS = frozenset({"customProperties", "entries", "needs", "parameterExtens
 #: Attributes `value` that are text, by the class of their object: custom properties and, in ITEA versions, hardware attributes.
 _TEXT_VALUES = frozenset({"StringObject", "StrValue", "CharValue", "FeatureTypes"})
 
-#: What the suffixes of model files begin with: `.amxmi`, in ITEA versions also `.amxmi-sw` and the like.
-_SUFFIX = ".amxmi"
-
 #: What references by id or position start with.
 _STARTS = ("_", "/", "#")
 
@@ -49,6 +50,45 @@ def file_of(href: str) -> str:
     """The file that an `href` names, relative to that of the reference; "" if it leaves the search to the reader (`amlt:/`)."""
     file, mark, _ = href.partition("#")
     return "" if not mark or ":" in file else unquote(file)
+
+
+def read_set(
+    files: Iterable[tuple[Path, FileText]], max_size: int, notes: StepNotes, elsewhere: Collection[Path] = ()
+) -> ModelSet:
+    """Read some files, and those to which they refer by file names, as one set.
+
+    Parameters
+    ----------
+    elsewhere : files that are read in another way, and that do not become part of the set
+
+    Raises
+    ------
+    ReadError : a file cannot be read; carries the findings of all of them.
+    """
+    origins = Origins()
+    parsed: list[ParsedFile] = []
+    refused: list[Finding] = []
+    waiting = list(files)
+    known = {resolved(path) for path in (*elsewhere, *(path for path, _ in waiting))}
+    while waiting:
+        path, content = waiting.pop(0)
+        try:
+            parsed.append(parse(path, content, origins, notes))
+        except ReadError as error:
+            refused += error.findings
+            continue
+        for other in dict.fromkeys(file_of(href.text) for href in parsed[-1].hrefs):
+            found = path.parent / other
+            # A missing file is reported with the references to it.
+            if other and SUFFIX in found.suffix and resolved(found) not in known and is_file(found):
+                known.add(resolved(found))
+                try:
+                    waiting.append((found, read_text(found, max_size)))
+                except ReadError as error:
+                    refused += error.findings
+    if refused:
+        raise ReadError(refused)
+    return link(parsed, origins, notes)
 
 
 def link(parsed: Sequence[ParsedFile], origins: Origins, notes: StepNotes) -> ModelSet:
@@ -130,7 +170,7 @@ class _Linker:
         file, _, fragment = href.text.rpartition("#")
         is_outside = bool(file_of(href.text)) and self.file_at(one, href.text) is None
         # Names and ids are unique whatever the file is; positions are not, and other models have rules of their own.
-        is_local = is_outside and (fragment.startswith("/") or _SUFFIX not in file.rpartition("/")[2])
+        is_local = is_outside and (fragment.startswith("/") or SUFFIX not in file.rpartition("/")[2])
         made = self.proxy(href.text if is_local else fragment)
         if href.type:
             # Evidence for steps, no part of the reference.

@@ -11,7 +11,7 @@ from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.factfile import FeatureFact, FeatureKind
 from amalthea_uros.metamodel.features import features_of
 from amalthea_uros.metamodel.versions import VersionFacts, facts
-from amalthea_uros.xmi.data_types import DataType, ValueCache, data_type_of
+from amalthea_uros.xmi.emf.data_types import DataType, ValueCache, data_type_of
 
 #: Prefix of class names in `xsi:type`.
 TYPE_PREFIX = "am:"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from amalthea_uros.metamodel.naming import TYPE_MARK, encode
-from amalthea_uros.xmi.migrate.node import Node
+from amalthea_uros.xmi.tree.node import Node
 
 #: Tag -> classes that it stands for without `xsi:type`, in any version; only of objects that can be referred to. The first one is
 #: the usual one.

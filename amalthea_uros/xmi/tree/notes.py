@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import NamedTuple
 
-from amalthea_uros.xmi.migrate.node import Node
+from amalthea_uros.diagnostics import Location
+from amalthea_uros.xmi.tree.node import Node
 
 
 class NoteKind(StrEnum):
@@ -40,6 +41,26 @@ class Note(NamedTuple):
     origin: int
     detail: str = ""
     attribute: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MigrationChange:
+    """One thing that a migration did to one object.
+
+    Attributes
+    ----------
+    step : the version to which the step leads that did it, "" for reading
+    message : what happened; the same for all objects to which the same happened
+    detail : what is particular to this object, such as a value
+    location : in the old file
+    """
+
+    kind: NoteKind
+    step: str
+    message: str
+    detail: str
+    object: str
+    location: Location | None
 
 
 class StepNotes:

@@ -13,6 +13,11 @@ from amalthea_uros._internal.limits import ADVICE, MODEL_ELEMENTS, MODEL_SIZE
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError, WriteError
 
+#: What the suffixes of model files begin with: in ITEA versions, sub-models have suffixes such as `.amxmi-sw`.
+SUFFIX = ".amxmi"
+
+_SUFFIXES = re.compile(r"\.amxmi(?:-[a-z]+)?")
+
 #: Name that EMF gives to the only entry of a zipped resource.
 ZIP_ENTRY = "ResourceContents"
 
@@ -26,6 +31,11 @@ class FileText:
     text: str
     encoding: str = "utf-8"
     zip_entry: str | None = None
+
+
+def is_model_name(path: Path) -> bool:
+    """Whether the name of a file is that of a model."""
+    return _SUFFIXES.fullmatch(path.suffix) is not None
 
 
 def read_text(path: Path, max_size: int = MODEL_SIZE) -> FileText:
@@ -87,7 +97,7 @@ def _data(content: FileText) -> bytes:
     data = files.encode(content.text, content.encoding, "xmlcharrefreplace")
     if content.zip_entry is None:
         return data
-    from amalthea_uros.xmi.archives import packed
+    from amalthea_uros.xmi.emf.archives import packed
 
     return packed(content.zip_entry, data)
 
@@ -96,7 +106,7 @@ def _read_text(path: Path, max_size: int) -> FileText:
     data = files.read_bytes(path, max_size)
     entry = None
     if data.startswith(b"PK\x03\x04"):
-        from amalthea_uros.xmi.archives import unpacked
+        from amalthea_uros.xmi.emf.archives import unpacked
 
         entry, data = unpacked(path, data, max_size)
     encoding = files.marked_encoding(data) or _declared_encoding(data)

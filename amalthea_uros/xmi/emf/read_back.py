@@ -13,11 +13,11 @@ from amalthea_uros.errors import WriteError
 from amalthea_uros.metamodel.element import Element, extras_if_any
 from amalthea_uros.metamodel.model import Document
 from amalthea_uros.metamodel.naming import place
-from amalthea_uros.xmi import refusals
-from amalthea_uros.xmi.emf_serializer import EmfSerializer, tag_of
-from amalthea_uros.xmi.header import ModelHeader, NotAModelError, read_header
-from amalthea_uros.xmi.plan import TYPE_PREFIX, ClassPlan, FeaturePlan
-from amalthea_uros.xmi.source_merger import SourceMerger
+from amalthea_uros.xmi.emf import refusals
+from amalthea_uros.xmi.emf.header import ModelHeader, NotAModelError, read_header
+from amalthea_uros.xmi.emf.plan import TYPE_PREFIX, ClassPlan, FeaturePlan
+from amalthea_uros.xmi.emf.serializer import EmfSerializer, tag_of
+from amalthea_uros.xmi.emf.source_merger import SourceMerger
 
 _HELP = (
     "Remove what amuros does not know of this object, or what is given twice. If there is nothing like that, this is an error in "

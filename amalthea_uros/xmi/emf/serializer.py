@@ -14,8 +14,8 @@ from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Document
 from amalthea_uros.metamodel.naming import place, unique_name
 from amalthea_uros.metamodel.source import Prefixes
-from amalthea_uros.xmi.escape import escape, impossible_character
-from amalthea_uros.xmi.plan import ClassPlan, FeaturePlan, plans
+from amalthea_uros.xmi.emf.escape import escape, impossible_character
+from amalthea_uros.xmi.emf.plan import ClassPlan, FeaturePlan, plans
 
 
 class ChildPart(NamedTuple):

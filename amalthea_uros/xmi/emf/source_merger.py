@@ -15,9 +15,9 @@ from typing import Any, NamedTuple
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Document
 from amalthea_uros.metamodel.source import SourceText, attributes_of_tag
-from amalthea_uros.xmi.emf_serializer import Child, ChildPart, ChildReference, EmfSerializer, tag_of
-from amalthea_uros.xmi.escape import escape, unescape
-from amalthea_uros.xmi.plan import ClassPlan, reference_texts
+from amalthea_uros.xmi.emf.escape import escape, unescape
+from amalthea_uros.xmi.emf.plan import ClassPlan, reference_texts
+from amalthea_uros.xmi.emf.serializer import Child, ChildPart, ChildReference, EmfSerializer, tag_of
 
 _NAME = re.compile(r"[^\s/>]+")
 _NODE = re.compile(

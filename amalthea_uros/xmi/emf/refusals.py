@@ -8,7 +8,7 @@ from xml.parsers import expat
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.metamodel.source import SourceText
-from amalthea_uros.xmi.finding_collector import location
+from amalthea_uros.xmi.emf.finding_collector import location
 
 #: Real models nest about 15 deep; far deeper, recursion over a model would fail with a less helpful message.
 MAX_DEPTH = 200

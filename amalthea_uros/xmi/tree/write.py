@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from amalthea_uros.metamodel.versions import NAMESPACE_PREFIX
-from amalthea_uros.xmi.escape import escape
-from amalthea_uros.xmi.header import XMI_NAMESPACE, XSI_NAMESPACE
-from amalthea_uros.xmi.migrate.classes import reference_text
-from amalthea_uros.xmi.migrate.model_set import Tree
-from amalthea_uros.xmi.migrate.node import Node
-from amalthea_uros.xmi.migrate.versions import ITEA
+from amalthea_uros.xmi.emf.escape import escape
+from amalthea_uros.xmi.emf.header import XMI_NAMESPACE, XSI_NAMESPACE
+from amalthea_uros.xmi.emf.versions import ITEA
+from amalthea_uros.xmi.tree.classes import reference_text
+from amalthea_uros.xmi.tree.model_set import Tree
+from amalthea_uros.xmi.tree.node import Node
 
 _ITEA_NAMESPACE = "http://www.amalthea.itea2.org/model/"
 _ITEA_PACKAGES = (

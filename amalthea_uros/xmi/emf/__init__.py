@@ -1,0 +1,1 @@
+"""The file format: XMI as EMF writes it, read and written without loss."""
