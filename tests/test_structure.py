@@ -36,7 +36,7 @@ LINES = {
     "names": 17,
     "perf": 1712,
     "platforms": 0,
-    "report": 8294,
+    "report": 8400,
     "services": 2962,
     "simulate": 6318,
     "source": 1911,

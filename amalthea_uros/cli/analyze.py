@@ -26,7 +26,7 @@ from amalthea_uros.cli.output import (
 from amalthea_uros.cli.settings_options import analysis_options, set_option
 from amalthea_uros.design.changes.change import EXAMPLE, Change
 from amalthea_uros.judge.summary import Schedulable
-from amalthea_uros.report.closing_line import closing_line
+from amalthea_uros.report.wording.closing_line import closing_line
 from amalthea_uros.services.analyze import AnalysisResult, analyze_files, chain_detail
 from amalthea_uros.services.changed_model import write_changed
 from amalthea_uros.timing.basics.settings import Settings

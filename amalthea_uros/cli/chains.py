@@ -10,7 +10,7 @@ import click
 from amalthea_uros._internal.files import is_standard_output
 from amalthea_uros.cli.files import INPUT, OUTPUT
 from amalthea_uros.cli.output import show_findings, show_text
-from amalthea_uros.report.escape import output_line
+from amalthea_uros.report.basics.escape import output_line
 from amalthea_uros.services.chains import add_path, chosen_path, find_paths
 
 

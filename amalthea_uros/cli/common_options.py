@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 from amalthea_uros.cli.watch import repeat_on_change
-from amalthea_uros.report.display import DISPLAY, Colours, Display
+from amalthea_uros.report.basics.display import DISPLAY, Colours, Display
 
 #: The commands that can run again and again.
 _WATCHING = frozenset({"analyze", "build", "check", "report"})

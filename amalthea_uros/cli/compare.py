@@ -143,7 +143,7 @@ def command(
     show_findings(result.findings)
     show_differences(result.differences)
     if picture is not None:
-        from amalthea_uros.report.comparison_pictures import comparison_picture
+        from amalthea_uros.report.result_pictures import comparison_picture
         from amalthea_uros.xmi.emf.files import FileText, write_text
 
         write_text(picture, FileText(comparison_picture(result)))

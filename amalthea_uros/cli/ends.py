@@ -12,7 +12,7 @@ def failed(error: OSError) -> int:
     """Say what could not be read or written, by the descriptor, because the stream may be what failed; the exit code."""
     # The reader of our output is gone, as in `amuros info m.amxmi | head`; that needs no words.
     if not isinstance(error, BrokenPipeError):
-        from amalthea_uros.report.escape import visible
+        from amalthea_uros.report.basics.escape import visible
 
         what = "the output cannot be written" if error.filename is None else os.fsdecode(error.filename)
         say(visible(f"{what}: {error.strerror or error}"))

@@ -13,8 +13,8 @@ from amalthea_uros.cli.files import INPUT, OUTPUT_FILE
 from amalthea_uros.cli.init import Offer
 from amalthea_uros.cli.output import show_findings
 from amalthea_uros.diagnostics import Severity, worst
-from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.report.text.import_result import write
+from amalthea_uros.report.writers.terminal import Terminal
 from amalthea_uros.services.import_code import import_code
 
 

@@ -13,7 +13,7 @@ import click
 from amalthea_uros._internal.similar import did_you_mean
 from amalthea_uros._version import __version__
 from amalthea_uros.cli.ends import INTERRUPTED, failed
-from amalthea_uros.report.escape import visible
+from amalthea_uros.report.basics.escape import visible
 
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
@@ -126,8 +126,8 @@ def main() -> None:
     except AmurosError as error:
         from amalthea_uros.cli.output import show_findings
         from amalthea_uros.findings.unreadable import is_unreadable
-        from amalthea_uros.report.terminal import Terminal
-        from amalthea_uros.report.wording import findings_text
+        from amalthea_uros.report.wording.findings import findings_text
+        from amalthea_uros.report.writers.terminal import Terminal
 
         terminal = Terminal(sys.stderr)
         show_findings(error.findings)

@@ -71,7 +71,7 @@ def command(
     found = measure_file(trace, replace(reading, select=select, chain_starts=starts))
     show_findings(found.findings)
     if histograms:
-        from amalthea_uros.report.measurement_pictures import histogram_picture
+        from amalthea_uros.report.result_pictures import histogram_picture
         from amalthea_uros.xmi.emf.files import FileText, write_text
 
         pictures = [(path, histogram_picture(found, name)) for name, path in histograms]

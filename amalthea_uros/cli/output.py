@@ -24,8 +24,8 @@ from amalthea_uros._internal.files import (
 from amalthea_uros.cli.files import INPUT, output_path, refuse_mixture
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.report import formats
-from amalthea_uros.report.display import is_brief
-from amalthea_uros.report.terminal import Terminal
+from amalthea_uros.report.basics.display import is_brief
+from amalthea_uros.report.writers.terminal import Terminal
 
 if TYPE_CHECKING:
     from amalthea_uros.design.changes.apply import Difference

@@ -58,7 +58,7 @@ class Pictures:
         if not self.paths:
             return
         from amalthea_uros.names import require
-        from amalthea_uros.report.simulation_pictures import check_window_of, quantity_of
+        from amalthea_uros.report.pictures.simulation import check_window_of, quantity_of
 
         require("process", (process for process, _ in self.timelines), plan.system.processes)
         require("process", [self.gantt_of] if self.gantt_of is not None else [], plan.system.processes)
@@ -97,11 +97,11 @@ class Pictures:
             write_text(path, FileText(draw(result)))
 
     def _drawings(self) -> Iterator[tuple[Path, Callable[[SimulationResult], str]]]:
-        from amalthea_uros.report import simulation_pictures as draw
+        from amalthea_uros.report.pictures.simulation import gantt_picture, histogram_picture, timeline_picture
 
         if self.gantt is not None:
-            yield self.gantt, partial(draw.gantt_picture, window=self.window, process=self.gantt_of, chain=self.chain)
+            yield self.gantt, partial(gantt_picture, window=self.window, process=self.gantt_of, chain=self.chain)
         for process, path in self.timelines:
-            yield path, partial(draw.timeline_picture, process=process, window=self.window)
+            yield path, partial(timeline_picture, process=process, window=self.window)
         for name, path in self.histograms:
-            yield path, partial(draw.histogram_picture, name=name)
+            yield path, partial(histogram_picture, name=name)

@@ -21,8 +21,8 @@ from amalthea_uros.cli.output import (
 from amalthea_uros.cli.parsed import Parsed
 from amalthea_uros.cli.settings_options import analysis_options, set_option
 from amalthea_uros.design.changes.change import Change
-from amalthea_uros.report.closing_line import closing_line
 from amalthea_uros.report.suffixes import FORMATS, format_of
+from amalthea_uros.report.wording.closing_line import closing_line
 from amalthea_uros.services.report import compile_report
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import Time, parse_duration

@@ -139,7 +139,7 @@ def command(
 def _draw(result: SweepResult, pictures: tuple[tuple[str, Path], ...]) -> None:
     if not pictures:
         return
-    from amalthea_uros.report.sweep_picture import sweep_picture
+    from amalthea_uros.report.result_pictures import sweep_picture
     from amalthea_uros.xmi.emf.files import FileText, write_text
 
     for quantity, path in pictures:

@@ -10,8 +10,8 @@ from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.processes import ProcessResult
 from amalthea_uros.editor.document import TextDocument
 from amalthea_uros.errors import AmurosError
-from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.report.text.explanation import write
+from amalthea_uros.report.writers.terminal import Terminal
 from amalthea_uros.services.analyze import AnalysisResult, analyze_files
 from amalthea_uros.services.explain import explain
 from amalthea_uros.timing.response import Response

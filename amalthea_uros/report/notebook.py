@@ -14,13 +14,13 @@ from amalthea_uros.analyze.priorities.assignment import Proposal
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.design.changes.apply import Difference
 from amalthea_uros.diagnostics import Finding
-from amalthea_uros.report.document import document
+from amalthea_uros.report.basics.document import document
+from amalthea_uros.report.basics.escape import visible
 from amalthea_uros.report.documents.analysis import impact_section, priorities_section
 from amalthea_uros.report.documents.simulation import simulation_document
-from amalthea_uros.report.escape import visible
 from amalthea_uros.report.formats.text import RENDERS, write_text
 from amalthea_uros.report.records import all_records, lean_records
-from amalthea_uros.report.terminal import Terminal
+from amalthea_uros.report.writers.terminal import Terminal
 from amalthea_uros.report.writers.text import write_document
 from amalthea_uros.services import analyze as services_analyze
 from amalthea_uros.services.what_if import WhatIf

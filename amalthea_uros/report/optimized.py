@@ -10,7 +10,7 @@ from amalthea_uros.design.optimize.limits import Limit
 from amalthea_uros.design.optimize.problem import Conclusion, Feasibility, Goal
 from amalthea_uros.design.optimize.quantities import Dimension, dimension
 from amalthea_uros.design.optimize.space import Choice, Space
-from amalthea_uros.report.cells import load_text
+from amalthea_uros.report.wording.cells import load_text
 from amalthea_uros.services.optimize import Optimization
 from amalthea_uros.units import number_text, time_text
 

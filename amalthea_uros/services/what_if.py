@@ -17,7 +17,6 @@ from amalthea_uros.design.changes.key import Configuration
 from amalthea_uros.design.changes.timing_changes import described
 from amalthea_uros.perf.system import System
 from amalthea_uros.services.changed_model import write_changed
-from amalthea_uros.services.impact_text import HEADINGS, cells, plain_table, unchanged_text
 from amalthea_uros.services.names import require_settings
 from amalthea_uros.services.subject import Subject, reusable, system_of
 from amalthea_uros.timing.basics.settings import Settings
@@ -52,11 +51,6 @@ class WhatIf(Shown):
         counts = ", ".join(f"{number} {effect}" for effect, number in self.impact.counts.items()) or "nothing changed"
         schedulable = f"{self.before.summary.schedulable} -> {self.after.summary.schedulable}"
         return f"<WhatIf {'; '.join(map(str, self.differences))}: schedulable {schedulable}; {counts}>"
-
-    def __str__(self) -> str:
-        rows = [HEADINGS, *cells(self.impact)] if self.impact else []
-        table = [plain_table(rows)] if rows else []
-        return "\n".join([*map(str, self.differences), "", *table, unchanged_text(self.impact)])
 
     def save(self, path: StrPath) -> None:
         """Write the changed system as an AMALTHEA model.

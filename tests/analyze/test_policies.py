@@ -40,7 +40,7 @@ from amalthea_uros.perf.os import Duration, OperatingSystem, Os, Overhead, Param
 from amalthea_uros.perf.software import Channel, Isr, IsrCategory, Label, Preemption, Runnable, Software, Task
 from amalthea_uros.perf.stimuli import EventTriggered, Periodic, RelativePeriodic, Stimuli
 from amalthea_uros.perf.system import System
-from amalthea_uros.report.closing_line import closing_line
+from amalthea_uros.report.wording.closing_line import closing_line
 from amalthea_uros.timing.basics.settings import MemoryModel, Settings
 from amalthea_uros.units import MICROSECOND as US
 

@@ -14,8 +14,8 @@ from amalthea_uros import analyze_files
 from amalthea_uros.perf.activities import AccessKind, LabelAccess
 from amalthea_uros.perf.software import Label, Software, Task
 from amalthea_uros.perf.system import System
-from amalthea_uros.report.data_flow import dot, mermaid
-from amalthea_uros.report.escape import visible
+from amalthea_uros.report.basics.escape import visible
+from amalthea_uros.report.writers.graphs import dot, mermaid
 
 NASTY = ["end", 'a"]b', "x;y|z", "li\nne", "ü→日", "&amp;#35;", "\\N \\", "<b>t</b>", "`md` **b**", "%%x", "--> q", "subgraph"]
 

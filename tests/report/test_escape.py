@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.findings.presentation import present
 from amalthea_uros.report import formats
-from amalthea_uros.report.escape import output_line, visible
+from amalthea_uros.report.basics.escape import output_line, visible
 from amalthea_uros.report.pictures.svg import element, text
-from amalthea_uros.report.terminal import Terminal
+from amalthea_uros.report.writers.terminal import Terminal
 from amalthea_uros.services.check import CheckResult
 
 #: Any character that a file or the name of a file can have, with those that act in some way more often.

@@ -12,7 +12,7 @@ from amalthea_uros._internal.plural import counted
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.findings.presentation import present
 from amalthea_uros.report import formats
-from amalthea_uros.report.wording import findings_text
+from amalthea_uros.report.wording.findings import findings_text
 from amalthea_uros.services.check import CheckResult
 from amalthea_uros.services.info import InfoResult
 

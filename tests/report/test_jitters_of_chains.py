@@ -5,7 +5,7 @@ from support import ROOT
 import amalthea_uros as amuros
 from amalthea_uros.analyze.results.chains import LatencyQuantity
 from amalthea_uros.judge.verdict import Verdict
-from amalthea_uros.report.judged import decisive_quantity, judged_rows, requirements_of
+from amalthea_uros.report.documents.judged import decisive_quantity, judged_rows, requirements_of
 
 #: Reactions from 1.016 to 20.029 ms over all phases, which are met with a limit of 25 ms; of 15 ms of jitter, that is unknown.
 TEXT = (ROOT / "samples" / "bodas-test-advanced.yaml").read_text().replace("reaction: 25 ms", "reaction: 25 ms, jitter: 15 ms")

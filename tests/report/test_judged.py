@@ -7,7 +7,7 @@ from support import ROOT
 
 from amalthea_uros import analyze, task, taskset
 from amalthea_uros.judge.verdict import Verdict
-from amalthea_uros.report.judged import judged_rows, why
+from amalthea_uros.report.documents.judged import judged_rows, why
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
 

@@ -7,13 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.report.escape import visible
-from amalthea_uros.report.pictures.count_axis import count_label, count_ticks
-from amalthea_uros.report.pictures.svg import element, text
-from amalthea_uros.report.pictures.text_widths import elided, text_width
-from amalthea_uros.report.pictures.ticks import multiples, nice_step, unit_of
-from amalthea_uros.report.pictures.time_axis import TimeAxis
-from amalthea_uros.report.pictures.windows import default_window
+from amalthea_uros.report.basics.escape import visible
+from amalthea_uros.report.pictures.axes import TimeAxis, count_label, count_ticks, default_window, multiples, nice_step, unit_of
+from amalthea_uros.report.pictures.svg import element, elided, text, text_width
 from amalthea_uros.units import MICROSECOND, MILLISECOND, NANOSECOND, SECOND
 
 TIMES = st.integers(0, 2**62)

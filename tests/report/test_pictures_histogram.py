@@ -6,8 +6,14 @@ from hypothesis import strategies as st
 from svg_reading import SVG, assert_readable, parsed, rectangles, scale, texts
 
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.report.pictures.histogram import HistogramPicture, HistogramSeries, histogram
-from amalthea_uros.report.pictures.histogram_marks import Mark, MarkKind, short_time_text
+from amalthea_uros.report.pictures.histogram import (
+    HistogramPicture,
+    HistogramSeries,
+    Mark,
+    MarkKind,
+    histogram,
+    short_time_text,
+)
 from amalthea_uros.units import MICROSECOND, MILLISECOND, parse_time
 
 US, MS = MICROSECOND, MILLISECOND

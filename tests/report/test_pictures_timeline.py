@@ -4,8 +4,8 @@ import pytest
 from svg_reading import assert_readable, rectangles, scale, texts
 
 from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.report.pictures.gantt import StateTimeline, state_timeline
 from amalthea_uros.report.pictures.jobs import Job, ProcessRow, State, StateSpan
-from amalthea_uros.report.pictures.state_timeline import StateTimeline, state_timeline
 from amalthea_uros.units import MICROSECOND
 
 US = MICROSECOND

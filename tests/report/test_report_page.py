@@ -14,9 +14,9 @@ from support import ROOT, analysis_of
 from amalthea_uros import am, load, report, save
 from amalthea_uros.analyze.results.chains import LatencyQuantity
 from amalthea_uros.perf.activities import Migrate
-from amalthea_uros.report.closing_line import closing_line
-from amalthea_uros.report.document import table
-from amalthea_uros.report.latencies import value_text
+from amalthea_uros.report.basics.document import table
+from amalthea_uros.report.wording.chains import value_text
+from amalthea_uros.report.wording.closing_line import closing_line
 from amalthea_uros.units import Rounding, rounded_time_text
 
 SAMPLES = ROOT / "samples"

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from amalthea_uros.report.terminal import WIDTH_ELSEWHERE, Terminal
+from amalthea_uros.report.writers.terminal import WIDTH_ELSEWHERE, Terminal
 
 REASON = "depends on 'Sensor', which could not be analysed because of a missing execution time"
 

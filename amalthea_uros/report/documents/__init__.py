@@ -6,7 +6,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from amalthea_uros.report.document import Document
+    from amalthea_uros.report.basics.document import Document
 
 #: The modules that make documents of results, and their functions.
 DOCUMENTS = {

@@ -15,21 +15,7 @@ from amalthea_uros.analyze.results.requirements import RequirementResult
 from amalthea_uros.analyze.sensitivity import MAX_FACTOR, Sensitivity
 from amalthea_uros.executors.results import ExecutorResult, HandleResult
 from amalthea_uros.judge.verdict import WORST_FIRST, Verdict
-from amalthea_uros.report.cells import (
-    UNKNOWN,
-    about,
-    at_least,
-    at_most,
-    by_core_and_priority,
-    deadline_text,
-    exactly,
-    priority_text,
-    response_ends,
-    verdict_badge,
-    words,
-)
-from amalthea_uros.report.closing_line import closing_line
-from amalthea_uros.report.document import (
+from amalthea_uros.report.basics.document import (
     Badge,
     Block,
     Cell,
@@ -42,10 +28,23 @@ from amalthea_uros.report.document import (
     section,
     table,
 )
-from amalthea_uros.report.latencies import COLUMNS, HEADING, cells
-from amalthea_uros.report.message_chains import HEADINGS as MESSAGE_COLUMNS
-from amalthea_uros.report.message_chains import headline, latency_row
-from amalthea_uros.services import impact_text
+from amalthea_uros.report.wording.cells import (
+    UNKNOWN,
+    about,
+    at_least,
+    at_most,
+    by_core_and_priority,
+    deadline_text,
+    exactly,
+    priority_text,
+    response_ends,
+    verdict_badge,
+    words,
+)
+from amalthea_uros.report.wording.chains import CHAINS_HEADING, LATENCY_COLUMNS, headline, latency_cells, message_chain_row
+from amalthea_uros.report.wording.chains import MESSAGE_COLUMNS as MESSAGE_COLUMNS
+from amalthea_uros.report.wording.closing_line import closing_line
+from amalthea_uros.report.wording.impact import impact_cells, unchanged_text
 from amalthea_uros.services.analyze import AnalysisResult
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.units import Rounding, Time, frequency_text, percent_text, time_text
@@ -65,7 +64,7 @@ def analysis_document(result: AnalysisResult) -> Document:
             section("Callbacks (from the activation of the process to the end of the callback)", callbacks(analysis)),
             *map(_executor, analysis.executors),
             *(map(_metrics, analysis.processes) if result.with_metrics else ()),
-            section(HEADING, _chains(analysis.chains)),
+            section(CHAINS_HEADING, _chains(analysis.chains)),
             section("Requirements", _requirements(analysis)),
             *([] if result.impact is None else [impact_section(result.impact)]),
             *(
@@ -91,7 +90,7 @@ def _message_chains(analysis: Analysis) -> Iterator[Section]:
 
 def latencies_of_messages(analysis: Analysis, remark: str = "why") -> Table:
     """The end-to-end latencies of messages."""
-    return table("Latency of messages, end to end", (*MESSAGE_COLUMNS, remark), map(latency_row, analysis.message_chains))
+    return table("Latency of messages, end to end", (*MESSAGE_COLUMNS, remark), map(message_chain_row, analysis.message_chains))
 
 
 def _loads(analysis: Analysis) -> Table:
@@ -180,7 +179,7 @@ def _remarks(process: ProcessResult, is_detailed: bool) -> tuple[str, ...]:
     response = process.response
     if not is_detailed:
         return (process.reason or (str(response.claim) if response else ""),)
-    from amalthea_uros.report.judged import why
+    from amalthea_uros.report.documents.judged import why
 
     return (str(response.claim) if response is not None and response.worst is not None else "", why(process))
 
@@ -261,8 +260,8 @@ def _metric_row(name: JobMetric, metric: Metric) -> tuple[str, ...]:
 
 
 def _chains(chains: Sequence[ChainResult]) -> Table:
-    rows = [(chain.name, *cells(chain, COLUMNS)) for chain in chains]
-    return table("Latencies of event chains", ("chain", *(f">{column}" for column in COLUMNS), ""), rows)
+    rows = [(chain.name, *latency_cells(chain, LATENCY_COLUMNS)) for chain in chains]
+    return table("Latencies of event chains", ("chain", *(f">{column}" for column in LATENCY_COLUMNS), ""), rows)
 
 
 def _requirements(analysis: Analysis) -> Table:
@@ -300,14 +299,14 @@ def _value(requirement: RequirementResult) -> str:
 def impact_section(impact: Impact, remark: str = "") -> Section:
     """What a change does to the results."""
     title = "Before and after the change" + (f" ({remark})" if remark else "")
-    return section(title, impact_table(impact), Sentences([impact_text.unchanged_text(impact)]))
+    return section(title, impact_table(impact), Sentences([unchanged_text(impact)]))
 
 
 def impact_table(impact: Impact) -> Table:
     """A row for each figure that changed."""
     rows: list[tuple[Cell, ...]] = [
         (*found[:-2], Badge(found[-2], _EFFECTS.get(row.effect, Tone.NEUTRAL)), found[-1])
-        for row, found in zip(impact.rows, impact_text.cells(impact), strict=True)
+        for row, found in zip(impact.rows, impact_cells(impact), strict=True)
     ]
     return table("Results before and after the change", ("object", "quantity", ">before", ">after", "effect", ""), rows)
 

@@ -4,10 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from amalthea_uros.report.cells import (
-    load_text,
-)
-from amalthea_uros.report.document import (
+from amalthea_uros.report.basics.document import (
     Badge,
     Listing,
     Section,
@@ -15,6 +12,7 @@ from amalthea_uros.report.document import (
     table,
 )
 from amalthea_uros.report.memory_text import memory_rows
+from amalthea_uros.report.wording.cells import load_text
 from amalthea_uros.services.generate import texts_of
 from amalthea_uros.services.report import ReportContent
 from amalthea_uros.units import Rounding, time_text

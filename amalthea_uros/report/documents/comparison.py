@@ -17,7 +17,7 @@ from amalthea_uros.compare.results import (
     is_bound,
 )
 from amalthea_uros.measure.series import MeasuredKind, Measurement
-from amalthea_uros.report.document import Document, Sentences, document, section, table
+from amalthea_uros.report.basics.document import Document, Sentences, document, section, table
 from amalthea_uros.report.documents.simulation import duration_text
 from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
 from amalthea_uros.units import Rounding, rounded_time_text, time_text

@@ -8,17 +8,15 @@ from collections.abc import Sequence
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.diagnostics import Finding, Severity, worst
 from amalthea_uros.findings.targets import summary
-from amalthea_uros.report.cells import (
-    badge,
-)
-from amalthea_uros.report.document import (
+from amalthea_uros.report.basics.document import (
     Block,
     Folded,
     Section,
     Sentences,
     table,
 )
-from amalthea_uros.report.wording import findings_text
+from amalthea_uros.report.wording.cells import badge
+from amalthea_uros.report.wording.findings import findings_text
 from amalthea_uros.services.report import ReportContent
 from amalthea_uros.validate import registry
 

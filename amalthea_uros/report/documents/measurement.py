@@ -8,7 +8,7 @@ from math import floor
 
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.measure.series import Counts, Measurement, Series
-from amalthea_uros.report.document import Document, Sentences, document, section, table
+from amalthea_uros.report.basics.document import Document, Sentences, document, section, table
 from amalthea_uros.report.documents.simulation import duration_text
 from amalthea_uros.simulate.observations import TimeHistogram
 from amalthea_uros.timing.basics.quantities import JobMetric

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.metamodel.versions import spelled
-from amalthea_uros.report.cells import shortened
-from amalthea_uros.report.document import Document, Sentences, document, section, table
+from amalthea_uros.report.basics.document import Document, Sentences, document, section, table
+from amalthea_uros.report.wording.cells import shortened
 from amalthea_uros.services.migrate import FileState, MigratedFile, MigrationChange, MigrationResult, NoteKind
 
 #: Of more versions only the first and the last are named.

@@ -4,15 +4,7 @@ from __future__ import annotations
 
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.analyze.results.chains import LatencyQuantity
-from amalthea_uros.report.cells import (
-    at_most,
-    badge,
-    by_core_and_priority,
-)
-from amalthea_uros.report.cells import (
-    observed as observed_ends,
-)
-from amalthea_uros.report.document import (
+from amalthea_uros.report.basics.document import (
     Block,
     Cell,
     Section,
@@ -21,7 +13,9 @@ from amalthea_uros.report.document import (
 )
 from amalthea_uros.report.documents.simulation import REMINDER, duration_text
 from amalthea_uros.report.documents.simulation import closing_line as observed_line
-from amalthea_uros.report.latencies import value_text
+from amalthea_uros.report.wording.cells import at_most, badge, by_core_and_priority
+from amalthea_uros.report.wording.cells import observed as observed_ends
+from amalthea_uros.report.wording.chains import value_text
 from amalthea_uros.services.report import ReportContent
 from amalthea_uros.simulate.observations import ChainObservation, ProcessObservation
 from amalthea_uros.simulate.results import Simulation

@@ -7,15 +7,12 @@ from dataclasses import dataclass
 
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.judge.verdict import Verdict
-from amalthea_uros.report.cells import (
-    tone_of,
-    verdict_badge,
-)
-from amalthea_uros.report.closing_line import closing_line
-from amalthea_uros.report.document import (
+from amalthea_uros.report.basics.document import (
     Tone,
 )
-from amalthea_uros.report.judged import judged_rows, why
+from amalthea_uros.report.documents.judged import judged_rows, why
+from amalthea_uros.report.wording.cells import tone_of, verdict_badge
+from amalthea_uros.report.wording.closing_line import closing_line
 from amalthea_uros.services.report import ReportContent
 
 #: What is missed or unknown is listed up to so many items.

@@ -11,18 +11,7 @@ from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import ChainResult, LatencyQuantity
 from amalthea_uros.analyze.results.processes import ProcessorResult, ProcessResult
 from amalthea_uros.executors.results import HandleResult
-from amalthea_uros.report.cells import (
-    UNKNOWN,
-    at_least,
-    at_most,
-    badge,
-    exactly,
-    load_text,
-    share_text,
-    verdict_badge,
-)
-from amalthea_uros.report.closing_line import closing_line
-from amalthea_uros.report.document import (
+from amalthea_uros.report.basics.document import (
     Badge,
     Block,
     Cell,
@@ -46,13 +35,15 @@ from amalthea_uros.report.documents.analysis import (
 )
 from amalthea_uros.report.documents.application import bus_section, pools_section
 from amalthea_uros.report.documents.findings import findings_section
+from amalthea_uros.report.documents.judged import judged_rows, limit_text, margin_text, requirements_of, why, worst_chains
 from amalthea_uros.report.documents.observed import observed_section
 from amalthea_uros.report.documents.worst_cases import gantt_section, histogram_section, hops_section
-from amalthea_uros.report.judged import judged_rows, limit_text, margin_text, requirements_of, why, worst_chains
-from amalthea_uros.report.latencies import value_text
 from amalthea_uros.report.pictures.load_bars import draw_loads
 from amalthea_uros.report.pictures.response_bars import draw_responses
 from amalthea_uros.report.pictures.system_picture import draw_system
+from amalthea_uros.report.wording.cells import UNKNOWN, at_least, at_most, badge, exactly, load_text, share_text, verdict_badge
+from amalthea_uros.report.wording.chains import value_text
+from amalthea_uros.report.wording.closing_line import closing_line
 from amalthea_uros.services.report import ReportContent
 from amalthea_uros.units import Rounding, frequency_text, time_text
 

@@ -13,12 +13,12 @@ from amalthea_uros.design.changes.apply import Difference
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.judge.causes import distinct
 from amalthea_uros.judge.verdict import WORST_OBSERVED_FIRST, ObservedVerdict
-from amalthea_uros.report.cells import badge, by_core_and_priority, deadline_text, observed, words
-from amalthea_uros.report.closing_line import left_text
-from amalthea_uros.report.document import Cell, Document, Section, Sentences, Table, document, section, table
+from amalthea_uros.report.basics.document import Cell, Document, Section, Sentences, Table, document, section, table
 from amalthea_uros.report.documents.analysis import impact_section
-from amalthea_uros.report.findings import joined
-from amalthea_uros.report.latencies import HEADING
+from amalthea_uros.report.wording.cells import badge, by_core_and_priority, deadline_text, observed, words
+from amalthea_uros.report.wording.chains import CHAINS_HEADING
+from amalthea_uros.report.wording.closing_line import left_text
+from amalthea_uros.report.wording.findings import joined
 from amalthea_uros.simulate.not_simulated import LIMITED_PROCESS_LEFT_OUT, consequence_of
 from amalthea_uros.simulate.observations import ChainObservation, ProcessObservation, RequirementObservation
 from amalthea_uros.simulate.results import IDLE, Judged, Simulation
@@ -143,7 +143,7 @@ def simulation_document(result: SimulationShown) -> Document:
         section("Load", table("", ("core", ">load"), loads)),
         section("Observed response times", _processes(simulation)),
         *(map(_metrics, simulation.processes) if result.with_metrics else ()),
-        section(HEADING, _chains(simulation)),
+        section(CHAINS_HEADING, _chains(simulation)),
         section("Runnables with requirements", _runnables(simulation)),
         section("Labels", _labels(simulation)),
         section("Requirements", _requirements(simulation)),

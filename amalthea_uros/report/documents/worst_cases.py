@@ -13,13 +13,13 @@ from amalthea_uros.analyze.results.chains import LatencyQuantity
 from amalthea_uros.analyze.results.processes import ProcessResult
 from amalthea_uros.design.improvements import Improvement
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.report.cells import at_least, at_most
-from amalthea_uros.report.document import Block, Cell, Figure, Folded, Heading, Section, Sentences, table
-from amalthea_uros.report.judged import LIMITED, decisive_quantity, judged_rows, requirements_of, worst_chains
-from amalthea_uros.report.latencies import value_text
+from amalthea_uros.report.basics.document import Block, Cell, Figure, Folded, Heading, Section, Sentences, table
+from amalthea_uros.report.documents.judged import LIMITED, decisive_quantity, judged_rows, requirements_of, worst_chains
 from amalthea_uros.report.pictures.chain_hops import draw_hops
-from amalthea_uros.report.pictures.histogram_marks import Mark, MarkKind
-from amalthea_uros.report.simulation_pictures import gantt_picture, histogram_picture
+from amalthea_uros.report.pictures.histogram import Mark, MarkKind
+from amalthea_uros.report.pictures.simulation import gantt_picture, histogram_picture
+from amalthea_uros.report.wording.cells import at_least, at_most
+from amalthea_uros.report.wording.chains import value_text
 from amalthea_uros.services.analyze import AnalysisResult
 from amalthea_uros.services.explain import improvements
 from amalthea_uros.services.report import ReportContent

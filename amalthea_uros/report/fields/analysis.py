@@ -11,10 +11,10 @@ from amalthea_uros.analyze.results.processes import CallbackResult, Metric, Proc
 from amalthea_uros.analyze.results.requirements import RequirementResult
 from amalthea_uros.analyze.sensitivity import Sensitivity
 from amalthea_uros.executors.results import ExecutorResult, HandleResult, Hop, Loss, TimePart
-from amalthea_uros.report.closing_line import closing_line
 from amalthea_uros.report.fields.changes import CHANGED
 from amalthea_uros.report.fields.declaration import ABSENT, Field, declare, given, json_of
-from amalthea_uros.report.findings import joined
+from amalthea_uros.report.wording.closing_line import closing_line
+from amalthea_uros.report.wording.findings import joined
 from amalthea_uros.services.analyze import AnalysisResult
 
 _BCRT: Field = ("bcrt_ps", "response.best")

@@ -9,8 +9,8 @@ from amalthea_uros.analyze.explanations.execution_shares import ExecutionShare
 from amalthea_uros.analyze.explanations.hop_causes import Execution, LatencyCause
 from amalthea_uros.analyze.explanations.processes import CallbackExplanation, ProcessExplanation
 from amalthea_uros.design.improvements import Improvement, Improvements
-from amalthea_uros.report.chain_causes import cause_text
 from amalthea_uros.report.fields.declaration import declare, json_of
+from amalthea_uros.report.wording.chains import cause_text
 from amalthea_uros.services.analyze import Explanation
 
 

@@ -11,7 +11,7 @@ from amalthea_uros.findings.fingerprint import fingerprint
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.report.fields import changes
 from amalthea_uros.report.fields.declaration import ALSO, declare, given, json_of
-from amalthea_uros.report.findings import joined, profile_name
+from amalthea_uros.report.wording.findings import joined, profile_name
 from amalthea_uros.services.check import CheckResult
 from amalthea_uros.services.diff import DiffResult
 from amalthea_uros.services.info import InfoResult

@@ -13,8 +13,8 @@ from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.report import optimized
 from amalthea_uros.report.fields.analysis import summary_json
 from amalthea_uros.report.fields.declaration import ALSO, declare, json_of
-from amalthea_uros.report.findings import joined
 from amalthea_uros.report.text.sweep_result import closing_line
+from amalthea_uros.report.wording.findings import joined
 from amalthea_uros.services.optimize import Optimization
 from amalthea_uros.services.sweep import SweepResult
 

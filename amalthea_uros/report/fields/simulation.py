@@ -8,8 +8,8 @@ from amalthea_uros.judge.causes import distinct
 from amalthea_uros.report.documents.simulation import closing_line
 from amalthea_uros.report.fields.changes import CHANGED
 from amalthea_uros.report.fields.declaration import ALSO, declare, fields_of, given, json_of
-from amalthea_uros.report.findings import joined
 from amalthea_uros.report.text.campaign_result import closing_line as closing_line_of_runs
+from amalthea_uros.report.wording.findings import joined
 from amalthea_uros.services.simulate import CampaignResult, SimulationResult
 from amalthea_uros.simulate.observations import (
     ChainObservation,

@@ -12,6 +12,6 @@ RENDERS = ("ReportContent",)
 
 def write(content: ReportContent, stream: IO[str]) -> None:
     """Write the graph."""
-    from amalthea_uros.report.data_flow import dot
+    from amalthea_uros.report.writers.graphs import dot
 
     stream.write(dot(content.system))

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.report.escape import visible
-from amalthea_uros.report.findings import relative
+from amalthea_uros.report.basics.escape import visible
+from amalthea_uros.report.wording.findings import relative
 
 if TYPE_CHECKING:
     from amalthea_uros.services.check import CheckResult

@@ -6,8 +6,8 @@ from typing import IO, TYPE_CHECKING
 
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.diagnostics import Finding, Severity, worst
-from amalthea_uros.report.escape import output_line, visible
-from amalthea_uros.report.findings import joined, profile_name
+from amalthea_uros.report.basics.escape import output_line, visible
+from amalthea_uros.report.wording.findings import joined, profile_name
 
 if TYPE_CHECKING:
     from amalthea_uros.services.check import CheckResult

@@ -12,6 +12,6 @@ RENDERS = ("ReportContent",)
 
 def write(content: ReportContent, stream: IO[str]) -> None:
     """Write the graph."""
-    from amalthea_uros.report.data_flow import mermaid
+    from amalthea_uros.report.writers.graphs import mermaid
 
     stream.write(mermaid(content.system))

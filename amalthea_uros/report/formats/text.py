@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from typing import IO
 
+from amalthea_uros.report.basics.display import is_brief
 from amalthea_uros.report.by_result import module_for, rendered_in
-from amalthea_uros.report.display import is_brief
 from amalthea_uros.report.documents import DOCUMENTS, document_of
-from amalthea_uros.report.terminal import Terminal
+from amalthea_uros.report.writers.terminal import Terminal
 
 RENDERS = rendered_in("text") | DOCUMENTS.keys() - {"ReportContent"}
 

@@ -8,12 +8,28 @@ from itertools import pairwise
 
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.analyze.explanations.chain_results import ChainExplanation, ProcessHop
-from amalthea_uros.report.pictures.arrows import arrows_at, draw_activations
-from amalthea_uros.report.pictures.page import MARGIN, TOP, WIDTH, LegendEntry, document, draw_legend
-from amalthea_uros.report.pictures.style import ARROW_END, PALETTE, SMALL_SIZE, TEXT_SIZE
-from amalthea_uros.report.pictures.svg import Markup, element, joined, number, text, tooltip
-from amalthea_uros.report.pictures.text_widths import elided, text_width
-from amalthea_uros.report.pictures.time_axis import HEIGHT, TimeAxis, draw_grid, draw_time_axis
+from amalthea_uros.report.pictures.axes import HEIGHT, TimeAxis, draw_grid, draw_time_axis
+from amalthea_uros.report.pictures.job_rows import arrows_at, draw_activations
+from amalthea_uros.report.pictures.svg import (
+    ARROW_END,
+    MARGIN,
+    PALETTE,
+    SMALL_SIZE,
+    TEXT_SIZE,
+    TOP,
+    WIDTH,
+    LegendEntry,
+    Markup,
+    document,
+    draw_legend,
+    element,
+    elided,
+    joined,
+    number,
+    text,
+    text_width,
+    tooltip,
+)
 from amalthea_uros.timing.response import Claim
 from amalthea_uros.units import Time, time_text
 

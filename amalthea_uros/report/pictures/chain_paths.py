@@ -7,10 +7,19 @@ from dataclasses import dataclass
 from itertools import pairwise
 from math import hypot
 
-from amalthea_uros.report.pictures.style import ARROW_END, TEXT_SIZE
-from amalthea_uros.report.pictures.svg import Markup, element, joined, number, text, tooltip
-from amalthea_uros.report.pictures.text_widths import elided, text_width
-from amalthea_uros.report.pictures.time_axis import TimeAxis
+from amalthea_uros.report.pictures.axes import TimeAxis
+from amalthea_uros.report.pictures.svg import (
+    ARROW_END,
+    TEXT_SIZE,
+    Markup,
+    element,
+    elided,
+    joined,
+    number,
+    text,
+    text_width,
+    tooltip,
+)
 from amalthea_uros.units import Time, time_text
 
 #: Pixels.

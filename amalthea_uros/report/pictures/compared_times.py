@@ -8,11 +8,24 @@ from fractions import Fraction
 from math import ceil, floor
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.report.pictures.page import MARGIN, TOP, WIDTH, LegendEntry, document, draw_legend
-from amalthea_uros.report.pictures.style import SMALL_SIZE, TEXT_SIZE
-from amalthea_uros.report.pictures.svg import Markup, element, joined, number, text, tooltip
-from amalthea_uros.report.pictures.text_widths import elided
-from amalthea_uros.report.pictures.time_axis import TimeAxis, draw_time_axis
+from amalthea_uros.report.pictures.axes import TimeAxis, draw_time_axis
+from amalthea_uros.report.pictures.svg import (
+    MARGIN,
+    SMALL_SIZE,
+    TEXT_SIZE,
+    TOP,
+    WIDTH,
+    LegendEntry,
+    Markup,
+    document,
+    draw_legend,
+    element,
+    elided,
+    joined,
+    number,
+    text,
+    tooltip,
+)
 from amalthea_uros.units import MICROSECOND, Time, time_text
 
 #: Pixels: of a row, its bars and its brackets, and of the columns for names and verdicts.

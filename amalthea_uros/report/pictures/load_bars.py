@@ -9,12 +9,26 @@ from fractions import Fraction
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.processes import ProcessorResult
-from amalthea_uros.report.cells import load_text
-from amalthea_uros.report.pictures.page import MARGIN, TOP, WIDTH, LegendEntry, document, draw_legend
-from amalthea_uros.report.pictures.style import TEXT_SIZE, UNKNOWN
-from amalthea_uros.report.pictures.svg import Markup, element, joined, number, text, tooltip
-from amalthea_uros.report.pictures.text_widths import elided, text_width
-from amalthea_uros.report.pictures.ticks import multiples, nice_step
+from amalthea_uros.report.pictures.axes import multiples, nice_step
+from amalthea_uros.report.pictures.svg import (
+    MARGIN,
+    TEXT_SIZE,
+    TOP,
+    UNKNOWN,
+    WIDTH,
+    LegendEntry,
+    Markup,
+    document,
+    draw_legend,
+    element,
+    elided,
+    joined,
+    number,
+    text,
+    text_width,
+    tooltip,
+)
+from amalthea_uros.report.wording.cells import load_text
 from amalthea_uros.units import Rounding
 
 #: More cores are not drawn, those with the lowest loads.

@@ -9,10 +9,22 @@ from fractions import Fraction
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.design.optimize.problem import Evaluation, Goal
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.report.cells import load_text
-from amalthea_uros.report.pictures.page import MARGIN, TOP, WIDTH, LegendEntry, document, draw_legend
-from amalthea_uros.report.pictures.svg import Markup, element, joined, number, text, tooltip
-from amalthea_uros.report.pictures.ticks import nice_steps
+from amalthea_uros.report.pictures.axes import nice_steps
+from amalthea_uros.report.pictures.svg import (
+    MARGIN,
+    TOP,
+    WIDTH,
+    LegendEntry,
+    Markup,
+    document,
+    draw_legend,
+    element,
+    joined,
+    number,
+    text,
+    tooltip,
+)
+from amalthea_uros.report.wording.cells import load_text
 from amalthea_uros.services.optimize import Optimization
 from amalthea_uros.units import number_text, time_text
 

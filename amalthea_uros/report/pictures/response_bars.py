@@ -11,11 +11,27 @@ from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.processes import ProcessResult
 from amalthea_uros.judge.summary import urgency
 from amalthea_uros.judge.verdict import Verdict
-from amalthea_uros.report.pictures.page import MARGIN, TOP, WIDTH, LegendEntry, document, draw_legend
-from amalthea_uros.report.pictures.style import SMALL_SIZE, TEXT_SIZE, UNKNOWN
-from amalthea_uros.report.pictures.svg import Markup, element, joined, number, text, tooltip
-from amalthea_uros.report.pictures.text_widths import elided
-from amalthea_uros.report.pictures.verdict_marks import MARK, draw_verdict, verdict_entries
+from amalthea_uros.report.pictures.svg import (
+    MARGIN,
+    MARK,
+    SMALL_SIZE,
+    TEXT_SIZE,
+    TOP,
+    UNKNOWN,
+    WIDTH,
+    LegendEntry,
+    Markup,
+    document,
+    draw_legend,
+    draw_verdict,
+    element,
+    elided,
+    joined,
+    number,
+    text,
+    tooltip,
+    verdict_entries,
+)
 from amalthea_uros.simulate.observations import MetricObservation
 from amalthea_uros.simulate.results import Simulation
 from amalthea_uros.units import Rounding, Time, rounded_time_text, time_text

@@ -9,12 +9,28 @@ from typing import TypeAlias
 
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.judge.verdict import Verdict
-from amalthea_uros.report.pictures.page import MARGIN, TOP, WIDTH, LegendEntry, document, draw_legend
-from amalthea_uros.report.pictures.style import PALETTE, SMALL_SIZE, UNKNOWN
-from amalthea_uros.report.pictures.svg import Markup, element, joined, number, text, tooltip
-from amalthea_uros.report.pictures.text_widths import elided, text_width
-from amalthea_uros.report.pictures.ticks import multiples, nice_step, unit_of
-from amalthea_uros.report.pictures.verdict_marks import draw_verdict, verdict_entries
+from amalthea_uros.report.pictures.axes import multiples, nice_step, unit_of
+from amalthea_uros.report.pictures.svg import (
+    MARGIN,
+    PALETTE,
+    SMALL_SIZE,
+    TOP,
+    UNKNOWN,
+    WIDTH,
+    LegendEntry,
+    Markup,
+    document,
+    draw_legend,
+    draw_verdict,
+    element,
+    elided,
+    joined,
+    number,
+    text,
+    text_width,
+    tooltip,
+    verdict_entries,
+)
 from amalthea_uros.units import number_text, time_text
 
 #: Pixels.

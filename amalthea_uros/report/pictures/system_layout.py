@@ -15,8 +15,7 @@ from dataclasses import dataclass
 
 import networkx as nx
 
-from amalthea_uros.report.pictures.style import SMALL_SIZE
-from amalthea_uros.report.pictures.text_widths import text_width
+from amalthea_uros.report.pictures.svg import SMALL_SIZE, text_width
 
 #: Pixels: of a box, between boxes, between the tracks and lines.
 BOX, LOWEST, PORT = 168.0, 50.0, 15.0

@@ -14,14 +14,29 @@ from amalthea_uros.analyze.results.processes import ProcessorResult
 from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.perf.software import Isr, Process
 from amalthea_uros.perf.system import System
-from amalthea_uros.report.cells import load_text
-from amalthea_uros.report.flows import ChainPath, Flow, SystemFlows
-from amalthea_uros.report.pictures.page import MARGIN, TOP, WIDTH, LegendEntry, document, draw_legend
-from amalthea_uros.report.pictures.style import PALETTE, SMALL_SIZE, TEXT_SIZE
-from amalthea_uros.report.pictures.svg import Markup, element, number, text, tooltip
+from amalthea_uros.report.pictures.flows import ChainPath, Flow, SystemFlows
+from amalthea_uros.report.pictures.svg import (
+    MARGIN,
+    MARK,
+    PALETTE,
+    SMALL_SIZE,
+    TEXT_SIZE,
+    TOP,
+    WIDTH,
+    LegendEntry,
+    Markup,
+    document,
+    draw_legend,
+    draw_verdict,
+    element,
+    elided,
+    number,
+    text,
+    tooltip,
+    verdict_entries,
+)
 from amalthea_uros.report.pictures.system_layout import BOX, DrawnWire, Layout, LayoutWire, Point, lay_out
-from amalthea_uros.report.pictures.text_widths import elided
-from amalthea_uros.report.pictures.verdict_marks import MARK, draw_verdict, verdict_entries
+from amalthea_uros.report.wording.cells import load_text
 from amalthea_uros.timing.activation.load import activation_rates, loads
 from amalthea_uros.timing.dataflow.links import LinkKind
 from amalthea_uros.timing.scheduling.allocation import allocated_cores

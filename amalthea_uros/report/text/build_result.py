@@ -5,9 +5,9 @@ from __future__ import annotations
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.perf.executors import Executor
 from amalthea_uros.perf.system import System
-from amalthea_uros.report.activation_text import activation_text
 from amalthea_uros.report.memory_text import memory_rows
-from amalthea_uros.report.terminal import Terminal
+from amalthea_uros.report.wording.cells import activation_text
+from amalthea_uros.report.writers.terminal import Terminal
 from amalthea_uros.services.build import BuildResult
 from amalthea_uros.units import percent_text, time_text
 from amalthea_uros.uros.assemble import Assembly

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.compare.calibration.values import CalibratedValue, Outcome
-from amalthea_uros.report.terminal import Terminal
+from amalthea_uros.report.writers.terminal import Terminal
 from amalthea_uros.services.calibrate import Calibration
 from amalthea_uros.units import Rounding, rounded_time_text, time_text
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.design.campaign.run import Outcome
-from amalthea_uros.report.terminal import Terminal
+from amalthea_uros.report.writers.terminal import Terminal
 from amalthea_uros.services.simulate import KEPT, MISSED, NOT_OBSERVED, CampaignResult, judged_in
 from amalthea_uros.units import time_text
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from amalthea_uros.analyze.results.chains import LatencyQuantity
-from amalthea_uros.report.latencies import quantity_text, value_text
-from amalthea_uros.report.terminal import Terminal
+from amalthea_uros.report.wording.chains import quantity_text, value_text
+from amalthea_uros.report.writers.terminal import Terminal
 from amalthea_uros.services.analyze import ChainDetail
 
 

@@ -8,8 +8,8 @@ from amalthea_uros.diagnostics import Severity
 from amalthea_uros.findings.grouping import FindingGroup
 from amalthea_uros.findings.presentation import Presentation
 from amalthea_uros.findings.targets import summary
-from amalthea_uros.report.terminal import Terminal
-from amalthea_uros.report.wording import findings_text
+from amalthea_uros.report.wording.findings import findings_text
+from amalthea_uros.report.writers.terminal import Terminal
 from amalthea_uros.services.check import CheckResult
 
 #: At most so many findings of a rule are shown; nobody reads more, and the others are counted.

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections import Counter
 
-from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.report.text.check_result import write_sum
+from amalthea_uros.report.writers.terminal import Terminal
 from amalthea_uros.services.check import CheckStatistics
 
 

@@ -9,8 +9,8 @@ from amalthea_uros._internal.plural import counted
 from amalthea_uros.difference.comparison import ChangeKind, ModelChange
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.features import features_of
-from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.report.text import impact, timing_changes
+from amalthea_uros.report.writers.terminal import Terminal
 from amalthea_uros.services.diff import DiffResult
 
 _MARKS = {

@@ -19,11 +19,10 @@ from amalthea_uros.executors.results import HandleResult
 from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.perf.executors import HandleKind
 from amalthea_uros.perf.stimuli import Counter
-from amalthea_uros.report.chain_causes import cause_text
 from amalthea_uros.report.hops import write_hops
-from amalthea_uros.report.message_chains import write_hops_of_chain
-from amalthea_uros.report.terminal import Terminal
 from amalthea_uros.report.text import improvements
+from amalthea_uros.report.wording.chains import cause_text, write_hops_of_chain
+from amalthea_uros.report.writers.terminal import Terminal
 from amalthea_uros.services.analyze import Explanation
 from amalthea_uros.timing.response import Response
 from amalthea_uros.units import Time, percent_text, time_text

@@ -5,8 +5,8 @@ from __future__ import annotations
 from difflib import unified_diff
 from io import StringIO
 
-from amalthea_uros.report.escape import visible
-from amalthea_uros.report.terminal import Terminal
+from amalthea_uros.report.basics.escape import visible
+from amalthea_uros.report.writers.terminal import Terminal
 from amalthea_uros.services.file_changes import FilesDiff
 
 #: As the programs diff and patch mark the last line of a file that does not end with a line end.

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.metamodel.versions import spelled
-from amalthea_uros.report.findings import joined
-from amalthea_uros.report.terminal import Terminal
+from amalthea_uros.report.wording.findings import joined
+from amalthea_uros.report.writers.terminal import Terminal
 from amalthea_uros.services.fix import FixResult
 
 

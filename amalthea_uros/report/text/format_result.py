@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from amalthea_uros.report.terminal import Terminal
+from amalthea_uros.report.writers.terminal import Terminal
 from amalthea_uros.services.format import FormatResult
 
 

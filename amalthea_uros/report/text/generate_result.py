@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from amalthea_uros.report.memory_text import memory_rows
-from amalthea_uros.report.terminal import Terminal
+from amalthea_uros.report.writers.terminal import Terminal
 from amalthea_uros.services.generate import GenerateResult
 from amalthea_uros.uros.generated_options import values_of
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from amalthea_uros.analyze.impact import Impact
-from amalthea_uros.report.document import document
+from amalthea_uros.report.basics.document import document
 from amalthea_uros.report.documents.analysis import impact_section
-from amalthea_uros.report.terminal import Terminal
+from amalthea_uros.report.writers.terminal import Terminal
 from amalthea_uros.report.writers.text import write_document
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.report.terminal import Terminal
+from amalthea_uros.report.writers.terminal import Terminal
 from amalthea_uros.services.import_code import ImportResult
 
 

@@ -6,7 +6,7 @@ import shlex
 from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.report.terminal import Terminal
+from amalthea_uros.report.writers.terminal import Terminal
 from amalthea_uros.units import time_text
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.metamodel.summary import ModelSummary
 from amalthea_uros.metamodel.versions import spelled
-from amalthea_uros.report.terminal import Terminal
+from amalthea_uros.report.writers.terminal import Terminal
 from amalthea_uros.services.info import InfoResult
 
 #: More classes and memories are only counted: the rare ones hide what matters.

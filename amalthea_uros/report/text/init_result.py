@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shlex
 
-from amalthea_uros.report.terminal import Terminal
+from amalthea_uros.report.writers.terminal import Terminal
 from amalthea_uros.services.init import InitResult
 
 #: Commands for a new description, with what they are good for.

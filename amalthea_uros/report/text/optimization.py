@@ -14,10 +14,10 @@ from amalthea_uros.design.optimize.problem import Feasibility
 from amalthea_uros.design.optimize.quantities import Amount, Dimension, Range, dimension
 from amalthea_uros.design.proposals import DesignProposal, LimitRow
 from amalthea_uros.judge.verdict import Verdict
-from amalthea_uros.report.cells import load_text
 from amalthea_uros.report.optimized import closing_line, count_text, goal_text, limit_text, space_lines
-from amalthea_uros.report.terminal import Terminal
-from amalthea_uros.services.impact_text import cells
+from amalthea_uros.report.wording.cells import load_text
+from amalthea_uros.report.wording.impact import impact_cells
+from amalthea_uros.report.writers.terminal import Terminal
 from amalthea_uros.services.optimize import Optimization
 from amalthea_uros.units import Rounding, Time, rounded_time_text
 
@@ -137,7 +137,7 @@ def _worse(proposal: DesignProposal, terminal: Terminal) -> None:
 
 
 def _drawback(row: ImpactRow) -> str:
-    (name, quantity, before, after, *_rest) = cells(Impact(rows=(row,), unchanged=0))[0]
+    (name, quantity, before, after, *_rest) = impact_cells(Impact(rows=(row,), unchanged=0))[0]
     return f"{quantity} of {name}: {before} -> {after}"
 
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from amalthea_uros.report.latencies import cells
-from amalthea_uros.report.terminal import Terminal
+from amalthea_uros.report.wording.chains import latency_cells
+from amalthea_uros.report.writers.terminal import Terminal
 from amalthea_uros.services.chains import PathsResult
 
 _COLUMNS = ("min", "reaction", "data age")
@@ -19,7 +19,7 @@ def write(result: PathsResult, terminal: Terminal) -> None:
     for number, (path, chain) in enumerate(zip(result.paths, result.chains, strict=True), start=1):
         first, *others = path.processes
         text = first + "".join(f" -[{', '.join(links)}]-> {process}" for links, process in zip(path.links, others, strict=True))
-        rows.append((number, *cells(chain, _COLUMNS), text))
+        rows.append((number, *latency_cells(chain, _COLUMNS), text))
     if not result.are_all:
         terminal.line(f"the first {len(rows)} paths that were found; there may be more, and shorter ones")
     terminal.table(("", *_COLUMNS, "", "path"), rows, right=(0, 1, 2, 3))

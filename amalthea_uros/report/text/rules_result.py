@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from amalthea_uros.report.findings import profile_name
-from amalthea_uros.report.terminal import Terminal
+from amalthea_uros.report.wording.findings import profile_name
+from amalthea_uros.report.writers.terminal import Terminal
 from amalthea_uros.services.rules import RulesResult
 
 

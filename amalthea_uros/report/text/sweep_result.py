@@ -9,7 +9,7 @@ from amalthea_uros._internal.plural import counted
 from amalthea_uros.design.campaign.analysis_job import GROWTH, SCHEDULABLE
 from amalthea_uros.design.campaign.run import Outcome, Value
 from amalthea_uros.judge.summary import Schedulable
-from amalthea_uros.report.terminal import Terminal
+from amalthea_uros.report.writers.terminal import Terminal
 from amalthea_uros.services.sweep import SweepResult
 from amalthea_uros.units import Rounding, number_text, rounded_time_text
 

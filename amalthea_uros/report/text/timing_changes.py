@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from amalthea_uros.design.changes.apply import Difference
 from amalthea_uros.design.changes.timing_changes import Happening, TimingChange
-from amalthea_uros.report.terminal import Terminal
+from amalthea_uros.report.writers.terminal import Terminal
 
 #: The mark and the colour of what is added and removed.
 _MARKS = {Happening.ADDED: ("+", "32"), Happening.REMOVED: ("-", "31")}

@@ -8,12 +8,11 @@ from markupsafe import Markup
 from amalthea_uros._internal.addresses import DOCUMENTATION
 from amalthea_uros._internal.resources import resource_folder
 from amalthea_uros._version import __version__
-from amalthea_uros.report.document import Figure
+from amalthea_uros.report.basics.document import Figure
+from amalthea_uros.report.basics.escape import visible
 from amalthea_uros.report.documents.opening import facts, opening
 from amalthea_uros.report.documents.page import page_sections
-from amalthea_uros.report.escape import visible
-from amalthea_uros.report.pictures.embedding import embedded
-from amalthea_uros.report.pictures.style import style_sheet
+from amalthea_uros.report.pictures.svg import embedded, style_sheet
 from amalthea_uros.services.report import ReportContent
 
 

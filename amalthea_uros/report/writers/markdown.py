@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from amalthea_uros.report.document import Block, Document, Sentences, Table, table
-from amalthea_uros.report.escape import visible
+from amalthea_uros.report.basics.document import Block, Document, Sentences, Table, table
+from amalthea_uros.report.basics.escape import visible
 
 #: Characters that may be markup; an underscore between letters never is.
 _SPECIAL = re.compile(r"[\\|<>*`\[\]~&]|(?<![^\W_])_|_(?![^\W_])")

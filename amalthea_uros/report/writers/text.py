@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from amalthea_uros.report.document import Block, Document, Sentences, Table
-from amalthea_uros.report.terminal import Terminal
+from amalthea_uros.report.basics.document import Block, Document, Sentences, Table
+from amalthea_uros.report.writers.terminal import Terminal
 
 
 def write_document(document: Document, terminal: Terminal) -> None:

@@ -13,15 +13,12 @@ import numpy as np
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.names import require
 from amalthea_uros.perf.system import System
+from amalthea_uros.report.pictures.axes import default_window
 from amalthea_uros.report.pictures.chain_paths import DrawnPath
 from amalthea_uros.report.pictures.from_events import chain_path, jobs_of
-from amalthea_uros.report.pictures.gantt import GanttChart, gantt
-from amalthea_uros.report.pictures.histogram import HistogramPicture, HistogramSeries, histogram
-from amalthea_uros.report.pictures.histogram_marks import Mark, MarkKind
+from amalthea_uros.report.pictures.gantt import GanttChart, StateTimeline, gantt, state_timeline
+from amalthea_uros.report.pictures.histogram import HistogramPicture, HistogramSeries, Mark, MarkKind, histogram
 from amalthea_uros.report.pictures.jobs import CoreRows, ProcessRow
-from amalthea_uros.report.pictures.state_timeline import StateTimeline, state_timeline
-from amalthea_uros.report.pictures.windows import default_window
-from amalthea_uros.services.recording import record_events
 from amalthea_uros.services.simulate import SimulationResult
 from amalthea_uros.simulate.observations import (
     WITH_HISTOGRAM,
@@ -249,3 +246,27 @@ def _distance(process: ProcessObservation) -> tuple[bool, Fraction]:
     if process.margin is not None:
         return False, process.margin
     return True, -process.response_time.max if process.response_time is not None else Fraction(0)
+
+
+def record_events(result: SimulationResult, start: Time, end: Time) -> EventTable:
+    """The events of a part of a simulation. If they were not kept, it is repeated up to there: runs with the same options are equal.
+
+    Raises
+    ------
+    InvalidArgumentError : nothing happens in the window.
+    """
+    end = min(end, result.options.duration)
+    kept = result.simulation.trace
+    events = _repeated(result, start, end) if kept is None else kept.between(start, end)
+    if not len(events):
+        raise InvalidArgumentError(f"nothing happens from {time_text(start)} to {time_text(end)}; choose another window")
+    return events
+
+
+def _repeated(result: SimulationResult, start: Time, end: Time) -> EventTable:
+    from amalthea_uros.simulate.system import simulate_system
+    from amalthea_uros.trace.sinks import EventRecorder
+
+    recorder = EventRecorder()
+    simulate_system(result.system, replace(result.options, duration=end, traced=(start, end)), [recorder])
+    return recorder.table

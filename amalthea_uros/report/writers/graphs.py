@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from amalthea_uros.perf.software import Isr
 from amalthea_uros.perf.system import System
-from amalthea_uros.report.escape import visible
-from amalthea_uros.report.flows import Flow, SystemFlows
+from amalthea_uros.report.basics.escape import visible
+from amalthea_uros.report.pictures.flows import Flow, SystemFlows
 from amalthea_uros.timing.dataflow.links import LinkKind
 
 #: More names at an arrow are counted.

@@ -11,7 +11,7 @@ from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.software import Isr, Process
 from amalthea_uros.perf.stimuli import EventTriggered, InterProcess, Periodic
 from amalthea_uros.perf.system import System
-from amalthea_uros.report.activation_text import activation_text
+from amalthea_uros.report.wording.cells import activation_text
 from amalthea_uros.timing.context import ProcessPlacement, TimingContext
 from amalthea_uros.timing.dataflow.chains import unfold
 from amalthea_uros.timing.dataflow.links import LinkKind, reads, writes

@@ -1,18 +1,13 @@
-"""An impact in words: the cells of its table, for reports and for the text of a result."""
+"""What a change does to results, in words."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from enum import StrEnum
 from fractions import Fraction
 
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.analyze.impact import ComparedFigure, Effect, FigureUnit, Impact, ImpactRow, Preference
 from amalthea_uros.units import Rounding, number_text, percent_text, rounded_time_text
-
-HEADINGS = ("object", "quantity", "before", "after", "effect", "claim")
-#: The columns with numbers.
-RIGHT = (2, 3)
 
 #: The names of quantities that tables have other words for.
 _SHORT = {
@@ -26,7 +21,7 @@ _SHORT = {
 }
 
 
-def cells(impact: Impact) -> list[tuple[str, ...]]:
+def impact_cells(impact: Impact) -> list[tuple[str, ...]]:
     """A row of text for each figure that changed."""
     return [_cells(row) for row in impact.rows]
 
@@ -37,16 +32,6 @@ def unchanged_text(impact: Impact) -> str:
         return "nothing changed" + (f": {counted(impact.unchanged, 'figure')} compared" if impact.unchanged else "")
     verb = "is" if impact.unchanged == 1 else "are"
     return f"{counted(impact.unchanged, 'other figure')} {verb} unchanged"
-
-
-def plain_table(rows: Sequence[Sequence[str]]) -> str:
-    """Rows in columns that are as wide as needed, for texts outside of a terminal."""
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    return "\n".join("  ".join(map(_padded, row, widths, range(len(row)))).rstrip() for row in rows)
-
-
-def _padded(cell: str, width: int, place: int) -> str:
-    return cell.rjust(width) if place in RIGHT else cell.ljust(width)
 
 
 def _cells(row: ImpactRow) -> tuple[str, ...]:

@@ -1,4 +1,4 @@
-"""Cells of tables: times, loads, verdicts and claims, rounded so that bounds remain bounds; and the order of rows."""
+"""Cells of tables: times, loads, verdicts, claims and activations, rounded so that bounds remain bounds; and the order of rows."""
 
 from __future__ import annotations
 
@@ -11,7 +11,19 @@ from amalthea_uros.analyze.results.requirements import RequirementResult
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.judge.verdict import ObservedVerdict, Verdict
-from amalthea_uros.report.document import Badge, Tone
+from amalthea_uros.perf.stimuli import (
+    ArrivalCurve,
+    Burst,
+    EventTriggered,
+    InterProcess,
+    Periodic,
+    RelativePeriodic,
+    Single,
+    Stimulus,
+    Synthetic,
+    VariableRate,
+)
+from amalthea_uros.report.basics.document import Badge, Tone
 from amalthea_uros.timing.response import Response
 from amalthea_uros.units import Rounding, Time, number_text, rounded, rounded_time_text, time_text
 
@@ -122,3 +134,25 @@ def tone_of(schedulable: Schedulable) -> Tone:
 def by_core_and_priority(core: str | None, is_isr: bool, priority: int | None) -> tuple[bool, str, bool, float]:
     """Sorts by core, and there by priority: what preempts others comes before them; unknown cores and priorities come last."""
     return (core is None, core or "", not is_isr, inf if priority is None else -priority)
+
+
+_ACTIVATIONS: dict[type, str] = {
+    RelativePeriodic: "sporadic",
+    InterProcess: "triggered",
+    EventTriggered: "by events",
+    Synthetic: "at listed times",
+    VariableRate: "at a variable rate",
+    ArrivalCurve: "by an arrival curve",
+}
+
+
+def activation_text(stimulus: Stimulus) -> str:
+    """When a stimulus activates, in a few words."""
+    match stimulus:
+        case Periodic(period=period, offset=offset):
+            return f"every {time_text(period)}" + (f" from {time_text(offset)}" if offset else "")
+        case Burst(period=period, count=count):
+            return f"{count} times every {time_text(period)}"
+        case Single(time=time):
+            return f"once at {time_text(time)}"
+    return _ACTIVATIONS.get(type(stimulus), "by a custom stimulus")

@@ -1,13 +1,15 @@
-"""What several formats say of findings."""
+"""Findings in words: their number, the profiles of their rules, and their files."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections import Counter
+from collections.abc import Collection, Iterable
 from pathlib import Path
 from typing import Any
 
 from amalthea_uros._internal.files import resolved
-from amalthea_uros.diagnostics import Finding
+from amalthea_uros._internal.plural import counted
+from amalthea_uros.diagnostics import Finding, Severity
 
 
 def finding_json(finding: Finding) -> dict[str, Any]:
@@ -43,3 +45,16 @@ def relative(path: Path) -> str | None:
 def joined(paths: Iterable[Path]) -> str:
     """Paths as they were given on the command line."""
     return " ".join(map(str, paths))
+
+
+def findings_text(findings: Collection[Finding]) -> str:
+    """How many findings there are: "3 findings: 2 warnings, 1 info"."""
+    if not findings:
+        return "no findings"
+    by_severity = Counter(finding.severity for finding in findings)
+    listed = ", ".join(_severities(severity, by_severity[severity]) for severity in Severity if by_severity[severity])
+    return f"{counted(len(findings), 'finding')}: {listed}"
+
+
+def _severities(severity: Severity, number: int) -> str:
+    return f"{number:,} {severity}" if severity is Severity.INFO else counted(number, severity)

@@ -1,0 +1,1 @@
+"""Values, verdicts, chains and findings in words, once for all documents and fields."""
