@@ -26,7 +26,7 @@ from amalthea_uros.services.inputs import open_system
 from amalthea_uros.simulate.kernel import machine_code
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.results import Simulation
-from amalthea_uros.simulate.system import simulate_system
+from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import parse_frequency
 

@@ -30,7 +30,7 @@ BEGINS = {EventKind.ACTIVATE: "activation", EventKind.START: "start"}
 
 
 @dataclass(frozen=True, slots=True)
-class _Steps:
+class _ChainEnds:
     """The first and the last steps of a chain, in the order of time; `stimulus` is the number of the stimulus."""
 
     time: Numbers
@@ -90,7 +90,7 @@ class ChainSteps:
             else:
                 yield from (replace(each, begin=BEGINS[begin]) for each in _latencies(name, found, begin))
 
-    def _ends(self, steps: Numbers, begin: EventKind) -> _Steps:
+    def _ends(self, steps: Numbers, begin: EventKind) -> _ChainEnds:
         time, _, stimulus, step, segment, job = steps
         is_first, is_last = step == 0, step == step.max()
         begun, is_known = self._begun(begin, job)
@@ -103,7 +103,7 @@ class ChainSteps:
         is_response = np.repeat([False, True], [np.count_nonzero(is_first), np.count_nonzero(is_last)])
         order = np.lexsort((is_response, times))
         stimuli, segments = (np.concatenate([column[is_first], column[is_last]])[order] for column in (stimulus, segment))
-        return _Steps(
+        return _ChainEnds(
             times[order], stimuli, segments + np.cumsum(is_after_loss(stimuli, is_response[order])), is_response[order]
         )
 
@@ -117,7 +117,7 @@ class ChainSteps:
         return times[found], known[found] == jobs
 
 
-def _latencies(name: str, steps: _Steps, begin: EventKind) -> Iterator[Series]:
+def _latencies(name: str, steps: _ChainEnds, begin: EventKind) -> Iterator[Series]:
     found, unanswered = LatencyLists(), 0
     order = np.argsort(steps.segment, kind="stable")
     for here in np.split(order, np.flatnonzero(np.diff(steps.segment[order])) + 1):

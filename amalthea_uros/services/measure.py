@@ -27,7 +27,7 @@ from amalthea_uros.services.simulate import time_of
 from amalthea_uros.services.subject import Subject, system_of
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.trace.can.logs import is_can_log
-from amalthea_uros.trace.ctf.folders import trace_files
+from amalthea_uros.trace.files import trace_files
 from amalthea_uros.trace.readers import format_of
 from amalthea_uros.trace.table import EventKind
 from amalthea_uros.units import Time

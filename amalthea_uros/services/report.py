@@ -209,7 +209,7 @@ def _name(paths: Iterable[Path]) -> str:
 
 def _simulated(system: System, options: Options, *, is_kept: bool) -> SimulationResult:
     """A run; if the events are kept, which takes memory, pictures need not repeat it."""
-    from amalthea_uros.simulate.system import simulate_system
+    from amalthea_uros.simulate.runs.run import simulate_system
     from amalthea_uros.trace.sinks import EventRecorder
 
     recorder = EventRecorder()

@@ -364,7 +364,7 @@ def simulate_campaign(
 
 
 def _simulated(system: System, options: Options, sinks: Sequence[OpenSink] = ()) -> Simulation:
-    from amalthea_uros.simulate.system import simulate_system
+    from amalthea_uros.simulate.runs.run import simulate_system
 
     return simulate_system(system, options, sinks)
 

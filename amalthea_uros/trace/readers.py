@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from amalthea_uros._internal.files import is_directory
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.trace.ctf.folders import has_metadata
-from amalthea_uros.trace.files import first_characters
+from amalthea_uros.trace.files import first_characters, has_metadata
 
 if TYPE_CHECKING:
     from amalthea_uros.trace.reading import TraceReader

@@ -12,7 +12,7 @@ import amalthea_uros as amuros
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.judge.verdict import ObservedVerdict, Verdict
 from amalthea_uros.simulate.options import Mode, Options
-from amalthea_uros.simulate.system import simulate_system
+from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
 

@@ -14,7 +14,7 @@ from amalthea_uros.perf.os import Policy
 from amalthea_uros.perf.software import Preemption
 from amalthea_uros.perf.stimuli import Periodic, Stimuli
 from amalthea_uros.simulate.options import Mode, Options
-from amalthea_uros.simulate.system import simulate_system
+from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.units import MICROSECOND as US
 
 POLICIES = st.sampled_from([Policy.DEFERRABLE_SERVER, Policy.POLLING_SERVER, Policy.SPORADIC_SERVER])

@@ -18,7 +18,7 @@ from amalthea_uros.perf.os import Duration, InterruptController, Parameter, Pare
 from amalthea_uros.perf.software import Isr, Label, OsEvent, Preemption
 from amalthea_uros.perf.stimuli import Periodic
 from amalthea_uros.simulate.options import Options
-from amalthea_uros.simulate.system import simulate_system
+from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.timing.response import Claim
 from amalthea_uros.units import MICROSECOND as US

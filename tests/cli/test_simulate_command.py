@@ -103,7 +103,7 @@ def events(response, start, end, period):
 @pytest.fixture
 def run(monkeypatch, capsys):
     """Calls the command in this process; gives the exit code, and what it wrote."""
-    module = ModuleType("amalthea_uros.simulate.system")
+    module = ModuleType("amalthea_uros.simulate.runs.run")
     module.simulate_system = simulate_system
     monkeypatch.setitem(sys.modules, module.__name__, module)
 

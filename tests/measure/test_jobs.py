@@ -9,7 +9,7 @@ from amalthea_uros.compare.measured.events import chain_starts
 from amalthea_uros.measure.event_chains import ChainSteps
 from amalthea_uros.measure.jobs import JobFollower
 from amalthea_uros.measure.series import Counts
-from amalthea_uros.simulate.system import simulate_system
+from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.trace.sinks import EventRecorder
 from amalthea_uros.trace.table import Entity, EntityKind, EventKind

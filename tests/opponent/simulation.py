@@ -15,13 +15,13 @@ from opponent.to_perf import MICROSECOND, to_perf
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.system import System
-from amalthea_uros.simulate.driver import KernelDriver
 from amalthea_uros.simulate.kernel import machine_code
 from amalthea_uros.simulate.kernel.layout import STIMULUS, Observation
 from amalthea_uros.simulate.metrics.chains import RouteMetrics, chain_observation
 from amalthea_uros.simulate.observations import MetricObservation
 from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.simulate.program.build import KernelProgram, build_program
+from amalthea_uros.simulate.runs.driver import KernelDriver
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.observed.job_times import JobColumn as Column
 

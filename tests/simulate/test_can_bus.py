@@ -10,7 +10,7 @@ from amalthea_uros.perf.distributions import Uniform
 from amalthea_uros.perf.stimuli import Periodic
 from amalthea_uros.perf.system import System
 from amalthea_uros.simulate.options import Mode, Options
-from amalthea_uros.simulate.system import simulate_system
+from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
 from amalthea_uros.units import NANOSECOND as NS

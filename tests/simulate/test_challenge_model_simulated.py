@@ -12,7 +12,7 @@ import pytest
 from support import SHARED
 
 from amalthea_uros import Mode, Options, Settings, analyze_system, extract, load
-from amalthea_uros.simulate.system import simulate_system
+from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import SECOND
 

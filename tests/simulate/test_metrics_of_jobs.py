@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from test_thesis import FIGURE, METRICS, cut
 
-from amalthea_uros.simulate.metrics.distributions import MAX_BINS, BinCounts, Distributions
+from amalthea_uros.simulate.metrics.distributions import MAX_BINS, BinCounts, MetricDistributions
 from amalthea_uros.simulate.metrics.jobs import JobMetrics, add_rows
 from amalthea_uros.simulate.observations import CountObservation
 from amalthea_uros.timing.basics.quantities import JobMetric
@@ -119,7 +119,7 @@ def test_the_sum_exceeds_64_bits():
 
 def test_small_variations_of_great_values_have_an_accurate_deviation():
     values = np.array([[10**15 + k % 2 for k in range(10_000)]])
-    found = Distributions(size=1, base=1, with_histograms=())
+    found = MetricDistributions(size=1, base=1, with_histograms=())
     found.add(values, values[0], values[0])
     assert found.observation(0).std == pytest.approx(0.5)
 
@@ -245,7 +245,7 @@ def test_the_bins_of_a_clock_of_300_mhz_are_whole_picoseconds():
 @given(anything, anything)
 def test_merged_distributions_are_those_of_all_values(some, others):
     def distribution(values):
-        found = Distributions(size=1, base=1, with_histograms=(0,))
+        found = MetricDistributions(size=1, base=1, with_histograms=(0,))
         array = np.array([values], np.int64)
         found.add(array, array[0], array[0])
         return found

@@ -30,7 +30,7 @@ from amalthea_uros.perf.software import Runnable, Software, Task
 from amalthea_uros.perf.stimuli import Counter, Periodic
 from amalthea_uros.simulate.kernel import machine_code
 from amalthea_uros.simulate.options import Mode, Options
-from amalthea_uros.simulate.system import simulate_system
+from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS

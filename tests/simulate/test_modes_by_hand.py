@@ -32,7 +32,7 @@ from amalthea_uros.perf.events import (
 from amalthea_uros.perf.software import Channel, Label, Mode, ModeLabel, Runnable
 from amalthea_uros.perf.stimuli import Counter, EventTriggered, InterProcess, Periodic
 from amalthea_uros.simulate.options import Options
-from amalthea_uros.simulate.system import simulate_system
+from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.timing.basics.quantities import ChainQuantity
 from amalthea_uros.units import MICROSECOND as US
 

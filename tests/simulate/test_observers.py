@@ -54,7 +54,7 @@ from amalthea_uros.perf.software import Label, Runnable
 from amalthea_uros.perf.stimuli import Counter, Periodic, Stimuli
 from amalthea_uros.simulate.kernel import machine_code
 from amalthea_uros.simulate.options import ALL_LABELS, Options
-from amalthea_uros.simulate.system import simulate_system
+from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import MICROSECOND as US

@@ -31,7 +31,7 @@ from amalthea_uros.perf.os import IsrOverhead, Os, Overhead, Semaphore, Semaphor
 from amalthea_uros.perf.software import IsrCategory, Label, OsEvent, Software
 from amalthea_uros.perf.stimuli import InterProcess, Stimuli
 from amalthea_uros.simulate.options import Mode, Options
-from amalthea_uros.simulate.system import simulate_system
+from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.timing.basics.settings import MemoryModel as MemoryCost
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import MILLISECOND as MS

@@ -12,7 +12,7 @@ from amalthea_uros.perf.constraints import Constraints, LatencyConstraint
 from amalthea_uros.perf.events import EventChain, Parallel, ProcessChange, ProcessEvent, Segment, Sequence
 from amalthea_uros.perf.software import Label
 from amalthea_uros.simulate.options import Options
-from amalthea_uros.simulate.system import simulate_system
+from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.units import MICROSECOND as US
 
 

@@ -9,7 +9,7 @@ from support import ROOT, analysis_of
 from amalthea_uros import describe
 from amalthea_uros.simulate.kernel import machine_code
 from amalthea_uros.simulate.options import Mode, Options
-from amalthea_uros.simulate.system import simulate_system
+from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.trace.table import EventKind

@@ -30,7 +30,7 @@ from amalthea_uros.perf.software import Mode, ModeLabel, OsEvent, Runnable
 from amalthea_uros.perf.stimuli import Counter, Custom, EventTriggered, Periodic
 from amalthea_uros.simulate.kernel import jobs
 from amalthea_uros.simulate.options import Options
-from amalthea_uros.simulate.system import simulate_system
+from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.units import MICROSECOND as US
 
 OTHER = Proc("other", (ticks(2),), 10, priority=1, scheduler="s1")

@@ -14,7 +14,7 @@ from amalthea_uros.perf.software import Label, Runnable
 from amalthea_uros.services.inputs import open_system
 from amalthea_uros.services.simulate import simulate
 from amalthea_uros.simulate.options import Options
-from amalthea_uros.simulate.system import simulate_system
+from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.trace.readers import open_trace
 from amalthea_uros.trace.sinks import EventRecorder, open_sink

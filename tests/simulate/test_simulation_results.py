@@ -32,7 +32,7 @@ from amalthea_uros.perf.software import Software, Task
 from amalthea_uros.perf.stimuli import Periodic, Stimuli
 from amalthea_uros.perf.system import System
 from amalthea_uros.simulate.observations import ChainObservation, CountObservation, RunnableObservation
-from amalthea_uros.simulate.observed_limits import judge_process, judge_requirements
+from amalthea_uros.simulate.runs.observed_limits import judge_process, judge_requirements
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.units import MICROSECOND as US

@@ -10,7 +10,7 @@ from amalthea_uros.perf.activities import Call, SetEvent, Trigger
 from amalthea_uros.perf.software import OsEvent, Runnable
 from amalthea_uros.perf.stimuli import Counter, InterProcess
 from amalthea_uros.simulate.options import Options
-from amalthea_uros.simulate.system import simulate_system
+from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.validate.system_context import SystemContext
 

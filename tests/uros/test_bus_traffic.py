@@ -17,7 +17,7 @@ from amalthea_uros.perf.stimuli import Single
 from amalthea_uros.perf.system import System
 from amalthea_uros.services.inputs import open_system
 from amalthea_uros.simulate.options import Mode, Options
-from amalthea_uros.simulate.system import simulate_system
+from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import SECOND
 from amalthea_uros.uros.network.bus_system import BusTransmission, with_bus

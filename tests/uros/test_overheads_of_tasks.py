@@ -10,7 +10,7 @@ from amalthea_uros.bridge.extract import extract
 from amalthea_uros.perf.activities import Call
 from amalthea_uros.perf.software import IsrCategory
 from amalthea_uros.simulate.options import Options
-from amalthea_uros.simulate.system import simulate_system
+from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.timing.demand.overheads import ASSUMPTION
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS

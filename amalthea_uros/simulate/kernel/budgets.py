@@ -10,42 +10,8 @@
 
 from __future__ import annotations
 
-from amalthea_uros.simulate.kernel.layout import (
-    ACTIVE_SINCE,
-    BUDGET,
-    BUDGET_BEFORE,
-    BUDGET_RATIO,
-    CONSTANT_BANDWIDTH,
-    DEADLINE,
-    DOMAIN,
-    FULL_BUDGET,
-    HAS_SERVER_DEADLINE,
-    IS_ACTIVE,
-    IS_DUE,
-    NEVER,
-    NOW,
-    OWN_DEADLINE,
-    PARENT,
-    PERIOD_RATIO,
-    PLAN_AMOUNT,
-    PLAN_SIZE,
-    PLAN_TIME,
-    PLANS,
-    PLANS_END,
-    POLLING_SERVER,
-    SERVED,
-    SERVED_END,
-    SERVER,
-    SERVER_AT,
-    SERVER_DEADLINE,
-    SERVER_DOMAIN,
-    SERVER_KIND,
-    SERVER_PERIOD,
-    SPORADIC,
-    STATE,
-    Memory,
-)
-from amalthea_uros.simulate.kernel.operations import TERMINATED, WAITING
+from amalthea_uros.simulate.kernel.layout import *
+from amalthea_uros.simulate.kernel.operations import *
 
 
 def has_budget(m: Memory, process: int) -> bool:

@@ -2,25 +2,7 @@
 
 from __future__ import annotations
 
-from amalthea_uros.simulate.kernel.layout import (
-    ALTERNATIVE_SIZE,
-    ALTERNATIVES,
-    ALTERNATIVES_END,
-    COMPARISON_SIZE,
-    COMPARISONS,
-    COMPARISONS_END,
-    COUNTED,
-    EVERY,
-    FIRST_EFFECT,
-    IS_CONSTANT,
-    LEFT_VALUE,
-    LITERALS,
-    MODE_VALUE,
-    RELATION,
-    RIGHT_CONSTANT,
-    RIGHT_VALUE,
-    Memory,
-)
+from amalthea_uros.simulate.kernel.layout import *
 
 #: Relations between two values.
 EQUAL, NOT_EQUAL, LESS, LESS_OR_EQUAL, GREATER, GREATER_OR_EQUAL = range(6)

@@ -5,87 +5,8 @@ from __future__ import annotations
 from amalthea_uros.simulate.kernel.activation import end_job, fire
 from amalthea_uros.simulate.kernel.conditions import counts, holds, set_mode, step_mode
 from amalthea_uros.simulate.kernel.cores import change_level, requeue, run, stays
-from amalthea_uros.simulate.kernel.layout import (
-    ARRIVAL,
-    ARRIVALS_END,
-    AT,
-    CAPACITY,
-    CAUSE,
-    CORE_DOMAIN,
-    EVENTS,
-    EVENTS_END,
-    FILL,
-    FIRST_PLACE,
-    HAS_TAKEN,
-    IS_DUE,
-    JOBS,
-    JOBS_END,
-    LEFT,
-    MASKS,
-    MESSAGE_CAPTURE,
-    NEEDS_STEP,
-    NOW,
-    OBSERVATIONS,
-    OBSERVATIONS_END,
-    OPERATION_SIZE,
-    ORDERED_PARTS,
-    OVERFLOWS,
-    PARTS,
-    PARTS_LEFT,
-    PARTS_TOTAL,
-    PASSES,
-    QUEUE_CAPTURES,
-    RUNS,
-    STEPS,
-    STREAM_AT,
-    STREAM_END,
-    TAKEN_MESSAGES,
-    WORD,
-    YIELDS,
-    Memory,
-)
-from amalthea_uros.simulate.kernel.operations import (
-    AGAIN,
-    BEGIN_EXECUTION,
-    BEGIN_RUNNABLE,
-    CHOOSE,
-    CLEAR_EVENT,
-    CONTINUE,
-    COUNT,
-    DRAW,
-    END,
-    END_EXECUTION,
-    END_RUNNABLE,
-    ENDLESS,
-    ENTER,
-    EXECUTE,
-    FIRE,
-    JUMP,
-    MASK,
-    NEXT,
-    NOTE,
-    OBSERVE,
-    POINT,
-    PUT,
-    REACH,
-    RECEIVE,
-    REPEAT,
-    REQUEST,
-    ROWS_FULL,
-    SEND,
-    SERVED,
-    SET_EVENT,
-    SET_MODE,
-    SHUFFLE,
-    STEP_MODE,
-    STREAM_EMPTY,
-    TAKE_MESSAGE,
-    TEST,
-    TEST_MESSAGE,
-    UNLOCK,
-    UNMASK,
-    WAIT_EVENT,
-)
+from amalthea_uros.simulate.kernel.layout import *
+from amalthea_uros.simulate.kernel.operations import *
 from amalthea_uros.simulate.kernel.reports import begin_execution, end_execution, observe, report_access, report_execution
 from amalthea_uros.simulate.kernel.stages import follow
 from amalthea_uros.simulate.kernel.waiting import await_events, change_events, request, serve, unlock
@@ -130,7 +51,7 @@ def resume_job(m: Memory, core: int) -> int:
         code = _execute_operation(m, core, process, at)
         if code:
             return code - 1
-        if REQUEST <= operation <= SERVED and m[due] and not stays(m, core, process) and not _is_complete(m, m[process + AT]):
+        if REQUEST <= operation <= ANSWER and m[due] and not stays(m, core, process) and not _is_complete(m, m[process + AT]):
             return CONTINUE
 
 

@@ -6,34 +6,8 @@ from amalthea_uros.simulate.kernel.activation import fire, publish_all
 from amalthea_uros.simulate.kernel.budgets import replenish
 from amalthea_uros.simulate.kernel.cores import dispatch, dispatch_all, pause, stop
 from amalthea_uros.simulate.kernel.jobs import execute_writes, resume_job
-from amalthea_uros.simulate.kernel.layout import (
-    ARRIVAL,
-    ARRIVAL_SIZE,
-    ARRIVALS_END,
-    CORES,
-    CORES_END,
-    DOMAINS,
-    DOMAINS_END,
-    EVENTS,
-    EVENTS_END,
-    HAS_WRITES,
-    IS_DUE,
-    ITS_CORES,
-    ITS_CORES_END,
-    NEEDS_STEP,
-    NOW,
-    OBSERVATIONS,
-    OBSERVATIONS_END,
-    RUNS,
-    SERVER_AT,
-    SERVERS,
-    SERVERS_END,
-    STEPS,
-    STOP,
-    UNTIL,
-    Memory,
-)
-from amalthea_uros.simulate.kernel.operations import ROWS_FULL, WINDOW
+from amalthea_uros.simulate.kernel.layout import *
+from amalthea_uros.simulate.kernel.operations import *
 
 
 def run_kernel(m: Memory) -> int:

@@ -16,7 +16,7 @@ SHUFFLE = 7  # begins (a group) in an order by a word from (a stream)
 NEXT = 8  # goes to the next part of (a group); if there is none, to (an operation)
 REPEAT = 9  # begins (a loop) with a number of passes from (a stream)
 AGAIN = 10  # begins a pass of (a loop); if there is none left, goes to (an operation)
-# From here on to SERVED: what can make others more urgent, or wait.
+# From here on to ANSWER: what can make others more urgent, or wait.
 REQUEST = 11  # requests (a semaphore) with (EXCLUSIVE + ACTIVE)
 UNLOCK = 12  # releases (a semaphore)
 MASK = 13  # keeps everything else off its core from here on
@@ -33,7 +33,7 @@ RECEIVE = 24  # takes out of (a channel) (a number of elements)
 ASK = 25  # asks for (a runnable)
 AWAIT = 26  # waits until (a runnable) has answered, with (ACTIVE)
 SERVE = 27  # begins (a runnable) for all that have asked
-SERVED = 28  # ends it
+ANSWER = 28  # ends it
 TAKE_MESSAGE = 29  # takes a message out of (a queue) if one has arrived before the activation
 NOTE = 30  # an event of (a kind) about (an entity), for the trace
 BEGIN_RUNNABLE = 31  # an execution of a runnable at (a site) begins, for the trace

@@ -2,45 +2,8 @@
 
 from __future__ import annotations
 
-from amalthea_uros.simulate.kernel.layout import (
-    ACTIVATION,
-    BEFORE_MIGRATIONS,
-    BEFORE_PARKING,
-    BEFORE_POLLING,
-    BEFORE_PREEMPTIONS,
-    BEFORE_RUNNING,
-    BEFORE_WAITING,
-    BEGAN,
-    CORE_ENTITY,
-    CORE_NUMBER,
-    ENTITY,
-    EVENT_SIZE,
-    EVENTS,
-    EXECUTED,
-    EXECUTION,
-    EXECUTION_NUMBER,
-    EXECUTIONS,
-    INSTANCE,
-    IS_REPORTED,
-    IS_TRACED,
-    JOB_SIZE,
-    JOBS,
-    MIGRATIONS,
-    NOW,
-    OBSERVATION_SIZE,
-    OBSERVATIONS,
-    PREEMPTIONS,
-    RUNNABLE_ENTITY,
-    SINCE,
-    STATE,
-    TIME_PARKING,
-    TIME_POLLING,
-    TIME_RUNNING,
-    TIME_WAITING,
-    WATCHED,
-    Memory,
-)
-from amalthea_uros.simulate.kernel.operations import PARKING, POLLING, RUNNING, WAITING
+from amalthea_uros.simulate.kernel.layout import *
+from amalthea_uros.simulate.kernel.operations import *
 
 #: In the column of the note of an event: there is none, as in `trace.table`.
 NO_NOTE = -(2**63)

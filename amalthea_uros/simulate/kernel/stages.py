@@ -2,41 +2,8 @@
 
 from __future__ import annotations
 
-from amalthea_uros.simulate.kernel.layout import (
-    ACTIVATION,
-    BEFORE_STAGE,
-    CAPTURE,
-    CHAIN_ENTITY,
-    ENTITY,
-    FIRST_PLACE,
-    HAS_RESPONDED,
-    INSTANCE,
-    IS_LAST,
-    IS_MARKED,
-    IS_OUT,
-    IS_TRACED,
-    LET_STAGES,
-    LET_STAGES_END,
-    LINK,
-    MARKED_AT,
-    NEEDED,
-    NOW,
-    OBSERVATION_SIZE,
-    OBSERVATIONS,
-    OUT,
-    PENDING,
-    QUEUE_CAPTURES,
-    REACHED,
-    RESPONDED_AT,
-    ROUTE,
-    ROUTE_NUMBER,
-    STAMPS,
-    STEP,
-    TAKEN,
-    VALUE,
-    Memory,
-)
-from amalthea_uros.simulate.kernel.operations import ENTER, MARK, PUBLISH, PUT, REACH, RESPOND, TAKE
+from amalthea_uros.simulate.kernel.layout import *
+from amalthea_uros.simulate.kernel.operations import *
 from amalthea_uros.simulate.kernel.reports import emit
 
 _CHAIN_STEP = 70

@@ -4,63 +4,8 @@ from __future__ import annotations
 
 from amalthea_uros.simulate.kernel.budgets import activate_server, deactivate_server
 from amalthea_uros.simulate.kernel.cores import change_level, is_before, leave_core, pause, requeue, run
-from amalthea_uros.simulate.kernel.layout import (
-    ANSWERED,
-    ASKED,
-    BEGUN,
-    CEILING,
-    CORE,
-    ENTITY,
-    EVENT_LIST,
-    EVENT_LIST_END,
-    EVENTS,
-    EVENTS_SET,
-    HAS_OWNER,
-    HELD,
-    HELD_SINCE,
-    HOLD_SIZE,
-    HOLDS,
-    INSTANCE,
-    IS_ACTIVE_WAIT,
-    IS_TRACED,
-    LEFT,
-    NEEDS_ALL,
-    NEEDS_STEP,
-    NEVER,
-    NOW,
-    OF_PROCESS,
-    ORDER,
-    PROCESSES,
-    PROCESSES_END,
-    SEMAPHORE_ENTITY,
-    SEMAPHORE_NUMBER,
-    SEQUENCE,
-    SERVER,
-    SERVICE_NUMBER,
-    STATE,
-    STOP,
-    TICKETS,
-    USED,
-    USERS,
-    WAITS_ANSWER,
-    WAITS_EVENTS,
-    WAITS_FOR,
-    WANTED,
-    YIELDS,
-    Memory,
-)
-from amalthea_uros.simulate.kernel.operations import (
-    ACTIVE,
-    ASK,
-    EXCLUSIVE,
-    PARKING,
-    POLLING,
-    READY,
-    RUNNING,
-    SERVE,
-    SERVED,
-    WAITING,
-)
+from amalthea_uros.simulate.kernel.layout import *
+from amalthea_uros.simulate.kernel.operations import *
 from amalthea_uros.simulate.kernel.reports import NO_NOTE, emit, enter_state, report, report_access
 
 #: The kinds of events, as in `trace.table.EventKind`.
@@ -272,7 +217,7 @@ def serve(m: Memory, core: int, process: int, operation: int, service: int, flag
         m[m[process + TICKETS] + m[service + SERVICE_NUMBER]] = m[service + ASKED]
     elif operation == SERVE:
         m[service + BEGUN] = m[service + ASKED]
-    elif operation == SERVED:
+    elif operation == ANSWER:
         m[service + ANSWERED] = max(m[service + ANSWERED], m[service + BEGUN])
         for place in range(m[PROCESSES], m[PROCESSES_END]):
             other = m[place]

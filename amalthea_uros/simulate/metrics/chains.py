@@ -10,7 +10,7 @@ import numpy as np
 
 from amalthea_uros._internal.arrays import Numbers
 from amalthea_uros.simulate.kernel.layout import RESPONSE, Observation
-from amalthea_uros.simulate.metrics.distributions import Distributions
+from amalthea_uros.simulate.metrics.distributions import MetricDistributions
 from amalthea_uros.simulate.observations import ChainObservation, MetricObservation, RouteObservation
 from amalthea_uros.timing.basics.quantities import ChainQuantity
 from amalthea_uros.timing.observed.chain_latencies import MEASURED, SAME, ObservedRouteLatencies
@@ -29,11 +29,11 @@ class RouteMetrics:
     """
 
     base: int
-    _found: dict[ChainQuantity, Distributions] = field(init=False)
+    _found: dict[ChainQuantity, MetricDistributions] = field(init=False)
     _latencies: ObservedRouteLatencies = field(init=False)
 
     def __post_init__(self) -> None:
-        self._found = {quantity: Distributions(size=1, base=self.base, with_histograms=(0,)) for quantity in MEASURED}
+        self._found = {quantity: MetricDistributions(size=1, base=self.base, with_histograms=(0,)) for quantity in MEASURED}
         self._latencies = ObservedRouteLatencies(self._note)
 
     def add(self, rows: Numbers) -> None:
@@ -58,7 +58,7 @@ class RouteMetrics:
     def _note(self, quantity: ChainQuantity, values: Numbers, stimuli: Numbers, times: Numbers) -> None:
         self._found[quantity].add(values[None, :], stimuli, times)
 
-    def merge_into(self, merged: Mapping[ChainQuantity, Distributions]) -> None:
+    def merge_into(self, merged: Mapping[ChainQuantity, MetricDistributions]) -> None:
         """Add the latencies to those of other routes."""
         for quantity, found in self._found.items():
             merged[quantity].merge(found)
@@ -78,9 +78,11 @@ def chain_observation(name: str, routes: Sequence[tuple[str, RouteMetrics]], end
     routes : with the texts that describe them, which need not differ; the values of all of them together are those of the chain
     end : in time units
     """
-    merged: dict[ChainQuantity, Distributions] = {}
+    merged: dict[ChainQuantity, MetricDistributions] = {}
     for _, route in routes:
-        merged = merged or {quantity: Distributions(size=1, base=route.base, with_histograms=(0,)) for quantity in MEASURED}
+        merged = merged or {
+            quantity: MetricDistributions(size=1, base=route.base, with_histograms=(0,)) for quantity in MEASURED
+        }
         route.merge_into(merged)
     return ChainObservation(
         name=name,
@@ -90,7 +92,7 @@ def chain_observation(name: str, routes: Sequence[tuple[str, RouteMetrics]], end
     )
 
 
-def _quantities(found: Mapping[ChainQuantity, Distributions]) -> dict[ChainQuantity, MetricObservation]:
+def _quantities(found: Mapping[ChainQuantity, MetricDistributions]) -> dict[ChainQuantity, MetricObservation]:
     """What was observed of each quantity."""
     observations: dict[ChainQuantity, MetricObservation] = {}
     for quantity in ChainQuantity:

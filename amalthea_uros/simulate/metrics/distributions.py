@@ -1,4 +1,4 @@
-"""Distributions of several quantities that are observed together, such as the times of each job of a process.
+"""MetricDistributions of several quantities that are observed together, such as the times of each job of a process.
 
 Everything is exact, so that it does not depend on how the observations are divided into chunks; squares are those of deviations from
 the first value, which are small.
@@ -85,7 +85,7 @@ class BinCounts:
 
 
 @dataclass(slots=True, kw_only=True)
-class Distributions:
+class MetricDistributions:
     """The distributions of some quantities; each observation has one value of each.
 
     Attributes
@@ -141,7 +141,7 @@ class Distributions:
         for index, histogram in self._histograms.items():
             histogram.add(values[index], int(self.minima[index]), int(self.maxima[index]))
 
-    def merge(self, other: Distributions) -> None:
+    def merge(self, other: MetricDistributions) -> None:
         """Take the observations of another one in."""
         if other.count == 0:
             return

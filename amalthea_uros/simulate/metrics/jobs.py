@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from amalthea_uros._internal.arrays import Numbers
-from amalthea_uros.simulate.metrics.distributions import Distributions
+from amalthea_uros.simulate.metrics.distributions import MetricDistributions
 from amalthea_uros.simulate.observations import WITH_HISTOGRAM, CountObservation, MetricObservation
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.timing.observed.job_times import BETWEEN, OWN, JobColumn, own_times, times_between
@@ -30,14 +30,14 @@ class JobMetrics:
     """
 
     base: int
-    _of_jobs: Distributions = field(init=False)
-    _between_jobs: Distributions = field(init=False)
+    _of_jobs: MetricDistributions = field(init=False)
+    _between_jobs: MetricDistributions = field(init=False)
     #: The last job so far, as a column; no column before the first job.
     _last: Numbers = field(init=False)
 
     def __post_init__(self) -> None:
-        self._of_jobs = Distributions(size=len(OWN) + len(_COUNTS), base=self.base, with_histograms=_OWN_HISTOGRAMS)
-        self._between_jobs = Distributions(size=len(BETWEEN), base=self.base, with_histograms=())
+        self._of_jobs = MetricDistributions(size=len(OWN) + len(_COUNTS), base=self.base, with_histograms=_OWN_HISTOGRAMS)
+        self._between_jobs = MetricDistributions(size=len(BETWEEN), base=self.base, with_histograms=())
         self._last = np.empty((len(JobColumn), 0), np.int64)
 
     def add(self, jobs: Numbers) -> None:

@@ -19,7 +19,7 @@ from amalthea_uros.judge.limits import limits_of
 from amalthea_uros.perf.activities import Communication
 from amalthea_uros.perf.constraints import DataAgeConstraint
 from amalthea_uros.perf.events import LabelChange, LabelEvent, ProcessChange
-from amalthea_uros.simulate.metrics.distributions import Distributions
+from amalthea_uros.simulate.metrics.distributions import MetricDistributions
 from amalthea_uros.simulate.metrics.extremes import Extremes, LimitedQuantity
 from amalthea_uros.simulate.observations import LabelObservation
 from amalthea_uros.simulate.program.watches import EventSource
@@ -252,10 +252,10 @@ class LabelAges:
     label: str
     base: int
     unwritten: int = 0
-    _ages: Distributions = field(init=False)
+    _ages: MetricDistributions = field(init=False)
 
     def __post_init__(self) -> None:
-        self._ages = Distributions(size=1, base=self.base, with_histograms=(0,))
+        self._ages = MetricDistributions(size=1, base=self.base, with_histograms=(0,))
 
     def add(self, readings: Sequence[Reading]) -> None:
         """Take reads of the label in."""

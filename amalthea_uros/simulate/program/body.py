@@ -18,7 +18,7 @@ from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.simulate.kernel import operations
 from amalthea_uros.simulate.program.activities import compile_activity
 from amalthea_uros.simulate.program.image import Code, JumpLabel, Operation, ProgramHooks
-from amalthea_uros.simulate.program.resources import Parts, Resources
+from amalthea_uros.simulate.program.resources import Resources
 from amalthea_uros.simulate.program.watches import EventSource
 from amalthea_uros.simulate.sampling.streams import ValueStream
 from amalthea_uros.timing.basics.settings import MemoryModel
@@ -37,7 +37,7 @@ class Body:
 
     Attributes
     ----------
-    parts : what the programs of all processes share
+    resources : what the programs of all processes refer to
     process : None for the decision of a scheduler
     in_group : whether it belongs to a group of tasks, which are preempted at schedule points only
     end : where a job goes that terminates itself
@@ -47,7 +47,7 @@ class Body:
     executions : the records of executions of runnables that are measured
     """
 
-    parts: Parts
+    resources: Resources
     process: Process | None
     core: str
     hooks: ProgramHooks
@@ -61,14 +61,9 @@ class Body:
     _places: collections.Counter[int] = field(default_factory=collections.Counter)
 
     @property
-    def resources(self) -> Resources:
-        """What programs refer to."""
-        return self.parts.resources
-
-    @property
     def context(self) -> TimingContext:
         """What the system means in time."""
-        return self.parts.resources.context
+        return self.resources.context
 
     def place(self) -> str:
         """What draws values here, and nowhere else: the random numbers of a place depend neither on others nor on a trace."""
@@ -134,7 +129,9 @@ class Body:
     def _counted(self, owner: Activity, counter: Counter | None) -> JumpLabel | None:
         """A label to which a job goes if a counter does not let this time take effect."""
         name = self.process.name if self.process is not None else ""
-        queue = self.parts.queues.get((name, counter.source)) if counter is not None and counter.arrivals is not None else None
+        queue = (
+            self.resources.queues.get((name, counter.source)) if counter is not None and counter.arrivals is not None else None
+        )
         if flaw := flaw_of_activity(owner):
             raise UnknownError(flaw)
         place = queue or self.resources.counter(owner, counter)
@@ -187,7 +184,7 @@ class Body:
         if condition is None:
             return None
         label = JumpLabel()
-        self.code.add(operations.TEST, self.parts.modes.condition(condition), label)
+        self.code.add(operations.TEST, self.resources.modes.condition(condition), label)
         return label
 
     def observe(
@@ -196,7 +193,7 @@ class Body:
         """Report that an event has occurred here, if it is watched."""
         if self.process is not None:
             source = EventSource(kind, name, change, self.above[-1] if self.above else None, self.process.name, communication)
-            number = self.parts.watches.number(source)
+            number = self.resources.watches.number(source)
             if number is not None:
                 self.code.add(operations.OBSERVE, number)
 
@@ -209,7 +206,7 @@ def _too_many_activities() -> UnknownError:
 
 
 def process_code(
-    parts: Parts, process: Process, core: str, hooks: ProgramHooks, scheduler: Scheduler | None, in_group: bool
+    resources: Resources, process: Process, core: str, hooks: ProgramHooks, scheduler: Scheduler | None, in_group: bool
 ) -> Code:
     """The program of a process.
 
@@ -222,7 +219,7 @@ def process_code(
     ------
     UnknownError : something in it cannot be simulated.
     """
-    return _process_code(Body(parts, process, core, hooks, in_group), process, scheduler)
+    return _process_code(Body(resources, process, core, hooks, in_group), process, scheduler)
 
 
 def _process_code(body: Body, process: Process, scheduler: Scheduler | None) -> Code:
@@ -250,13 +247,11 @@ def _process_code(body: Body, process: Process, scheduler: Scheduler | None) -> 
     return body.code
 
 
-def decision_code(parts: Parts, scheduler: Scheduler, core: str) -> Code:
+def decision_code(resources: Resources, scheduler: Scheduler, core: str) -> Code:
     """The program of a decision of a scheduler; raises as `process_code`."""
-    body = Body(parts, None, core, ProgramHooks(), in_group=False)
+    body = Body(resources, None, core, ProgramHooks(), in_group=False)
     body.activities(scheduler.overhead)
-    if parts.is_noted:
-        body.code.add(
-            operations.NOTE, int(EventKind.SCHEDULE), parts.resources.entities.number(EntityKind.SCHEDULER, scheduler.name)
-        )
+    if resources.is_noted:
+        body.code.add(operations.NOTE, int(EventKind.SCHEDULE), resources.entities.number(EntityKind.SCHEDULER, scheduler.name))
     body.code.add(operations.END)
     return body.code

@@ -12,13 +12,12 @@ from amalthea_uros.simulate.kernel import layout
 from amalthea_uros.simulate.kernel.operations import PUT
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.program.chains import ChainCompiler, FollowedRoute
-from amalthea_uros.simulate.program.entities import EntityNumbers
 from amalthea_uros.simulate.program.hardware import HardwareRecords
 from amalthea_uros.simulate.program.image import Image
 from amalthea_uros.simulate.program.messages import Messages
 from amalthea_uros.simulate.program.modes import ModeRecords
 from amalthea_uros.simulate.program.process_records import PLACES_AT_FIRST, ProcessRecords
-from amalthea_uros.simulate.program.resources import Parts, Resources
+from amalthea_uros.simulate.program.resources import Resources
 from amalthea_uros.simulate.program.scheduling import Dispatching
 from amalthea_uros.simulate.program.stimulus_records import StimulusRecords, hook_firings
 from amalthea_uros.simulate.program.watches import EventSource, Watches, watched
@@ -47,15 +46,14 @@ class _ProgramBuilder:
     image: Image = field(default_factory=Image)
     dispatching: Dispatching = field(init=False)
     resources: Resources = field(init=False)
-    watches: Watches = field(init=False)
 
     def __post_init__(self) -> None:
         self.dispatching = Dispatching(self.context)
         self.left_out = self.dispatching.left_out | self.left_out
         processes = self.dispatching.processes
         self.dispatching.processes = {name: item for name, item in processes.items() if name not in self.left_out}
-        self.resources = Resources(self.context, self.options, self.image, EntityNumbers(self.context.system), self._units())
-        self.watches = Watches(watched(self.context.system, self.options.watched_labels(self.context.system)))
+        watches = Watches(watched(self.context.system, self.options.watched_labels(self.context.system)))
+        self.resources = Resources(self.context, self.options, self.image, watches, self._units())
 
     def _units(self) -> int:
         """Time units per picosecond, so that each tick is a whole number of them, if such times are not too long."""
@@ -68,62 +66,61 @@ class _ProgramBuilder:
 
     def build(self) -> KernelProgram | None:
         """The program; None if one more process has turned out to be impossible."""
-        system, before = self.context.system, len(self.left_out)
-        modes = ModeRecords(system, self.image, self.context.settings.modes)
-        processes = {name: self.image.record(layout.PROCESS_SIZE) for name in self.dispatching.processes}
-        stimuli = {name: self.image.record(layout.STIMULUS_SIZE) for name in system.stimuli_by_name}
-        runnables = self.watches.watched.runnables
-        self.watches.measured = {name: len(processes) + number for number, name in enumerate(runnables)}
-        chains = ChainCompiler(self.resources, processes)
+        system, resources, before = self.context.system, self.resources, len(self.left_out)
+        modes = resources.modes = ModeRecords(system, self.image, self.context.settings.modes)
+        processes = resources.processes = {name: self.image.record(layout.PROCESS_SIZE) for name in self.dispatching.processes}
+        resources.stimuli = {name: self.image.record(layout.STIMULUS_SIZE) for name in system.stimuli_by_name}
+        watches = resources.watches
+        runnables = watches.watched.runnables
+        watches.measured = {name: len(processes) + number for number, name in enumerate(runnables)}
+        chains = ChainCompiler(resources)
         for chain in system.events.chains:
             chains.add(chain)
-        messages = Messages(self.resources, chains)
-        is_noted = self.options.traced is not None
-        parts = Parts(self.resources, modes, processes, stimuli, messages.queues, is_noted, self.watches)
-        hook_firings(parts, chains)
-        hardware = HardwareRecords(self.resources, self.dispatching)
+        messages = Messages(resources, chains)
+        hook_firings(resources, chains)
+        hardware = HardwareRecords(resources, self.dispatching)
         hardware.place_cores()
-        hardware.place_servers(processes)
-        records = ProcessRecords(parts, hardware, chains)
+        hardware.place_servers()
+        records = ProcessRecords(resources, hardware, chains)
         for number, item in enumerate(self.dispatching.processes.values()):
             try:
                 messages.add(item.scheduled.process)
                 records.add(item, number)
             except UnknownError as error:
                 self.left_out[item.name] = str(error)
-        arrivals = StimulusRecords(parts, self.left_out).place()
+        arrivals = StimulusRecords(resources, self.left_out).place()
         if len(self.left_out) > before:
             return None
         records.place_members()
         records.place_ceilings()
-        self._head(hardware, processes, chains)
+        self._head(hardware, chains)
         return KernelProgram(
             memory=self.image.words,
-            units=self.resources.units,
-            streams=self.resources.streams,
-            stream_records=self.resources.stream_records,
+            units=resources.units,
+            streams=resources.streams,
+            stream_records=resources.stream_records,
             # What arrives at the time of an activation is there before it.
             arrivals=[*messages.arrivals, *arrivals],
-            messages=messages.queues,
+            messages=resources.queues,
             processes=tuple(processes),
             records=processes,
             cores=hardware.cores,
             channels=modes.channels,
             queues=(*processes.values(), *records.decisions.values()),
-            entities=self.resources.entities.all,
+            entities=resources.entities.all,
             routes=tuple(chains.routes),
-            sources=tuple(self.watches.sources),
+            sources=tuple(watches.sources),
             runnables=runnables,
             left_out=self.left_out,
             chains_left_out=chains.left_out,
         )
 
-    def _head(self, hardware: HardwareRecords, processes: dict[str, int], chains: ChainCompiler) -> None:
+    def _head(self, hardware: HardwareRecords, chains: ChainCompiler) -> None:
         lists = {
             (layout.CORES, layout.CORES_END): hardware.cores.values(),
             (layout.DOMAINS, layout.DOMAINS_END): dict.fromkeys(hardware.domains.values()),
             (layout.SERVERS, layout.SERVERS_END): hardware.servers.values(),
-            (layout.PROCESSES, layout.PROCESSES_END): processes.values(),
+            (layout.PROCESSES, layout.PROCESSES_END): self.resources.processes.values(),
             (layout.SEMAPHORES, layout.SEMAPHORES_END): self.resources.semaphores.values(),
         }
         for (first, end), records in lists.items():

@@ -53,7 +53,6 @@ class ChainCompiler:
     """
 
     resources: Resources
-    processes: dict[str, int]
     hooks: dict[str, ProgramHooks] = field(default_factory=dict)
     captures: dict[str, list[int]] = field(default_factory=dict)
     let_stages: dict[str, list[int]] = field(default_factory=dict)
@@ -84,10 +83,10 @@ class ChainCompiler:
                 raise UnknownError(f"from {first!r} to {then!r} it follows {link.kind}, which is not followed")
             for label in link.names if link.kind is LinkKind.DATA else ():
                 for name in self.resources.context.touching.writers(label):
-                    if name not in self.processes:
+                    if name not in self.resources.processes:
                         raise UnknownError(f"{name!r}, which is not simulated, writes {label!r}")
         for occurrence in route.occurrences:
-            if occurrence.process.name not in self.processes:
+            if occurrence.process.name not in self.resources.processes:
                 raise UnknownError(f"it passes {occurrence.process.name!r}, which is not simulated")
 
     def _route(self, chain: EventChain, text: str, found: Route) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import gcd
 
@@ -54,8 +53,9 @@ class HardwareRecords:
                 self.domains[core] = domain
                 self.resources.image.put(self.cores[core], {layout.CORE_DOMAIN: domain})
 
-    def place_servers(self, processes: Mapping[str, int]) -> None:
-        """Servers that serve any of some processes, which have records by their names."""
+    def place_servers(self) -> None:
+        """Servers that serve any of the processes that have records."""
+        processes = self.resources.processes
         here = [self.dispatching.processes[name].scheduled for name in processes]
         for name in self.dispatching.servers:
             if any(self._is_within(item.server, name) for item in here):

@@ -32,13 +32,11 @@ class Messages:
 
     Attributes
     ----------
-    queues : by process and source
     arrivals : the record of the stimulus of each queue, and its occurrences
     """
 
     resources: Resources
     chains: ChainCompiler
-    queues: dict[tuple[str, str], int] = field(default_factory=dict)
     arrivals: list[tuple[int, StimulusOccurrences]] = field(default_factory=list)
 
     def add(self, process: Process) -> None:
@@ -55,7 +53,7 @@ class Messages:
                 layout.STIMULUS_SIZE,
                 {layout.MESSAGES: queue, layout.STIMULUS_ENTITY: self.resources.entities.number(EntityKind.STIMULUS, source)},
             )
-            self.queues[process.name, source] = queue
+            self.resources.queues[process.name, source] = queue
             self.arrivals.append((stimulus, self._occurrences(process, counter)))
 
     def _queue(self, process: Process, source: str) -> int:

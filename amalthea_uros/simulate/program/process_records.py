@@ -12,7 +12,7 @@ from amalthea_uros.simulate.program.body import decision_code, process_code
 from amalthea_uros.simulate.program.chains import ChainCompiler
 from amalthea_uros.simulate.program.hardware import HardwareRecords
 from amalthea_uros.simulate.program.image import Image, ProgramHooks
-from amalthea_uros.simulate.program.resources import Parts, Resources
+from amalthea_uros.simulate.program.resources import Resources
 from amalthea_uros.simulate.program.scheduling import Dispatched
 from amalthea_uros.timing.blocking.critical_sections import protection_of
 from amalthea_uros.timing.jobs.executed import states_execution_time
@@ -32,20 +32,15 @@ class ProcessRecords:
     decisions : by scheduler and core
     """
 
-    parts: Parts
+    resources: Resources
     hardware: HardwareRecords
     chains: ChainCompiler
     decisions: dict[tuple[str, str], int] = field(default_factory=dict)
 
     @property
-    def resources(self) -> Resources:
-        """What programs refer to."""
-        return self.parts.resources
-
-    @property
     def image(self) -> Image:
         """The memory."""
-        return self.parts.resources.image
+        return self.resources.image
 
     def add(self, item: Dispatched, number: int) -> None:
         """Fill the record of a process, which has a number in rows.
@@ -61,12 +56,12 @@ class ProcessRecords:
         core = item.cores[0]
         scheduler = context.deciding(item.name, core)
         hooks = chains.hooks.get(item.name, ProgramHooks())
-        code = process_code(self.parts, process, core, hooks, scheduler, in_group=scheduled.group is not None)
+        code = process_code(self.resources, process, core, hooks, scheduler, in_group=scheduled.group is not None)
         captures, captures_end = self.image.items(chains.captures.get(item.name, ()))
         lets, lets_end = self.image.items(chains.let_stages.get(item.name, ()))
         semaphores, events = len(self.resources.semaphores), len(self.resources.os_events)
         queue, _ = self.image.items([0] * (PLACES_AT_FIRST * (layout.QUEUE_CAPTURES + captures_end - captures)))
-        transitions = self.parts.watches.transitions(item.name)
+        transitions = self.resources.watches.transitions(item.name)
         allowed, _ = self.image.items(int(name in item.cores) for name in self.hardware.cores)
         is_edf = scheduled.equal_priority is EqualPriority.EDF
         has_server_deadline = self.hardware.dispatching.has_server_deadline(scheduled)
@@ -101,7 +96,7 @@ class ProcessRecords:
             layout.TICKETS: self.image.items([0] * len(self.resources.services))[0],
             layout.WATCHED: self.image.items(transitions)[0] if transitions else 0,
         }
-        self.image.put(self.parts.processes[item.name], fields)
+        self.image.put(self.resources.processes[item.name], fields)
 
     def _decision(self, scheduler: Scheduler, core: str) -> int:
         """What decides for a scheduler on a core when a task is activated: it precedes everything else."""
@@ -117,7 +112,7 @@ class ProcessRecords:
                 layout.LIMIT: layout.NEVER,
                 layout.QUEUE: queue,
                 layout.FIRST_PLACE: queue,
-                layout.ENTRY: decision_code(self.parts, scheduler, core).write(self.image),
+                layout.ENTRY: decision_code(self.resources, scheduler, core).write(self.image),
                 layout.ENTITY: self.resources.entities.number(EntityKind.SCHEDULER, scheduler.name),
                 layout.DOMAIN: self.hardware.domains[core],
                 layout.ALLOWED: allowed,
@@ -129,7 +124,7 @@ class ProcessRecords:
     def place_members(self) -> None:
         """The members of each domain, highest level first; those of a level in the order of the model."""
         words = self.image.words
-        everything = [*self.parts.processes.values(), *self.decisions.values()]
+        everything = [*self.resources.processes.values(), *self.decisions.values()]
         for domain in set(self.hardware.domains.values()):
             members = [record for record in everything if words[record + layout.DOMAIN] == domain]
             members.sort(key=lambda record: -words[record + layout.OWN_LEVEL])
@@ -144,11 +139,11 @@ class ProcessRecords:
     def place_ceilings(self) -> None:
         """The ceilings of semaphores: of all that use them."""
         words, system = self.image.words, self.resources.context.system
-        uses = {name: protection_of(system.processes[name], system) for name in self.parts.processes}
+        uses = {name: protection_of(system.processes[name], system) for name in self.resources.processes}
         for semaphore in system.os.semaphores:
             if not semaphore.ceiling:
                 continue
-            users = [self.parts.processes[name] for name in uses if semaphore.name in uses[name].semaphores]
+            users = [self.resources.processes[name] for name in uses if semaphore.name in uses[name].semaphores]
             deadlines = [words[user + layout.RELATIVE_DEADLINE] for user in users if words[user + layout.IS_BY_DEADLINE]]
             fields = {
                 layout.CEILING: max((words[user + layout.OWN_LEVEL] for user in users), default=0) + 1,

@@ -1,30 +1,67 @@
-"""What programs refer to: streams, counters, semaphores, events of the operating system, server runnables."""
+"""What programs refer to: records, streams, counters, and the numbers of entities in a trace."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import ClearEvent, ServerCall, SetEvent, WaitEvent, Waiting, walk
 from amalthea_uros.perf.distributions import Distribution, Statistics
+from amalthea_uros.perf.software import Isr
 from amalthea_uros.perf.stimuli import Counter
+from amalthea_uros.perf.system import System
 from amalthea_uros.simulate.kernel import layout
 from amalthea_uros.simulate.options import Options, SimulationMode
-from amalthea_uros.simulate.program.entities import EntityNumbers
 from amalthea_uros.simulate.program.image import Image
 from amalthea_uros.simulate.program.modes import ModeRecords
 from amalthea_uros.simulate.program.watches import Watches
 from amalthea_uros.simulate.sampling.streams import ValueStream, choices, durations, permutations, values
 from amalthea_uros.simulate.sampling.variates import sampling_assumption
 from amalthea_uros.simulate.sampling.words import RandomSource
+from amalthea_uros.timing.activation.phases import arriving
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.demand.multiframe import DemandFrame
 from amalthea_uros.timing.jobs.counters import first_effect
 from amalthea_uros.timing.jobs.server_calls import servers
-from amalthea_uros.trace.table import EntityKind
+from amalthea_uros.trace.table import Entity, EntityKind
 from amalthea_uros.units import Time
+
+
+@dataclass(slots=True)
+class EntityNumbers:
+    """The entities of a system, in a fixed order."""
+
+    system: System
+    all: tuple[Entity, ...] = field(init=False)
+    _numbers: dict[Entity, int] = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.all = tuple(dict.fromkeys(_entities(self.system)))
+        self._numbers = {entity: number for number, entity in enumerate(self.all)}
+
+    def number(self, kind: EntityKind, name: str) -> int:
+        """The number of an entity."""
+        return self._numbers[Entity(kind, name)]
+
+    def process(self, name: str) -> int:
+        """The number of a process."""
+        is_isr = isinstance(self.system.processes[name], Isr)
+        return self.number(EntityKind.ISR if is_isr else EntityKind.TASK, name)
+
+
+def _entities(system: System) -> Iterator[Entity]:
+    for name, process in system.processes.items():
+        yield Entity(EntityKind.ISR if isinstance(process, Isr) else EntityKind.TASK, name)
+    yield from (Entity(EntityKind.CORE, name) for name in system.cores)
+    yield from (Entity(EntityKind.SCHEDULER, name) for name in system.schedulers)
+    yield from (Entity(EntityKind.STIMULUS, name) for name in (*system.stimuli_by_name, *arriving(system)))
+    yield from (Entity(EntityKind.RUNNABLE, name) for name in system.runnables)
+    yield from (Entity(EntityKind.LABEL, name) for name in system.labels)
+    yield from (Entity(EntityKind.SEMAPHORE, semaphore.name) for semaphore in system.os.semaphores)
+    yield from (Entity(EntityKind.OS_EVENT, event.name) for event in system.software.os_events)
+    yield from (Entity(EntityKind.CHAIN, name) for name in system.chains)
 
 
 @dataclass(slots=True)
@@ -33,7 +70,10 @@ class Resources:
 
     Attributes
     ----------
+    watches : what is observed apart from jobs and chains
     units : time units per picosecond
+    processes, stimuli : their records
+    queues : of messages with arrivals of their own, by process and source
     streams : in the order of their numbers
     executing : the processes that execute each runnable
     """
@@ -41,8 +81,13 @@ class Resources:
     context: TimingContext
     options: Options
     image: Image
-    entities: EntityNumbers
+    watches: Watches
     units: int
+    entities: EntityNumbers = field(init=False)
+    modes: ModeRecords = field(init=False)
+    processes: dict[str, int] = field(default_factory=dict)
+    stimuli: dict[str, int] = field(default_factory=dict)
+    queues: dict[tuple[str, str], int] = field(default_factory=dict)
     streams: list[ValueStream] = field(default_factory=list)
     stream_records: list[int] = field(default_factory=list)
     semaphores: dict[str, int] = field(default_factory=dict)
@@ -55,6 +100,7 @@ class Resources:
 
     def __post_init__(self) -> None:
         system = self.context.system
+        self.entities = EntityNumbers(system)
         for number, semaphore in enumerate(system.os.semaphores):
             fields = {
                 layout.USED: semaphore.initial_users,
@@ -72,6 +118,11 @@ class Resources:
         self.executing = servers(system)
         for number, name in enumerate(asked):
             self.services[name] = self.image.record(layout.SERVICE_SIZE, {layout.SERVICE_NUMBER: number})
+
+    @property
+    def is_noted(self) -> bool:
+        """Whether events of runnables and labels are recorded."""
+        return self.options.traced is not None
 
     # Times.
 
@@ -164,7 +215,7 @@ class Resources:
 
     # Events of the operating system.
 
-    def event_row(self, activity: SetEvent | ClearEvent | WaitEvent, processes: dict[str, int]) -> int:
+    def event_row(self, activity: SetEvent | ClearEvent | WaitEvent) -> int:
         """The record of the events that an activity sets, clears or waits for."""
         pairs: list[int] = []
         for name in activity.events:
@@ -175,30 +226,9 @@ class Resources:
         fields = {layout.EVENT_LIST: first, layout.EVENT_LIST_END: end}
         match activity:
             case SetEvent(process=process) if process is not None:
-                if process not in processes:
+                if process not in self.processes:
                     raise UnknownError(f"it sets events of {process!r}, which is not simulated")
-                fields[layout.OF_PROCESS] = processes[process]
+                fields[layout.OF_PROCESS] = self.processes[process]
             case WaitEvent(all_of_them=all_of_them, waiting=waiting):
                 fields |= {layout.NEEDS_ALL: int(all_of_them), layout.IS_ACTIVE_WAIT: int(waiting is Waiting.ACTIVE)}
         return self.image.record(layout.EVENT_ROW_SIZE, fields)
-
-
-@dataclass(slots=True)
-class Parts:
-    """What the programs of all processes share.
-
-    Attributes
-    ----------
-    processes, stimuli : their records
-    queues : of messages with arrivals of their own, by process and source
-    is_noted : whether events of runnables and labels are recorded
-    watches : what is observed apart from jobs and chains
-    """
-
-    resources: Resources
-    modes: ModeRecords
-    processes: dict[str, int]
-    stimuli: dict[str, int]
-    queues: dict[tuple[str, str], int]
-    is_noted: bool
-    watches: Watches

@@ -14,7 +14,7 @@ from amalthea_uros.simulate.kernel import layout
 from amalthea_uros.simulate.kernel.operations import FIRE
 from amalthea_uros.simulate.program.chains import ChainCompiler
 from amalthea_uros.simulate.program.image import ProgramHooks
-from amalthea_uros.simulate.program.resources import Parts, Resources
+from amalthea_uros.simulate.program.resources import Resources
 from amalthea_uros.simulate.program.watches import EventSource
 from amalthea_uros.simulate.sampling.words import RandomSource
 from amalthea_uros.trace.table import EntityKind
@@ -29,24 +29,19 @@ class StimulusRecords:
     left_out : why a process is not simulated
     """
 
-    parts: Parts
+    resources: Resources
     left_out: dict[str, str]
-
-    @property
-    def resources(self) -> Resources:
-        """What programs refer to."""
-        return self.parts.resources
 
     def place(self) -> list[tuple[int, StimulusOccurrences]]:
         """Fill the records; those of stimuli that come from outside, and when they occur."""
         system = self.resources.context.system
         activated: dict[str, list[str]] = {}
-        for name in self.parts.processes:
+        for name in self.resources.processes:
             for stimulus_name in system.processes[name].stimuli:
                 activated.setdefault(stimulus_name, []).append(name)
-        order = {name: number for number, name in enumerate(self.parts.processes)}
+        order = {name: number for number, name in enumerate(self.resources.processes)}
         external: list[tuple[int, int, StimulusOccurrences]] = []
-        for name, record in self.parts.stimuli.items():
+        for name, record in self.resources.stimuli.items():
             stimulus, targets = system.stimuli_by_name[name], activated.get(name, [])
             try:
                 if flaw := self.resources.context.activations.flaws.of_stimulus(name):
@@ -77,17 +72,20 @@ class StimulusRecords:
         return found
 
     def _stimulus(self, stimulus: Stimulus, record: int, targets: Sequence[str]) -> None:
-        first, end = self.resources.image.items(self.parts.processes[target] for target in targets)
+        first, end = self.resources.image.items(self.resources.processes[target] for target in targets)
         pairs: list[int] = []
         for assignment in stimulus.assignments:
-            pairs += (self.parts.modes.label(assignment.label), self.parts.modes.value(assignment.label, assignment.value))
+            pairs += (
+                self.resources.modes.label(assignment.label),
+                self.resources.modes.value(assignment.label, assignment.value),
+            )
         assignments, assignments_end = self.resources.image.items(pairs)
         counter = stimulus.counter if isinstance(stimulus, InterProcess | EventTriggered) else None
-        source = self.parts.watches.number(EventSource(StimulusEvent, stimulus.name))
+        source = self.resources.watches.number(EventSource(StimulusEvent, stimulus.name))
         fields = {
             layout.TARGETS: first,
             layout.TARGETS_END: end,
-            layout.CONDITION: self.parts.modes.condition(stimulus.condition) if stimulus.condition is not None else 0,
+            layout.CONDITION: self.resources.modes.condition(stimulus.condition) if stimulus.condition is not None else 0,
             layout.COUNTER: self.resources.counter(stimulus, counter),
             layout.ASSIGNMENTS: assignments,
             layout.ASSIGNMENTS_END: assignments_end,
@@ -97,14 +95,14 @@ class StimulusRecords:
         self.resources.image.put(record, fields)
 
 
-def hook_firings(parts: Parts, chains: ChainCompiler) -> None:
+def hook_firings(resources: Resources, chains: ChainCompiler) -> None:
     """Have events fire the stimuli that they activate; triggers fire theirs by themselves."""
-    context = parts.resources.context
+    context = resources.context
     if not any(isinstance(stimulus, EventTriggered) for stimulus in context.system.stimuli.stimuli):
         return
-    for name in parts.processes:
+    for name in resources.processes:
         hooks = chains.hooks.setdefault(name, ProgramHooks())
         for firing in context.dataflow.firings(name):
             if not isinstance(firing.position.activity, Trigger):
                 side = hooks.before if firing.is_before else hooks.after
-                side.setdefault(firing.position.number, []).append((FIRE, parts.stimuli[firing.stimulus], 0))
+                side.setdefault(firing.position.number, []).append((FIRE, resources.stimuli[firing.stimulus], 0))

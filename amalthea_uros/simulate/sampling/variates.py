@@ -26,8 +26,16 @@ from amalthea_uros.perf.distributions import (
     highest,
     lowest,
 )
-from amalthea_uros.simulate.sampling.quantile_table import NEGLIGIBLE, POINTS, QuantileTable, quantiles_of_density, tabulated
-from amalthea_uros.simulate.sampling.shapes import beta_table, root, weibull_table
+from amalthea_uros.simulate.sampling.quantile_table import (
+    NEGLIGIBLE,
+    POINTS,
+    QuantileTable,
+    beta_table,
+    quantiles_of_density,
+    root,
+    tabulated,
+    weibull_table,
+)
 from amalthea_uros.simulate.sampling.words import LOWER_HALF, scaled
 from amalthea_uros.timing.demand.means import mean
 

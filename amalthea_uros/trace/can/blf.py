@@ -10,7 +10,7 @@ from typing import IO, TYPE_CHECKING
 from amalthea_uros._internal.files import read_up_to
 from amalthea_uros._internal.limits import ADVICE, MODEL_SIZE
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.trace.can.python_can import PythonCanLog, Row, python_can
+from amalthea_uros.trace.can.python_can import FrameRow, PythonCanLog, python_can
 from amalthea_uros.trace.files import opened_bytes
 from amalthea_uros.trace.problems import TracePlace, UnreadableError
 
@@ -81,7 +81,7 @@ _NANOSECOND = 1000
 class BlfLog(PythonCanLog):
     """Gives the frames of a .blf file; a line is the number of a frame."""
 
-    def _rows(self) -> Iterator[Row]:
+    def _rows(self) -> Iterator[FrameRow]:
         can = python_can()
         if not self._is_safe():
             return

@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.trace.can.python_can import PythonCanLog, Row, python_can
+from amalthea_uros.trace.can.python_can import FrameRow, PythonCanLog, python_can
 from amalthea_uros.trace.files import opened_bytes
 from amalthea_uros.trace.problems import TracePlace
 
@@ -27,7 +27,7 @@ class Mf4Log(PythonCanLog):
     python-can gives seconds since 1970 as floating-point numbers, which are exact to 0.24 us: times are rounded to microseconds.
     """
 
-    def _rows(self) -> Iterator[Row]:
+    def _rows(self) -> Iterator[FrameRow]:
         python_can()
         _require_asammdf()
         with opened_bytes(self._path, self._problems):

@@ -30,7 +30,7 @@ _MAX_STANDARD, _MAX_EXTENDED, _MAX_BYTES = 0x7FF, 0x1FFF_FFFF, 64
 _MAX_TIME = 4 * 10**18
 
 
-class Row(NamedTuple):
+class FrameRow(NamedTuple):
     """A row of a table of frames, with the name of the channel; None of a gap of which it is not known."""
 
     time: int
@@ -66,10 +66,10 @@ class PythonCanLog(LogReader):
             yield self._table(part)
 
     @abstractmethod
-    def _rows(self) -> Iterator[Row]:
+    def _rows(self) -> Iterator[FrameRow]:
         """The frames of the file."""
 
-    def _row(self, message: Message, time: int, channel: str, place: TracePlace) -> Row | None:
+    def _row(self, message: Message, time: int, channel: str, place: TracePlace) -> FrameRow | None:
         """The row of a message; None, and a finding, if python-can took something for a frame that is none."""
         largest = _MAX_EXTENDED if message.is_extended_id else _MAX_STANDARD
         data = bytes(message.data or b"")
@@ -81,12 +81,12 @@ class PythonCanLog(LogReader):
             return None
         if message.is_error_frame:
             report_error(self._problems, 0, b"", place)
-            return Row(time, channel, 0, FrameKind.ERROR, place.line or 0, data)
+            return FrameRow(time, channel, 0, FrameKind.ERROR, place.line or 0, data)
         identifier = message.arbitration_id | (EXTENDED if message.is_extended_id else 0)
         kind = FrameKind.REMOTE if message.is_remote_frame else FrameKind.DATA
-        return Row(time, channel, identifier, kind, place.line or 0, data if kind is FrameKind.DATA else b"")
+        return FrameRow(time, channel, identifier, kind, place.line or 0, data if kind is FrameKind.DATA else b"")
 
-    def _table(self, rows: Sequence[Row]) -> FrameTable:
+    def _table(self, rows: Sequence[FrameRow]) -> FrameTable:
         time, channel, identifier, kind, line, data = zip(*rows, strict=True)
         return FrameTable(
             self._channels,

@@ -9,7 +9,7 @@ from typing import IO, TYPE_CHECKING, cast
 
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.trace.can.frames import FrameKind, report_lost
-from amalthea_uros.trace.can.python_can import PythonCanLog, Row, python_can
+from amalthea_uros.trace.can.python_can import FrameRow, PythonCanLog, python_can
 from amalthea_uros.trace.files import opened_text
 from amalthea_uros.trace.problems import TracePlace
 
@@ -99,9 +99,9 @@ class TextLog(PythonCanLog):
     header_end: str | None = None
 
     _time = _before = 0
-    _gap: Row | None = None
+    _gap: FrameRow | None = None
 
-    def _rows(self) -> Iterator[Row]:
+    def _rows(self) -> Iterator[FrameRow]:
         python_can()
         with opened_text(self._path, self._problems) as lines:
             feed = LineFeed(lines, self._prepared, self._leave_out)
@@ -133,7 +133,7 @@ class TextLog(PythonCanLog):
 
     def _note_loss(self, place: TracePlace) -> None:
         """Note that it is not known what a line was."""
-        self._gap = self._gap or Row(self._before, None, 0, FrameKind.GAP, place.line or 0, b"")
+        self._gap = self._gap or FrameRow(self._before, None, 0, FrameKind.GAP, place.line or 0, b"")
 
     def _messages(self, reader: Iterable[Message], feed: LineFeed) -> Iterator[Message]:
         messages = iter(reader)
@@ -207,7 +207,7 @@ class AscLog(TextLog):
             if self._channel(match[3]) < 0:
                 self._report_channel(place)
                 return
-            self._gap = Row(self._time, match[3], 0, FrameKind.GAP, place.line or 0, b"")
+            self._gap = FrameRow(self._time, match[3], 0, FrameKind.GAP, place.line or 0, b"")
         elif _RECORD.match(line):
             self._problems.add("CAN006", Severity.INFO, "a record is not a frame; it is ignored", place)
         elif not _REMARK.match(line):

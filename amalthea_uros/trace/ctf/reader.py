@@ -8,11 +8,11 @@ from pathlib import Path
 
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.errors import ReadError
-from amalthea_uros.trace.ctf.folders import METADATA, stream_files, trace_folders
 from amalthea_uros.trace.ctf.interpreters import Interpreter, LinuxScheduler, Zephyr
 from amalthea_uros.trace.ctf.metadata import Metadata, read_metadata
 from amalthea_uros.trace.ctf.ros2 import Ros2
 from amalthea_uros.trace.ctf.streams import CtfEvent, PacketStream
+from amalthea_uros.trace.files import METADATA, stream_files, trace_folders
 from amalthea_uros.trace.problems import TracePlace, TraceProblems, UnreadableError
 from amalthea_uros.trace.reading import BLOCK, EventRows, NumberedTable, TraceReader
 from amalthea_uros.trace.schedulers.thread_log import UniqueNames

@@ -27,7 +27,7 @@ _Address: TypeAlias = tuple[int, int]
 
 
 @dataclass(slots=True)
-class _Subscription:
+class _RosSubscription:
     """A subscription.
 
     Attributes
@@ -50,19 +50,19 @@ class Ros2(Interpreter):
         super().__init__(rows, states, problems, names)
         self._nodes: dict[_Address, str] = {}
         self._topics: dict[_Address, str] = {}
-        self._subscriptions: dict[_Address, _Subscription] = {}
-        self._by_middleware: dict[_Address, _Subscription] = {}
-        self._by_object: dict[_Address, _Subscription] = {}
+        self._subscriptions: dict[_Address, _RosSubscription] = {}
+        self._by_middleware: dict[_Address, _RosSubscription] = {}
+        self._by_object: dict[_Address, _RosSubscription] = {}
         #: The names of timers and services by their handles, and the callbacks of timers.
         self._timers: dict[_Address, str] = {}
         self._of_timer: dict[_Address, _Address] = {}
         self._chains: dict[str, int] = {}
         self._callbacks: dict[_Address, str] = {}
         self._registered: dict[_Address, int] = {}
-        self._of_callback: dict[_Address, _Subscription] = {}
+        self._of_callback: dict[_Address, _RosSubscription] = {}
         self._executing: dict[tuple[int, _Address], list[int]] = {}
         #: Of each thread the message that it has taken last, of which the callback has not begun.
-        self._taken: dict[int, tuple[_Subscription, int]] = {}
+        self._taken: dict[int, tuple[_RosSubscription, int]] = {}
 
     def finish(self) -> None:
         """Nothing: messages that no callback has taken are chains without a second step."""
@@ -78,7 +78,7 @@ class Ros2(Interpreter):
 
     def _subscription_init(self, event: CtfEvent) -> None:
         handle = _address(event, "subscription_handle")
-        found = self._subscriptions[handle] = _Subscription(str(event.fields.get("topic_name", "")), self._node(event))
+        found = self._subscriptions[handle] = _RosSubscription(str(event.fields.get("topic_name", "")), self._node(event))
         self._by_middleware[_address(event, "rmw_subscription_handle")] = found
 
     def _subscription_object(self, event: CtfEvent) -> None:
@@ -147,7 +147,7 @@ class Ros2(Interpreter):
             if subscription.topic == topic:
                 self._follow(subscription, stamp, thread)
 
-    def _follow(self, subscription: _Subscription, stamp: int, thread: int) -> None:
+    def _follow(self, subscription: _RosSubscription, stamp: int, thread: int) -> None:
         if subscription.chain < 0:
             name = f"{subscription.topic} -> {subscription.node}"
             number = self._chains[name] = self._chains.get(name, 0) + 1

@@ -30,7 +30,7 @@ _TOKEN = re.compile(
 )
 
 
-class Token(NamedTuple):
+class TsdlToken(NamedTuple):
     """A word, number, text or sign; `kind` is the name of a group above, or "end"."""
 
     kind: str
@@ -38,14 +38,14 @@ class Token(NamedTuple):
     line: int
 
 
-def tokens(source: str, most: int) -> list[Token]:
+def tokens(source: str, most: int) -> list[TsdlToken]:
     """The tokens of a text, with one for the end.
 
     Raises
     ------
     UnreadableError : there is something that is none, or there are too many.
     """
-    found: list[Token] = []
+    found: list[TsdlToken] = []
     place, line = 0, 1
     while place < len(source):
         match = _TOKEN.match(source, place)
@@ -53,10 +53,10 @@ def tokens(source: str, most: int) -> list[Token]:
             raise UnreadableError("a character that TSDL does not know" if match is None else f"more than {most:,} words", line)
         kind = match.lastgroup or "skip"
         if kind != "skip":
-            found.append(Token(kind, match[0], line))
+            found.append(TsdlToken(kind, match[0], line))
         line += match[0].count("\n")
         place = match.end()
-    return [*found, Token("end", "", line)]
+    return [*found, TsdlToken("end", "", line)]
 
 
 # Parses metadata in TSDL (CTF 1.8, section 7 and appendix C): types and the blocks trace, env, clock, stream, event.
@@ -108,7 +108,7 @@ def parse(source: str) -> list[MetadataBlock]:
 
 
 class _TsdlParser:
-    def __init__(self, found: list[Token]) -> None:
+    def __init__(self, found: list[TsdlToken]) -> None:
         self._tokens = found
         self._place = 0
         self._depth = 0
@@ -126,17 +126,17 @@ class _TsdlParser:
         return found
 
     @property
-    def _next(self) -> Token:
+    def _next(self) -> TsdlToken:
         return self._tokens[self._place]
 
     @property
-    def _after(self) -> Token:
+    def _after(self) -> TsdlToken:
         return self._tokens[min(self._place + 1, len(self._tokens) - 1)]
 
     def _error(self, message: str) -> UnreadableError:
         return UnreadableError(message, self._next.line)
 
-    def _take(self, text: str = "") -> Token:
+    def _take(self, text: str = "") -> TsdlToken:
         token = self._next
         if token.kind == "end" or (text and token.text != text):
             raise self._error(f"expected {text!r}, not {token.text[:40]!r}" if text else "the text ends early")
@@ -432,7 +432,7 @@ class _TsdlParser:
                 return
 
 
-def _native_order(found: list[Token]) -> bool:
+def _native_order(found: list[TsdlToken]) -> bool:
     """Whether numbers are big-endian unless they say otherwise: `byte_order` of the block `trace`, which may come after types."""
     is_trace, depth = False, 0
     for place, token in enumerate(found[:-4]):

@@ -41,7 +41,7 @@ class ThreadState(Enum):
 
 
 @dataclass(slots=True, eq=False)
-class _Thread:
+class _TracedThread:
     """A thread or an interrupt.
 
     Attributes
@@ -65,12 +65,12 @@ class _Thread:
 
 
 @dataclass(slots=True)
-class _Core:
+class _TracedCore:
     """A core: the thread that it executes apart from interrupts, and the interrupts, the outer one first."""
 
     entity: int
-    thread: _Thread | None = None
-    interrupts: list[_Thread] = field(default_factory=list)
+    thread: _TracedThread | None = None
+    interrupts: list[_TracedThread] = field(default_factory=list)
 
 
 class ThreadStates:
@@ -78,9 +78,9 @@ class ThreadStates:
 
     def __init__(self, rows: EventRows, problems: TraceProblems) -> None:
         self._rows, self._problems = rows, problems
-        self._threads: dict[int, _Thread] = {}
-        self._cores: dict[int, _Core] = {}
-        self._undecided: dict[int, _Thread] = {}
+        self._threads: dict[int, _TracedThread] = {}
+        self._cores: dict[int, _TracedCore] = {}
+        self._undecided: dict[int, _TracedThread] = {}
         self._executions: dict[int, int] = {}
 
     def take(self, is_end: bool = False) -> NumberedTable | None:
@@ -169,7 +169,7 @@ class ThreadStates:
 
     def enter_interrupt(self, core_entity: int, entity: int) -> None:
         """An interrupt begins."""
-        core, interrupt = self._core(core_entity), _Thread(entity)
+        core, interrupt = self._core(core_entity), _TracedThread(entity)
         before = core.interrupts[-1] if core.interrupts else core.thread
         if before is not None and before.state is ThreadState.RUNNING:
             self._suspend(before)
@@ -245,18 +245,18 @@ class ThreadStates:
         else:
             self._end(thread, runnable)
 
-    def _executing(self, core_entity: int) -> _Thread | None:
+    def _executing(self, core_entity: int) -> _TracedThread | None:
         core = self._core(core_entity)
         return core.interrupts[-1] if core.interrupts else core.thread
 
-    def _start(self, thread: _Thread, runnable: int) -> None:
+    def _start(self, thread: _TracedThread, runnable: int) -> None:
         if any(runnable == each for each, _ in thread.runnables):
             self.lose("a runnable begins again before its end")
         instance = self._executions[runnable] = self._executions.get(runnable, -1) + 1
         thread.runnables.append((runnable, instance))
         self._rows.add(EventKind.RUNNABLE_START, thread.entity, thread.instance, runnable, instance)
 
-    def _end(self, thread: _Thread, runnable: int | None) -> bool:
+    def _end(self, thread: _TracedThread, runnable: int | None) -> bool:
         if not any(runnable in (None, each) for each, _ in thread.runnables):
             self._report("the end of a runnable without its begin")
             return False
@@ -292,31 +292,31 @@ class ThreadStates:
             "TRC021", Severity.WARNING, message, TracePlace(), "Record with a larger buffer, or fewer kinds of events."
         )
 
-    def _thread(self, entity: int) -> _Thread:
+    def _thread(self, entity: int) -> _TracedThread:
         found = self._threads.get(entity)
         if found is None:
-            found = self._threads[entity] = _Thread(entity)
+            found = self._threads[entity] = _TracedThread(entity)
         return found
 
-    def _core(self, entity: int) -> _Core:
+    def _core(self, entity: int) -> _TracedCore:
         found = self._cores.get(entity)
         if found is None:
-            found = self._cores[entity] = _Core(entity)
+            found = self._cores[entity] = _TracedCore(entity)
         return found
 
-    def _add(self, kind: EventKind, core: _Core, thread: _Thread) -> list[int]:
+    def _add(self, kind: EventKind, core: _TracedCore, thread: _TracedThread) -> list[int]:
         return self._rows.add(kind, core.entity, 0, thread.entity, thread.instance)
 
-    def _activate(self, thread: _Thread) -> None:
+    def _activate(self, thread: _TracedThread) -> None:
         thread.job += 1
         thread.state = ThreadState.ACTIVE
         self._rows.add(EventKind.ACTIVATE, thread.entity, thread.job, thread.entity, thread.job)
 
-    def _release(self, thread: _Thread) -> None:
+    def _release(self, thread: _TracedThread) -> None:
         self._rows.add(EventKind.RELEASE, thread.entity, thread.job, thread.entity, thread.job)
         thread.state = ThreadState.READY
 
-    def _enter(self, core: _Core, thread: _Thread) -> None:
+    def _enter(self, core: _TracedCore, thread: _TracedThread) -> None:
         if thread.state is ThreadState.WAITING:
             self._release(thread)
         if thread.state in (ThreadState.UNKNOWN, ThreadState.ENDED):
@@ -329,7 +329,7 @@ class ThreadStates:
         thread.state, thread.left = ThreadState.RUNNING, None
         self._undecided.pop(thread.entity, None)
 
-    def _leave(self, core: _Core, thread: _Thread, leaving: Leaving | None) -> None:
+    def _leave(self, core: _TracedCore, thread: _TracedThread, leaving: Leaving | None) -> None:
         core.thread = None
         leaving = leaving or thread.leaving
         thread.leaving = None
@@ -344,11 +344,11 @@ class ThreadStates:
         else:
             self._decide(thread, leaving)
 
-    def _suspend(self, thread: _Thread) -> None:
+    def _suspend(self, thread: _TracedThread) -> None:
         for runnable in reversed(thread.runnables):
             self._rows.add(EventKind.RUNNABLE_SUSPEND, thread.entity, thread.instance, *runnable)
 
-    def _decide(self, thread: _Thread, leaving: Leaving) -> None:
+    def _decide(self, thread: _TracedThread, leaving: Leaving) -> None:
         """Say why a thread has left its core."""
         if leaving is Leaving.BLOCKED:
             leaving = Leaving.WAITING if thread.runnables else Leaving.ENDED
@@ -361,11 +361,11 @@ class ThreadStates:
         thread.left = thread.leaving = None
         self._undecided.pop(thread.entity, None)
 
-    def _is_interrupted(self, thread: _Thread) -> bool:
+    def _is_interrupted(self, thread: _TracedThread) -> bool:
         """Whether only an interrupt keeps a thread from executing."""
         return any(core.thread is thread and bool(core.interrupts) for core in self._cores.values())
 
-    def _go_on_without_a_switch(self, thread: _Thread) -> None:
+    def _go_on_without_a_switch(self, thread: _TracedThread) -> None:
         """A thread that was about to leave its core is ready again before it does."""
         core = next(core for core in self._cores.values() if core.thread is thread)
         self._leave(core, thread, None)

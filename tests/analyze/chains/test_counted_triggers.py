@@ -6,7 +6,7 @@ from test_chain_systems import END, START, at, evaluate, system, ticks
 from amalthea_uros.perf.activities import Trigger
 from amalthea_uros.perf.stimuli import Counter, InterProcess
 from amalthea_uros.simulate.options import Options
-from amalthea_uros.simulate.system import simulate_system
+from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.timing.basics.quantities import ChainQuantity
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS

@@ -10,7 +10,7 @@ from amalthea_uros.perf.distributions import Boundaries
 from amalthea_uros.perf.events import ProcessChange, ProcessEvent
 from amalthea_uros.perf.software import Label
 from amalthea_uros.simulate.options import Options
-from amalthea_uros.simulate.system import simulate_system
+from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.timing.basics.quantities import ChainQuantity
 from amalthea_uros.units import MICROSECOND as US
 

@@ -12,7 +12,7 @@ from amalthea_uros.perf.events import LabelChange, LabelEvent
 from amalthea_uros.perf.software import Preemption
 from amalthea_uros.perf.stimuli import InterProcess
 from amalthea_uros.simulate.options import Options
-from amalthea_uros.simulate.system import simulate_system
+from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.timing.basics.quantities import ChainQuantity
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS

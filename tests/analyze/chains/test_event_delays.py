@@ -13,7 +13,7 @@ from amalthea_uros.perf.activities import Trigger
 from amalthea_uros.perf.constraints import Constraints, DelayConstraint
 from amalthea_uros.perf.events import ProcessChange, ProcessEvent
 from amalthea_uros.simulate.options import Options
-from amalthea_uros.simulate.system import simulate_system
+from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.units import MICROSECOND as US
 
 CHANGES = (ProcessChange.ACTIVATE, ProcessChange.START, ProcessChange.TERMINATE)

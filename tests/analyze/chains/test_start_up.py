@@ -10,7 +10,7 @@ from amalthea_uros.perf.constraints import Constraints, DelayConstraint, EventSy
 from amalthea_uros.perf.distributions import Uniform
 from amalthea_uros.perf.stimuli import Periodic, Stimuli, Synthetic
 from amalthea_uros.simulate.options import Options
-from amalthea_uros.simulate.system import simulate_system
+from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.timing.basics.quantities import ChainQuantity
 from amalthea_uros.timing.event_models.stimuli import event_model_of
 from amalthea_uros.units import MICROSECOND as US

@@ -9,7 +9,7 @@ from amalthea_uros import check_files
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.network import Direction, Purpose, WireKind
 from amalthea_uros.simulate.options import Mode, Options
-from amalthea_uros.simulate.system import simulate_system
+from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import SECOND
 

@@ -10,7 +10,6 @@ import numpy as np
 
 from amalthea_uros._internal.arrays import Numbers
 from amalthea_uros.perf.system import System
-from amalthea_uros.simulate.driver import KernelDriver
 from amalthea_uros.simulate.kernel import layout
 from amalthea_uros.simulate.kernel.layout import Observation
 from amalthea_uros.simulate.metrics import chains, jobs
@@ -19,6 +18,7 @@ from amalthea_uros.simulate.metrics.jobs import JobMetrics
 from amalthea_uros.simulate.metrics.observers import Observers
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.program.build import KernelProgram
+from amalthea_uros.simulate.runs.driver import KernelDriver
 from amalthea_uros.timing.blocking.critical_sections import spinlocks_of
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.trace.derived_events import RunnableSuspensions, SemaphoreStates

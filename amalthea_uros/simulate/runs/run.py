@@ -7,11 +7,11 @@ from contextlib import ExitStack
 from typing import TypeAlias
 
 from amalthea_uros.perf.system import System
-from amalthea_uros.simulate.evaluation import Evaluation
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.program.build import build_program
 from amalthea_uros.simulate.results import Simulation
-from amalthea_uros.simulate.run import SimulationRun
+from amalthea_uros.simulate.runs.evaluation import RunEvaluation
+from amalthea_uros.simulate.runs.execution import SimulationRun
 from amalthea_uros.timing.activation.phases import with_first_arrivals
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.trace.sinks import TraceSink
@@ -35,4 +35,4 @@ def simulate_system(system: System, options: Options, sinks: Sequence[OpenSink] 
     run = SimulationRun(context, options, program)
     with ExitStack() as stack:
         run.execute([stack.enter_context(open_sink(program.entities)) for open_sink in sinks])
-    return Evaluation(run).result()
+    return RunEvaluation(run).result()

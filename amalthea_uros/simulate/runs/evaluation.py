@@ -14,7 +14,6 @@ from amalthea_uros.simulate.kernel import layout
 from amalthea_uros.simulate.kernel.operations import POLLING, RUNNING
 from amalthea_uros.simulate.metrics.chains import chain_observation
 from amalthea_uros.simulate.metrics.jobs import JobMetrics
-from amalthea_uros.simulate.not_simulated import NotSimulated
 from amalthea_uros.simulate.observations import (
     ChainObservation,
     CoreObservation,
@@ -22,10 +21,11 @@ from amalthea_uros.simulate.observations import (
     ProcessObservation,
     RunnableObservation,
 )
-from amalthea_uros.simulate.observed_limits import LOOPING, judge_process, judge_requirements
 from amalthea_uros.simulate.program.build import KernelProgram
 from amalthea_uros.simulate.results import Simulation
-from amalthea_uros.simulate.run import SimulationRun
+from amalthea_uros.simulate.runs.execution import SimulationRun
+from amalthea_uros.simulate.runs.not_simulated import NotSimulated
+from amalthea_uros.simulate.runs.observed_limits import LOOPING, judge_process, judge_requirements
 from amalthea_uros.timing.activation.releases import ASSUMPTION
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.timing.context import TimingContext
@@ -35,7 +35,7 @@ _OF_ANALYSES = ("ANA002", "ANA003", "ANA004", "ANA005", "ANA007")
 
 
 @dataclass(slots=True)
-class Evaluation:
+class RunEvaluation:
     """What a run has shown of each thing."""
 
     run: SimulationRun

@@ -33,7 +33,6 @@ from amalthea_uros.perf.events import EventChain
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.system import System
 from amalthea_uros.simulate.metrics.extremes import LimitedQuantity
-from amalthea_uros.simulate.not_simulated import LIMITED_PROCESS_LEFT_OUT
 from amalthea_uros.simulate.observations import (
     ChainObservation,
     MetricObservation,
@@ -41,6 +40,7 @@ from amalthea_uros.simulate.observations import (
     RequirementObservation,
     RunnableObservation,
 )
+from amalthea_uros.simulate.runs.not_simulated import LIMITED_PROCESS_LEFT_OUT
 from amalthea_uros.timing.activation.releases import activation_period
 from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric, is_deviation_from_period
 from amalthea_uros.timing.dataflow.chains import forks, unfold
