@@ -15,16 +15,10 @@ from amalthea_uros.judge.causes import distinct
 from amalthea_uros.judge.verdict import WORST_OBSERVED_FIRST, ObservedVerdict
 from amalthea_uros.report.basics.document import Cell, Document, Section, Sentences, Table, document, section, table
 from amalthea_uros.report.documents.analysis import impact_section
-<<<<<<< HEAD
 from amalthea_uros.report.wording.cells import badge, by_core_and_priority, deadline_text, observed, words
 from amalthea_uros.report.wording.chains import CHAINS_HEADING
 from amalthea_uros.report.wording.closing_line import left_text
 from amalthea_uros.report.wording.findings import joined
-from amalthea_uros.simulate.not_simulated import LIMITED_PROCESS_LEFT_OUT, consequence_of
-=======
-from amalthea_uros.report.findings import joined
-from amalthea_uros.report.latencies import HEADING
->>>>>>> 98cffdf0 (Order the folders of the simulation, and name its records once)
 from amalthea_uros.simulate.observations import ChainObservation, ProcessObservation, RequirementObservation
 from amalthea_uros.simulate.results import IDLE, Judged, Simulation
 from amalthea_uros.simulate.runs.not_simulated import LIMITED_PROCESS_LEFT_OUT, consequence_of

@@ -264,7 +264,7 @@ def record_events(result: SimulationResult, start: Time, end: Time) -> EventTabl
 
 
 def _repeated(result: SimulationResult, start: Time, end: Time) -> EventTable:
-    from amalthea_uros.simulate.system import simulate_system
+    from amalthea_uros.simulate.runs.run import simulate_system
     from amalthea_uros.trace.sinks import EventRecorder
 
     recorder = EventRecorder()
