@@ -76,7 +76,12 @@ WITHOUT_LIMIT = {f"{PACKAGE}/__init__.py"}
 LANGUAGES = (f"{PACKAGE}/metamodel/classes/",)
 
 #: Rooms whose folders still import each other.
-CIRCULAR = {"bridge", "design", "metamodel", "report", }
+CIRCULAR = {
+    "bridge",
+    "design",
+    "metamodel",
+    "report",
+}
 
 #: Class names that still have several owners, without an underscore at the beginning.
 SHARED_NAMES = {
