@@ -13,8 +13,9 @@ ROOT = Path(__file__).parents[1]
     [
         ("generate_schemas.py", "schemas", "amalthea-*.xsd"),
         ("generate_app_schema.py", "schemas", "app.schema.json"),
-        ("generate_app_reference.py", "docs", "app-yaml-reference.md"),
-        ("generate_findings.py", "docs", "findings.md"),
+        ("generate_app_reference.py", "docs/app-yaml-reference", "*.md"),
+        ("generate_findings.py", "docs/findings", "*.md"),
+        ("generate_rules.py", "docs/rules", "*.md"),
         ("generate_benchmarks.py", "docs", "benchmarks.md"),
         ("generate_metamodel.py", "amalthea_uros/metamodel/classes", "*.py"),
     ],

@@ -1,4 +1,4 @@
-"""docs/json.md against the JSON of all commands: the page has every field, nothing else, and the right types."""
+"""docs/json against the JSON of all commands: the pages have every field, nothing else, and the right types."""
 
 import json
 import re
@@ -12,7 +12,7 @@ from support import ROOT
 
 from amalthea_uros import am, load, save
 
-PAGE = (ROOT / "docs" / "json.md").read_text()
+PAGES = ROOT / "docs" / "json"
 TYPES = {"text": str, "integer": int, "number": (int, float), "boolean": bool, "object": dict, "null": type(None)}
 ADVANCED = "bodas-test-advanced.yaml"
 
@@ -124,7 +124,10 @@ class Field(NamedTuple):
 
 def rows(section: str) -> Iterator[Field]:
     """The fields of a section; those of a type that has a section of its own instead of it."""
-    text = PAGE.partition(f"\n## {section}\n")[2].partition("\n## ")[0]
+    if section in SHARED:
+        text = (PAGES / "shared.md").read_text().partition(f"\n## {section}\n")[2].partition("\n## ")[0]
+    else:
+        text = (PAGES / f"{section.removeprefix('amuros ')}.md").read_text()
     for names, kinds in re.findall(r"^\| (`.+?) \| (.+?) \|", text, re.MULTILINE):
         types = tuple(re.split(", | or ", kinds))
         for name in re.findall(r"`([^`]+)`", names):
@@ -238,7 +241,7 @@ def test_a_command_writes_the_fields_of_the_page(section, folder):
         amuros(*command, "--output", f"json={file}", cwd=folder)
         for path, value in values(json.loads(file.read_text())):
             matching = [field for field in fields if field.holds(path)]
-            assert matching, f"docs/json.md lacks {show(path)} in '{section}'"
+            assert matching, f"docs/json lacks {show(path)} in '{section}'"
             allowed = tuple(TYPES[kind] for field in matching for kind in field.types)
             assert any(isinstance(value, kind) for kind in allowed), f"{show(path)} is {value!r}"
             assert not isinstance(value, bool) or bool in allowed, f"{show(path)} is {value!r}"
@@ -246,7 +249,7 @@ def test_a_command_writes_the_fields_of_the_page(section, folder):
     assert not unseen, f"nothing writes {', '.join(map(show, sorted(unseen)))}"
 
 
-def test_every_command_with_json_is_on_the_page():
+def test_every_command_with_json_has_a_page():
     with_json = {path.stem for path in (ROOT / "amalthea_uros" / "cli").glob("*.py") if "@output_option(" in path.read_text()}
     assert with_json == {section.removeprefix("amuros ") for section in RUNS}
 

@@ -72,9 +72,9 @@ def test_the_site(site):
 
 
 def is_page_of_every_finding(site: Path) -> None:
-    lists = text_of(site, "check") + text_of(site, "findings")
+    lists = "".join(page.read_text() for folder in ("rules", "findings") for page in (site / folder).glob("*/index.html"))
     for identifier in (*registry.ids(), *catalogue.ids()):
-        assert f'href="../rules/{identifier}/"' in lists
+        assert f'href="../../rules/{identifier}/"' in lists
         url = registry.rule_url(identifier)
         assert url is not None
         assert "<h1 id=" in text_of(site, unquote(url.removeprefix(DOCUMENTATION + "/")))
@@ -91,7 +91,7 @@ def is_complete_for_commands(site: Path) -> None:
 
 
 def is_complete_for_the_library(site: Path) -> None:
-    page = text_of(site, "api")
+    page = "".join(page.read_text() for page in (site / "api").glob("*/index.html"))
     shown = {found.rpartition(".")[2] for found in re.findall(r'<h3 id="([\w.]+)" class="doc', page)}
     assert set(amalthea_uros.__all__) - {"am", "errors", "perf", "units"} <= shown
 
@@ -125,7 +125,7 @@ def test_the_addresses_are_stated_alike():
 
 def test_every_page_is_in_the_navigation():
     text = (ROOT / "mkdocs.yml").read_text()
-    listed = re.findall(r": ([\w./-]+\.(?:md|ipynb))$", text.partition("\nnav:")[2], re.MULTILINE)
+    listed = re.findall(r"(?:: |- )([\w./-]+\.(?:md|ipynb))$", text.partition("\nnav:")[2], re.MULTILINE)
     assert len(listed) == len(set(listed))
     assert set(listed) >= {str(path.relative_to(ROOT / "docs")) for path in (ROOT / "docs").rglob("*.md")}
     assert set(listed) >= {f"notebooks/{path.stem}.md" for path in NOTEBOOKS}

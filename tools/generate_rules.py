@@ -1,23 +1,43 @@
-"""Write the table of all rules into docs/check.md: python tools/generate_rules.py"""
+"""Write docs/rules, a page for each profile of rules: python tools/generate_rules.py [FOLDER]"""
 
 from __future__ import annotations
 
+import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 from amalthea_uros.validate import registry
+from amalthea_uros.validate.rule import RuleProfile
 
-PAGE = Path(__file__).parent.parent / "docs" / "check.md"
-HEADING = "## The rules\n"
+TITLES = {
+    RuleProfile.SCHEMA: "Rules of the XML schema",
+    RuleProfile.EMF: "Rules of EMF",
+    RuleProfile.APP4MC: "Rules of APP4MC",
+    RuleProfile.TA: "Rules of the TA tools",
+    RuleProfile.INCHRON: "Rules of INCHRON's importer",
+    RuleProfile.TIMING: "Rules on timing",
+    RuleProfile.MICRO_ROS: "Rules of the micro-ROS model",
+}
 
 
-def main() -> None:
-    text = PAGE.read_text()
-    rows = ["| rule | severity | profile | problem | why it matters |", "|---|---|---|---|---|"]
-    for identifier in registry.ids():
+def main(folder: Path) -> None:
+    for profile, title in TITLES.items():
+        lines = (
+            f"# {title}\n",
+            f"`amuros check --profile {profile}` [checks](../check.md) these rules.\n",
+            *_rows(profile),
+            "",
+        )
+        (folder / f"{profile}.md").write_text("\n".join(lines))
+
+
+def _rows(profile: RuleProfile) -> Iterator[str]:
+    yield "| rule | severity | problem | why it matters |"
+    yield "|---|---|---|---|"
+    for identifier in registry.ids((profile,)):
         rule = registry.rule(identifier)
-        rows.append(f"| {rule.id} | {rule.severity} | {registry.profile_of(identifier)} | {rule.title} | {rule.rationale} |")
-    PAGE.write_text(text[: text.index(HEADING)] + HEADING + "\n" + "\n".join(rows) + "\n")
+        yield f"| {rule.id} | {rule.severity} | {rule.title} | {rule.rationale} |"
 
 
 if __name__ == "__main__":
-    main()
+    main(Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).parent.parent / "docs" / "rules")

@@ -6,35 +6,34 @@ from collections.abc import Iterator
 
 import amalthea_uros as amuros
 
-#: Title of a group -> the rooms and modules that its names come from; a module counts more than its room.
-GROUPS = {
-    "Files, and what the commands do": ("services", "report"),
-    "From measurements to better designs": (
+#: Page of `docs/api` -> the rooms and modules that its names come from; a module counts more than its room.
+PAGES = {
+    "files": ("services", "report"),
+    "designs": (
         *("measure", "services.measure", "services.compare", "compare"),
-        *("services.calibrate", "compare.calibration", "design.optimize", "services.optimize", "services.sweep"),
+        *("services.calibrate", "compare.calibration", "design.optimize", "services.optimize", "services.sweep", "design"),
     ),
-    "AMALTHEA models": ("xmi", "metamodel", "bridge"),
-    "Descriptions": ("uros",),
-    "Analysis": ("analyze",),
-    "Simulation": ("simulate", "trace"),
-    "Systems": ("perf", "timing", "design.changes"),
+    "models": ("xmi", "metamodel", "bridge"),
+    "descriptions": ("uros",),
+    "analysis": ("analyze", "executors"),
+    "simulation": ("simulate", "trace"),
+    "systems": ("perf", "timing", "design.changes", "design.tasksets", "services.taskset"),
 }
-OTHERS = "Findings, errors and quantities"
+OTHERS = "findings"
 
 
-def api_lists() -> str:
-    """A section for each group, with the documentation of each name."""
-    return "\n\n".join("\n\n".join(_section(title)) for title in (*GROUPS, OTHERS)) + "\n"
+def api_list(page: str) -> str:
+    """The documentation of each name of a page."""
+    return "\n\n".join(("## Reference", *_entries(page))) + "\n"
 
 
-def _section(title: str) -> Iterator[str]:
-    yield f"## {title}"
+def _entries(page: str) -> Iterator[str]:
     for name, home in sorted(amuros._HOMES.items(), key=lambda item: (item[0][0].isupper(), item[0])):
-        if _group(home) == title:
+        if _page(home) == page:
             yield f"::: amalthea_uros.{home}.{name}"
 
 
-def _group(home: str) -> str:
-    """The group of a module: that of the longest start of its name that one of them lists."""
-    found = {listed: title for title, modules in GROUPS.items() for listed in modules if f"{home}.".startswith(f"{listed}.")}
+def _page(home: str) -> str:
+    """The page of a module: that of the longest start of its name that one of them lists."""
+    found = {listed: page for page, modules in PAGES.items() for listed in modules if f"{home}.".startswith(f"{listed}.")}
     return found[max(found, key=len)] if found else OTHERS

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from functools import partial
 from itertools import chain
 from pathlib import Path
 
 from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.structure.files import File, Files
 from mkdocs.structure.pages import Page
-from site_api import api_lists
+from site_api import OTHERS, PAGES, api_list
 from site_commands import command_lists
 from site_notebooks import LINK, notebook_pages
 from site_rules import rule_pages
@@ -18,9 +19,11 @@ from site_rules import rule_pages
 from amalthea_uros._internal.addresses import REPOSITORY
 
 #: Pages that end with what is generated from the code when the site is built, so that it is never stale.
-GENERATED: dict[str, Callable[[], str]] = {"api.md": api_lists, "commands.md": command_lists}
+GENERATED: dict[str, Callable[[], str]] = {
+    **{f"api/{page}.md": partial(api_list, page) for page in (*PAGES, OTHERS)},
+    "commands.md": command_lists,
+}
 
-_OUTSIDE = re.compile(r"\]\(\.\./([^)]+)\)")
 _FINDING = re.compile(r"^\| ([A-Z][\w/.-]+) (?=\| (?:error|warning|info) \|)", re.MULTILINE)
 _GRAPH = re.compile(r"```mermaid\n(.*?)```", re.DOTALL)
 _ARROW = re.compile(r"(\w+) --> (\w+)")
@@ -40,10 +43,11 @@ def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Fil
         markdown = f"{markdown.rstrip()}\n\n{GENERATED[path]()}"
     if page.file.generated_by:
         return markdown
-    markdown = _FINDING.sub(r"| [\1](rules/\1.md) ", markdown)
+    top = "../" * path.count("/")
+    markdown = _FINDING.sub(rf"| [\1]({top}rules/\1.md) ", markdown)
     markdown = LINK.sub(r"](\1.md)", markdown)
     markdown = _GRAPH.sub(lambda found: _arrows(found[1]), markdown)
-    return _OUTSIDE.sub(rf"]({REPOSITORY}/blob/main/\1)", markdown)
+    return re.sub(rf"\]\({re.escape(top)}\.\./([^)]+)\)", rf"]({REPOSITORY}/blob/main/\1)", markdown)
 
 
 def _arrows(graph: str) -> str:

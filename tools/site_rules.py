@@ -34,7 +34,7 @@ def _origin(kind: FindingKind) -> Iterator[str]:
     if (profile := registry.profile_of(kind.id)) is not None:
         yield f"A rule of the profile [`{profile}`]({top}check.md#checking-models) of `amuros check`."
     else:
-        yield f"A [finding]({top}findings.md) that is reported without being asked for: {catalogue.FAMILIES[kind.id[:3]].lower()}."
+        yield f"A [finding]({top}findings/index.md) that is reported without being asked for: {catalogue.FAMILIES[kind.id[:3]].lower()}."
 
 
 def _text(kind: FindingKind) -> Iterator[str]:

@@ -22,7 +22,7 @@ Reliability = Annotated[
 
 _INVOCATIONS = described(
     on_new_data="When a message has arrived.",
-    always="In every round whose trigger condition is true, with or without a message.",
+    always="In every iteration whose trigger condition is true, with or without a message.",
 )
 _HISTORIES = described(
     keep_last="Of more messages than `depth`, the oldest one is overwritten.",

@@ -47,7 +47,7 @@ class ExecutorCost(Shorthand):
 _TRIGGERS = described(
     any="As soon as any callback is ready.",
     all="When all callbacks are ready.",
-    always="In every round, ready or not.",
+    always="In every iteration, ready or not.",
 )
 
 
@@ -55,10 +55,10 @@ class TriggerSection(Shorthand):
     """When the executor runs its callbacks: `any`, `all`, `always`, `{one: NAME}`, or `{custom: [[NAME, ...], ...]}`."""
 
     shorthand = ("when",)
-    plain_value = "`any`: as soon as any callback is ready; `all`: when all callbacks are ready; `always`: in every round."
+    plain_value = "`any`: as soon as any callback is ready; `all`: when all callbacks are ready; `always`: in every iteration."
 
     when: Annotated[Literal["any", "all", "always"], _TRIGGERS] = "any"
-    """`any`: as soon as any callback is ready; `all`: when all callbacks are ready; `always`: in every round."""
+    """`any`: as soon as any callback is ready; `all`: when all callbacks are ready; `always`: in every iteration."""
     one: Name | None = None
     """As soon as this callback is ready."""
     custom: Annotated[list[Annotated[list[Name], Field(min_length=1)]], Field(min_length=1)] | None = None

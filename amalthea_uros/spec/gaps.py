@@ -12,7 +12,7 @@ GAP = "TODO"
 #: What to write for the keys that source code does not tell.
 _ADVICE = {
     "execution_time": "Measure it, or write bounds such as {min: 10 us, max: 60 us}.",
-    "base": "Measure a round without messages, or write bounds such as {min: 10 us, max: 60 us}.",
+    "base": "Measure an iteration without messages, or write bounds such as {min: 10 us, max: 60 us}.",
     "per_message": "Measure how long it takes to take a message, e.g. 30 us.",
     "rate": "Write how often messages arrive at most, e.g. 20 Hz.",
     "message_size": "Write the longest message, e.g. 64 B.",

@@ -80,9 +80,9 @@ class PoolSizes(Section):
     RMW_UXRCE_STREAM_HISTORY_OUTPUT: Count | None = None
     """MTU-sized buffers of the reliable output stream, a power of two; only together with `RMW_UXRCE_STREAM_HISTORY_INPUT`."""
     RMW_UXRCE_PUBLISH_RELIABLE_TIMEOUT: Duration | None = None
-    """Time after which publishing a reliable message gives up."""
+    """Time after which publishing a reliable message times out."""
     RMW_UXRCE_ENTITY_CREATION_DESTROY_TIMEOUT: OffsetOrNumberZero | None = None
-    """Time after which creating or destroying an entity gives up; 0: it is not checked."""
+    """Time after which creating or destroying an entity times out; 0: it is not checked."""
     RMW_UXRCE_ENTITY_CREATION_TIMEOUT: OffsetOrNumberZero | None = None
     """The same, for creating only."""
     RMW_UXRCE_ENTITY_DESTROY_TIMEOUT: OffsetOrNumberZero | None = None
@@ -163,7 +163,7 @@ class Reliable(Section):
     waits: bool = True
     """Whether a publishing callback waits until the agent has acknowledged its message; `false` for ports that do not."""
     timeout: Duration | None = None
-    """Time after which it gives up; default: that of the middleware, `RMW_UXRCE_PUBLISH_RELIABLE_TIMEOUT` for XRCE-DDS."""
+    """Time after which it times out; default: that of the middleware, `RMW_UXRCE_PUBLISH_RELIABLE_TIMEOUT` for XRCE-DDS."""
 
 
 class MiddlewareTask(Section):

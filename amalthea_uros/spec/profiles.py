@@ -33,7 +33,7 @@ class SendingData(Section):
     waits: bool = True
     """Whether a reliable message keeps its sender until it is acknowledged."""
     flush_timeout: Duration | None = None
-    """Time after which it gives up to empty full buffers, when a message is longer than all of them together."""
+    """Time after which emptying full buffers times out, when a message is longer than all of them together."""
     heartbeat: Duration | None = None
     """Least interval of messages of the other side that ask for acknowledgements."""
     holds_session_while_waiting: bool = False

@@ -96,9 +96,9 @@ class Can(Section):
     interrupt: Interrupt | None = None
     """The interrupt for each received frame; if omitted, its cost is part of other execution times."""
     foreign: list[ForeignFrameSection] = Field(default_factory=list)
-    """Frames of others on the same bus."""
+    """Foreign frames on the same bus."""
     dbc: Name | None = None
-    """A DBC file with the frames of others, relative to this file; those with a cycle time are foreign traffic."""
+    """A DBC file with the foreign frames, relative to this file; those with a cycle time are foreign traffic."""
 
 
 class CanFd(Section):
@@ -115,9 +115,9 @@ class CanFd(Section):
     interrupt: Interrupt | None = None
     """The interrupt for each received frame; if omitted, its cost is part of other execution times."""
     foreign: list[ForeignFrameSection] = Field(default_factory=list)
-    """Frames of others on the same bus."""
+    """Foreign frames on the same bus."""
     dbc: Name | None = None
-    """A DBC file with the frames of others, relative to this file; those with a cycle time are foreign traffic."""
+    """A DBC file with the foreign frames, relative to this file; those with a cycle time are foreign traffic."""
 
 
 _MODES = described(

@@ -101,7 +101,7 @@ RULES = (
         target=DiscreteValueStatistics,
         check=_check_statistics,
         rationale="am2inc silently converts statistics to a normal distribution. As standard deviation it takes a third of the larger "
-        "distance between the average and a bound, which nobody stated.",
+        "distance between the average and a bound, which is not specified.",
         remedy="Use another distribution, e.g. boundaries with a sampling type or a Gaussian one.",
         fails=runnable_with("""
 <items xsi:type="am:Ticks">
