@@ -53,7 +53,7 @@ if TYPE_CHECKING:
     from amalthea_uros.analyze.results.processes import Metric as Metric
     from amalthea_uros.analyze.results.processes import ProcessorResult as ProcessorResult
     from amalthea_uros.analyze.results.processes import ProcessResult as ProcessResult
-    from amalthea_uros.analyze.results.requirements import RequirementResult as RequirementResult
+    from amalthea_uros.analyze.results.processes import RequirementResult as RequirementResult
     from amalthea_uros.analyze.sensitivity import Sensitivity as Sensitivity
     from amalthea_uros.analyze.sensitivity import sensitivity as sensitivity
     from amalthea_uros.analyze.system import analyze_system as analyze_system

@@ -7,17 +7,15 @@ what the job still executes at least after the call.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from amalthea_uros.analyze.call_sites import CallSite
-from amalthea_uros.analyze.executor_results import callback_results
 from amalthea_uros.analyze.response_times import metrics
-from amalthea_uros.analyze.response_times.core_schedule import CoreSchedule, CoreSchedules
 from amalthea_uros.analyze.response_times.solution import Solution
-from amalthea_uros.analyze.results.processes import CallbackResult
+from amalthea_uros.analyze.results.processes import CallbackResult, Metric
 from amalthea_uros.errors import UnknownError
-from amalthea_uros.executors.results import ExecutorResult
+from amalthea_uros.executors.results import ExecutorResult, HandleResult
 from amalthea_uros.perf.activities import Call, ServerCall, Terminate
 from amalthea_uros.perf.constraints import Bound, TimeLimit, TimeMetric
 from amalthea_uros.perf.software import Process
@@ -36,7 +34,6 @@ class CallbackEvaluator:
     """Finds the response times of callbacks and of other runnables with requirements."""
 
     solution: Solution
-    schedules: CoreSchedules
     executors: Sequence[ExecutorResult] = ()
     _limits: dict[str, Time | None] = field(default_factory=dict)
 
@@ -90,7 +87,8 @@ class CallbackEvaluator:
                 name, process, f"the response time of {process.name!r} is unknown: {reason}", self._deadline(name, sites)
             )
         is_exact = response.claim is Claim.EXACT and not self.solution.depends_on_losses(process.name)
-        known = self._schedule(process) if is_exact else None
+        core = self.context.scheduled[process.name].core
+        known = self.solution.schedule(core, with_slices=True) if is_exact else None
         found = [site.by_schedule(known) if known is not None else site.by_response(response) for site in sites]
         combined = metrics.merged([{JobMetric.RESPONSE_TIME: metric} for metric in found])[JobMetric.RESPONSE_TIME]
         if len(found) > 1:
@@ -117,9 +115,6 @@ class CallbackEvaluator:
             },
         )
 
-    def _schedule(self, process: Process) -> CoreSchedule | None:
-        return self.schedules.of(self.context.scheduled[process.name].core, with_slices=True)
-
     def _deadline(self, name: str, sites: Sequence[CallSite]) -> Time | None:
         """The limit of the response time, or else the minimum time from one call to the next."""
         limit = self._limits.get(name)
@@ -132,3 +127,37 @@ class CallbackEvaluator:
 
 def _unknown(name: str, process: Process, reason: str, deadline: Time | None = None) -> CallbackResult:
     return CallbackResult(name=name, process=process.name, response=None, deadline=deadline, reason=reason)
+
+
+def callback_results(executor: ExecutorResult, limits: Mapping[str, Time | None]) -> Iterator[CallbackResult]:
+    """The callbacks of an executor, in its order; several handles can have the same one.
+
+    Parameters
+    ----------
+    limits : of response times, by the names of runnables
+    """
+    by_runnable: dict[str, list[HandleResult]] = {}
+    for handle in executor.handles:
+        by_runnable.setdefault(handle.runnable, []).append(handle)
+    for runnable, handles in by_runnable.items():
+        response = _worst_of(handles)
+        intervals = [handle.interval for handle in handles if handle.interval]
+        limit = limits.get(runnable)
+        yield CallbackResult(
+            name=runnable,
+            process=executor.task,
+            response=response,
+            deadline=min(intervals, default=None) if limit is None else limit,
+            reason=response.reason,
+            metrics={JobMetric.RESPONSE_TIME: Metric(min=response.best, max=response.worst)},
+        )
+
+
+def _worst_of(handles: Sequence[HandleResult]) -> Response:
+    """The response time of a callback that several handles call."""
+    responses = [handle.response for handle in handles]
+    unbounded = next((response for response in responses if response.worst is None), None)
+    if unbounded is not None:
+        return replace(unbounded, best=min(response.best for response in responses))
+    longest = max(responses, key=lambda response: response.worst or 0)
+    return replace(longest, best=min(response.best for response in responses))

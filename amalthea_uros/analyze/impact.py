@@ -17,8 +17,7 @@ from typing import TypeAlias
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import ChainResult, LatencyQuantity
-from amalthea_uros.analyze.results.processes import CallbackResult, ProcessorResult, ProcessResult
-from amalthea_uros.analyze.results.requirements import RequirementResult
+from amalthea_uros.analyze.results.processes import CallbackResult, ProcessorResult, ProcessResult, RequirementResult
 from amalthea_uros.judge.verdict import Failure, Verdict
 from amalthea_uros.timing.response import Claim, Response
 

@@ -6,33 +6,31 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from amalthea_uros._internal.by_name import Results
-from amalthea_uros.analyze.constraints.process_evidence import evidence_of, judged
-from amalthea_uros.analyze.executor_results import METRICS_OF_ITERATIONS, of_iterations
 from amalthea_uros.analyze.loads import without_doubtful_overload
-from amalthea_uros.analyze.response_times.core_schedule import CoreSchedules
 from amalthea_uros.analyze.response_times.metrics import MetricEvaluator
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.results.processes import ProcessResult
+from amalthea_uros.executors.bounds.solved_system import METHOD
 from amalthea_uros.executors.results import ExecutorResult
-from amalthea_uros.judge.limits import deadline_of
-from amalthea_uros.judge.verdict import Verdict
-from amalthea_uros.perf.software import Preemption, Task
+from amalthea_uros.judge.evidence import Ends, ProcessEvidence, ProvedLoss
+from amalthea_uros.judge.limits import activation_limit, deadline_limit, deadline_of
+from amalthea_uros.judge.verdict import Verdict, lost_jobs, prove_process
+from amalthea_uros.perf.software import Preemption, Process, Task
 from amalthea_uros.timing.activation.releases import ASSUMPTION
+from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.timing.basics.time_base import max_time, min_time
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.event_models import EventModel
+from amalthea_uros.timing.event_models import EventModel, can_be_dense
 from amalthea_uros.timing.jobs.executed import states_mean
-from amalthea_uros.timing.response import Claim
+from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.timing.scheduling.scheduled import EqualPriority, preemption
-from amalthea_uros.units import Rounding, rounded_time_text
+from amalthea_uros.units import Rounding, Time, rounded_time_text
 
 
-def process_results(
-    solution: Solution, schedules: CoreSchedules, executors: Results[ExecutorResult]
-) -> Iterator[ProcessResult]:
+def process_results(solution: Solution, executors: Results[ExecutorResult]) -> Iterator[ProcessResult]:
     """The results of all processes."""
     system = solution.context.system
-    metrics = MetricEvaluator(solution, schedules)
+    metrics = MetricEvaluator(solution)
     by_task = {executor.task: executor for executor in executors}
     for name in system.processes:
         found = _with_order(_process(name, solution, by_task.get(name)), solution)
@@ -102,3 +100,106 @@ def _judged(process: ProcessResult, events: EventModel | None, context: TimingCo
     model = context.system.processes[process.name]
     can_borrow, may_be_less = context.can_borrow(process.name), process.name in context.with_uncertain_activations
     return judged(process, model, evidence_of(process, model, events, can_borrow, may_be_less))
+
+
+#: Others are about activations by stimuli.
+METRICS_OF_ITERATIONS = (JobMetric.RESPONSE_TIME, JobMetric.NET_EXECUTION_TIME)
+
+
+def of_iterations(
+    process: ProcessResult, model: Process, executor: ExecutorResult, deadline: Time | None, gap: str
+) -> ProcessResult:
+    """The result of the process that executes the iterations of an executor: its response time is that of an iteration, after its wait.
+
+    Without a deadline, it is met if all callbacks have a bound, nothing is lost, and the core is left to others.
+
+    Parameters
+    ----------
+    deadline : that is stated for it; it has no implicit one, because its iterations follow each other
+    gap : why it is unknown how much its iterations execute, as when they follow each other without rest; "" if it is known
+    """
+    response = Response(
+        worst=executor.round.most,
+        best=executor.round.least,
+        method=METHOD,
+        source="ros2/rclc executor.c",
+        claim=Claim.BOUND,
+        reason=executor.reason,
+    )
+    found = replace(
+        process,
+        response=response,
+        least_wcet=None,
+        deadline=deadline,
+        is_implicit=False,
+        reason=executor.reason,
+        min_interarrival=executor.loop.least or None,
+        max_interarrival=executor.loop.most,
+    )
+    overload = next((handle.response.reason for handle in executor.handles if handle.response.is_overload), None)
+    loss = _loss(executor)
+    possible = loss.reason if loss is not None and not loss.is_certain else None
+    evidence = ProcessEvidence(
+        response=found.worst_response,
+        overload=overload,
+        loss=loss,
+        gap=possible or _unserved(executor) or gap or None,
+        is_served=True,
+    )
+    return judged(found, model, evidence)
+
+
+def _loss(executor: ExecutorResult) -> ProvedLoss | None:
+    """What callbacks lose for certain, or may lose; values that newer ones replace are not lost."""
+    lost = [
+        (handle.name, handle.lost) for handle in executor.handles if handle.lost is not None and not handle.lost.is_replaced
+    ]
+    for name, loss in sorted(lost, key=lambda pair: not pair[1].is_certain):
+        return ProvedLoss(f"{name!r} {'loses' if loss.is_certain else 'can lose'} {loss.what}", loss.is_certain)
+    return None
+
+
+def _unserved(executor: ExecutorResult) -> str | None:
+    """Why it is unknown whether all callbacks are called in time; None if all have a bound."""
+    unknown = next((handle for handle in executor.handles if handle.response.worst is None), None)
+    return None if unknown is None else f"{unknown.name!r}: {unknown.response.reason}"
+
+
+def judged(process: ProcessResult, model: Process, evidence: ProcessEvidence) -> ProcessResult:
+    """The result with its verdict."""
+    limit = None if process.deadline is None else deadline_limit(model, process.deadline, process.is_implicit)
+    found = prove_process(limit, evidence)
+    if found is None:
+        return process
+    return replace(process, verdict=found.verdict, failure=found.failure, reason=found.reason or process.reason)
+
+
+def evidence_of(
+    process: ProcessResult, model: Process, events: EventModel | None, can_borrow: bool, may_be_less: bool
+) -> ProcessEvidence:
+    """What is proved of a process by its response time and the event model of its activations.
+
+    Parameters
+    ----------
+    can_borrow : whether it can execute more than what its demand was compared with, so that an overload is not certain
+    may_be_less : whether it may be activated less often, so that neither an overload nor a loss is certain
+    """
+    response = process.response
+    if response is None or events is None:
+        return ProcessEvidence(gap=process.reason)
+    if response.worst is None:
+        is_certain = response.is_overload and not can_borrow and not may_be_less
+        return ProcessEvidence(overload=process.reason) if is_certain else ProcessEvidence(gap=process.reason)
+    loss = lost_jobs(activation_limit(model), pending(process, events)) if isinstance(model, Task) else None
+    if loss is not None and may_be_less:
+        loss = ProvedLoss(loss.reason, is_certain=False)
+    return ProcessEvidence(response=process.worst_response, loss=loss)
+
+
+def pending(process: ProcessResult, events: EventModel) -> Ends:
+    """Between which ends the maximum number of pending jobs lies: the activations while a job of the longest response is pending."""
+    ends = process.worst_response
+    upper = None if ends.upper is None else events.eta_plus(ends.upper)
+    # Other event models only bound the activations.
+    lower = events.eta_plus(ends.lower or 0) if can_be_dense(events) else 1
+    return Ends(lower, upper)

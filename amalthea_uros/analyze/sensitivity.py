@@ -13,7 +13,7 @@ from fractions import Fraction
 
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.results.analysis import Analysis, require_analysis
-from amalthea_uros.analyze.results.requirements import RequirementResult
+from amalthea_uros.analyze.results.processes import RequirementResult
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.perf.constraints import ChainSynchronization, LatencyConstraint

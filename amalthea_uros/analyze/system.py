@@ -13,7 +13,7 @@ from amalthea_uros.analyze.chains.messages.evaluate import evaluate_executors_an
 from amalthea_uros.analyze.constraints.evaluator import ConstraintEvaluator
 from amalthea_uros.analyze.constraints.requirements import evaluate_requirements
 from amalthea_uros.analyze.loads import processor_results
-from amalthea_uros.analyze.phases.combinations import Phases
+from amalthea_uros.analyze.phases.cases import PhaseCases
 from amalthea_uros.analyze.phases.merged import merged, merged_chain
 from amalthea_uros.analyze.processes import process_results
 from amalthea_uros.analyze.response_times.propagation import solve
@@ -69,12 +69,11 @@ def _of_all_phases(
     solution: Solution, unknown: Sequence[ExternalInput], executors: Results[ExecutorResult], crossing: Results[ChainResult]
 ) -> Analysis | None:
     """The analysis over all combinations of unknown phases; None if there are too many."""
-    phases = Phases.of(solution, unknown)
-    if phases is None:
+    cases, budget = PhaseCases.of(solution, unknown), JobBudget()
+    if cases is None:
         return None
-    cases, budget = phases.cases, JobBudget()
     return merged(
-        {number: _analysis(each, budget, executors, crossing) for number, each in phases.solutions(cases.of_everything())},
+        {number: _analysis(each, budget, executors, crossing) for number, each in cases.solutions(cases.of_everything())},
         cases,
         solution,
     )
@@ -95,9 +94,8 @@ def _analysis(
     _note_ignored(solution)
     _note_regular_frames(solution)
     evaluation = ChainEvaluator(solution, budget)
-    schedules = evaluation.timing.schedules
-    processes = Results(process_results(solution, schedules, executors))
-    callbacks = Results(CallbackEvaluator(solution, schedules, executors).all())
+    processes = Results(process_results(solution, executors))
+    callbacks = Results(CallbackEvaluator(solution, executors).all())
     known = {chain.name: chain for chain in crossing}
     chains = Results(known.get(chain.name) or _chain(chain, evaluation) for chain in system.events.chains)
     verdicts = evaluate_requirements(system, processes, callbacks, context.notes)
@@ -119,15 +117,15 @@ def _analysis(
 
 def _chain(chain: EventChain, evaluation: ChainEvaluator) -> ChainResult:
     """A chain, over all unknown phases of the jobs that it passes if these are not too many."""
-    phases = Phases.of(evaluation.solution, evaluation.occurrences(chain))
-    if phases is None:
+    cases = PhaseCases.of(evaluation.solution, evaluation.occurrences(chain))
+    if cases is None:
         return evaluation.chain(chain)
-    cases = phases.cases.of_chain(chain)
+    of_chain = cases.of_chain(chain)
     results = []
-    for _, solution in phases.solutions(cases):
+    for _, solution in cases.solutions(of_chain):
         results.append(ChainEvaluator(solution, evaluation.budget).chain(chain))
         evaluation.context.notes.include(solution.context.notes)
-    return merged_chain(results, list(cases.values()))
+    return merged_chain(results, list(of_chain.values()))
 
 
 def _note_regular_frames(solution: Solution) -> None:

@@ -8,9 +8,8 @@ from itertools import chain as joined
 from itertools import zip_longest
 
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
-from amalthea_uros.analyze.explanations.chain_results import ChainExplanation
-from amalthea_uros.analyze.explanations.hop_causes import CauseKind
 from amalthea_uros.analyze.results.analysis import Analysis
+from amalthea_uros.analyze.results.explanations import CauseKind, ChainExplanation
 from amalthea_uros.design.changes.change import Change
 from amalthea_uros.design.changes.key import Configuration
 from amalthea_uros.perf.activities import Communication

@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 from itertools import islice
 
 from amalthea_uros._internal.shown import Shown
-from amalthea_uros.analyze.explanations.chain_results import ChainExplanation
 from amalthea_uros.analyze.impact import Amount, ComparedFigure, Effect, FigureUnit, ResultPart, impact
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import EXPLAINED, LatencyQuantity
+from amalthea_uros.analyze.results.explanations import ChainExplanation
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.design.changes.apply import Difference, apply, describe
 from amalthea_uros.design.changes.key import Configuration

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from amalthea_uros.analyze.explanations.chain_results import ChainExplanation
+from amalthea_uros.analyze.results.explanations import ChainExplanation
 from amalthea_uros.report.writers.terminal import Terminal
 from amalthea_uros.timing.response import Claim
 from amalthea_uros.units import Time, time_text

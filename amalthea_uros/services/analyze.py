@@ -30,9 +30,8 @@ from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
-    from amalthea_uros.analyze.explanations.chain_results import ChainExplanation
-    from amalthea_uros.analyze.explanations.processes import CallbackExplanation, ProcessExplanation
     from amalthea_uros.analyze.priorities.assignment import Proposal
+    from amalthea_uros.analyze.results.explanations import CallbackExplanation, ChainExplanation, ProcessExplanation
     from amalthea_uros.analyze.sensitivity import Sensitivity
     from amalthea_uros.design.improvements import Improvements
     from amalthea_uros.services.what_if import Changes

@@ -8,9 +8,8 @@ from support import ROOT
 from test_system import system, ticks
 
 from amalthea_uros import describe
-from amalthea_uros.analyze.explanations.execution_shares import ACCESSES, OTHER, OVERHEADS, OWN
-from amalthea_uros.analyze.explanations.origins import OriginKind
-from amalthea_uros.analyze.explanations.processes import explain_callback, explain_process
+from amalthea_uros.analyze.explanations.processes import ACCESSES, OTHER, OVERHEADS, OWN, explain_callback, explain_process
+from amalthea_uros.analyze.results.explanations import OriginKind
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.activities import Call, Case, Group, Loop, Switch, WaitEvent
 from amalthea_uros.perf.mapping import TaskAllocation

@@ -11,8 +11,7 @@ from hand_made_systems import READ, US, WRITE, access, ticks
 
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros.analyze.constraints.requirements import evaluate_requirements
-from amalthea_uros.analyze.response_times import propagation, schedule
-from amalthea_uros.analyze.response_times.core_schedule import CoreSchedules
+from amalthea_uros.analyze.response_times import core_schedule, propagation, schedule
 from amalthea_uros.analyze.response_times.propagation import solve
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.errors import UnknownError
@@ -167,7 +166,7 @@ def test_the_certainty_of_a_schedule_is_found_in_one_look():
 
     def take(number):
         of_schedule = steps(lambda: schedule.schedule(tasks(number), 2000, schedule.MultiframeDemand.worst_of))
-        return steps(lambda: schedule.response_times(tasks(number))) - 2 * of_schedule
+        return steps(lambda: core_schedule.CoreSchedule.of(tasks(number), with_slices=False).response_times()) - 2 * of_schedule
 
     take(8)
     assert take(400) <= 2.2 * take(200)
@@ -212,8 +211,8 @@ def test_a_core_is_analysed_again_only_if_its_activations_have_changed(monkeypat
 
 
 def test_a_schedule_with_slices_is_used_without_them():
-    schedules = CoreSchedules(solve(TimingContext.of(system([[ticks(9)] for _ in range(HERE)]))))
-    assert schedules.of("c0", with_slices=True) is schedules.of("c0", with_slices=False) is not None
+    solution = solve(TimingContext.of(system([[ticks(9)] for _ in range(HERE)])))
+    assert solution.schedule("c0", with_slices=True) is solution.schedule("c0") is not None
 
 
 def test_each_schedule_is_built_once(monkeypatch):
@@ -230,9 +229,9 @@ def test_each_schedule_is_built_once(monkeypatch):
 
 
 def test_the_slices_of_a_long_schedule_are_built_only_if_they_are_needed(monkeypatch):
-    monkeypatch.setattr(schedule, "RECORDED_JOBS", 3)
-    schedules = CoreSchedules(solve(TimingContext.of(system([[ticks(9)] for _ in range(HERE)]))))
-    without, with_slices = schedules.of("c0", with_slices=False), schedules.of("c0", with_slices=True)
+    monkeypatch.setattr(core_schedule, "RECORDED_JOBS", 3)
+    solution = solve(TimingContext.of(system([[ticks(9)] for _ in range(HERE)])))
+    without, with_slices = solution.schedule("c0"), solution.schedule("c0", with_slices=True)
     assert without is not None
     assert with_slices is not None
     assert not any(len(jobs.execution_slices) for jobs in without.worst.values())

@@ -17,7 +17,7 @@ from amalthea_uros.analyze.impact import (
     compare,
     verdict_figure,
 )
-from amalthea_uros.analyze.results.requirements import RequirementResult
+from amalthea_uros.analyze.results.processes import RequirementResult
 from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.judge.verdict import Failure, Verdict
 from amalthea_uros.timing.response import Claim

@@ -11,7 +11,7 @@ from support import ROOT, SHARED
 
 from amalthea_uros import Settings, analyze_system, build_model, describe, extract
 from amalthea_uros.analyze.explanations.processes import shares
-from amalthea_uros.analyze.phases import combinations as phases
+from amalthea_uros.analyze.phases import cases as phases
 from amalthea_uros.analyze.priorities.assignment import propose_priorities
 from amalthea_uros.analyze.sensitivity import max_growth
 from amalthea_uros.judge.verdict import Verdict

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from support import SHARED
 
 from amalthea_uros.analyze.response_times import non_preemptive, priority_levels, schedule
+from amalthea_uros.analyze.response_times.core_schedule import CoreSchedule
 from amalthea_uros.analyze.response_times.schedule import PeriodicTask
 from amalthea_uros.analyze.response_times.task import AnalysedTask
 from amalthea_uros.timing.demand.multiframe import DemandFrame, MultiframeDemand
@@ -141,7 +142,7 @@ def test_the_busy_window_is_the_schedule_of_the_critical_instant(rows):
     released = [
         PeriodicTask(name=t.name, period=t.events.period, offset=0, demand=t.demand, priority=t.priority) for t in tasks
     ]
-    exact = schedule.response_times(released)
+    exact = list(CoreSchedule.of(released, with_slices=False).response_times().values())
     bounds = priority_levels.response_times(tasks)
     # PeriodicTask together, the worst moment is the first one (Liu and Layland 1973).
     assert [response.worst for response in bounds] == [response.worst for response in exact]
@@ -155,7 +156,7 @@ def test_offsets_never_make_it_worse_than_the_bound(rows, offsets):
         PeriodicTask(name=t.name, period=t.events.period, offset=offset, demand=t.demand, priority=t.priority)
         for t, offset in zip(tasks, offsets, strict=False)
     ]
-    exact = schedule.response_times(released)
+    exact = list(CoreSchedule.of(released, with_slices=False).response_times().values())
     until = max(offsets) + 2 * schedule.hyperperiod(released)
     jobs = schedule.schedule(released, until, MultiframeDemand.best_of)
     for one, bound, best in zip(exact, priority_levels.response_times(tasks), jobs, strict=True):
@@ -231,7 +232,7 @@ class TestDemandThatIsNotTheSameInEachJob:
                 PeriodicTask(name="executor", period=1000, offset=0, demand=executor, priority=2),
                 PeriodicTask(name="control", period=1000, offset=0, demand=MultiframeDemand.constant(4), priority=1),
             ]
-            return schedule.response_times(tasks)[1]
+            return CoreSchedule.of(tasks, with_slices=False).response_times()["control"]
 
         simple, advanced = respond(MultiframeDemand.constant(12)), respond(self.EXECUTOR)
         assert (simple.best, simple.worst) == (16, 16)

@@ -9,7 +9,7 @@ from dataclasses import replace
 import pytest
 from hand_made_systems import READ, WRITE, Proc, access, chain, locked, system, ticks
 
-from amalthea_uros.analyze.explanations.origins import origins
+from amalthea_uros.analyze.explanations.processes import origins
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.activities import Group, Incomplete, Migrate, Trigger, WaitEvent
 from amalthea_uros.perf.events import ProcessChange, ProcessEvent

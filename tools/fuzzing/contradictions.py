@@ -6,8 +6,7 @@ from collections.abc import Iterator
 
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import ChainResult
-from amalthea_uros.analyze.results.processes import ProcessResult
-from amalthea_uros.analyze.results.requirements import RequirementResult
+from amalthea_uros.analyze.results.processes import ProcessResult, RequirementResult
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.judge.verdict import ObservedVerdict, Verdict
 from amalthea_uros.simulate.observations import ChainObservation, ProcessObservation, RequirementObservation

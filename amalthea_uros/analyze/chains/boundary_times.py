@@ -14,7 +14,7 @@ import numpy as np
 
 from amalthea_uros.analyze.response_times import schedule
 from amalthea_uros.analyze.response_times.core_schedule import Busy, times_of_completion
-from amalthea_uros.analyze.response_times.partial import time_until_executed
+from amalthea_uros.analyze.response_times.fixed_priority import time_until_executed
 from amalthea_uros.analyze.response_times.schedule import Jobs
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.perf.activities import Communication, Execute, ExecutionNeed

@@ -116,7 +116,7 @@ class ChainEvaluator:
         for stage in self.stages(chain):
             name = stage.process.name
             core = self.context.scheduled[name].core
-            found = self.timing.schedules.of(core, with_slices=False)
+            found = self.solution.schedule(core)
             if found is None or name not in found.tasks or not np.array_equal(found.best[name].ends, found.worst[name].ends):
                 return False
         return True
@@ -312,8 +312,7 @@ def _combine(unfolded: Unfolded, values: Mapping[tuple[str, ...], list[LatencyVa
         if None in each.values() or value.quantity.is_mean:
             continue
         times = {events: path.value for events, path in each.items() if path is not None}
-        reacts = value.quantity in (LatencyQuantity.MAX_REACTION_TIME, LatencyQuantity.MAX_REDUCED_REACTION_TIME)
-        if reacts:
+        if value.quantity.is_reaction:
             time = combined(unfolded, times)
         else:
             finite = [time for time in times.values() if time is not None]
@@ -324,7 +323,7 @@ def _combine(unfolded: Unfolded, values: Mapping[tuple[str, ...], list[LatencyVa
                 value=time,
                 # The maximum of minima is not the minimum of maxima: for alternatives it is a bound.
                 claim=Claim.BOUND
-                if reacts or any(path.claim is not Claim.EXACT for path in each.values() if path)
+                if value.quantity.is_reaction or any(path.claim is not Claim.EXACT for path in each.values() if path)
                 else Claim.EXACT,
                 method=value.method,
                 source=value.source,

@@ -20,7 +20,6 @@ from amalthea_uros.analyze.chains.boundary_times import BoundaryTimes, BoundaryW
 from amalthea_uros.analyze.chains.bounds import ChainTask
 from amalthea_uros.analyze.chains.read_write_times import ReadWriteBounds, ReadWriteTimes, TimedStage, let_times
 from amalthea_uros.analyze.response_times.blocking import Blocking
-from amalthea_uros.analyze.response_times.core_schedule import CoreSchedules
 from amalthea_uros.analyze.response_times.schedule import MAX_JOBS
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.errors import UnknownError
@@ -50,7 +49,6 @@ class StageTiming:
 
     solution: Solution
     unit: int = field(init=False)
-    schedules: CoreSchedules = field(init=False)
     _blocking: dict[str, Blocking] = field(default_factory=dict)
     _whole_jobs: dict[tuple[str, JobPhase | None, JobPhase | None], ReadWriteBounds] = field(default_factory=dict)
 
@@ -60,7 +58,6 @@ class StageTiming:
         return self.solution.context
 
     def __post_init__(self) -> None:
-        self.schedules = CoreSchedules(self.solution)
         unit = lcm(*(self.context.demand_model.time_base(core) for core in self.context.system.cores))
         self.unit = unit if unit <= MAX_TIME_BASE else 1
 
@@ -371,7 +368,7 @@ class StageTiming:
         if scheduled is None:
             return None
         inside = any(map(is_inside, (stage.enter, stage.leave)))
-        found = self.schedules.of(scheduled.core, inside)
+        found = self.solution.schedule(scheduled.core, inside)
         if found is None:
             return None
         name, period = stage.process.name, found.tasks[stage.process.name].period

@@ -15,11 +15,10 @@ from typing import TypeAlias
 from amalthea_uros._internal.failures import failure
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.constraints.ends import LatencyEnds, distance_of, moved, repetition_jitter, spread_of
-from amalthea_uros.analyze.constraints.events import EventWindows, exact_delays
+from amalthea_uros.analyze.constraints.events import EventWindows, exact_delays, holds_across, holds_in_each_job
 from amalthea_uros.analyze.constraints.requirements import report_implausible
-from amalthea_uros.analyze.constraints.runnable_orders import holds_across, holds_in_each_job
 from amalthea_uros.analyze.results.chains import ChainResult, LatencyQuantity
-from amalthea_uros.analyze.results.requirements import RequirementResult
+from amalthea_uros.analyze.results.processes import RequirementResult
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.judge.evidence import Ends
 from amalthea_uros.judge.limits import EventConstraint, SystemLimit, limits_of, without_number

@@ -7,10 +7,8 @@ from dataclasses import replace
 from typing import TypeAlias
 
 from amalthea_uros._internal.by_name import Results
-from amalthea_uros.analyze.constraints.process_evidence import worst_response
 from amalthea_uros.analyze.response_times import metrics
-from amalthea_uros.analyze.results.processes import CallbackResult, Metric, ProcessResult
-from amalthea_uros.analyze.results.requirements import RequirementResult
+from amalthea_uros.analyze.results.processes import CallbackResult, Metric, ProcessResult, RequirementResult
 from amalthea_uros.judge.evidence import Ends
 from amalthea_uros.judge.limits import SystemLimit, is_from_period, limits_of, nominal_period
 from amalthea_uros.judge.verdict import Verdict, prove, unknown
@@ -151,7 +149,7 @@ def _least(holders: Sequence[Holder], metric: TimeMetric) -> Time | None:
     if not processes:
         return None
     if metric is TimeMetric.RESPONSE_TIME:
-        return worst_response(processes[0]).lower
+        return processes[0].worst_response.lower
     return processes[0].least_wcet if metric in _EXECUTION_TIMES else None
 
 

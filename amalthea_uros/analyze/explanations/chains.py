@@ -9,15 +9,15 @@ from typing import NamedTuple
 
 from amalthea_uros.analyze.chains import bounds, job_chains
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
+from amalthea_uros.analyze.chains.job_chains import JobPath, worst_path
 from amalthea_uros.analyze.chains.read_write_times import TimedStage
 from amalthea_uros.analyze.chains.route_latencies import RouteLatencies
 from amalthea_uros.analyze.chains.stage_timing import StageTiming
-from amalthea_uros.analyze.explanations.chain_results import ChainExplanation, ProcessHop
-from amalthea_uros.analyze.explanations.hop_causes import CauseKind, Execution, HopReasons, LatencyCause, cause
-from amalthea_uros.analyze.explanations.worst_path import REACTIONS, JobPath, worst_path
-from amalthea_uros.analyze.phases.combinations import Phases
+from amalthea_uros.analyze.explanations.hop_causes import HopReasons, cause
+from amalthea_uros.analyze.phases.cases import PhaseCases
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import LatencyQuantity, LatencyValue
+from amalthea_uros.analyze.results.explanations import CauseKind, ChainExplanation, Execution, LatencyCause, ProcessHop
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.constraints import LatencyConstraint
 from amalthea_uros.perf.events import EventChain
@@ -90,8 +90,8 @@ def _evaluators(chain: EventChain, analysis: Analysis) -> Iterator[ChainEvaluato
     solution = analysis.solution
     evaluation = ChainEvaluator(solution)
     for occurrences in (unknown_phases(solution.context.system), evaluation.occurrences(chain)):
-        if phases := Phases.of(solution, occurrences):
-            yield from (ChainEvaluator(each) for _, each in phases.solutions(phases.cases.of_chain(chain)))
+        if cases := PhaseCases.of(solution, occurrences):
+            yield from (ChainEvaluator(each) for _, each in cases.solutions(cases.of_chain(chain)))
     yield evaluation
 
 
@@ -146,7 +146,7 @@ class _RouteExplanation:
 
     def _of_part(self, number: int, count: int) -> LatencyQuantity:
         """The quantity of the part of the chain on one controller: data from another one arrive just after a read at worst."""
-        if self.quantity in REACTIONS:
+        if self.quantity.is_reaction:
             return self.quantity if number == 0 else LatencyQuantity.MAX_REACTION_TIME
         return self.quantity if number == count - 1 else LatencyQuantity.MAX_DATA_AGE
 
@@ -194,7 +194,7 @@ class _RouteExplanation:
     def _start(self, process: str, number: int) -> Time | None:
         """When a job starts; None if that varies or is unknown."""
         scheduled = self.evaluator.context.scheduled[process]
-        found = self.timing.schedules.of(scheduled.core, with_slices=False)
+        found = self.timing.solution.schedule(scheduled.core)
         if found is None:
             return None
         earliest, latest = found.best[process].begins, found.worst[process].begins

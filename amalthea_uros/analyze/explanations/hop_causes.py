@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
-from enum import StrEnum
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,58 +12,12 @@ from amalthea_uros.analyze.chains.boundary_times import is_logical
 from amalthea_uros.analyze.chains.read_write_times import TimedStage
 from amalthea_uros.analyze.chains.stage_timing import StageTiming
 from amalthea_uros.analyze.response_times.core_schedule import CoreSchedule
+from amalthea_uros.analyze.results.explanations import CauseKind, Execution, LatencyCause
 from amalthea_uros.timing.dataflow.stages import Stage
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
     from amalthea_uros.analyze.response_times.kernel import Numbers
-
-
-class CauseKind(StrEnum):
-    """Why a part of a latency takes its time.
-
-    Attributes
-    ----------
-    JUST_MISSED : the input arrives just after the previous job has read
-    NEXT_JOB : the next job that takes part is released later
-    INTERFERENCE : jobs of another process execute before the job reads
-    PREEMPTION : jobs of another process execute between its read and its output
-    EXECUTION : the job itself executes
-    LOGICAL : the output is published at the end of the period (LET)
-    FULL_PERIOD : the bound assumes that a whole period passes until the next job
-    READ_DELAY : from the release to the read, at least the sum of what is known only as bounds
-    RESPONSE : from the earliest read to the latest output: the response time, with all interference and blocking
-    TRIGGERED : the response time of a process that another one triggers
-    """
-
-    JUST_MISSED = "just_missed"
-    NEXT_JOB = "next_job"
-    INTERFERENCE = "interference"
-    PREEMPTION = "preemption"
-    EXECUTION = "execution"
-    LOGICAL = "logical"
-    FULL_PERIOD = "full_period"
-    READ_DELAY = "read_delay"
-    RESPONSE = "response"
-    TRIGGERED = "triggered"
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LatencyCause:
-    """Why a part of a hop takes its time.
-
-    Attributes
-    ----------
-    process : that interferes, "" for other kinds
-    jobs : number of its jobs
-    terms : of a response time, if that is all of it
-    """
-
-    kind: CauseKind
-    time: Time
-    process: str = ""
-    jobs: int = 0
-    terms: tuple[tuple[str, Time], ...] = ()
 
 
 def cause(kind: CauseKind, time: Time) -> tuple[LatencyCause, ...]:
@@ -159,28 +112,12 @@ class HopReasons:
     def _executed(self, begin: Time, end: Time) -> list[Execution] | None:
         """What the core executes in an interval; None if that is not the same in each run with these reads and writes."""
         core, timing = self.timing.context.scheduled[self.stage.process.name].core, self.timing
-        schedule = timing.schedules.of(core, with_slices=True) if self.timed.is_exact else None
+        schedule = timing.solution.schedule(core, with_slices=True) if self.timed.is_exact else None
         factor, rest = divmod(timing.unit, timing.context.demand_model.time_base(core))
         if schedule is None or rest:
             return None
         found = executions(core, schedule, -(-begin // factor), -(-end // factor))
         return [replace(each, begin=each.begin * factor, end=each.end * factor) for each in found]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Execution:
-    """A part of a job that a core executes without interruption.
-
-    Attributes
-    ----------
-    job : its number, counted from 1 at the start of the system
-    """
-
-    core: str
-    process: str
-    job: int
-    begin: Time
-    end: Time
 
 
 def executions(core: str, schedule: CoreSchedule, begin: Time, end: Time) -> list[Execution]:

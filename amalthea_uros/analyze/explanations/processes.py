@@ -2,80 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
 
-from amalthea_uros.analyze.explanations.execution_shares import ExecutionShare, execution_shares
-from amalthea_uros.analyze.explanations.origins import Origin, origins
-from amalthea_uros.analyze.response_times import schedule
-from amalthea_uros.analyze.response_times.core import periodic_tasks
-from amalthea_uros.analyze.response_times.core_schedule import CoreSchedules
+from amalthea_uros.analyze.response_times.core_schedule import METHOD, CoreSchedule
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.results.analysis import Analysis
-from amalthea_uros.analyze.results.processes import CallbackResult, ProcessResult
+from amalthea_uros.analyze.results.explanations import (
+    CallbackExplanation,
+    ExecutionShare,
+    Load,
+    Origin,
+    OriginKind,
+    ProcessExplanation,
+    Share,
+)
+from amalthea_uros.analyze.results.processes import CallbackResult
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.results import HandleResult
 from amalthea_uros.judge.verdict import FAILURES, Verdict
-from amalthea_uros.timing.basics.time_base import min_time
-from amalthea_uros.timing.demand.multiframe import MultiframeDemand
+from amalthea_uros.perf.activities import Activity, Call, Execute, ExecutionNeed, Group, LabelAccess, Loop, WaitEvent, walk
+from amalthea_uros.perf.stimuli import Counter
+from amalthea_uros.timing.basics.time_base import Ticks, max_time, min_time
+from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.jobs.counters import takes_effect
 from amalthea_uros.timing.response import Response
 from amalthea_uros.timing.scheduling.scheduled import ScheduledProcess, Server
-from amalthea_uros.units import Time
-
-
-@dataclass(frozen=True, slots=True)
-class Share:
-    """The share of one process in the interference: number of jobs, and their time in picoseconds."""
-
-    name: str
-    jobs: int
-    time: Time
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Load:
-    """The part of the core, or of the budget of a server, that something needs in the long run; None if it is unknown."""
-
-    name: str
-    priority: int | None
-    utilisation: Fraction | None
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ProcessExplanation:
-    """What the response time of a process consists of.
-
-    Attributes
-    ----------
-    execution : shares in its worst-case execution time
-    shares : in the interference, largest first
-    loads : if its deadline is not met, or it is unknown whether it is: of itself and of all that is served before it or in turn
-        with it, largest first
-    supply : the part of the core that is there for them: less than 1 in a server
-    callbacks : that its jobs call, in order
-    worst_job : number of the job with the worst-case response time; None if it is unknown
-    in_worst_job : for each share of `execution`, whether that job executes it; empty if the job is unknown
-    origins : if its response time has no bound: where that comes from
-    """
-
-    process: ProcessResult
-    execution: tuple[ExecutionShare, ...]
-    shares: tuple[Share, ...]
-    loads: tuple[Load, ...] = ()
-    supply: Fraction = Fraction(1)
-    callbacks: tuple[CallbackResult, ...] = ()
-    worst_job: int | None = None
-    in_worst_job: tuple[bool, ...] = ()
-    origins: tuple[Origin, ...] = ()
-
-    @property
-    def load(self) -> Fraction | None:
-        """The sum of the loads; None if one is unknown."""
-        known = [load.utilisation for load in self.loads if load.utilisation is not None]
-        return sum(known, Fraction(0)) if len(known) == len(self.loads) else None
 
 
 def explain_process(analysis: Analysis, name: str) -> ProcessExplanation:
@@ -84,7 +39,8 @@ def explain_process(analysis: Analysis, name: str) -> ProcessExplanation:
     scheduled = context.scheduled.get(name)
     is_unbounded = process.response is None or process.response.worst is None
     is_late = is_unbounded or process.verdict in (*FAILURES, Verdict.UNKNOWN)
-    worst_job = _worst_job(analysis, name)
+    schedule = _schedule(analysis, name)
+    worst_job = None if schedule is None else _worst_job(schedule, name) + 1
     server = context.servers.get(scheduled.server or "") if scheduled is not None else None
     return ProcessExplanation(
         process=process,
@@ -99,17 +55,18 @@ def explain_process(analysis: Analysis, name: str) -> ProcessExplanation:
     )
 
 
-def _worst_job(analysis: Analysis, name: str) -> int | None:
-    """The number of the job with the worst-case response time; None if the schedule is unknown."""
+def _schedule(analysis: Analysis, name: str) -> CoreSchedule | None:
+    """The schedule that the response time of a process is from; None if it is from another method."""
     solution = analysis.solution_of(name)
-    response, scheduled = solution.responses.get(name), solution.context.scheduled.get(name)
-    if response is None or scheduled is None or response.method != schedule.METHOD:
-        return None
-    found = CoreSchedules(solution).of(scheduled.core, with_slices=False)
-    if found is None:
-        return None
-    jobs = found.worst[name]
-    return int((jobs.ends - jobs.releases).argmax()) + 1
+    response = solution.responses.get(name)
+    is_scheduled = response is not None and response.method == METHOD
+    return solution.schedule(solution.context.scheduled[name].core, with_slices=True) if is_scheduled else None
+
+
+def _worst_job(schedule: CoreSchedule, name: str) -> int:
+    """The index of the job with the worst-case response time."""
+    jobs = schedule.worst[name]
+    return int((jobs.ends - jobs.releases).argmax())
 
 
 def _executed_in(analysis: Analysis, name: str, job: int) -> tuple[bool, ...]:
@@ -150,26 +107,23 @@ def shares(analysis: Analysis, name: str) -> list[Share]:
     response, scheduled = solution.responses.get(name), solution.context.scheduled.get(name)
     if response is None or response.worst is None or scheduled is None or name in solution.context.system.executor_of_task:
         return []
-    tasks = periodic_tasks(scheduled.core, solution) if response.method == schedule.METHOD else []
-    found = _in_schedule(solution, scheduled, tasks) if tasks else _in_window(solution, scheduled, response)
+    schedule = _schedule(analysis, name)
+    found = _in_window(solution, scheduled, response) if schedule is None else _in_schedule(solution, name, schedule)
     return sorted(found, key=lambda share: -share.time)
 
 
-def _in_schedule(solution: Solution, scheduled: ScheduledProcess, tasks: Sequence[schedule.PeriodicTask]) -> list[Share]:
+def _in_schedule(solution: Solution, name: str, schedule: CoreSchedule) -> list[Share]:
     """The execution of other tasks between the release and the end of the worst job."""
-    until = schedule.steady_state_start(tasks) + 2 * schedule.hyperperiod(tasks)
-    jobs = schedule.schedule(tasks, until, MultiframeDemand.worst_of, [True] * len(tasks))
-    own = jobs[[task.name for task in tasks].index(scheduled.name)]
-    worst = int((own.ends - own.releases).argmax())
+    own, worst = schedule.worst[name], _worst_job(schedule, name)
     begin, end = own.releases[worst], own.ends[worst]
-    time_base = solution.context.time_base(scheduled.name)
+    time_base = solution.context.time_base(name)
     found = []
-    for task, each in zip(tasks, jobs, strict=True):
-        slices = each.execution_slices
+    for other, jobs in schedule.worst.items():
+        slices = jobs.execution_slices
         inside = np.minimum(slices[:, 2], end) - np.maximum(slices[:, 1], begin)
-        if task.name != scheduled.name and (inside > 0).any():
+        if other != name and (inside > 0).any():
             count = len(set(slices[inside > 0, 0].tolist()))
-            found.append(Share(task.name, count, int(inside[inside > 0].sum()) // time_base))
+            found.append(Share(other, count, int(inside[inside > 0].sum()) // time_base))
     return found
 
 
@@ -192,23 +146,6 @@ def _in_window(solution: Solution, scheduled: ScheduledProcess, response: Respon
 def _adds_up(found: Sequence[Share], response: Response) -> bool:
     """Whether the shares add up to the interference, apart from one picosecond of rounding each."""
     return abs(sum(share.time for share in found) - response.terms.get("interference", 0)) <= len(found) + 1
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CallbackExplanation:
-    """What the response time of a callback consists of.
-
-    Attributes
-    ----------
-    process : whose jobs call it
-    execution : what these jobs execute up to the callback, in order, with the callback itself last
-    handles : in an executor that spins in a loop, the handles that call it; their terms take the response time apart
-    """
-
-    callback: CallbackResult
-    process: ProcessResult
-    execution: tuple[ExecutionShare, ...]
-    handles: tuple[HandleResult, ...] = ()
 
 
 def explain_callback(analysis: Analysis, name: str) -> tuple[CallbackExplanation, ...]:
@@ -236,3 +173,134 @@ def _until(shares: list[ExecutionShare], name: str) -> tuple[ExecutionShare, ...
     """The shares up to the one of a runnable; all of them if a job calls it inside another runnable."""
     index = next((number for number, share in enumerate(shares) if share.is_runnable and share.name == name), len(shares))
     return tuple(shares[: index + 1])
+
+
+OWN, ACCESSES, OTHER = "own execution", "label accesses", "other activities"
+
+
+OVERHEADS = "overheads and copies"
+
+
+def execution_shares(context: TimingContext, name: str) -> list[ExecutionShare]:
+    """The shares, in order of execution; their times add up to the worst-case execution time if that is known."""
+    scheduled = context.scheduled.get(name)
+    if scheduled is None:
+        return []
+    grouped: dict[tuple[str, bool, Counter | None], list[Activity]] = {}
+    for activity in _flat(scheduled.process.activities):
+        grouped.setdefault(_kind(activity), []).append(activity)
+    found, executed = [], Ticks(0)
+    time_base = context.time_base(name)
+    for (kind, is_runnable, counter), activities in grouped.items():
+        before = max_time(executed, time_base)
+        time, reason = None, ""
+        try:
+            demand = context.demand_model.of_activities(scheduled.process, activities, scheduled.core)
+            executed = Ticks(executed + demand.worst)
+            time = max_time(executed, time_base) - before
+        except UnknownError as error:
+            reason = str(error)
+        if time != 0:
+            found.append(
+                ExecutionShare(
+                    name=kind, is_runnable=is_runnable, time=time, calls=len(activities), counter=counter, reason=reason
+                )
+            )
+    whole = context.demands.get(name)
+    rest = 0 if whole is None else max_time(whole.worst, time_base) - max_time(executed, time_base)
+    return [*found, ExecutionShare(name=OVERHEADS, is_runnable=False, time=rest)] if rest > 0 else found
+
+
+def _flat(activities: Sequence[Activity]) -> Iterator[Activity]:
+    """The activities of a process, with those of its groups instead of the groups."""
+    for activity in activities:
+        if isinstance(activity, Group):
+            yield from _flat(activity.activities)
+        else:
+            yield activity
+
+
+def _kind(activity: Activity) -> tuple[str, bool, Counter | None]:
+    """What is shown as one row: the name of a runnable and its counter, or what else an activity is."""
+    match activity:
+        case Call(runnable=runnable, counter=counter):
+            return runnable, True, counter
+        case Execute() | ExecutionNeed():
+            return OWN, False, None
+        case LabelAccess():
+            return ACCESSES, False, None
+    return OTHER, False, None
+
+
+_REMEDIES = {
+    OriginKind.MAPPING: "Map it to a scheduler or interrupt controller that is responsible for one core with a known clock.",
+    OriginKind.ACTIVATION: "Give it a stimulus with a period, or with a minimum time between two activations.",
+    OriginKind.OVERLOAD: "Shorten execution times, lengthen periods, or move processes to another core.",
+}
+
+
+def origins(solution: Solution, name: str) -> list[Origin]:
+    """The processes from which it comes that the response time of a process has no bound; nothing if it has one."""
+    return list(_OriginSearch(solution, set()).of(name))
+
+
+@dataclass(frozen=True, slots=True)
+class _OriginSearch:
+    """Follows the dependencies of processes without a bound; each is visited once."""
+
+    solution: Solution
+    visited: set[str]
+
+    @property
+    def context(self) -> TimingContext:
+        return self.solution.context
+
+    def of(self, name: str) -> Iterator[Origin]:
+        response = self.solution.responses.get(name)
+        if name in self.visited or (response is not None and response.worst is not None):
+            return
+        self.visited.add(name)
+        if response is not None:
+            yield self._origin(name, OriginKind.OVERLOAD if response.is_overload else OriginKind.OTHER, response.reason)
+            return
+        reason = self.solution.reasons.get(name, "it was not analysed")
+        scheduled = self.context.scheduled.get(name)
+        if scheduled is None:
+            yield self._origin(name, OriginKind.MAPPING, reason)
+        elif name not in self.context.demands:
+            yield self._origin(name, OriginKind.DEMAND, reason)
+        else:
+            others = self._triggering(scheduled) if name not in self.solution.event_models else self._preceding(scheduled)
+            found = [origin for other in others for origin in self.of(other)]
+            is_inactive = name not in self.solution.event_models
+            yield from found or [self._origin(name, OriginKind.ACTIVATION if is_inactive else OriginKind.OTHER, reason)]
+
+    def _triggering(self, scheduled: ScheduledProcess) -> Iterator[str]:
+        """The processes that activate a process."""
+        for stimulus in scheduled.process.stimuli:
+            for position in self.context.dataflow.fired_at(stimulus):
+                yield position.process.name
+
+    def _preceding(self, scheduled: ScheduledProcess) -> Iterator[str]:
+        """The processes of the same or a higher rank on its core, or of unknown rank, and those that can block it."""
+        touching = self.context.touching
+        yield from touching.intruders(scheduled.core)
+        yield from touching.by_semaphores(scheduled.name)
+        for other in self.context.on_core(scheduled.core):
+            if other.name != scheduled.name and (other.rank >= scheduled.rank or not self.solution.is_analysable(other.name)):
+                yield other.name
+
+    def _origin(self, name: str, kind: OriginKind, reason: str) -> Origin:
+        remedy = self._demand_remedy(name) if kind is OriginKind.DEMAND else _REMEDIES.get(kind, "")
+        return Origin(process=name, kind=kind, reason=reason, remedy=remedy)
+
+    def _demand_remedy(self, name: str) -> str:
+        """What makes the execution time of a process known."""
+        activities = list(walk(self.context.scheduled[name].process.activities))
+        if any(isinstance(each, WaitEvent) for each in activities):
+            return "Trigger a separate task instead of waiting for the event."
+        unknown = [share.name for share in execution_shares(self.context, name) if share.time is None and share.is_runnable]
+        if any(isinstance(each, Loop) for each in activities):
+            return "State how often its loops iterate at most."
+        what = " and ".join(map(repr, unknown)) or "it"
+        return f"State the execution time of {what}."

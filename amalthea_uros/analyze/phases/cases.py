@@ -10,32 +10,35 @@ no effect, because all evaluations cover whole cycles.
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 from math import gcd, lcm
 from typing import TypeAlias
 
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
-from amalthea_uros.analyze.response_times.core import periodic_tasks
-from amalthea_uros.analyze.response_times.schedule import fits, hyperperiod, steady_state_start
+from amalthea_uros.analyze.response_times.propagation import solve
 from amalthea_uros.analyze.response_times.solution import Solution
+from amalthea_uros.executors.semantics.loops import timing_context
 from amalthea_uros.perf.activities import Call, Trigger, walk
 from amalthea_uros.perf.constraints import LatencyConstraint
 from amalthea_uros.perf.events import EventChain
 from amalthea_uros.perf.stimuli import Counter, EventTriggered, InterProcess, Periodic
-from amalthea_uros.timing.activation.phases import ExternalInput, own_counters
+from amalthea_uros.timing.activation.phases import ExternalInput, own_counters, phase_combinations, phase_count, with_phases
 from amalthea_uros.timing.activation.releases import known_releases
 from amalthea_uros.timing.jobs.counters import first_effect
 from amalthea_uros.units import Time
 
 #: The number of the first combination of each case, and how many combinations the case has.
 Cases: TypeAlias = Mapping[int, int]
+#: With more combinations of phases, or more jobs in all of them, any job can be the one that takes what comes from outside.
+MAX_COMBINATIONS = 1000
+MAX_JOBS = 1_000_000
 
 
 @dataclass(frozen=True)
 class PhaseCases:
-    """The cases of the combinations of phases.
+    """The combinations of the phases of what comes from outside, each of which makes a solution of its own, and their cases.
 
     Attributes
     ----------
@@ -47,6 +50,23 @@ class PhaseCases:
     solution: Solution
     first: Solution
     combinations: Sequence[Mapping[ExternalInput, int]]
+
+    @classmethod
+    def of(cls, solution: Solution, unknown: Sequence[ExternalInput]) -> PhaseCases | None:
+        """The combinations of some unknown phases; None if there are none or too many."""
+        count = phase_count(unknown)
+        if not unknown or count > MAX_COMBINATIONS:
+            return None
+        combinations = list(phase_combinations(unknown))
+        first = _solution(solution, combinations[0])
+        if count * sum(response.jobs for response in first.responses.values()) > MAX_JOBS:
+            return None
+        return cls(solution, first, combinations)
+
+    def solutions(self, cases: Cases) -> Iterator[tuple[int, Solution]]:
+        """The numbers of the combinations of some cases, and their solutions."""
+        for number in cases:
+            yield number, _solution(self.solution, self.combinations[number]) if number else self.first
 
     def of_everything(self) -> Cases:
         """The cases of a whole system: combinations of one case can differ in no result."""
@@ -170,9 +190,10 @@ class PhaseCases:
         """Whether the schedule of a core is evaluated for each combination, and repeats from the start."""
         if self._has_inner_counters:
             return False
-        tasks = periodic_tasks(core, self.first)
-        start = steady_state_start(tasks)
-        return bool(tasks) and fits(tasks, start + 2 * hyperperiod(tasks)) and start == max(task.offset for task in tasks)
+        found = self.first.schedule(core)
+        if found is None:
+            return False
+        return found.steady_state_start - found.cycle == max(task.offset for task in found.tasks.values())
 
     def _task(self, name: str) -> _SlotTask | None:
         """A process; None if its jobs do not repeat from the start, or if their response times are unbounded."""
@@ -294,3 +315,8 @@ def least_rotation(row: Sequence[int]) -> int:
         other += one == other
         same = 0
     return min(one, other)
+
+
+def _solution(solution: Solution, combination: Mapping[ExternalInput, int]) -> Solution:
+    context = solution.context
+    return solve(timing_context(with_phases(context.system, combination), context.settings))

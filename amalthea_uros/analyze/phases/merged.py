@@ -16,8 +16,7 @@ from amalthea_uros.analyze.response_times import metrics
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import ChainResult, LatencyValue
-from amalthea_uros.analyze.results.processes import CallbackResult, ProcessResult
-from amalthea_uros.analyze.results.requirements import RequirementResult
+from amalthea_uros.analyze.results.processes import CallbackResult, ProcessResult, RequirementResult
 from amalthea_uros.judge.evidence import Ends
 from amalthea_uros.judge.limits import SystemLimit
 from amalthea_uros.judge.summary import summarize

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from amalthea_uros.analyze.response_times import edf, fixed_priority, non_preemptive, unknown_order
+from amalthea_uros.analyze.response_times import edf, fixed_priority, non_preemptive
 from amalthea_uros.analyze.response_times.blocking import Blocking
 from amalthea_uros.analyze.response_times.busy_window import Interference
 from amalthea_uros.analyze.response_times.fixed_priority import best_response
@@ -46,7 +46,7 @@ class BlockedWindow:
         task = self.tasks[index]
         higher = self._of_level(index, level.rank)
         if item.equal_priority is EqualPriority.UNKNOWN:
-            found = unknown_order.response_time(task, higher, Interference.of([], self.supply), self.wait)
+            found = fixed_priority.in_any_order(task, higher, Interference.of([], self.supply), self.wait)
         elif level.is_flat or (level.rank < item.rank and self.supply is not FULL):
             found = fixed_priority.response_time(task, Interference.of(higher, self.supply), self.wait)[0]
         elif item.equal_priority is EqualPriority.EDF:

@@ -6,27 +6,43 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
 
-from amalthea_uros.analyze.response_times import busy_period, priority_levels, schedule, unknown_order
+from amalthea_uros.analyze.response_times import fixed_priority, priority_levels
 from amalthea_uros.analyze.response_times.blocked_window import BlockedWindow
 from amalthea_uros.analyze.response_times.blocking import Blocking
+from amalthea_uros.analyze.response_times.core_schedule import CoreSchedule, periodic_tasks
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.response_times.task import FULL, AnalysedTask, Budget, Supply
 from amalthea_uros.perf.os import Policy
 from amalthea_uros.perf.software import Preemption
-from amalthea_uros.timing.activation.releases import known_releases
 from amalthea_uros.timing.basics.time_base import Ticks, to_ticks
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.event_models import EventModel, PeriodicEvents, rescaled
 from amalthea_uros.timing.jobs.executed import ends_with_execution
 from amalthea_uros.timing.response import Claim, Response
-from amalthea_uros.timing.scheduling.scheduled import EqualPriority, Rank, ScheduledProcess, Server, is_preemptive, preemption
+from amalthea_uros.timing.scheduling.scheduled import EqualPriority, Rank, ScheduledProcess, Server, preemption
 
 
 def responses_on(core: str, solution: Solution) -> dict[str, Response]:
     """The response times on a core, in picoseconds; without processes that could not be analysed."""
-    found = _CoreAnalysis(solution, core).responses(None, FULL)
-    return {name: in_picoseconds(response, solution.context.demand_model.time_base(core)) for name, response in found.items()}
+    time_base = solution.context.demand_model.time_base(core)
+    schedule = _new_schedule(core, solution)
+    if schedule is not None:
+        solution.context.notes.assume("periodic tasks are released at their offsets; the default offset is 0")
+        found = schedule.response_times()
+    else:
+        found = _CoreAnalysis(solution, core).responses(None, FULL)
+    return {name: in_picoseconds(response, time_base) for name, response in found.items()}
+
+
+def _new_schedule(core: str, solution: Solution) -> CoreSchedule | None:
+    """The schedules of a core with the present activations, built again only if its tasks have changed."""
+    tasks, found = periodic_tasks(core, solution), solution.schedules.pop(core, None)
+    if found is None or list(found.tasks.values()) != tasks:
+        found = CoreSchedule.of(tasks, with_slices=False) if tasks else None
+    if found is not None:
+        solution.schedules[core] = found
+    return found
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,11 +65,7 @@ class _CoreAnalysis:
         usable, blocking = self._known(here), self._blocking(here)
         # What is blocked for an unknown time delays others nevertheless.
         blocked = self._blocked_for_unknown_time(usable, here, blocking)
-        processes = [item for item in usable if isinstance(item, ScheduledProcess) and item not in blocked]
-        is_complete = len(processes) == len(here) and supply is FULL and self.solution.is_closed(self.core)
-        found = self.exact(processes) if is_complete else None
-        if found is None:
-            found = self.bounds(usable, blocking, supply)
+        found = self.bounds(usable, blocking, supply)
         by_name = {item.name: response for item, response in zip(usable, found, strict=True) if item not in blocked}
         for item in usable:
             if isinstance(item, Server) and item not in blocked:
@@ -186,39 +198,6 @@ class _CoreAnalysis:
             for item in self.context.served(self.core, server.name)
         )
 
-    def exact(self, here: Sequence[ScheduledProcess]) -> list[Response] | None:
-        """The exact response times by the schedule, if all releases are known and there is no blocking."""
-        tasks = self.released(here)
-        found = self.solution.schedule(self.core, tasks, with_slices=False) if tasks else None
-        if found is None:
-            return None
-        self.context.notes.assume("periodic tasks are released at their offsets; the default offset is 0")
-        return found.response_times()
-
-    def released(self, here: Sequence[ScheduledProcess]) -> list[schedule.PeriodicTask]:
-        """The processes, if all releases are known and there is no blocking; otherwise nothing."""
-        if len({item.rank for item in here}) < len(here) or Blocking.of(here, self.solution).is_possible:
-            return []
-        if self.context.has_loops(self.core):
-            return []
-        found = [self._released(item, rank) for rank, item in enumerate(reversed(here))]
-        return [] if None in found else [task for task in reversed(found) if task is not None]
-
-    def _released(self, scheduled: ScheduledProcess, rank: int) -> schedule.PeriodicTask | None:
-        """A preemptive process with known releases; None if it is not one."""
-        if not is_preemptive(scheduled) or scheduled.name in self.context.decisions:
-            return None
-        stimulus = known_releases(scheduled.process, self.context.system)
-        if stimulus is None:
-            return None
-        return schedule.PeriodicTask(
-            name=scheduled.name,
-            period=stimulus.period * self.time_base,
-            offset=stimulus.offset * self.time_base,
-            demand=self.context.demands[scheduled.name],
-            priority=rank,
-        )
-
     def bounds(self, usable: Sequence[ScheduledProcess | Server], blocking: Blocking, supply: Supply) -> list[Response]:
         """Bounds by busy windows; processes of lower priority can block."""
         notes = self.context.notes
@@ -229,7 +208,7 @@ class _CoreAnalysis:
             notes.assume("if not all releases on a core are known, all tasks can be released together at the worst moment")
             notes.assume("best cases on such cores hold once all tasks have been released")
         if any(item.equal_priority is EqualPriority.UNKNOWN for item in usable):
-            notes.assume(unknown_order.ASSUMPTION)
+            notes.assume(fixed_priority.ASSUMPTION)
         decisions = AnalysedTask.of_decisions(self.core, self.solution, len(ranks)) if supply is FULL else []
         found = priority_levels.response_times([*tasks, *decisions], [*waits, *[0] * len(decisions)], supply)
         for index, item in enumerate(usable):
@@ -241,7 +220,7 @@ class _CoreAnalysis:
                 level = [task for task, other in zip(tasks, usable, strict=False) if other.rank >= rank]
                 merged = self._with_longest_paths([*level, *decisions])
                 if len(merged) < len(level) + len(decisions):
-                    found[index] = busy_period.response_time(tasks[index], merged, waits[index], supply, found[index])
+                    found[index] = fixed_priority.in_busy_period(tasks[index], merged, waits[index], supply, found[index])
         # The methods are exact for independent activations; offsets can make the worst case impossible.
         bounds = [replace(response, claim=Claim.BOUND) for response in found[: len(usable)]]
         return [self._without_iterations(item, response) for item, response in zip(usable, bounds, strict=True)]
@@ -288,18 +267,6 @@ class _CoreAnalysis:
             slice=item.slice * self.time_base,
             activation_limit=getattr(item.process, "activation_limit", 1) if isinstance(item, ScheduledProcess) else 1,
         )
-
-
-def periodic_tasks(core: str, solution: Solution) -> list[schedule.PeriodicTask]:
-    """The tasks of a core whose schedule is known apart from execution times; otherwise none."""
-    context = solution.context
-    here = context.served(core, None)
-    processes = [item for item in here if isinstance(item, ScheduledProcess)]
-    if len(processes) < len(here) or not all(solution.is_analysable(item.name) for item in processes):
-        return []
-    if not solution.is_closed(core):
-        return []
-    return _CoreAnalysis(solution, core).released(processes)
 
 
 def in_picoseconds(response: Response, time_base: int) -> Response:

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from amalthea_uros.analyze.response_times import schedule
-from amalthea_uros.analyze.response_times.core_schedule import CoreSchedule, CoreSchedules
+from amalthea_uros.analyze.response_times.core_schedule import CoreSchedule
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.results.processes import Metric, ProcessResult
 from amalthea_uros.timing.basics.quantities import JobMetric
@@ -103,12 +103,11 @@ class MetricEvaluator:
     """Finds the metrics of processes."""
 
     solution: Solution
-    schedules: CoreSchedules
 
     def of(self, process: ProcessResult) -> dict[JobMetric, Metric]:
         """The metrics of a process."""
         core = process.processor
-        found = None if core is None else self.schedules.of(core, with_slices=False)
+        found = None if core is None else self.solution.schedule(core)
         if core is None or found is None or process.name not in found.tasks or self.solution.depends_on_losses(process.name):
             metrics = dict(self._bounds(process))
         else:

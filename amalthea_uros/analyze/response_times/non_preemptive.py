@@ -16,7 +16,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from amalthea_uros.analyze.response_times.busy_window import Interference
-from amalthea_uros.analyze.response_times.fixed_priority import max_jobs, unbounded
+from amalthea_uros.analyze.response_times.fixed_priority import max_jobs, of_completions, unbounded
 from amalthea_uros.analyze.response_times.task import AnalysedTask
 from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.units import Time
@@ -67,24 +67,7 @@ def response_time(
         last = max(0, task.demand.max_demand(job) - task.demand.max_demand(job - 1) - before)
         start = _start(others, blocking + task.demand.max_demand(job) - last, start, granularity)
         completions.append(_end(interrupting, start, last, granularity))
-    worst_job = max(range(1, jobs + 1), key=lambda job: completions[job - 1] - task.events.delta_min(job))
-    window, own = completions[worst_job - 1], task.demand.max_demand(worst_job)
-    return Response(
-        worst=window - task.events.delta_min(worst_job),
-        best=task.demand.best,
-        method=METHOD,
-        source=SOURCE,
-        claim=Claim.EXACT,
-        jobs=jobs,
-        window=window,
-        completions=tuple(completions),
-        terms={
-            "own": own,
-            "interference": window - own - blocking,
-            "blocking": blocking,
-            "earlier arrival": -task.events.delta_min(worst_job),
-        },
-    )
+    return of_completions(task, completions, blocking, METHOD, SOURCE, Claim.EXACT)
 
 
 def _start(others: Interference, before: Time, lower: Time, granularity: Time) -> Time:

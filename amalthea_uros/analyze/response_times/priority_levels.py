@@ -2,41 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from itertools import groupby
-from typing import Protocol
 
-from amalthea_uros.analyze.response_times import edf, fixed_priority, round_robin, unknown_order
+from amalthea_uros.analyze.response_times import edf, fixed_priority, round_robin
 from amalthea_uros.analyze.response_times.busy_window import Interference
 from amalthea_uros.analyze.response_times.task import FULL, AnalysedTask, Supply
 from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.timing.scheduling.scheduled import EqualPriority
 from amalthea_uros.units import Time
 
-
-class EqualPriorityMethod(Protocol):
-    """A method for a task that shares its priority."""
-
-    def __call__(
-        self, task: AnalysedTask, others: Sequence[AnalysedTask], higher: Interference, blocking: Time = 0
-    ) -> Response:
-        """The response time of a task among others of its priority.
-
-        Parameters
-        ----------
-        higher : tasks of higher priority
-        blocking : maximum time that the task waits for one of lower priority
-        """
-        ...
-
-
-#: The method for tasks of equal priority.
-METHODS: Mapping[EqualPriority, EqualPriorityMethod] = {
+#: The methods for a task among others of its priority, given the tasks of higher priority and the blocking.
+METHODS: Mapping[EqualPriority, Callable[[AnalysedTask, Sequence[AnalysedTask], Interference, Time], Response]] = {
     EqualPriority.FIFO: partial(edf.response_time, method=edf.FIFO_METHOD),
     EqualPriority.EDF: edf.response_time,
     EqualPriority.ROUND_ROBIN: round_robin.response_time,
-    EqualPriority.UNKNOWN: unknown_order.response_time,
+    EqualPriority.UNKNOWN: fixed_priority.in_any_order,
 }
 
 

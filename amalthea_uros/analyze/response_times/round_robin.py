@@ -15,11 +15,11 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from amalthea_uros.analyze.response_times.busy_window import Interference, demand_rate
-from amalthea_uros.analyze.response_times.fixed_priority import max_jobs, unbounded
+from amalthea_uros.analyze.response_times.fixed_priority import max_jobs, of_completions, unbounded
 from amalthea_uros.analyze.response_times.kernel import MAX_STEPS
 from amalthea_uros.analyze.response_times.task import FULL, AnalysedTask
 from amalthea_uros.timing.basics.time_base import LIMIT
-from amalthea_uros.timing.response import Claim, Response
+from amalthea_uros.timing.response import Response
 from amalthea_uros.units import Time
 
 METHOD = "busy window, round robin"
@@ -44,7 +44,7 @@ def response_time(task: AnalysedTask, others: Sequence[AnalysedTask], higher: In
             break
         completions.append(end)
         if end <= task.events.delta_min(job + 1):
-            return _response(task, completions, blocking)
+            return of_completions(task, completions, blocking, METHOD, SOURCE)
     reason = "its busy window does not end: the tasks need all of the core"
     return Response(worst=None, best=task.demand.best, method=METHOD, source=SOURCE, reason=reason)
 
@@ -133,19 +133,3 @@ class _Window:
     def _preemptions(self, window: Time) -> int:
         """Maximum number of times that tasks of higher priority preempt the others in a window."""
         return sum(task.events.eta_plus(window) for task in self.higher.tasks)
-
-
-def _response(task: AnalysedTask, completions: Sequence[Time], blocking: Time) -> Response:
-    worst_job = max(range(1, len(completions) + 1), key=lambda job: completions[job - 1] - task.events.delta_min(job))
-    window, own, earlier = completions[worst_job - 1], task.demand.max_demand(worst_job), task.events.delta_min(worst_job)
-    return Response(
-        worst=window - earlier,
-        best=task.demand.best,
-        method=METHOD,
-        source=SOURCE,
-        claim=Claim.BOUND,
-        jobs=len(completions),
-        window=window,
-        completions=tuple(completions),
-        terms={"own": own, "interference": window - own - blocking, "blocking": blocking, "earlier arrival": -earlier},
-    )

@@ -1,10 +1,4 @@
-"""The schedule of a core under fixed priorities with preemption, job by job.
-
-For tasks with known releases the schedule over two hyperperiods after the last offset contains all situations (J. Leung and
-J. Whitehead, "On the complexity of fixed-priority scheduling of periodic, real-time tasks", Performance Evaluation 2, 1982). With fixed
-releases and without blocking, a job never ends later because another one executes for a shorter time, so that the schedule of all
-worst cases contains the worst-case response times, and that of all best cases the best-case ones.
-"""
+"""The schedule of tasks with known releases under fixed priorities with preemption, job by job."""
 
 from __future__ import annotations
 
@@ -12,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import accumulate
-from math import inf, lcm
+from math import lcm
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,18 +14,13 @@ import numpy as np
 from amalthea_uros.analyze.response_times.kernel import Whole, dispatch
 from amalthea_uros.timing.basics.time_base import LIMIT
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
-from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
     from amalthea_uros.analyze.response_times.kernel import Numbers
 
-METHOD = "schedule over the hyperperiod, fixed priorities, preemptive"
-SOURCE = "Leung, Whitehead 1982"
 #: Schedules with more jobs are not computed; busy windows give bounds.
 MAX_JOBS = 300_000
-#: The execution slices of schedules with at most so many jobs are always recorded: that is quicker than another schedule with them.
-RECORDED_JOBS = 10_000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -154,66 +143,3 @@ def fits(tasks: Sequence[PeriodicTask], until: Time) -> bool:
     if until > LIMIT or sum(until // task.period + 1 for task in tasks) > MAX_JOBS:
         return False
     return sum(task.demand.mean_worst / task.period for task in tasks) <= 1
-
-
-@dataclass(frozen=True, slots=True)
-class ExtremeCases:
-    """The schedules of all worst and of all best cases, up to the end of the second hyperperiod in which everything repeats.
-
-    Attributes
-    ----------
-    worst, best : the jobs of each task
-    has_slices : whether execution slices are recorded
-    """
-
-    tasks: Sequence[PeriodicTask]
-    worst: Sequence[Jobs]
-    best: Sequence[Jobs]
-    has_slices: bool
-
-    @classmethod
-    def of(cls, tasks: Sequence[PeriodicTask], with_slices: bool) -> ExtremeCases | None:
-        """The schedules of some tasks; None if they are too long or the core is overloaded.
-
-        Parameters
-        ----------
-        with_slices : whether execution slices are needed; those of short schedules are recorded anyway
-        """
-        until = steady_state_start(tasks) + 2 * hyperperiod(tasks)
-        if not fits(tasks, until):
-            return None
-        has_slices = with_slices or sum(until // task.period for task in tasks) <= RECORDED_JOBS
-        recorded = [has_slices] * len(tasks)
-        worst = schedule(tasks, until, MultiframeDemand.worst_of, recorded)
-        is_constant = all(frame.is_certain and frame.worst == frame.best for task in tasks for frame in task.demand.frames)
-        best = worst if is_constant else schedule(tasks, until, MultiframeDemand.best_of, recorded)
-        return cls(tasks, worst, best, has_slices)
-
-    def response_times(self) -> list[Response]:
-        """The exact response times."""
-        # Only tasks of at least the same priority have an effect.
-        uncertain = max((task.priority for task in self.tasks if not task.demand.is_certain), default=-inf)
-        rows = zip(self.tasks, self.worst, self.best, strict=True)
-        return [_response(task, worst, best, task.priority > uncertain) for task, worst, best in rows]
-
-
-def response_times(tasks: Sequence[PeriodicTask]) -> list[Response] | None:
-    """The exact response times; None if the schedule is too long or the core is overloaded."""
-    found = ExtremeCases.of(tasks, with_slices=False)
-    return None if found is None else found.response_times()
-
-
-def _response(task: PeriodicTask, worst: Jobs, best: Jobs, is_certain: bool) -> Response:
-    responses = worst.ends - worst.releases
-    at = int(responses.argmax())
-    longest, own = int(responses[at]), task.demand.worst_of(at + 1)
-    return Response(
-        worst=longest,
-        best=int((best.ends - best.releases).min()),
-        method=METHOD,
-        source=SOURCE,
-        claim=Claim.EXACT if is_certain else Claim.BOUND,
-        jobs=len(responses),
-        window=longest,
-        terms={"own": own, "interference": longest - own, "blocking": 0},
-    )

@@ -18,8 +18,8 @@ from amalthea_uros.timing.scheduling.scheduled import Rank, ScheduledProcess
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
+    from amalthea_uros.analyze.response_times.core_schedule import CoreSchedule
     from amalthea_uros.analyze.response_times.executor_threads import ExecutorThread
-    from amalthea_uros.analyze.response_times.schedule import ExtremeCases, PeriodicTask
 
 
 @dataclass
@@ -30,27 +30,30 @@ class Solution:
     ----------
     event_models : activations, by the names of processes
     reasons : why the response time of a process is unknown
+    schedules : of the cores of which it is known and not too long
     """
 
     context: TimingContext
     event_models: dict[str, EventModel] = field(default_factory=dict)
     responses: dict[str, Response] = field(default_factory=dict)
     reasons: dict[str, str] = field(default_factory=dict)
-    _schedules: dict[str, ExtremeCases | None] = field(default_factory=dict, repr=False)
+    schedules: dict[str, CoreSchedule] = field(default_factory=dict, repr=False)
     _threads: dict[str, ExecutorThread] = field(default_factory=dict, repr=False)
 
-    def schedule(self, core: str, tasks: Sequence[PeriodicTask], with_slices: bool) -> ExtremeCases | None:
-        """The schedules of all tasks of a core, built once; None if they are too long or the core is overloaded.
+    def schedule(self, core: str, with_slices: bool = False) -> CoreSchedule | None:
+        """The schedules of a core; None if they are unknown or too long.
 
         Parameters
         ----------
-        with_slices : whether execution slices are needed
+        with_slices : whether the execution slices of jobs are needed
         """
-        from amalthea_uros.analyze.response_times.schedule import ExtremeCases
+        from amalthea_uros.analyze.response_times.core_schedule import CoreSchedule
 
-        found = self._schedules.get(core)
-        if found is None or found.tasks != tasks or (with_slices and not found.has_slices):
-            found = self._schedules[core] = ExtremeCases.of(tasks, with_slices)
+        found = self.schedules.get(core)
+        if found is not None and with_slices and not found.has_slices:
+            found = CoreSchedule.of(list(found.tasks.values()), with_slices)
+            assert found is not None
+            self.schedules[core] = found
         return found
 
     def processor(self, task: str) -> ExecutorThread:

@@ -10,8 +10,7 @@ from amalthea_uros._internal.by_name import Results
 from amalthea_uros._internal.plural import counted
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.results.chains import ChainResult
-from amalthea_uros.analyze.results.processes import CallbackResult, ProcessorResult, ProcessResult
-from amalthea_uros.analyze.results.requirements import RequirementResult
+from amalthea_uros.analyze.results.processes import CallbackResult, ProcessorResult, ProcessResult, RequirementResult
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.judge.summary import Summary
 from amalthea_uros.perf.constraints import LatencyConstraint

@@ -35,6 +35,11 @@ class LatencyQuantity(StrEnum):
         return self.value.startswith("max")
 
     @property
+    def is_reaction(self) -> bool:
+        """Whether it is a maximum reaction time, also a reduced one."""
+        return self in (LatencyQuantity.MAX_REACTION_TIME, LatencyQuantity.MAX_REDUCED_REACTION_TIME)
+
+    @property
     def is_mean(self) -> bool:
         """Whether it is a mean."""
         return self.value.startswith("mean")

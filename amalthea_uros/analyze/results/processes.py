@@ -7,9 +7,10 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 
 from amalthea_uros._internal.shown import Shown
-from amalthea_uros.judge.limits import DEADLINE, PERIOD
+from amalthea_uros.judge.evidence import Ends
+from amalthea_uros.judge.limits import DEADLINE, PERIOD, SystemLimit
 from amalthea_uros.judge.margins import margin_of
-from amalthea_uros.judge.verdict import Failure, Verdict
+from amalthea_uros.judge.verdict import Failure, Judgement, Verdict
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.units import Frequency, Time, time_text
@@ -118,6 +119,16 @@ class ProcessResult(Shown):
         """The best-case response time; None if it is unknown."""
         return None if self.response is None else self.response.best
 
+    @property
+    def worst_response(self) -> Ends:
+        """Between which ends the worst-case response time lies: the longest job takes at least its execution time."""
+        response = self.response
+        if response is None:
+            return Ends()
+        if response.worst is not None and response.claim is Claim.EXACT:
+            return Ends.exactly(response.worst)
+        return Ends(max(response.best, self.least_wcet or 0), response.worst)
+
     # As a limit that was judged.
 
     @property
@@ -183,3 +194,61 @@ class CallbackResult(Shown):
 def bound_text(value: Time | None) -> str:
     """A time for people; "unknown" if there is none."""
     return "unknown" if value is None else time_text(value)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RequirementResult(Shown):
+    """The verdict on a requirement or a constraint; the margin is not negative if it is met.
+
+    Attributes
+    ----------
+    limit : None if it is not a limit of a time
+    lower, upper : between these the limited maximum or minimum lies; equal if it is exact, None if that end is unknown
+    spread : minimum and maximum, of which a jitter is the difference; None for what is no such jitter, or unknown
+    reason : why the verdict is unknown
+    stated : the limit in the system
+    """
+
+    name: str
+    object: str
+    quantity: str
+    is_upper: bool
+    limit: Time | None
+    verdict: Verdict
+    lower: Time | None = None
+    upper: Time | None = None
+    spread: tuple[Time, Time] | None = None
+    reason: str = ""
+    stated: SystemLimit | None = field(default=None, repr=False, compare=False)
+
+    @classmethod
+    def of(cls, limit: SystemLimit, found: Judgement) -> RequirementResult:
+        """The result for a limit that was judged."""
+        return cls(
+            name=limit.name,
+            object=limit.object,
+            quantity=limit.quantity,
+            is_upper=limit.is_upper,
+            limit=limit.time,
+            lower=found.ends.lower,
+            upper=found.ends.upper,
+            spread=found.spread,
+            verdict=found.verdict,
+            reason=found.reason,
+            stated=limit,
+        )
+
+    @property
+    def value(self) -> Time | None:
+        """The safe end: an upper bound of a maximum, a lower bound of a minimum."""
+        return self.upper if self.is_upper else self.lower
+
+    @property
+    def margin(self) -> Time | None:
+        """Distance of the value from the limit; negative if the limit is missed."""
+        return margin_of(self.value, self.limit, self.is_upper)
+
+    @property
+    def overloaded_core(self) -> None:
+        """That of a process."""
+        return

@@ -9,7 +9,6 @@ from fractions import Fraction
 from typing import TypeAlias
 
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
-from amalthea_uros.analyze.constraints.process_evidence import worst_response
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import ChainResult, LatencyQuantity
 from amalthea_uros.analyze.results.processes import Metric, ProcessResult
@@ -152,7 +151,7 @@ def _of_chain(chain: ChainResult, quantity: LatencyQuantity) -> Range:
 
 def _of_process(process: ProcessResult, quantity: str) -> Range:
     if quantity == JobMetric.RESPONSE_TIME:
-        ends = worst_response(process)
+        ends = process.worst_response
         return Range(ends.lower, ends.upper, process.reason)
     metric = process.metrics.get(JobMetric.RESPONSE_TIME if quantity == JITTER else JobMetric(quantity))
     if metric is None:

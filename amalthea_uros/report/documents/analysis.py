@@ -10,8 +10,7 @@ from amalthea_uros.analyze.impact import Effect, Impact
 from amalthea_uros.analyze.priorities.assignment import Proposal, ProposalOutcome
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import ChainResult
-from amalthea_uros.analyze.results.processes import CallbackResult, Metric, ProcessorResult, ProcessResult
-from amalthea_uros.analyze.results.requirements import RequirementResult
+from amalthea_uros.analyze.results.processes import CallbackResult, Metric, ProcessorResult, ProcessResult, RequirementResult
 from amalthea_uros.analyze.sensitivity import MAX_FACTOR, Sensitivity
 from amalthea_uros.executors.results import ExecutorResult, HandleResult
 from amalthea_uros.judge.verdict import WORST_FIRST, Verdict

@@ -10,8 +10,7 @@ from typing import TypeAlias
 
 from amalthea_uros.analyze.results.analysis import Analysis, Judged
 from amalthea_uros.analyze.results.chains import ChainResult, LatencyQuantity
-from amalthea_uros.analyze.results.processes import ProcessResult
-from amalthea_uros.analyze.results.requirements import RequirementResult
+from amalthea_uros.analyze.results.processes import ProcessResult, RequirementResult
 from amalthea_uros.judge.causes import quantity_of
 from amalthea_uros.judge.summary import urgency
 from amalthea_uros.judge.verdict import FAILURES, WORST_FIRST, Verdict

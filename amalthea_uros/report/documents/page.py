@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 
-from amalthea_uros.analyze.explanations.processes import ProcessExplanation, explain_process
+from amalthea_uros.analyze.explanations.processes import explain_process
 from amalthea_uros.analyze.impact import impact
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import ChainResult, LatencyQuantity
+from amalthea_uros.analyze.results.explanations import ProcessExplanation
 from amalthea_uros.analyze.results.processes import ProcessorResult, ProcessResult
 from amalthea_uros.executors.results import HandleResult
 from amalthea_uros.report.basics.document import (

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from functools import partial
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.analyze.explanations.chain_results import ChainExplanation, ProcessHop
 from amalthea_uros.analyze.explanations.chains import explain_chain
 from amalthea_uros.analyze.results.chains import LatencyQuantity
+from amalthea_uros.analyze.results.explanations import ChainExplanation, ProcessHop
 from amalthea_uros.analyze.results.processes import ProcessResult
 from amalthea_uros.design.improvements import Improvement
 from amalthea_uros.errors import InvalidArgumentError

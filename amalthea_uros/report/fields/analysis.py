@@ -7,8 +7,7 @@ from typing import Any
 from amalthea_uros.analyze.priorities.assignment import Proposal
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import ChainResult, LatencyValue
-from amalthea_uros.analyze.results.processes import CallbackResult, Metric, ProcessorResult, ProcessResult
-from amalthea_uros.analyze.results.requirements import RequirementResult
+from amalthea_uros.analyze.results.processes import CallbackResult, Metric, ProcessorResult, ProcessResult, RequirementResult
 from amalthea_uros.analyze.sensitivity import Sensitivity
 from amalthea_uros.executors.results import ExecutorResult, HandleResult, Hop, Loss, TimePart
 from amalthea_uros.report.fields.changes import CHANGED

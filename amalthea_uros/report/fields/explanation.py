@@ -4,10 +4,15 @@ from __future__ import annotations
 
 from typing import Any
 
-from amalthea_uros.analyze.explanations.chain_results import ChainExplanation, ProcessHop
-from amalthea_uros.analyze.explanations.execution_shares import ExecutionShare
-from amalthea_uros.analyze.explanations.hop_causes import Execution, LatencyCause
-from amalthea_uros.analyze.explanations.processes import CallbackExplanation, ProcessExplanation
+from amalthea_uros.analyze.results.explanations import (
+    CallbackExplanation,
+    ChainExplanation,
+    Execution,
+    ExecutionShare,
+    LatencyCause,
+    ProcessExplanation,
+    ProcessHop,
+)
 from amalthea_uros.design.improvements import Improvement, Improvements
 from amalthea_uros.report.fields.declaration import declare, json_of
 from amalthea_uros.report.wording.chains import cause_text

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.analyze.explanations.chain_results import ChainExplanation, ProcessHop
+from amalthea_uros.analyze.results.explanations import ChainExplanation, ProcessHop
 from amalthea_uros.report.pictures.axes import HEIGHT, TimeAxis, draw_grid, draw_time_axis
 from amalthea_uros.report.pictures.job_rows import arrows_at, draw_activations
 from amalthea_uros.report.pictures.svg import (

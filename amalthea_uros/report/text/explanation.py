@@ -7,12 +7,15 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.analyze.explanations.chain_results import ChainExplanation
-from amalthea_uros.analyze.explanations.execution_shares import ExecutionShare
-from amalthea_uros.analyze.explanations.origins import OriginKind
-from amalthea_uros.analyze.explanations.processes import CallbackExplanation, ProcessExplanation
 from amalthea_uros.analyze.results.analysis import Judged
 from amalthea_uros.analyze.results.chains import LatencyValue
+from amalthea_uros.analyze.results.explanations import (
+    CallbackExplanation,
+    ChainExplanation,
+    ExecutionShare,
+    OriginKind,
+    ProcessExplanation,
+)
 from amalthea_uros.analyze.results.processes import CallbackResult, ProcessResult
 from amalthea_uros.design.improvements import Improvements
 from amalthea_uros.executors.results import HandleResult

@@ -9,7 +9,7 @@ from fractions import Fraction
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.analyze.impact import Impact, ImpactRow, ResultPart
 from amalthea_uros.analyze.results.analysis import Analysis
-from amalthea_uros.analyze.results.requirements import RequirementResult
+from amalthea_uros.analyze.results.processes import RequirementResult
 from amalthea_uros.design.optimize.problem import Feasibility
 from amalthea_uros.design.optimize.quantities import Amount, Dimension, Range, dimension
 from amalthea_uros.design.proposals import DesignProposal, LimitRow

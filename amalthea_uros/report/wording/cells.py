@@ -6,8 +6,7 @@ from fractions import Fraction
 from math import inf
 from typing import TYPE_CHECKING
 
-from amalthea_uros.analyze.results.processes import ProcessResult
-from amalthea_uros.analyze.results.requirements import RequirementResult
+from amalthea_uros.analyze.results.processes import ProcessResult, RequirementResult
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.judge.verdict import ObservedVerdict, Verdict

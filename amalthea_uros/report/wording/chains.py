@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.analyze.explanations.chain_results import ProcessHop
-from amalthea_uros.analyze.explanations.hop_causes import CauseKind, LatencyCause
 from amalthea_uros.analyze.results.chains import ChainResult, LatencyQuantity, LatencyValue
+from amalthea_uros.analyze.results.explanations import CauseKind, LatencyCause, ProcessHop
 from amalthea_uros.report.wording.cells import share_text
 from amalthea_uros.report.writers.terminal import Terminal
 from amalthea_uros.units import Rounding, Time, rounded_time_text, time_text

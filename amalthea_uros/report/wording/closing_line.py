@@ -7,10 +7,8 @@ from collections.abc import Iterable
 from fractions import Fraction
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.analyze.constraints.process_evidence import worst_response
 from amalthea_uros.analyze.results.analysis import Judged, SystemSummary
-from amalthea_uros.analyze.results.processes import ProcessorResult
-from amalthea_uros.analyze.results.requirements import RequirementResult
+from amalthea_uros.analyze.results.processes import ProcessorResult, RequirementResult
 from amalthea_uros.judge.evidence import Ends
 from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.judge.verdict import Failure
@@ -65,7 +63,7 @@ def _failure(item: Judged) -> str:
     if item.failure is Failure.LOST and (item.margin is None or item.margin >= 0):
         return f"{item.name} loses activations: {item.reason}"
     kind = "period" if item.is_implicit else "deadline"
-    ends = worst_response(item)
+    ends = item.worst_response
     if item.failure is Failure.LOST:
         # With what is lost, the greatest response time need not occur again.
         ends = Ends.exactly(ends.upper or 0)

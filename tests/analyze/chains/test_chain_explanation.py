@@ -16,8 +16,8 @@ from amalthea_uros import describe
 from amalthea_uros.analyze.chains import bounds
 from amalthea_uros.analyze.chains.bounds import ChainTask, total
 from amalthea_uros.analyze.explanations.chains import explain_chain
-from amalthea_uros.analyze.explanations.hop_causes import CauseKind
 from amalthea_uros.analyze.results.chains import EXPLAINED, LatencyQuantity
+from amalthea_uros.analyze.results.explanations import CauseKind
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.activities import Communication
 from amalthea_uros.perf.hardware import StructureKind

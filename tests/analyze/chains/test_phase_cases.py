@@ -14,7 +14,6 @@ from amalthea_uros.analyze import system as analyses
 from amalthea_uros.analyze.chains import job_chains
 from amalthea_uros.analyze.chains.job_chains import JobBudget
 from amalthea_uros.analyze.phases.cases import PhaseCases, least_rotation
-from amalthea_uros.analyze.phases.combinations import Phases
 from amalthea_uros.analyze.response_times.propagation import solve
 from amalthea_uros.perf.activities import Call
 from amalthea_uros.perf.constraints import Bound, Constraints, LatencyConstraint, Requirement, TimeLimit, TimeMetric
@@ -30,9 +29,9 @@ PRESCALERS = st.sampled_from([2, 2, 3, 4, 6])
 
 
 def cases_of(built) -> PhaseCases:
-    phases = Phases.of(solve(TimingContext.of(built)), unknown_phases(built))
-    assert phases is not None
-    return phases.cases
+    cases = PhaseCases.of(solve(TimingContext.of(built)), unknown_phases(built))
+    assert cases is not None
+    return cases
 
 
 @st.composite

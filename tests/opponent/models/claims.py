@@ -17,8 +17,7 @@ from opponent.models.variants import items_of
 
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import ChainResult
-from amalthea_uros.analyze.results.processes import ProcessResult
-from amalthea_uros.analyze.results.requirements import RequirementResult
+from amalthea_uros.analyze.results.processes import ProcessResult, RequirementResult
 from amalthea_uros.errors import AmurosError
 from amalthea_uros.judge.verdict import ObservedVerdict, Verdict
 from amalthea_uros.services.analyze import analyze_files
