@@ -11,10 +11,10 @@ from amalthea_uros.findings.kind import FindingKind
 
 INDEX = """# Findings
 
-Besides [the rules of `amuros check`](../check.md), reading, building and analysing report findings of their own. `amuros explain ID` shows
-the entry of each, with an example where there is one. Errors XMI001 to XMI006 end reading; with all others the model is read and can be
-written back. Frequent findings of reading are reported once, with their number; all errors of an app.yaml are reported in one run, up
-to 100.
+Besides [the rules of `amuros check`](../check.md), reading, building and analysing report findings of their own. `amuros explain ID`
+shows the entry of each, with an example where there is one. Errors XMI001 to XMI006 end reading; with all others the model is read and
+can be written back. Frequent findings of reading are reported once, with their number; all errors of an app.yaml are reported in one
+run, up to 100.
 
 | ids | findings of |
 |---|---|

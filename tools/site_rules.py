@@ -32,9 +32,11 @@ def _page(kind: FindingKind) -> str:
 def _origin(kind: FindingKind) -> Iterator[str]:
     top = "../" * (kind.id.count("/") + 1)
     if (profile := registry.profile_of(kind.id)) is not None:
-        yield f"A rule of the profile [`{profile}`]({top}check.md#checking-models) of `amuros check`."
+        yield f"A rule of the profile [`{profile}`]({top}rules/{profile}.md) of `amuros check`."
     else:
-        yield f"A [finding]({top}findings/index.md) that is reported without being asked for: {catalogue.FAMILIES[kind.id[:3]].lower()}."
+        family = kind.id[:3]
+        page = f"{top}findings/{family.lower()}.md"
+        yield f"A [finding]({page}) that is reported without being asked for: {catalogue.FAMILIES[family].lower()}."
 
 
 def _text(kind: FindingKind) -> Iterator[str]:
