@@ -9,7 +9,7 @@ from whole_player import MS, US, Player, S
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.spec.transports import CanFd
 from amalthea_uros.uros.described import describe_content
-from amalthea_uros.uros.transports.can_fd import CanFdLine
+from amalthea_uros.uros.transports.can import CanFdLine
 
 NS = 1000
 SEEDS = range(5000 if IS_THOROUGH else 12)

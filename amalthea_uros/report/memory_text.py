@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from amalthea_uros.uros.memory.ram import MemoryDemand
-from amalthea_uros.uros.memory.stack import StackUse
+from amalthea_uros.uros.memory import MemoryDemand, StackUse
 
 
 def memory_rows(memory: MemoryDemand) -> list[tuple[str, str, str]]:

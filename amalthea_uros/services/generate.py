@@ -21,11 +21,11 @@ from amalthea_uros.services.waiting_messages import waiting_messages, with_analy
 from amalthea_uros.spec.application import Application, NodeSection
 from amalthea_uros.spec.platforms import complete
 from amalthea_uros.spec.read import read_description
-from amalthea_uros.uros.application.entities import LIFECYCLE_SERVICES, PARAMETER_SERVICES, executors_of
+from amalthea_uros.uros.application.entities import LIFECYCLE_SERVICES, PARAMETER_SERVICES
 from amalthea_uros.uros.assemble import Assembly, assemble
 from amalthea_uros.uros.colcon_meta import parse_meta
 from amalthea_uros.uros.generated_options import check_meta, values_of, with_generated_options
-from amalthea_uros.uros.memory.ram import MemoryDemand
+from amalthea_uros.uros.memory import MemoryDemand
 from amalthea_uros.uros.middleware.options import Option, OptionRole
 from amalthea_uros.uros.profiles import profile_of
 
@@ -196,7 +196,7 @@ def _handles(assembly: Assembly) -> dict[str, int]:
     if loops:
         return loops
     nodes = assembly.description.application.nodes
-    return {executors_of(assembly.description.middleware)[0].name: sum(map(_node_handles, nodes))}
+    return {assembly.description.middleware.stated_executors[0].name: sum(map(_node_handles, nodes))}
 
 
 def _node_handles(node: NodeSection) -> int:

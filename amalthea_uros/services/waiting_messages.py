@@ -9,10 +9,9 @@ from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.executors.results import ExecutorResult
 from amalthea_uros.executors.semantics.readiness import messages
 from amalthea_uros.perf.executors import Executor
-from amalthea_uros.uros.application.entities import executors_of
 from amalthea_uros.uros.assemble import Assembly
 from amalthea_uros.uros.generated_options import WaitingMessages, with_waiting_messages
-from amalthea_uros.uros.middleware.histories import kept_messages
+from amalthea_uros.uros.middleware.checks import kept_messages
 from amalthea_uros.uros.middleware.options import OptionRole
 
 
@@ -40,7 +39,7 @@ def waiting_messages(assembly: Assembly, analysis: Analysis | None = None) -> Wa
         return None
     found = (analysis or analyze_system(assembly.system)).executors
     unbounded = [name for each in executors for name in _unbounded(each, found[each.name])]
-    periodic = [each.name for each in executors_of(assembly.description.middleware) if each.loop is None]
+    periodic = [each.name for each in assembly.description.middleware.stated_executors if each.loop is None]
     needed = [each.slots_needed for each in found if each.slots_needed is not None]
     if not periodic and len(needed) == len(found):
         kept = f"all that are kept for {' and '.join(unbounded)}, whose response time has no bound"

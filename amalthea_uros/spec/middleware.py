@@ -210,3 +210,8 @@ class Middleware(Section):
     """Creation of the entities."""
     limits: PoolSizes = Field(default_factory=PoolSizes)
     """Static pools."""
+
+    @property
+    def stated_executors(self) -> tuple[ExecutorSection, ...]:
+        """The executors; the first one serves callbacks that name no other."""
+        return tuple(self.executors) or (self.executor,)

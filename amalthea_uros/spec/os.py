@@ -113,3 +113,8 @@ class OsSection(Section):
     """How exactly a task sleeps; default: as the operating system does; without a tick, exactly as long as asked."""
     overhead: OsOverhead = Field(default_factory=OsOverhead)
     """What it costs to activate and end tasks and interrupt service routines; default: nothing."""
+
+    @property
+    def title(self) -> str:
+        """How messages name it."""
+        return "the operating system" if self.rtos is None else repr(self.rtos)

@@ -13,11 +13,9 @@ from amalthea_uros.perf.software import IsrCategory, Preemption, Runnable
 from amalthea_uros.spec import processes as spec
 from amalthea_uros.units import Time, time_text
 from amalthea_uros.uros.application.notes import Notes, first_defined
-from amalthea_uros.uros.assembly.activities import activity_sequence, trigger_name
 from amalthea_uros.uros.assembly.context import AssemblyContext
 from amalthea_uros.uros.assembly.demand import DemandConverter
-from amalthea_uros.uros.assembly.stimuli import StimulusRegistry
-from amalthea_uros.uros.assembly.tasks import PlannedIsr, PlannedTask
+from amalthea_uros.uros.assembly.planned import PlannedIsr, PlannedTask, StimulusRegistry, activity_sequence, trigger_name
 
 
 @dataclass(slots=True)

@@ -12,8 +12,6 @@ from amalthea_uros.spec.executors import ExecutorSection
 from amalthea_uros.units import Time
 from amalthea_uros.uros.application.callbacks import Callback, body_name, registration_order
 from amalthea_uros.uros.application.phases import ExecutorPhases, own_task_counter
-from amalthea_uros.uros.application.serving import stated_executors
-from amalthea_uros.uros.assembly.activities import activity_sequence, trigger_name
 from amalthea_uros.uros.assembly.context import AssemblyContext
 from amalthea_uros.uros.assembly.executor_runnables import (
     ExecutorRunnables,
@@ -22,8 +20,7 @@ from amalthea_uros.uros.assembly.executor_runnables import (
     message_cost,
     own_task_calls,
 )
-from amalthea_uros.uros.assembly.interrupts import add_isr
-from amalthea_uros.uros.assembly.tasks import PlannedTask
+from amalthea_uros.uros.assembly.planned import PlannedTask, activity_sequence, trigger_name
 from amalthea_uros.uros.executors.add import add_looping_executor
 from amalthea_uros.uros.executors.checks import check_order, check_threads
 from amalthea_uros.uros.periods import (
@@ -33,14 +30,13 @@ from amalthea_uros.uros.periods import (
     choose_task_period,
     period_candidates,
 )
-from amalthea_uros.uros.transports.bus_messages import BusMessage, bus_of, receive_stimulus
-from amalthea_uros.uros.transports.costs import driver_costs
+from amalthea_uros.uros.transports.messages import driver_costs
 
 
 def add_callbacks(context: AssemblyContext, callbacks: Sequence[Callback]) -> tuple[PeriodChoice, ...]:
     """Add the executors and the callbacks' own tasks, and return the choice of their periods, that of each executor first."""
     choices: list[PeriodChoice] = []
-    executors = stated_executors(context.description.middleware)
+    executors = context.description.middleware.stated_executors
     for executor in executors:
         own = [callback for callback in callbacks if callback.executor == executor.name]
         inside = [callback for callback in own if callback.in_executor]
@@ -67,7 +63,7 @@ def _add_looping(context: AssemblyContext, executor: ExecutorSection, callbacks:
     bodies = {callback.name: _body(context, callback, core) for callback in callbacks}
     outside = [callback for callback in callbacks if not callback.in_executor]
     triggered = {callback.name: (callback.name,) for callback in outside if callback.section.task_period is None}
-    is_alone = len(stated_executors(context.description.middleware)) == 1 and not any(each.outgoing for each in outside)
+    is_alone = len(context.description.middleware.stated_executors) == 1 and not any(each.outgoing for each in outside)
     add_looping_executor(context, executor, callbacks, bodies, triggered, is_alone)
     for callback in outside:
         if callback.name in triggered:
@@ -180,7 +176,7 @@ def _body(context: AssemblyContext, callback: Callback, executor_core: str) -> R
     """The runnable of a callback: it reads, computes and publishes, and writes."""
     section, publish = callback.section, context.description.middleware.publish
     sending = [cost for message in callback.outgoing for cost in message_cost(publish, message.size)]
-    sending += driver_costs(context.description, callback, Direction.TO_AGENT, context.profile)
+    sending += driver_costs(context.line, callback, Direction.TO_AGENT, context.profile)
     core = _core(context, callback, executor_core)
     activities = activity_sequence(
         context.converter.execute([section.execution_time, *sending], core, section.location("execution_time")),
@@ -232,14 +228,3 @@ def _add_triggered_task(context: AssemblyContext, callback: Callback, body: Runn
             origin=callback.origin,
         )
     )
-
-
-def add_interrupt(context: AssemblyContext, messages: Sequence[BusMessage]) -> None:
-    """Add the interrupt service routine that receives frames, if it is described."""
-    can = context.description.middleware.transport.can
-    incoming = [message for message in messages if message.incoming]
-    if can is None or can.interrupt is None or not incoming:
-        return
-    bus = bus_of(can)
-    stimuli = [context.stimuli.add(receive_stimulus(message, bus)) for message in incoming]
-    add_isr(context, can.interrupt, can.interrupt.name, stimuli)

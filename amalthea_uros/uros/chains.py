@@ -15,8 +15,7 @@ from amalthea_uros.spec.requirements import Chain, Moment
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.timing.dataflow.routes import is_linked
 from amalthea_uros.uros.application.notes import Notes
-from amalthea_uros.uros.chain_elements import ChainElement
-from amalthea_uros.uros.chain_topics import MessageOfTopic, TopicError, Topics
+from amalthea_uros.uros.chain_members import ChainElement, MessageOfTopic, TopicError, Topics
 
 _PROCESS_CHANGES: Mapping[Moment, perf.ProcessChange] = {
     "activation": perf.ProcessChange.ACTIVATE,

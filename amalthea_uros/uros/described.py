@@ -16,7 +16,7 @@ from amalthea_uros.spec.read import Draft, content_draft, read_draft, text_draft
 from amalthea_uros.trace.can.dbc import DbcMessage, read_dbc
 from amalthea_uros.trace.can.frames import EXTENDED
 from amalthea_uros.uros.assemble import Assembly, assemble
-from amalthea_uros.uros.transports.foreign import ForeignFrame
+from amalthea_uros.uros.transports.can import ForeignFrame
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,12 +12,12 @@ from amalthea_uros.perf.named import Brief
 from amalthea_uros.spec.application import Application
 from amalthea_uros.spec.middleware import PoolSizes
 from amalthea_uros.uros.colcon_meta import ColconMeta, Definition
-from amalthea_uros.uros.middleware.options import Option, OptionRole, OptionRow
+from amalthea_uros.uros.middleware.options import COUNTED, Option, OptionRole, OptionRow
 from amalthea_uros.uros.middleware.profile import Profile
 
 #: So many are reported of a file; more of them say nothing new.
 MAX_FINDINGS = 100
-_COUNTED = (OptionRole.POOL, OptionRole.QUEUE)
+
 #: Options that no figure depends on.
 _OTHERS = ("RMW_UXRCE_DEFAULT_", "RMW_UXRCE_IPV", "UCLIENT_PROFILE_", "UCLIENT_MAX_INPUT_", "UCLIENT_MAX_OUTPUT_")
 _MULTITHREAD = "UCLIENT_PROFILE_MULTITHREAD"
@@ -57,7 +57,7 @@ def value_of(option: Option) -> int | None:
     """
     if option.without_effect:
         return None
-    if option.role in _COUNTED:
+    if option.role in COUNTED:
         return option.smallest
     if option.is_stated:
         value = option.available if option.words else max(option.available, option.smallest or 0)
@@ -186,7 +186,7 @@ class _Comparison(Brief):
             value = f"{option.text(option.available)}" + ("" if option.name in self.places else " by default")
             message = f"{option.name} is {value}, but the application needs {option.smallest}: {option.counts}"
             yield Finding("GEN001", severity, message, place, f"{option.when_exhausted} Set it to {option.smallest}.".strip())
-        elif option.role in _COUNTED and option.name in self.values and self.values[option.name] >= 0:
+        elif option.role in COUNTED and option.name in self.values and self.values[option.name] >= 0:
             yield from self._surplus(option, built, place)
         elif described is not None and option.role is OptionRole.SETTING:
             yield from self._difference(option, described, place)

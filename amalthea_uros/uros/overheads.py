@@ -13,7 +13,7 @@ from amalthea_uros.perf.activities import Activity, Call
 from amalthea_uros.perf.software import IsrCategory, Runnable
 from amalthea_uros.spec.os import OverheadSection, OverheadTime
 from amalthea_uros.uros.assembly.context import AssemblyContext
-from amalthea_uros.uros.assembly.tasks import PlannedIsr, PlannedTask
+from amalthea_uros.uros.assembly.planned import PlannedIsr, PlannedTask
 
 
 @dataclass(frozen=True, slots=True)

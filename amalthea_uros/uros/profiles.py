@@ -13,6 +13,7 @@ from amalthea_uros.spec.merging import merged
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.spec.profiles import ProfileData
 from amalthea_uros.spec.read import read_section
+from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.middleware.profile import Profile
 from amalthea_uros.uros.middleware.xrce_dds.profile import XrceDds
 from amalthea_uros.uros.middleware.zenoh_pico.profile import ZenohPico
@@ -46,6 +47,15 @@ def profile_of(middleware: Middleware, folder: Path | None = None) -> Profile:
     _check_names(own, {"sizes": base.sizes, "options": ["MTU", *KNOWN[own.base](base, middleware).option_table]})
     tables = {key: getattr(base, key) | getattr(own, key) for key in _TABLES}
     return KNOWN[own.base](merged(own, base).model_copy(update=tables), middleware)
+
+
+def stated_profile(middleware: Middleware, notes: Notes) -> Profile | None:
+    """The profile of the middleware of a description; None, with a finding, if it is not known."""
+    try:
+        return profile_of(middleware)
+    except ReadError as error:
+        notes.findings.extend(error.findings)
+        return None
 
 
 @cache

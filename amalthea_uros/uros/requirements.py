@@ -1,4 +1,4 @@
-"""Requirements on processes and runnables."""
+"""Requirements on processes and runnables: those of the description, and deadlines in executors with loops."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from amalthea_uros.diagnostics import Location
 from amalthea_uros.perf.constraints import Bound, JitterLimit, Limit, Requirement, RequirementSeverity, TimeLimit, TimeMetric
 from amalthea_uros.spec import requirements as spec
 from amalthea_uros.uros.application.notes import Notes
-from amalthea_uros.uros.chain_elements import ChainElement
+from amalthea_uros.uros.chain_members import ChainElement
 
 _METRICS = {
     "response_time": TimeMetric.RESPONSE_TIME,

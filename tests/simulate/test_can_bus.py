@@ -15,7 +15,7 @@ from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
 from amalthea_uros.units import NANOSECOND as NS
 from amalthea_uros.units import SECOND
-from amalthea_uros.uros.network.bus_system import BusTransmission, with_bus
+from amalthea_uros.uros.network.classic_bus import BusTransmission, with_bus
 from amalthea_uros.uros.transports.can import CanBus
 
 

@@ -20,7 +20,7 @@ from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import SECOND
-from amalthea_uros.uros.network.bus_system import BusTransmission, with_bus
+from amalthea_uros.uros.network.classic_bus import BusTransmission, with_bus
 from amalthea_uros.uros.transports.can import CanBus, block_bytes, frames
 
 SAMPLES = ROOT / "samples"

@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
 from amalthea_uros.uros.application.notes import Notes
-from amalthea_uros.uros.assembly.tasks import PlannedTask
-from amalthea_uros.uros.priorities import priorities
+from amalthea_uros.uros.assembly.planned import PlannedTask
+from amalthea_uros.uros.os import priorities
 
 APP = """
     amuros: 1

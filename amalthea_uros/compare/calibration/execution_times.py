@@ -22,7 +22,6 @@ from amalthea_uros.measure.series import MeasuredKind
 from amalthea_uros.perf.distributions import highest, lowest
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.units import NANOSECOND, Time, time_text
-from amalthea_uros.uros.application.serving import stated_executors
 from amalthea_uros.uros.assembly.demand import times_of
 
 if TYPE_CHECKING:
@@ -89,7 +88,7 @@ def calibrated_execution_times(
 
 def _overhead(measured: Measured, places: Places) -> Time | None:
     """The stated overhead that is part of measured times: of jobs as a whole, without a baseline; None if it varies."""
-    series, executor = measured.series, stated_executors(places.description.middleware)[0].name
+    series, executor = measured.series, places.description.middleware.stated_executors[0].name
     if series.kind is MeasuredKind.RUNNABLE or series.baseline is not None:
         return 0
     process = executor if series.name == f"{executor}_Spin" else series.name

@@ -16,7 +16,6 @@ from amalthea_uros.design.description.places import Places
 from amalthea_uros.measure.series import MeasuredKind, statistics_of
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.units import Time
-from amalthea_uros.uros.application.serving import stated_executors
 
 #: By how much the number of long jobs may differ from the number of messages: the first and the last one, and clocks.
 _MOST_OTHERS = 2
@@ -29,7 +28,7 @@ def with_executor_parts(measured: Sequence[Measured], places: Places, period: Ti
     ----------
     period : of the executor
     """
-    executor = stated_executors(places.description.middleware)[0]
+    executor = places.description.middleware.stated_executors[0]
     cost = executor.execution_time
     incoming = [callback for callback in places.callbacks if callback.incoming is not None]
     parts = {"per_timer", "per_handle", "per_ready_callback", "per_message"} & cost.model_fields_set

@@ -24,7 +24,7 @@ from amalthea_uros.uros.application import callbacks as uros
 from amalthea_uros.uros.application.callbacks import handle_count
 from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.assembly.executor_runnables import message_cost, timer_count
-from amalthea_uros.uros.assembly.rtos import PriorityScale
+from amalthea_uros.uros.assembly.planned import PriorityScale
 
 _TICKS = re.compile(r"\d+\s*ticks?", re.ASCII)
 #: Sections under other names than their own.

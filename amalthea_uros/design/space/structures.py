@@ -18,7 +18,6 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.spec.executors import ExecutorSection
 from amalthea_uros.uros.application.callbacks import Callback, callbacks_of, registration_order
 from amalthea_uros.uros.application.notes import Notes
-from amalthea_uros.uros.application.serving import stated_executors
 from amalthea_uros.uros.assemble import Assembly
 from amalthea_uros.uros.described import Described, describe_text
 
@@ -49,7 +48,7 @@ class DescribedCallbacks:
     @property
     def executor(self) -> ExecutorSection:
         """The first executor."""
-        return stated_executors(self.whole.description.middleware)[0]
+        return self.whole.description.middleware.stated_executors[0]
 
     @property
     def callbacks(self) -> tuple[Callback, ...]:

@@ -26,7 +26,7 @@ def bus_section(content: ReportContent) -> Section | None:
     rows = [
         (
             each.message.topic,
-            "received" if each.incoming else "sent",
+            "received" if each.message.is_incoming else "sent",
             time_text(each.message.interval),
             f"{each.length} B",
             f"{each.frames}",

@@ -10,14 +10,14 @@ from amalthea_uros.services.build import BuildResult
 from amalthea_uros.services.generate import GenerateResult, MetaCheck
 from amalthea_uros.uros.generated_options import values_of
 from amalthea_uros.uros.initialisation import Initialisation
-from amalthea_uros.uros.memory.ram import MemoryDemand
+from amalthea_uros.uros.memory import MemoryDemand
 
 
 def _messages(result: BuildResult) -> list[dict[str, Any]]:
     return [
         {
             "topic": item.message.topic,
-            "incoming": item.incoming,
+            "incoming": item.message.is_incoming,
             "interval_ps": item.message.interval,
             "bytes": item.length,
             "frames": item.frames,

@@ -12,7 +12,7 @@ from amalthea_uros.services.build import BuildResult
 from amalthea_uros.units import percent_text, time_text
 from amalthea_uros.uros.assemble import Assembly
 from amalthea_uros.uros.initialisation import Initialisation
-from amalthea_uros.uros.memory.ram import MemoryDemand
+from amalthea_uros.uros.memory import MemoryDemand
 from amalthea_uros.uros.middleware.options import Option, OptionRole
 
 
@@ -107,7 +107,7 @@ def _traffic(terminal: Terminal, assembly: Assembly) -> None:
     rows = [
         (
             item.message.topic,
-            "in" if item.incoming else "out",
+            "in" if item.message.is_incoming else "out",
             time_text(item.message.interval),
             f"{item.length} B",
             item.frames,

@@ -13,23 +13,20 @@ from enum import StrEnum
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.perf.software import Channel
 from amalthea_uros.spec.application import (
-    ActionClient,
-    ActionServer,
     Application,
-    Client,
     Lifecycle,
     MessageCallback,
     NodeSection,
     ParameterServer,
-    ServiceSection,
     Subscription,
     Timer,
 )
 from amalthea_uros.spec.application import CallbackSection as Section
 from amalthea_uros.spec.executors import ExecutorSection
 from amalthea_uros.spec.middleware import Middleware
-from amalthea_uros.units import SECOND, DataSize, Frequency, Time
+from amalthea_uros.units import SECOND, Frequency, Time
 from amalthea_uros.uros.application.entities import PARAMETER_SERVICES
+from amalthea_uros.uros.application.messages import Message, incoming_message, outgoing_messages
 from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.application.serving import Serving
 
@@ -46,28 +43,6 @@ class CallbackKind(StrEnum):
     ACTION_CLIENT = "action client"
     PARAMETERS = "parameter server"
     LIFECYCLE = "lifecycle services"
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Message:
-    """A message that the controller sends or receives.
-
-    Attributes
-    ----------
-    callback : the callback that receives or sends it
-    topic : or the service, for requests and responses
-    channel : the name of its channel in the model, if the same application sends and receives it
-    size : without headers
-    interval : minimum time between two messages
-    """
-
-    callback: str
-    topic: str
-    channel: str
-    size: DataSize
-    interval: Time
-    reliable: bool
-    origin: Location | None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -168,10 +143,10 @@ def _callback(kind: CallbackKind, section: Section, node: NodeSection, serving: 
     executor, in_executor = serving.place(section, node, is_of_middleware=kind in _OF_MIDDLEWARE)
     needs_interval = not _may_be_unknown(section, kind) or executor.loop is None
     interval = _interval(section, needs_interval, notes)
-    outgoing = tuple(_outgoing(section, node, interval or SECOND, notes))
+    outgoing = tuple(outgoing_messages(section, node, interval or SECOND, notes))
     if interval is None and needs_interval:
         return None
-    incoming = None if interval is None else _incoming(section, interval)
+    incoming = None if interval is None else incoming_message(section, interval)
     return Callback(
         section=section,
         kind=kind,
@@ -228,91 +203,6 @@ def _interval(section: Section, needed: bool, notes: Notes) -> Time | None:
     return interval
 
 
-def _incoming(section: Section, interval: Time) -> Message | None:
-    match section:
-        case Subscription():
-            interval -= section.jitter or 0
-            topic, size, reliable = section.topic, section.message_size, section.reliability == "reliable"
-            channel = _topic_channel(topic)
-        case ServiceSection():
-            topic, size, reliable = section.name, section.request_size, True
-            channel = _request_channel(topic)
-        case Client():
-            topic, size, reliable = section.service, section.response_size, True
-            channel = _response_channel(topic)
-        case ActionServer():
-            topic, size, reliable, channel = section.name, section.goal_size, True, _request_channel(section.name)
-        case ActionClient():
-            topic, size, reliable, channel = section.action, section.result_size, True, _response_channel(section.action)
-        case _:
-            return None
-    return Message(
-        callback=section.name,
-        topic=topic,
-        channel=channel,
-        size=size,
-        interval=interval,
-        reliable=reliable,
-        origin=section.location(),
-    )
-
-
-def _outgoing(section: Section, node: NodeSection, interval: Time, notes: Notes) -> Iterator[Message]:
-    """What a callback sends: messages to topics, requests to services and goals to actions, and the responses of its own ones.
-
-    An action server sends a feedback message and the result for each goal.
-    """
-
-    def message(topic: str, channel: str, size: DataSize, reliable: bool, origin: Location | None) -> Message:
-        return Message(
-            callback=section.name,
-            topic=topic,
-            channel=channel,
-            size=size,
-            interval=interval,
-            reliable=reliable,
-            origin=origin,
-        )
-
-    for index, topic in enumerate(section.publishes):
-        publisher = next((publisher for publisher in node.publishers if publisher.topic == topic), None)
-        if publisher is None:
-            topics = [publisher.topic for publisher in node.publishers]
-            notes.undefined("publisher", topic, topics, section.location("publishes", index), owner=f"node {node.name!r}")
-        else:
-            is_reliable = publisher.reliability == "reliable"
-            yield message(topic, _topic_channel(topic), publisher.message_size, is_reliable, publisher.location())
-    clients: dict[str, Client | ActionClient] = {
-        **{client.name: client for client in node.clients},
-        **{client.name: client for client in node.action_clients},
-    }
-    for index, name in enumerate(section.requests):
-        match clients.get(name):
-            case None:
-                notes.undefined("client", name, clients, section.location("requests", index), owner=f"node {node.name!r}")
-            case Client(service=service, request_size=size) as client:
-                yield message(service, _request_channel(service), size, True, client.location())
-            case ActionClient(action=action, goal_size=size) as client:
-                yield message(action, _request_channel(action), size, True, client.location())
-    if isinstance(section, ServiceSection):
-        yield message(section.name, _response_channel(section.name), section.response_size, True, section.location())
-    if isinstance(section, ActionServer):
-        yield message(section.name, _topic_channel(section.name), section.feedback_size, True, section.location())
-        yield message(section.name, _response_channel(section.name), section.result_size, True, section.location())
-
-
-def _topic_channel(topic: str) -> str:
-    return f"{topic}_topic"
-
-
-def _request_channel(service: str) -> str:
-    return f"{service}_request"
-
-
-def _response_channel(service: str) -> str:
-    return f"{service}_response"
-
-
 def internal_channels(callbacks: Sequence[Callback]) -> Mapping[str, Channel]:
     """The channels of messages that the application sends and receives itself; they pass the agent on their way."""
     received = {callback.incoming.channel for callback in callbacks if callback.incoming is not None}
@@ -332,11 +222,6 @@ def registration_order(callbacks: Iterable[Callback], executor: ExecutorSection,
             notes.undefined("callback", name, by_name, executor.location("order", index))
     names = [name for name in executor.order if name in by_name]
     return tuple(by_name[name] for name in dict.fromkeys([*names, *by_name]))
-
-
-def transmission_name_of(message: Message, *, incoming: bool) -> str:
-    """The name of the task that stands for a message on the wire, such as `factor_topic_to_Message_Factor`."""
-    return f"{message.channel}_{'to' if incoming else 'from'}_{message.callback}"
 
 
 def body_name(callback: str) -> str:

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.spec.application import Application, NodeSection
-from amalthea_uros.spec.executors import ExecutorSection
 from amalthea_uros.spec.middleware import Middleware
 
 #: An action server has services for goals, results and cancelling, and publishes feedback and its status; an action client has their
@@ -58,13 +57,8 @@ def entities_of(application: Application, middleware: Middleware) -> Entities:
         services=sum(map(_services, nodes)),
         clients=sum(len(node.clients) + ACTION_SERVICES * len(node.action_clients) for node in nodes),
         guard_conditions=sum(len(node.timers) + len(node.guard_conditions) + len(node.action_servers) for node in nodes),
-        executors=len(executors_of(middleware)) if any(map(_has_handles, nodes)) else 0,
+        executors=len(middleware.stated_executors) if any(map(_has_handles, nodes)) else 0,
     )
-
-
-def executors_of(middleware: Middleware) -> list[ExecutorSection]:
-    """The executors: several, or the only one."""
-    return middleware.executors or [middleware.executor]
 
 
 def _publishers(node: NodeSection) -> int:

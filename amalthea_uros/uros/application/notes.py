@@ -75,10 +75,27 @@ class Notes:
         message = f"duplicate {kind} name {name!r}{first_defined(first)}"
         self.error("APP002", message, location, "Rename one of them.")
 
+    def unique(self, kind: str, names: Iterable[tuple[str, Location | None]]) -> None:
+        """Add an error for each name that two things have, in the order of the file.
+
+        Parameters
+        ----------
+        names : with the places of their definitions
+        """
+        first: dict[str, Location | None] = {}
+        for name, location in sorted(names, key=lambda item: _line(item[1])):
+            if name in first:
+                self.duplicate(kind, name, location, first[name])
+            first.setdefault(name, location)
+
     @property
     def has_errors(self) -> bool:
         """Whether a finding prevents a model."""
         return any(finding.severity is Severity.ERROR for finding in self.findings)
+
+
+def _line(location: Location | None) -> tuple[int, int]:
+    return (location.line or 0, location.column or 0) if location else (0, 0)
 
 
 def first_defined(first: Location | None) -> str:

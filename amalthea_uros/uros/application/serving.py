@@ -14,11 +14,6 @@ from amalthea_uros.uros.application.notes import Notes
 _OWN_TASK, _FIRST = "own-task", "executor"
 
 
-def stated_executors(middleware: Middleware) -> tuple[ExecutorSection, ...]:
-    """The executors of a description; the first one serves callbacks that name no other."""
-    return tuple(middleware.executors) or (middleware.executor,)
-
-
 def is_in_executor_by_default(executor: ExecutorSection) -> bool:
     """Whether callbacks that do not say where they run do so in the executor."""
     if executor.loop is not None and not executor.states("callbacks"):
@@ -33,7 +28,7 @@ def placement(description: Description, platform: str | None) -> str:
     ----------
     platform : whose file may state it, too
     """
-    executor = stated_executors(description.middleware)[0]
+    executor = description.middleware.stated_executors[0]
     inside = is_in_executor_by_default(executor)
     place = "in the executor" if inside else "in their own tasks"
     if not executor.states("callbacks"):
@@ -60,7 +55,7 @@ class Serving:
             message = "'executor' and 'executors' exclude each other"
             advice = "Move what is under 'executor' to the first item of 'executors'."
             notes.error("APP003", message, middleware.location("executor"), advice)
-        return cls(stated_executors(middleware), notes)
+        return cls(middleware.stated_executors, notes)
 
     def place(self, section: CallbackSection, node: NodeSection, *, is_of_middleware: bool) -> tuple[ExecutorSection, bool]:
         """The executor that has the handle of a callback, and whether it runs the callback.

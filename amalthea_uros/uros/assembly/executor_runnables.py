@@ -23,9 +23,9 @@ from amalthea_uros.spec.executors import ExecutorSection, MessageCost
 from amalthea_uros.units import DataSize, Time
 from amalthea_uros.uros.application.callbacks import Callback, CallbackKind, handle_count
 from amalthea_uros.uros.application.phases import ExecutorPhases
-from amalthea_uros.uros.assembly.activities import trigger_name
 from amalthea_uros.uros.assembly.context import AssemblyContext
-from amalthea_uros.uros.transports.costs import driver_costs
+from amalthea_uros.uros.assembly.planned import trigger_name
+from amalthea_uros.uros.transports.messages import driver_costs
 
 _BITS_PER_BYTE = 8
 
@@ -69,7 +69,7 @@ class ExecutorRunnables:
         cost = self.executor.execution_time
         message = callback.incoming
         parts = [cost.per_ready_callback, *message_cost(cost.per_message, message.size if message else None)]
-        parts += driver_costs(self.context.description, callback, Direction.TO_CONTROLLER, self.context.profile)
+        parts += driver_costs(self.context.line, callback, Direction.TO_CONTROLLER, self.context.profile)
         activities: list[Activity] = []
         if message is not None and message.channel in self.context.channels:
             activities.append(Receive(channel=message.channel, operation=ReceiveOperation.FIFO_TAKE))

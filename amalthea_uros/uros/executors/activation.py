@@ -26,7 +26,7 @@ from amalthea_uros.perf.stimuli import (
 from amalthea_uros.perf.system import System
 from amalthea_uros.units import Time
 from amalthea_uros.uros.application.callbacks import Callback, CallbackKind
-from amalthea_uros.uros.assembly.activities import trigger_name
+from amalthea_uros.uros.assembly.planned import trigger_name
 
 #: Iterations whose distances are stated; of more, the distances follow from these, a little too short.
 _PACED_ITERATIONS = 20

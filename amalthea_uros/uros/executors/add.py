@@ -3,27 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
 from amalthea_uros.perf.activities import Demand, Execute
 from amalthea_uros.perf.distributions import Boundaries, lowest
 from amalthea_uros.perf.executors import Executor, Handle, Loop, LoopKind, Waiting
 from amalthea_uros.perf.software import Runnable
 from amalthea_uros.spec import executors as spec
-from amalthea_uros.spec.os import OsSection
-from amalthea_uros.units import SECOND, Time, down, ticks_of_time, up
+from amalthea_uros.spec.description import Description
+from amalthea_uros.spec.os import OsSection, SleepTicks
+from amalthea_uros.units import SECOND, Time, down, ticks_of_time, time_text, up
 from amalthea_uros.uros.application.callbacks import Callback
+from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.assembly.context import AssemblyContext
 from amalthea_uros.uros.assembly.executor_runnables import ExecutorRunnables, spin_name
-from amalthea_uros.uros.assembly.rtos import slept
-from amalthea_uros.uros.assembly.tasks import PlannedTask
+from amalthea_uros.uros.assembly.planned import PlannedTask
 from amalthea_uros.uros.executors.activation import activation
 from amalthea_uros.uros.executors.checks import check_executor
-from amalthea_uros.uros.executors.handles import handle_names, handles_of
+from amalthea_uros.uros.executors.handles import handle_names, handles_of, trigger_of
 from amalthea_uros.uros.executors.iterations import has_one_message_per_iteration, iteration_activities, polls_before_timers
-from amalthea_uros.uros.executors.triggers import trigger_of
 
 #: Iterations are executed one after the other, however many are due.
 _UNLIMITED = 1_000_000
+#: Of an operating system whose tick is known, and nothing else: a sleep can end a tick before or after.
+_INEXACT = SleepTicks(early=1, late=1)
 
 
 def add_looping_executor(
@@ -125,6 +128,50 @@ def _loop(section: spec.LoopSection, waiting: Waiting, os: OsSection) -> Loop:
         return Loop(kind=LoopKind.PERIODIC, timeout=timeout, period=section.spin_period)
     assert section.spin is not None
     return Loop(kind=LoopKind.CONTINUOUS, timeout=section.spin)
+
+
+class Sleep(NamedTuple):
+    """How long a thread sleeps when it asks for some time.
+
+    Attributes
+    ----------
+    pace : minimum time between the ends of two sleeps that follow each other
+    """
+
+    least: Time
+    most: Time
+    pace: Time
+
+
+def slept(sleep: Time, os: OsSection) -> Sleep:
+    """How long a thread sleeps when it asks for some time.
+
+    Ticks come independently of when the thread starts to sleep. So `vTaskDelay(1)` of FreeRTOS, which ends at the next tick, sleeps
+    for 0 to 1 ticks; sleeps that must not be too short, as in Zephyr, wait for one tick more. As sleeps end at ticks, and the next
+    one is counted from the tick at which it begins or from a later one, the ends of two sleeps are whole ticks apart: at least 1 for
+    `vTaskDelay(1)`, although the sleep between them can take no time.
+    """
+    if not sleep or os.tick is None:
+        return Sleep(sleep, sleep, sleep)
+    rule = os.sleep_ticks or _INEXACT
+    ticks = -(-sleep // os.tick)
+    least, pace = max(0, ticks - rule.early), max(0, ticks - max(0, rule.early - 1))
+    return Sleep(least * os.tick, (ticks + rule.late) * os.tick, pace * os.tick)
+
+
+def check_sleeps(description: Description, notes: Notes) -> None:
+    """Report sleeps that are no whole number of ticks, and so last longer or shorter than they say."""
+    os = description.os
+    for executor in description.middleware.stated_executors:
+        if executor.loop is None or os.tick is None or executor.loop.sleep % os.tick == 0:
+            continue
+        least, most, _ = slept(executor.loop.sleep, os)
+        message = (
+            f"{executor.name!r} sleeps {time_text(least)} to {time_text(most)} instead of {time_text(executor.loop.sleep)}: "
+            f"{os.title} counts in ticks of {time_text(os.tick)}"
+        )
+        advice = "Sleep for a whole number of ticks, or shorten the tick of the operating system, and set 'tick' under 'os'."
+        notes.warning("UR161", message, executor.loop.location("sleep"), advice)
 
 
 def _poll(context: AssemblyContext, executor: Executor, core: str) -> str:

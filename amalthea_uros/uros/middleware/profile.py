@@ -9,7 +9,6 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from enum import StrEnum
 from typing import NamedTuple, Self
 
 from amalthea_uros.perf.executors import Waiting
@@ -18,18 +17,8 @@ from amalthea_uros.spec.application import Application
 from amalthea_uros.spec.middleware import Middleware, MiddlewareTask
 from amalthea_uros.spec.profiles import ProfileData, ThreadData
 from amalthea_uros.units import DataSize, Time
+from amalthea_uros.uros.application.messages import MessageKind
 from amalthea_uros.uros.middleware.options import Option, OptionRow
-
-
-class MessageKind(StrEnum):
-    """What a message of the middleware carries."""
-
-    PUBLICATION = "publication"
-    DELIVERY = "delivery"
-    REQUEST_OUT = "request to a service elsewhere"
-    REQUEST_IN = "request to a service here"
-    RESPONSE_OUT = "response of a service here"
-    RESPONSE_IN = "response of a service elsewhere"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -9,15 +9,13 @@ from itertools import pairwise
 from amalthea_uros.perf.executors import Executor
 from amalthea_uros.perf.network import Direction, Purpose
 from amalthea_uros.spec.description import Description
-from amalthea_uros.spec.transports import Can, CanFd, CustomTransport, Driver, Serial, TransportSection, UsbCdc
+from amalthea_uros.spec.transports import Can, CanFd, CustomTransport, Driver, Serial
 from amalthea_uros.units import SECOND, Time, data_size_text, percent_text, time_text
 from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.network.queueing import Queued
 from amalthea_uros.uros.network.wires import WirePlan
-from amalthea_uros.uros.transports.can_fd import SIZES
-from amalthea_uros.uros.transports.choice import driver_of, is_bus
-from amalthea_uros.uros.transports.driver import WAITING, bytes_between_reads, steady_time
-from amalthea_uros.uros.transports.foreign import ForeignFrame
+from amalthea_uros.uros.transports.can import GREATEST_STANDARD, SIZES, ForeignFrame
+from amalthea_uros.uros.transports.driven import WAITING, SerialLine, bytes_between_reads, steady_time
 from amalthea_uros.uros.transports.framing import CHUNK, longest_frame
 from amalthea_uros.uros.transports.line import Line, WireSection, wire_sections
 from amalthea_uros.uros.transports.messages import WireMessage
@@ -25,16 +23,10 @@ from amalthea_uros.uros.transports.messages import WireMessage
 #: Baud rates that users advise, from the default on.
 _BAUD_RATES = (115_200, 230_400, 460_800, 921_600, 1_000_000, 1_500_000, 2_000_000, 3_000_000)
 _BITS_PER_BYTE = 8
-_GREATEST_STANDARD = 0x7FF
 
 
-def check_transport(description: Description, tick: Time | None, notes: Notes) -> None:
-    """Report what contradicts itself, and drivers whose waiting is unknown.
-
-    Parameters
-    ----------
-    tick : of the operating system
-    """
+def check_transport(description: Description, notes: Notes) -> None:
+    """Report what contradicts itself, and drivers whose waiting is unknown."""
     transport = description.middleware.transport
     found = list(wire_sections(transport))
     for key, section in found[1:]:
@@ -43,7 +35,7 @@ def check_transport(description: Description, tick: Time | None, notes: Notes) -
     for _, section in found:
         _check_section(section, notes)
         if not isinstance(section, Can | CanFd):
-            _check_driver(section.driver, section, tick, notes)
+            _check_driver(section.driver, section, description.os.tick, notes)
 
 
 def _check_section(section: WireSection, notes: Notes) -> None:
@@ -66,7 +58,7 @@ def _check_identifiers(section: Can | CanFd, notes: Notes) -> None:
     """Report identifiers that two messages have, and those with too many bits."""
     first: dict[int, str] = {}
     for name, identifier in section.identifiers.items():
-        if isinstance(section, CanFd) and section.identifier == "standard" and identifier > _GREATEST_STANDARD:
+        if isinstance(section, CanFd) and section.identifier == "standard" and identifier > GREATEST_STANDARD:
             text = f"the identifier {identifier:#x} of {name!r} has more than 11 bits"
             notes.error("APP003", text, section.location("identifiers"), "Use a smaller one, or set 'identifier: extended'.")
         first.setdefault(identifier, name)
@@ -105,7 +97,7 @@ def check_lengths(messages: Iterable[WireMessage], line: Line, notes: Notes) -> 
     messages = tuple(messages)
     for message in messages:
         _check_length(message, line, notes)
-    driver = driver_of(line)
+    driver = line.driver
     if driver is not None:
         _check_buffer(messages, line, driver, notes)
         _check_chunks(messages, line, notes)
@@ -126,13 +118,10 @@ def _check_buffer(messages: Iterable[WireMessage], line: Line, driver: Driver, n
     if driver.buffer is None:
         return
     size = driver.buffer // _BITS_PER_BYTE
-    is_framed = isinstance(line.section, Serial | UsbCdc) or (
-        isinstance(line.section, CustomTransport) and line.section.framing
-    )
     for message in messages:
         if message.direction is Direction.TO_AGENT:
             continue
-        length = max(longest_frame(part.length) if is_framed else part.length for part in message.parts)
+        length = max(longest_frame(part.length) if line.is_framed else part.length for part in message.parts)
         if length > size:
             text = f"a message of {message.message.topic!r} can need {length} bytes, more than the receive buffer of {size}"
             advice = f"Set a buffer of {length} B or more; what arrives when it is full is lost."
@@ -141,10 +130,9 @@ def _check_buffer(messages: Iterable[WireMessage], line: Line, driver: Driver, n
 
 def _check_chunks(messages: Iterable[WireMessage], line: Line, notes: Notes) -> None:
     """Report a serial line whose driver is slower than its baud rate."""
-    section = line.section
-    if not isinstance(section, Serial) or section.driver.write not in WAITING:
+    if not isinstance(line, SerialLine) or line.driver.write not in WAITING:
         return
-    tick: Time | None = getattr(line, "tick", None)
+    section, tick = line.section, line.driver_tick
     on_line = CHUNK * section.bits_per_byte * SECOND // section.baud_rate
     sent = [message for message in messages if message.direction is Direction.TO_AGENT]
     if tick is not None and sent and tick > on_line:
@@ -206,13 +194,13 @@ def check_foreign(frames: Iterable[ForeignFrame], notes: Notes) -> None:
             notes.warning("UR133", text, frame.origin, advice)
 
 
-def check_load(plan: WirePlan, transport: TransportSection, notes: Notes) -> None:
+def check_load(plan: WirePlan, notes: Notes) -> None:
     """Report an overload of a wire, with what would fit."""
     loads = dict(_loads(plan))
     worst = max(loads, key=lambda core: loads[core], default="")
     if not worst or loads[worst] <= 1:
         return
-    location = plan.line.section.location(_rate_key(plan))
+    location = plan.line.section.location(plan.line.rate_key)
     share = f"up to {percent_text(loads[worst], 1)} %"
     if plan.line.key == "can":
         text = f"overload: the messages need {share} of the CAN bus"
@@ -225,12 +213,6 @@ def check_load(plan: WirePlan, transport: TransportSection, notes: Notes) -> Non
     )
     text = f"overload: the messages{direction} need {share} of {plan.name!r}"
     notes.warning("UR132", text, location, _advice(plan, worst, loads[worst]))
-
-
-def _rate_key(plan: WirePlan) -> str:
-    return {"serial": "baud_rate", "can_fd": "data_bitrate", "usb_cdc": "throughput", "custom": "table"}.get(
-        plan.line.key, "bitrate"
-    )
 
 
 def _loads(plan: WirePlan, purposes: Iterable[Purpose] = tuple(Purpose)) -> Iterator[tuple[str, Fraction]]:
@@ -269,7 +251,7 @@ def _advice(plan: WirePlan, core: str, load: Fraction) -> str:
             choices.append(f"set 'baud_rate: {fitting}'")
     elif isinstance(section, CustomTransport):
         pass
-    elif is_bus(plan.line):
+    elif plan.line.is_bus:
         choices.append("increase 'bitrate' or 'data_bitrate'")
     else:
         choices.append(f"use {data_size_text(-(-plan.line.ticks_per_second * load.numerator // load.denominator))}/s or more")

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from amalthea_uros.diagnostics import Location
+from amalthea_uros.perf.activities import Call
 from amalthea_uros.perf.distributions import Uniform
 from amalthea_uros.perf.executors import HandleKind
 from amalthea_uros.perf.network import Direction, Purpose, Span, Transmission
@@ -22,9 +23,7 @@ from amalthea_uros.units import Time
 from amalthea_uros.uros.application.callbacks import body_name
 from amalthea_uros.uros.assembly.executor_runnables import notification_name
 from amalthea_uros.uros.middleware.profile import Heartbeat, Profile
-from amalthea_uros.uros.network.bus_traffic import runs_per_message
-from amalthea_uros.uros.transports.choice import keeps_sender
-from amalthea_uros.uros.transports.foreign import ForeignFrame
+from amalthea_uros.uros.transports.can import ForeignFrame
 from amalthea_uros.uros.transports.line import Line, span_of, time_on
 from amalthea_uros.uros.transports.messages import WireMessage, acknowledgement_name, opposite
 
@@ -97,7 +96,7 @@ class Queueing:
         for direction in Direction:
             if not heartbeat.is_answered:
                 yield self._heartbeat(heartbeat, direction)
-            elif any(each.direction is direction and _is_acknowledged(each) for each in messages):
+            elif any(each.direction is direction and each.is_acknowledged for each in messages):
                 yield self._heartbeat(heartbeat, direction)
                 yield self._answer(heartbeat, direction)
 
@@ -122,7 +121,7 @@ class Queueing:
     def _received(self, message: WireMessage) -> Iterator[Queued]:
         agent = span_of(self.profile.middleware.agent.to_controller)
         yield self._data(message, self._arrivals(message, agent), agent)
-        if _is_acknowledged(message):
+        if message.is_acknowledged:
             takes = self._takes.get(body_name(message.callback.name)) or notification_name(message.callback)
             reader = takes if takes in self.system.runnables else body_name(message.callback.name)
             yield self._acknowledgement(message, _AT_ONCE, Sender(runnable=reader, times=len(message.parts)))
@@ -140,10 +139,10 @@ class Queueing:
     def _sent(self, message: WireMessage) -> Iterator[Queued]:
         callback, agent = message.callback, span_of(self.profile.middleware.agent.to_host)
         body = body_name(callback.name)
-        answer = acknowledgement_name(message.name) if _is_acknowledged(message) else None
+        answer = acknowledgement_name(message.name) if message.is_acknowledged else None
         if body in self._looping_timers:
             own = [frame for part in message.parts for frame in self.line.frames(part.length, Direction.TO_AGENT)]
-            distance = time_on(self.line, own)[0] if keeps_sender(self.line) else 0
+            distance = time_on(self.line, own)[0] if self.line.keeps_sender else 0
             stimulus = arrivals(message.name, message.interval, 2 * message.interval, message.message.origin, distance)
             yield self._data(message, stimulus, agent, answer=answer)
         else:
@@ -238,7 +237,7 @@ class Queueing:
         message: WireMessage | None = None,
     ) -> Transmission:
         is_received = direction is Direction.TO_CONTROLLER
-        is_answered = message is not None and purpose is Purpose.DATA and _is_acknowledged(message)
+        is_answered = message is not None and purpose is Purpose.DATA and message.is_acknowledged
         return Transmission(
             name=name,
             wire=self.line.name,
@@ -273,10 +272,6 @@ def heartbeat_name(direction: Direction) -> str:
     return f"heartbeat_of_{'agent' if direction is Direction.TO_CONTROLLER else 'client'}"
 
 
-def _is_acknowledged(message: WireMessage) -> bool:
-    return any(part.acknowledgement is not None for part in message.parts)
-
-
 def _sum(spans: Iterable[Span]) -> Span:
     found = list(spans)
     known = [span.most for span in found if span.most is not None]
@@ -297,3 +292,12 @@ def arrivals(name: str, interval: Time, jitter: Time = 0, origin: Location | Non
         return Periodic(name=name, period=interval, jitter=late, min_distance=min_distance or None, origin=origin)
     distance = Uniform(lower=interval, upper=interval)
     return RelativePeriodic(name=name, distance=distance, has_maximum=False, origin=origin)
+
+
+def runs_per_message(callback: str, interval: Time, system: System) -> int:
+    """How often a callback runs for each message: more than once if it runs in every activation of a task of its own."""
+    task = system.processes.get(callback)
+    if task is None or any(isinstance(each, Call) and each.counter is not None for each in task.activities):
+        return 1
+    stimulus = system.stimuli_by_name[task.stimuli[0]]
+    return max(1, interval // stimulus.period) if isinstance(stimulus, Periodic) else 1

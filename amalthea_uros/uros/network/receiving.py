@@ -17,12 +17,9 @@ from amalthea_uros.perf.stimuli import InterProcess
 from amalthea_uros.perf.system import System
 from amalthea_uros.spec.middleware import MiddlewareTask
 from amalthea_uros.spec.transports import Interrupt
-from amalthea_uros.uros.application.serving import stated_executors
-from amalthea_uros.uros.assembly.activities import activity_sequence, trigger_name
-from amalthea_uros.uros.assembly.context import AssemblyContext
+from amalthea_uros.uros.assembly.context import AssemblyContext, add_isr
 from amalthea_uros.uros.assembly.executor_runnables import message_cost
-from amalthea_uros.uros.assembly.interrupts import add_isr
-from amalthea_uros.uros.assembly.tasks import PlannedTask
+from amalthea_uros.uros.assembly.planned import PlannedTask, activity_sequence, trigger_name
 from amalthea_uros.uros.middleware.profile import MiddlewareThread
 from amalthea_uros.uros.transports.line import receive_interrupt
 from amalthea_uros.uros.transports.messages import WireMessage
@@ -118,7 +115,7 @@ def _add_thread(
             stimuli=(context.stimuli.add(InterProcess(name=trigger_name(thread.name), origin=origin)),),
             activities=(Call(runnable=body.name), *_triggers(triggers)),
             period=min(message.interval - message.jitter for message in messages),
-            priority=stated_executors(middleware)[0].priority if priority is None else priority,
+            priority=middleware.stated_executors[0].priority if priority is None else priority,
             activation_limit=_UNLIMITED,
             origin=origin,
         )

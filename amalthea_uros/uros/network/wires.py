@@ -10,6 +10,8 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
+from itertools import chain, count
 
 from amalthea_uros.perf.activities import Activity, Demand, Execute, SchedulePoint, Trigger
 from amalthea_uros.perf.distributions import Boundaries, Constant, Sampling
@@ -18,15 +20,67 @@ from amalthea_uros.perf.mapping import TaskAllocation
 from amalthea_uros.perf.network import Direction, Network, Purpose, Wire
 from amalthea_uros.perf.os import OperatingSystem, Policy, Scheduler
 from amalthea_uros.perf.software import Preemption, Runnable, Task
+from amalthea_uros.perf.stimuli import Stimulus
 from amalthea_uros.perf.system import System
+from amalthea_uros.spec.transports import Can, CanFd
 from amalthea_uros.uros.network.queueing import Queued
 from amalthea_uros.uros.network.receiving import Receivers
-from amalthea_uros.uros.transports.choice import keeps_sender
+from amalthea_uros.uros.transports.can import BusLine, arbitration_rank
 from amalthea_uros.uros.transports.line import Frame, Line
 
-_UNLIMITED = 1_000_000
+#: A message waits until the wire is free, however many of its kind are queued before it.
+UNLIMITED = 1_000_000
 #: The type of the cores.
 _TYPE = "Wire"
+#: Loses the arbitration against all identifiers.
+_OF_CLIENT = 2**31
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WireCores:
+    """The cores of a wire, each with a scheduler of its name, and their tasks.
+
+    Attributes
+    ----------
+    name : of the wire, of its clock and of its operating system
+    """
+
+    name: str
+    ticks_per_second: int
+    cores: tuple[Core, ...]
+    stimuli: tuple[Stimulus, ...]
+    tasks: tuple[Task, ...]
+    allocations: tuple[TaskAllocation, ...]
+
+
+def with_cores(system: System, wire: WireCores) -> System:
+    """A system with the cores of a wire."""
+    schedulers = tuple(
+        Scheduler(name=core.name, policy=Policy.FIXED_PRIORITY_PREEMPTIVE, cores=(core.name,)) for core in wire.cores
+    )
+    return replace(
+        system,
+        hardware=replace(
+            system.hardware,
+            clocks=(*system.hardware.clocks, Clock(name=wire.name, frequency=Fraction(wire.ticks_per_second))),
+            structures=(*system.hardware.structures, Structure(name=wire.name, cores=wire.cores)),
+        ),
+        os=replace(system.os, systems=(*system.os.systems, OperatingSystem(name=wire.name, schedulers=schedulers))),
+        stimuli=replace(system.stimuli, stimuli=(*system.stimuli.stimuli, *wire.stimuli)),
+        software=replace(system.software, tasks=(*system.software.tasks, *wire.tasks)),
+        mapping=replace(system.mapping, tasks=(*system.mapping.tasks, *wire.allocations)),
+    )
+
+
+def free_name(wanted: str, system: System) -> str:
+    """A name for a wire, whose cores, clock, operating system and schedulers begin with it."""
+    taken = (*system.cores, *system.clocks, *system.schedulers, *(each.name for each in system.os.systems))
+    names = chain([wanted], (f"{wanted}_{number}" for number in count(2)))
+    return next(name for name in names if not _is_taken(name, taken))
+
+
+def _is_taken(name: str, taken: Collection[str]) -> bool:
+    return any(other == name or other.startswith(f"{name}_to_") for other in taken)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,17 +90,11 @@ class WirePlan:
     Attributes
     ----------
     name : of the wire
-    frames : of each queued message, for each of its parts
-    ranks : of the queued messages; a lower one is sent first
-    is_bus : whether the ranks decide before each frame
     """
 
     line: Line
     name: str
     queued: Sequence[Queued]
-    frames: Mapping[str, Sequence[Sequence[Frame]]]
-    ranks: Mapping[str, int]
-    is_bus: bool
     receivers: Receivers
 
     def core(self, direction: Direction) -> str:
@@ -60,38 +108,65 @@ class WirePlan:
         """The cores that stand for the wire."""
         return tuple(dict.fromkeys(map(self.core, Direction)))
 
+    @cached_property
+    def frames(self) -> Mapping[str, Sequence[Sequence[Frame]]]:
+        """The frames of each queued message, for each of its parts."""
+        return {each.transmission.name: [*self._frames(each)] for each in self.queued}
+
+    def _frames(self, queued: Queued) -> Iterator[Sequence[Frame]]:
+        if queued.frame is not None and isinstance(self.line, BusLine):
+            yield (self.line.foreign(queued.frame.data_bytes, extended=queued.frame.extended),)
+        else:
+            yield from (self.line.frames(part, queued.transmission.direction) for part in queued.parts)
+
+    @cached_property
+    def ranks(self) -> Mapping[str, int]:
+        """The order of identifiers, from 0 on: a lower one is sent first; messages without one have that of the client, which loses."""
+        found = {each.transmission.name: self._rank(each) for each in self.queued}
+        dense = {rank: number for number, rank in enumerate(sorted(set(found.values())))}
+        return {name: dense[rank] for name, rank in found.items()}
+
+    def _rank(self, queued: Queued) -> int:
+        if queued.frame is not None:
+            return queued.frame.rank
+        section = self.line.section
+        if not isinstance(section, Can | CanFd) or queued.transmission.purpose is not Purpose.DATA:
+            return _OF_CLIENT
+        identifier = section.identifiers.get(queued.channel)
+        return _OF_CLIENT if identifier is None else arbitration_rank(identifier, extended=section.identifier == "extended")
+
 
 def with_wire(system: System, plan: WirePlan, agent: str, loses_messages: bool) -> System:
     """A system with a wire."""
-    cores = plan.cores
-    stimuli = [each.stimulus for each in plan.queued if each.stimulus is not None]
+    lowest = max(plan.ranks.values(), default=0)
+    wire = WireCores(
+        name=plan.name,
+        ticks_per_second=plan.line.ticks_per_second,
+        cores=tuple(Core(name=core, type=_TYPE, clock=plan.name) for core in plan.cores),
+        stimuli=tuple(each.stimulus for each in plan.queued if each.stimulus is not None),
+        tasks=tuple(_task(each, plan) for each in plan.queued),
+        allocations=tuple(
+            TaskAllocation(
+                task=each.transmission.name,
+                scheduler=plan.core(each.transmission.direction),
+                priority=lowest - plan.ranks[each.transmission.name] if plan.line.is_bus else 0,
+            )
+            for each in plan.queued
+        ),
+    )
+    found = with_cores(system, wire)
     return replace(
-        system,
-        hardware=replace(
-            system.hardware,
-            core_types=(*system.hardware.core_types, CoreType(name=_TYPE)),
-            clocks=(*system.hardware.clocks, Clock(name=plan.name, frequency=Fraction(plan.line.ticks_per_second))),
-            structures=(
-                *system.hardware.structures,
-                Structure(name=plan.name, cores=tuple(Core(name=core, type=_TYPE, clock=plan.name) for core in cores)),
-            ),
-        ),
-        os=replace(system.os, systems=(*system.os.systems, _operating_system(plan.name, cores))),
-        stimuli=replace(system.stimuli, stimuli=(*system.stimuli.stimuli, *stimuli)),
-        software=replace(
-            system.software,
-            tasks=(*system.software.tasks, *(_task(each, plan) for each in plan.queued)),
-            runnables=tuple(_queueing(system.software.runnables, plan.queued)),
-        ),
-        mapping=replace(system.mapping, tasks=(*system.mapping.tasks, *_allocations(plan))),
+        found,
+        hardware=replace(found.hardware, core_types=(*system.hardware.core_types, CoreType(name=_TYPE))),
+        software=replace(found.software, runnables=tuple(_queueing(system.software.runnables, plan.queued))),
         network=Network(
             wires=(
                 Wire(
                     name=plan.name,
                     kind=plan.line.kind,
-                    cores=cores,
+                    cores=plan.cores,
                     loses_messages=loses_messages,
-                    keeps_sender=keeps_sender(plan.line),
+                    keeps_sender=plan.line.keeps_sender,
                 ),
             ),
             transmissions=tuple(replace(each.transmission, wire=plan.name) for each in plan.queued),
@@ -100,26 +175,13 @@ def with_wire(system: System, plan: WirePlan, agent: str, loses_messages: bool) 
     )
 
 
-def _operating_system(name: str, cores: Collection[str]) -> OperatingSystem:
-    schedulers = [Scheduler(name=core, policy=Policy.FIXED_PRIORITY_PREEMPTIVE, cores=(core,)) for core in cores]
-    return OperatingSystem(name=name, schedulers=tuple(schedulers))
-
-
-def _allocations(plan: WirePlan) -> Iterator[TaskAllocation]:
-    lowest = max(plan.ranks.values(), default=0)
-    for each in plan.queued:
-        name = each.transmission.name
-        priority = lowest - plan.ranks[name] if plan.is_bus else 0
-        yield TaskAllocation(task=name, scheduler=plan.core(each.transmission.direction), priority=priority)
-
-
 def _task(queued: Queued, plan: WirePlan) -> Task:
     return Task(
         name=queued.transmission.name,
         stimuli=() if queued.stimulus is None else (queued.stimulus.name,),
         activities=tuple(_activities(queued, plan)),
-        preemption=Preemption.COOPERATIVE if plan.is_bus else Preemption.NON_PREEMPTIVE,
-        activation_limit=_UNLIMITED,
+        preemption=Preemption.COOPERATIVE if plan.line.is_bus else Preemption.NON_PREEMPTIVE,
+        activation_limit=UNLIMITED,
         origin=queued.origin,
     )
 
@@ -131,7 +193,7 @@ def _activities(queued: Queued, plan: WirePlan) -> Iterator[Activity]:
     number = 0
     for part in parts:
         for frame in part:
-            if plan.is_bus and number:
+            if plan.line.is_bus and number:
                 yield SchedulePoint()
             number += 1
             yield _execution(frame)

@@ -1,67 +1,30 @@
-"""The wire of a description."""
+"""The wire of a description, and whether it is a part of the system."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
-from amalthea_uros.perf.network import WireKind
 from amalthea_uros.spec.application import NodeSection
 from amalthea_uros.spec.description import Description
-from amalthea_uros.spec.transports import Can, CanFd, CustomTransport, Driver, Serial, UsbCdc
-from amalthea_uros.units import Time
-from amalthea_uros.uros.transports.can_fd import CanFdLine
-from amalthea_uros.uros.transports.classic_can import CanLine
-from amalthea_uros.uros.transports.custom import CustomLine
+from amalthea_uros.spec.transports import Can, CanFd
+from amalthea_uros.uros.transports.can import CanFdLine, CanLine
+from amalthea_uros.uros.transports.driven import CustomLine, DrivenLine, SerialLine, TcpLine, UdpLine, UsbCdcLine
 from amalthea_uros.uros.transports.line import Line, describes_wire, wire_sections
-from amalthea_uros.uros.transports.serial import SerialLine
-from amalthea_uros.uros.transports.tcp import TcpLine
-from amalthea_uros.uros.transports.udp import UdpLine
-from amalthea_uros.uros.transports.usb_cdc import UsbCdcLine
+
+_DRIVEN: Mapping[str, type[DrivenLine]] = {kind.key: kind for kind in (SerialLine, UdpLine, TcpLine, UsbCdcLine, CustomLine)}
 
 
-def line_of(description: Description, tick: Time | None) -> Line | None:
-    """The wire of a description; None if it has none. Of several ones, which is an error, the first.
-
-    Parameters
-    ----------
-    tick : of the operating system, for drivers that state no other one
-    """
-    stated = next(wire_sections(description.middleware.transport), None)
-    if stated is None:
-        return None
-    key, section = stated
-    match section:
-        case Can():
+def line_of(description: Description) -> Line | None:
+    """The wire of a description; None if it has none. Of several ones, which is an error, the first."""
+    match next(wire_sections(description.middleware.transport), None):
+        case None:
+            return None
+        case _, Can() as section:
             return CanLine(section=section)
-        case CanFd():
+        case _, CanFd() as section:
             return CanFdLine(section=section)
-    tick = section.driver.tick or tick
-    match section:
-        case Serial():
-            return SerialLine(section=section, tick=tick)
-        case UsbCdc():
-            return UsbCdcLine(section=section, tick=tick)
-        case CustomTransport():
-            return CustomLine(section=section, tick=tick)
-    return UdpLine(section=section, tick=tick) if key == "udp" else TcpLine(section=section, tick=tick)
-
-
-def driver_of(line: Line) -> Driver | None:
-    """The driver of a wire; a CAN controller has none to describe."""
-    return None if isinstance(line.section, Can | CanFd) else line.section.driver
-
-
-def is_bus(line: Line) -> bool:
-    """Whether identifiers decide who sends."""
-    return line.kind in (WireKind.CAN, WireKind.CAN_FD)
-
-
-def keeps_sender(line: Line) -> bool:
-    """Whether a thread that sends waits until its message is on the wire.
-
-    Drivers of streams of bytes do; network stacks and CAN controllers have buffers.
-    """
-    return line.kind in (WireKind.SERIAL, WireKind.USB_CDC, WireKind.CUSTOM)
+        case key, section:
+            return _DRIVEN[key](section=section, tick=description.os.tick)
 
 
 def is_in_system(description: Description) -> bool:
@@ -74,10 +37,9 @@ def is_in_system(description: Description) -> bool:
     can = middleware.transport.can
     if can is None:
         return describes_wire(middleware.transport)
-    executors = (middleware.executor, *middleware.executors)
     agent = middleware.agent
     return (
-        any(executor.loop is not None for executor in executors)
+        any(executor.loop is not None for executor in (middleware.executor, *middleware.executors))
         or any(latency is not None for latency in (agent.to_controller, agent.to_host, agent.acknowledgement))
         or bool(can.foreign or can.dbc)
         or _has_chain_with_topic(description)

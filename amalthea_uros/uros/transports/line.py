@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Protocol, TypeAlias
+from typing import ClassVar, TypeAlias
 
 from amalthea_uros.perf.network import Direction, Span, WireKind
 from amalthea_uros.spec.transports import (
     Can,
     CanFd,
     CustomTransport,
+    Driver,
     Interrupt,
     LatencySection,
     NetworkSection,
@@ -38,49 +40,58 @@ class Frame:
         assert 0 <= self.least <= self.most > 0
 
 
-class Line(Protocol):
-    """A wire of some kind."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Line(ABC):
+    """A wire of some kind.
+
+    Attributes
+    ----------
+    section : what describes it
+    kind : what it is
+    key : its key in a description
+    rate_key : the key of what limits its load
+    name : of its core, or the beginning of those of its two directions
+    is_duplex : whether both directions can send at the same time
+    is_bus : whether identifiers decide who sends
+    keeps_sender : whether a thread that sends waits until its message is on the wire; network stacks and CAN controllers have buffers
+    """
+
+    section: WireSection
+
+    kind: ClassVar[WireKind]
+    key: ClassVar[str]
+    rate_key: ClassVar[str] = "bitrate"
+    name: ClassVar[str]
+    is_duplex: ClassVar[bool] = False
+    is_bus: ClassVar[bool] = False
+    keeps_sender: ClassVar[bool] = False
 
     @property
-    def kind(self) -> WireKind:
-        """What it is."""
-        ...
-
-    @property
-    def name(self) -> str:
-        """The name of its core, or the beginning of those of its two directions."""
-        ...
-
-    @property
+    @abstractmethod
     def ticks_per_second(self) -> int:
         """Of the clock of its cores."""
-        ...
 
     @property
-    def is_duplex(self) -> bool:
-        """Whether both directions can send at the same time."""
-        ...
+    def driver(self) -> Driver | None:
+        """Its driver; a CAN controller has none to describe."""
+        return None
 
     @property
-    def key(self) -> str:
-        """Its key in a description."""
-        ...
-
-    @property
-    def section(self) -> WireSection:
-        """What describes it."""
-        ...
+    def is_framed(self) -> bool:
+        """Whether the frames of XRCE-DDS for streams of bytes are on it."""
+        return False
 
     @property
     def link(self) -> Span:
         """The time besides that on its core, such as in switches."""
-        ...
+        return Span(most=0)
 
     @property
     def largest(self) -> int | None:
         """The length of the longest message of the middleware that it can carry, in bytes; None for no limit."""
-        ...
+        return None
 
+    @abstractmethod
     def frames(self, length: int, direction: Direction) -> Sequence[Frame]:
         """What is on the wire for a message of the middleware.
 
@@ -88,11 +99,10 @@ class Line(Protocol):
         ----------
         length : in bytes, with the headers of the middleware
         """
-        ...
 
     def reading(self, length: int) -> Span:
         """How long the controller waits in its driver for a message, in addition to the time on the wire."""
-        ...
+        return Span(most=0)
 
 
 def wire_sections(transport: TransportSection) -> Iterator[tuple[str, WireSection]]:

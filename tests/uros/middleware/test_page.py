@@ -8,7 +8,7 @@ from support import ROOT
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.spec.profiles import ProfileData, SendingData, ThreadData, WaitingData
 from amalthea_uros.units import data_size_text, time_text
-from amalthea_uros.uros.middleware.profile import MessageKind
+from amalthea_uros.uros.application.messages import MessageKind
 from amalthea_uros.uros.profiles import KNOWN, known_data, profile_of
 
 TEXT = (ROOT / "docs" / "middlewares.md").read_text()

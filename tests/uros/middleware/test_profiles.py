@@ -7,7 +7,7 @@ from amalthea_uros.spec.content import nodes_of
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.spec.nodes import plain
 from amalthea_uros.units import MILLISECOND
-from amalthea_uros.uros.middleware.profile import MessageKind
+from amalthea_uros.uros.application.messages import MessageKind
 from amalthea_uros.uros.profiles import KNOWN, known_data, profile_of
 
 TEXT = """

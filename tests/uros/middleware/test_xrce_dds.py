@@ -6,7 +6,7 @@ from amalthea_uros.spec.content import nodes_of
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.spec.nodes import plain
 from amalthea_uros.units import MILLISECOND, SECOND
-from amalthea_uros.uros.middleware.profile import MessageKind
+from amalthea_uros.uros.application.messages import MessageKind
 from amalthea_uros.uros.profiles import profile_of
 
 CAN_FD = {"can_fd": {"bitrate": "500 kbit/s", "data_bitrate": "2 Mbit/s"}}

@@ -4,7 +4,7 @@ import pytest
 
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.units import SECOND
-from amalthea_uros.uros.middleware.profile import MessageKind
+from amalthea_uros.uros.application.messages import MessageKind
 from amalthea_uros.uros.profiles import profile_of
 
 MIDDLEWARE = Middleware(profile="zenoh-pico")

@@ -13,15 +13,17 @@ from amalthea_uros.spec.transports import CanFd, CustomTransport, NetworkSection
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
 from amalthea_uros.uros.transports import framing
-from amalthea_uros.uros.transports.can import CanBus
-from amalthea_uros.uros.transports.can_fd import CanFdLine, bits, data_bytes
-from amalthea_uros.uros.transports.custom import CustomLine
-from amalthea_uros.uros.transports.driver import bytes_between_reads, steady_time
+from amalthea_uros.uros.transports.can import CanBus, CanFdLine, bits, data_bytes
+from amalthea_uros.uros.transports.driven import (
+    CustomLine,
+    SerialLine,
+    TcpLine,
+    UdpLine,
+    UsbCdcLine,
+    bytes_between_reads,
+    steady_time,
+)
 from amalthea_uros.uros.transports.line import time_on
-from amalthea_uros.uros.transports.serial import SerialLine
-from amalthea_uros.uros.transports.tcp import TcpLine
-from amalthea_uros.uros.transports.udp import UdpLine
-from amalthea_uros.uros.transports.usb_cdc import UsbCdcLine
 
 IN, OUT = Direction.TO_CONTROLLER, Direction.TO_AGENT
 #: Bytes of the messages of XRCE-DDS, for contents of 4, 8, 48 and 312 bytes.

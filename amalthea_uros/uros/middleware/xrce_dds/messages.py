@@ -14,7 +14,8 @@ from itertools import repeat
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.spec.application import Application, NodeSection
 from amalthea_uros.units import DataSize
-from amalthea_uros.uros.middleware.profile import MessageKind, Part, Profile, whole_bytes
+from amalthea_uros.uros.application.messages import MessageKind
+from amalthea_uros.uros.middleware.profile import Part, Profile, whole_bytes
 from amalthea_uros.uros.middleware.xrce_dds.build import Build
 
 #: What some messages have before their content, beside the identifier of the entity.

@@ -13,16 +13,9 @@ from itertools import repeat
 
 from amalthea_uros.spec.application import Application
 from amalthea_uros.units import MILLISECOND, DataSize, Time
+from amalthea_uros.uros.application.messages import MessageKind
 from amalthea_uros.uros.middleware.options import Option, OptionRow, option_rows
-from amalthea_uros.uros.middleware.profile import (
-    Heartbeat,
-    MemoryUse,
-    MessageKind,
-    Part,
-    Profile,
-    Sending,
-    whole_bytes,
-)
+from amalthea_uros.uros.middleware.profile import Heartbeat, MemoryUse, Part, Profile, Sending, whole_bytes
 
 #: In each lease (`Z_TRANSPORT_LEASE_EXPIRE_FACTOR` in CMakeLists.txt of eclipse-zenoh/zenoh-pico).
 _KEEP_ALIVES = 3

@@ -1,0 +1,159 @@
+"""The messages that callbacks receive and send."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+
+from amalthea_uros.diagnostics import Location
+from amalthea_uros.perf.network import Direction
+from amalthea_uros.spec.application import (
+    ActionClient,
+    ActionServer,
+    CallbackSection,
+    Client,
+    NodeSection,
+    ServiceSection,
+    Subscription,
+)
+from amalthea_uros.units import DataSize, Time
+from amalthea_uros.uros.application.notes import Notes
+
+#: Bytes of a message, above which it is refused whatever the middleware: its parts and frames could take all memory.
+LONGEST = 2**20
+
+
+class MessageKind(StrEnum):
+    """What a message of the middleware carries."""
+
+    PUBLICATION = "publication"
+    DELIVERY = "delivery"
+    REQUEST_OUT = "request to a service elsewhere"
+    REQUEST_IN = "request to a service here"
+    RESPONSE_OUT = "response of a service here"
+    RESPONSE_IN = "response of a service elsewhere"
+
+
+#: What the controller sends.
+SENT = frozenset({MessageKind.PUBLICATION, MessageKind.REQUEST_OUT, MessageKind.RESPONSE_OUT})
+#: What the names of the channels of messages end with.
+_CHANNELS = {
+    MessageKind.PUBLICATION: "topic",
+    MessageKind.DELIVERY: "topic",
+    MessageKind.REQUEST_OUT: "request",
+    MessageKind.REQUEST_IN: "request",
+    MessageKind.RESPONSE_OUT: "response",
+    MessageKind.RESPONSE_IN: "response",
+}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Message:
+    """A message that the controller sends or receives.
+
+    Attributes
+    ----------
+    callback : the callback that receives or sends it
+    topic : or the service, for requests and responses
+    size : without headers
+    interval : minimum time between two messages
+    """
+
+    callback: str
+    topic: str
+    kind: MessageKind
+    size: DataSize
+    interval: Time
+    reliable: bool
+    origin: Location | None
+
+    @property
+    def direction(self) -> Direction:
+        """Whether it arrives or leaves."""
+        return Direction.TO_AGENT if self.kind in SENT else Direction.TO_CONTROLLER
+
+    @property
+    def is_incoming(self) -> bool:
+        """Whether it arrives."""
+        return self.kind not in SENT
+
+    @property
+    def channel(self) -> str:
+        """The name of its channel in the model, if the same application sends and receives it."""
+        return f"{self.topic}_{_CHANNELS[self.kind]}"
+
+    @property
+    def transmission(self) -> str:
+        """The name of the task that stands for it on the wire, such as `factor_topic_to_Message_Factor`."""
+        return f"{self.channel}_{'to' if self.is_incoming else 'from'}_{self.callback}"
+
+    @property
+    def stated_bytes(self) -> int:
+        """Its length in bytes, without headers, however long it is."""
+        return -(-self.size // 8)
+
+    @property
+    def content_bytes(self) -> int:
+        """Its length in bytes, without headers; of one that is too long for everything, the longest that is not."""
+        return min(self.stated_bytes, LONGEST)
+
+
+def incoming_message(section: CallbackSection, interval: Time) -> Message | None:
+    """The message that makes a callback ready; None for timers and guard conditions, and if its size is not described."""
+    reliable = True
+    match section:
+        case Subscription(topic=topic, message_size=size):
+            kind, reliable = MessageKind.DELIVERY, section.reliability == "reliable"
+            interval -= section.jitter or 0
+        case ServiceSection(name=topic, request_size=size) | ActionServer(name=topic, goal_size=size):
+            kind = MessageKind.REQUEST_IN
+        case Client(service=topic, response_size=size) | ActionClient(action=topic, result_size=size):
+            kind = MessageKind.RESPONSE_IN
+        case _:
+            return None
+    return Message(
+        callback=section.name,
+        topic=topic,
+        kind=kind,
+        size=size,
+        interval=interval,
+        reliable=reliable,
+        origin=section.location(),
+    )
+
+
+def outgoing_messages(section: CallbackSection, node: NodeSection, interval: Time, notes: Notes) -> Iterator[Message]:
+    """What a callback sends: messages to topics, requests to services and goals to actions, and the responses of its own ones.
+
+    An action server sends a feedback message and the result for each goal.
+    """
+
+    def message(kind: MessageKind, topic: str, size: DataSize, origin: Location | None, *, reliable: bool = True) -> Message:
+        return Message(
+            callback=section.name, topic=topic, kind=kind, size=size, interval=interval, reliable=reliable, origin=origin
+        )
+
+    owner = f"node {node.name!r}"
+    for index, topic in enumerate(section.publishes):
+        publisher = next((publisher for publisher in node.publishers if publisher.topic == topic), None)
+        if publisher is None:
+            topics = [publisher.topic for publisher in node.publishers]
+            notes.undefined("publisher", topic, topics, section.location("publishes", index), owner=owner)
+        else:
+            is_reliable = publisher.reliability == "reliable"
+            yield message(MessageKind.PUBLICATION, topic, publisher.message_size, publisher.location(), reliable=is_reliable)
+    every: Sequence[Client | ActionClient] = [*node.clients, *node.action_clients]
+    clients = {client.name: client for client in every}
+    for index, name in enumerate(section.requests):
+        match clients.get(name):
+            case None:
+                notes.undefined("client", name, clients, section.location("requests", index), owner=owner)
+            case Client(service=topic, request_size=size) | ActionClient(action=topic, goal_size=size) as client:
+                yield message(MessageKind.REQUEST_OUT, topic, size, client.location())
+    match section:
+        case ServiceSection():
+            yield message(MessageKind.RESPONSE_OUT, section.name, section.response_size, section.location())
+        case ActionServer():
+            yield message(MessageKind.PUBLICATION, section.name, section.feedback_size, section.location())
+            yield message(MessageKind.RESPONSE_OUT, section.name, section.result_size, section.location())

@@ -1,1 +1,0 @@
-"""What an application needs of memory: entities of the middleware, stacks, and all of it against what the board has."""
