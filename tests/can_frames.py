@@ -3,8 +3,8 @@
 from collections.abc import Iterable
 from pathlib import Path
 
-from amalthea_uros.trace.can.frames import EXTENDED, UNKNOWN, CanLog, FrameKind, FrameTable
-from amalthea_uros.trace.can.logs import open_can_log
+from amalthea_uros.trace.can.frames import EXTENDED, UNKNOWN, FrameKind, FrameTable
+from amalthea_uros.trace.can.logs import CanLog, open_can_log
 
 SECOND, MS, US = 10**12, 10**9, 10**6
 DATA, REMOTE, ERROR, GAP = FrameKind

@@ -16,8 +16,7 @@ from amalthea_uros.compare.results import (
     Statistic,
 )
 from amalthea_uros.compare.simulated import Run
-from amalthea_uros.measure.distances import Distance, distance
-from amalthea_uros.measure.series import MeasuredKind, Series, TimeStatistics
+from amalthea_uros.measure.series import Distance, MeasuredKind, Series, TimeStatistics, distance
 from amalthea_uros.timing.stated_distributions import Basis
 from amalthea_uros.units import Time
 

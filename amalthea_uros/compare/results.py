@@ -12,8 +12,7 @@ from amalthea_uros.diagnostics import Finding
 from amalthea_uros.judge.limits import SystemLimit
 from amalthea_uros.judge.margins import margin_of
 from amalthea_uros.judge.verdict import ObservedJudgement, ObservedVerdict
-from amalthea_uros.measure.distances import Distance
-from amalthea_uros.measure.series import MeasuredKind, Measurement, Series
+from amalthea_uros.measure.series import Distance, MeasuredKind, Measurement, Series
 from amalthea_uros.units import Time
 
 

@@ -12,7 +12,7 @@ from typing import Self
 
 from amalthea_uros.compare.measured.events import chain_starts
 from amalthea_uros.compare.phases import MOST_PHASES, systems_in_phases
-from amalthea_uros.measure.event_chains import ChainSteps
+from amalthea_uros.measure.chains import ChainSteps
 from amalthea_uros.measure.jobs import JobFollower
 from amalthea_uros.measure.series import Measurement
 from amalthea_uros.perf.system import System

@@ -9,19 +9,19 @@ from fractions import Fraction
 import numpy as np
 
 from amalthea_uros._internal.arrays import Flags, Numbers
+from amalthea_uros.measure.chains import reactions
 from amalthea_uros.measure.markers import (
     Decoder,
     Marker,
     MarkerChain,
     MarkerCounter,
+    MarkerOccurrences,
     MarkerPair,
     Measurable,
     ReportedStatistics,
     ReportedValue,
 )
-from amalthea_uros.measure.occurrences import MarkerOccurrences
 from amalthea_uros.measure.pairing import Pairs, paired_by_number, paired_in_order
-from amalthea_uros.measure.reactions import reactions
 from amalthea_uros.measure.series import Counts, Series, TimeStatistics, merged, statistics_or_none
 from amalthea_uros.timing.basics.quantities import JobMetric
 

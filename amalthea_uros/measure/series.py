@@ -1,4 +1,4 @@
-"""What was measured of an object: the values of one quantity with their statistics, and the events that could not be used."""
+"""What was measured of an object: the values of one quantity, their statistics, and how much two samples differ."""
 
 from __future__ import annotations
 
@@ -6,17 +6,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 from fractions import Fraction
-from math import ceil, sqrt
-from typing import TYPE_CHECKING
+from math import ceil, log, sqrt
 
 from amalthea_uros._internal.arrays import Numbers
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.units import Time
-
-if TYPE_CHECKING:
-    pass
 
 #: The percentiles that are computed where all values are known.
 PERCENTILES = (Fraction(1, 2), Fraction(9, 10), Fraction(95, 100), Fraction(99, 100), Fraction(999, 1000))
@@ -231,3 +227,64 @@ class Measurement(Shown):
     def find(self, name: str, quantity: str) -> Series | None:
         """The series of a quantity of an object, None if it was not measured."""
         return next((each for each in self.series if (each.name, each.quantity) == (name, quantity)), None)
+
+
+# How much two samples differ in distribution: equal means can hide different ones.
+
+
+#: How often a greater distance than the critical one occurs by chance, for independent samples of one distribution.
+SIGNIFICANCE = 0.05
+#: The shares of the quantiles that are compared.
+QUANTILES = (Fraction(10, 100), Fraction(50, 100), Fraction(90, 100), Fraction(99, 100))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Distance:
+    """The difference between the distributions of two samples.
+
+    Attributes
+    ----------
+    value : the Kolmogorov-Smirnov distance, from 0 (equal) to 1 (no value in common)
+    critical : for large independent samples of one distribution, it is greater in 5 % of the cases only
+    counts : the numbers of values
+    quantiles : share -> the quantiles of both
+    """
+
+    value: Fraction
+    critical: float
+    counts: tuple[int, int]
+    quantiles: Mapping[Fraction, tuple[Time, Time]]
+
+    @property
+    def is_significant(self) -> bool:
+        """Whether chance alone hardly explains it."""
+        return self.value > self.critical
+
+
+def distance(one: Numbers, other: Numbers) -> Distance:
+    """The distance of two samples of times.
+
+    Raises
+    ------
+    InvalidArgumentError : a sample has no values.
+    """
+    import numpy as np
+
+    counts = len(one), len(other)
+    if not all(counts):
+        raise InvalidArgumentError("there are no values, so they have no distribution")
+    ordered = np.sort(one), np.sort(other)
+    # The distribution functions change at values only; whole numbers keep their difference exact.
+    places = np.unique(np.concatenate(ordered))
+    below = [np.searchsorted(values, places, side="right") for values in ordered]
+    greatest = int(np.abs(below[0] * counts[1] - below[1] * counts[0]).max())
+    return Distance(
+        value=Fraction(greatest, counts[0] * counts[1]),
+        critical=sqrt(-log(SIGNIFICANCE / 2) / 2 * (1 / counts[0] + 1 / counts[1])),
+        counts=counts,
+        quantiles={share: (_quantile(ordered[0], share), _quantile(ordered[1], share)) for share in QUANTILES},
+    )
+
+
+def _quantile(ordered: Numbers, share: Fraction) -> Time:
+    return int(ordered[ceil(share * len(ordered)) - 1])

@@ -32,7 +32,7 @@ from amalthea_uros.design.changes.timing_changes import described
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.findings.suppression import unsuppressed
 from amalthea_uros.judge.verdict import ObservedVerdict
-from amalthea_uros.measure.event_chains import BEGINS
+from amalthea_uros.measure.chains import BEGINS
 from amalthea_uros.measure.series import MeasuredKind, Measurement
 from amalthea_uros.names import require
 from amalthea_uros.perf.system import System

@@ -46,13 +46,13 @@ class TraceFormat:
 CTF = TraceFormat("CTF", "ctf.reader", "CtfReader")
 #: Recognised by the ends of file names.
 BY_NAME = (
-    TraceFormat("BTF", "btf.reader", "BtfReader", suffix=".btf"),
+    TraceFormat("BTF", "btf_format", "BtfReader", suffix=".btf"),
     TraceFormat("CSV", "csv_format", "CsvReader", suffix=".csv"),
 )
 #: Recognised by the first lines, whatever the file is called.
 BY_CONTENT = (
-    TraceFormat("TRACE32 task events", "schedulers.task_events", "TaskEventReader", recogniser="is_task_events"),
-    TraceFormat("ftrace text (NuttX)", "schedulers.ftrace_text", "FtraceReader", recogniser="is_ftrace"),
+    TraceFormat("TRACE32 task events", "schedulers.event_lines", "TaskEventReader", recogniser="is_task_events"),
+    TraceFormat("ftrace text (NuttX)", "schedulers.event_lines", "FtraceReader", recogniser="is_ftrace"),
     TraceFormat("SystemView CSV", "schedulers.viewer_tables", "SystemviewReader", recogniser="is_systemview"),
     TraceFormat("Tracealyzer CSV", "schedulers.viewer_tables", "TracealyzerReader", recogniser="is_tracealyzer"),
 )

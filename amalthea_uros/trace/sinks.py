@@ -25,7 +25,7 @@ _COMPRESSION = 4
 
 #: The modules and classes that write a format, by the ends of file names. `.gz` may follow each of them.
 WRITERS = {
-    ".btf": ("btf.writer", "BtfEncoder"),
+    ".btf": ("btf_format", "BtfEncoder"),
     ".perfetto-trace": ("viewers.perfetto", "PerfettoEncoder"),
     ".pftrace": ("viewers.perfetto", "PerfettoEncoder"),
     ".perfetto.json": ("viewers.chrome_json", "ChromeEncoder"),

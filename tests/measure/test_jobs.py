@@ -6,7 +6,7 @@ from traces import table
 
 from amalthea_uros import Options, task, taskset
 from amalthea_uros.compare.measured.events import chain_starts
-from amalthea_uros.measure.event_chains import ChainSteps
+from amalthea_uros.measure.chains import ChainSteps
 from amalthea_uros.measure.jobs import JobFollower
 from amalthea_uros.measure.series import Counts
 from amalthea_uros.simulate.runs.run import simulate_system

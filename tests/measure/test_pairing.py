@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from amalthea_uros.measure.chains import reactions
 from amalthea_uros.measure.markers import Marker, parse_marker, refuse_overlap
 from amalthea_uros.measure.pairing import paired_by_number, paired_in_order
-from amalthea_uros.measure.reactions import reactions
 from amalthea_uros.measure.series import Counts
 from amalthea_uros.timing.basics.quantities import ChainQuantity as Q
 from amalthea_uros.trace.can.frames import EXTENDED

@@ -10,8 +10,7 @@ from hypothesis import strategies as st
 
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.measure.baselines import without
-from amalthea_uros.measure.distances import distance
-from amalthea_uros.measure.series import MeasuredKind, Series, merged, shifted, statistics_of
+from amalthea_uros.measure.series import MeasuredKind, Series, distance, merged, shifted, statistics_of
 
 times = st.integers(-(2**61), 2**61)
 lists = st.lists(times, min_size=1, max_size=50)

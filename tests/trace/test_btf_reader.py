@@ -10,7 +10,7 @@ from traces import chunks, random_trace, said, table
 
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.errors import InvalidArgumentError, ReadError
-from amalthea_uros.trace.btf.header import escape, unescape
+from amalthea_uros.trace.btf_format import escape, unescape
 from amalthea_uros.trace.readers import open_trace
 from amalthea_uros.trace.sinks import WriteOptions, open_sink
 from amalthea_uros.trace.table import Entity, EntityKind, EventKind

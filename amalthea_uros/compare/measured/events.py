@@ -65,7 +65,7 @@ def measured_events(path: Path, window: MeasurementWindow, starts: Mapping[str, 
     """
     import numpy as np
 
-    from amalthea_uros.measure.event_chains import ChainSteps
+    from amalthea_uros.measure.chains import ChainSteps
     from amalthea_uros.measure.jobs import JobFollower
     from amalthea_uros.measure.window import resolution_of
 

@@ -16,7 +16,7 @@ from amalthea_uros.measure.window import MeasurementWindow
 from amalthea_uros.names import listed
 
 if TYPE_CHECKING:
-    from amalthea_uros.measure.occurrences import MarkerCollector, MarkerOccurrences
+    from amalthea_uros.measure.markers import MarkerCollector, MarkerOccurrences
 
 #: With fewer than 1 in so many of the frames of the busiest bus, frames are strays of a damaged log.
 _STRAY = 100
@@ -42,7 +42,7 @@ def measured_frames(path: Path, objects: Sequence[Measurable], window: Measureme
         next(iter(open_can_log(path)), None)  # that a file cannot be read is said first
         raise InvalidArgumentError(_ADVICE)
     from amalthea_uros.measure.can_series import markers_of
-    from amalthea_uros.measure.occurrences import MarkerCollector
+    from amalthea_uros.measure.markers import MarkerCollector
     from amalthea_uros.measure.window import resolution_of
 
     log = open_can_log(path, channel=channel)

@@ -17,7 +17,7 @@ from amalthea_uros.diagnostics import Severity
 from amalthea_uros.trace.can.candump_blocks import CandumpLines, read_lines
 from amalthea_uros.trace.can.candump_lines import CandumpLine, parse
 from amalthea_uros.trace.can.frames import UNKNOWN, FrameKind, FrameTable, is_receive_overflow, report_error, report_lost
-from amalthea_uros.trace.can.log_reader import LogReader
+from amalthea_uros.trace.can.logs import CanLog
 from amalthea_uros.trace.files import LINE_TOO_LONG, opened_bytes
 from amalthea_uros.trace.problems import TracePlace, UnreadableError
 
@@ -40,7 +40,7 @@ _DIGITS = "the time of a frame has more or fewer decimals than those of the othe
 _ADVICE = "Check that the log is complete, and that candump wrote it (e.g. with -l)."
 
 
-class CandumpLog(LogReader):
+class CandumpLog(CanLog):
     """Gives the frames of a text of candump."""
 
     def __init__(self, path: Path, channel: str | None) -> None:

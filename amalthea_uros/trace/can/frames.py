@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.arrays import Numbers
-from amalthea_uros.diagnostics import Finding, Severity
+from amalthea_uros.diagnostics import Severity
 from amalthea_uros.trace.problems import TracePlace, TraceProblems
 
 if TYPE_CHECKING:
@@ -71,33 +71,6 @@ class FrameTable:
             self.line[places],
             [self.data[place] for place in places.tolist()],
         )
-
-
-class CanLog(Protocol):
-    """Gives the frames of a log file; it can be used once.
-
-    Attributes
-    ----------
-    findings : the problems met so far; everything else has been read
-    resolution : smallest step of the time stamps in picoseconds; None if the format does not say, or nothing has been read
-    origin : what the times of the frames have to be added to, to get those of the log, in picoseconds: 64 bits are too few for
-        picoseconds since 1970; 0 until something has been read
-    """
-
-    @property
-    def findings(self) -> tuple[Finding, ...]:
-        """The problems so far."""
-
-    @property
-    def resolution(self) -> int | None:
-        """The step of the time stamps."""
-
-    @property
-    def origin(self) -> int:
-        """The time in the log that is time 0 of the frames."""
-
-    def __iter__(self) -> Iterator[FrameTable]:
-        """The frames, in consecutive tables."""
 
 
 # Error frames: what the controller says about the bus, and frames that it lost (`linux/can/error.h`).

@@ -18,7 +18,7 @@ import numpy as np
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.trace.can.frames import EXTENDED, UNKNOWN, FrameKind, FrameTable, report_error
-from amalthea_uros.trace.can.log_reader import LogReader
+from amalthea_uros.trace.can.logs import CanLog
 from amalthea_uros.trace.problems import TracePlace
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ def python_can() -> ModuleType:
     return can
 
 
-class PythonCanLog(LogReader):
+class PythonCanLog(CanLog):
     """A log that python-can reads."""
 
     def _tables(self) -> Iterator[FrameTable]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable
 from typing import ClassVar, TypeAlias
 
@@ -17,7 +16,7 @@ from amalthea_uros.trace.table import EntityKind
 Handler: TypeAlias = Callable[..., None]
 
 
-class Interpreter(ABC):
+class Interpreter:
     """Takes events of one origin.
 
     Attributes
@@ -43,10 +42,6 @@ class Interpreter(ABC):
         """Take an event."""
         self.handlers[event.name](self, event)
 
-    @abstractmethod
-    def finish(self) -> None:
-        """Report what is only known at the end."""
-
     def _thread_of(self, number: object, name: str) -> int:
         """The task of a thread of an operating system with numbers of threads."""
         return self._entity(EntityKind.TASK, self._names.name(("thread", number), name, str(number), "thread"))
@@ -70,9 +65,6 @@ _ENDED = 0x10 | 0x20 | 0x80
 
 class LinuxScheduler(Interpreter):
     """Takes the events of the scheduler and of interrupts."""
-
-    def finish(self) -> None:
-        """Nothing: all is known when it happens."""
 
     def _switch(self, event: CtfEvent) -> None:
         fields, core = event.fields, self._core(event.core)
@@ -130,9 +122,6 @@ class Zephyr(Interpreter):
     def __init__(self, rows: EventRows, states: ThreadStates, problems: TraceProblems, names: UniqueNames) -> None:
         super().__init__(rows, states, problems, names)
         self._created_threads: set[int] = set()
-
-    def finish(self) -> None:
-        """Nothing: all is known when it happens."""
 
     def _switched_in(self, event: CtfEvent) -> None:
         core, thread = self._core_of(event), self._thread(event)

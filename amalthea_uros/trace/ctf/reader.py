@@ -54,8 +54,6 @@ class CtfReader(TraceReader):
             self._add(event, number, interpreters)
             if number % BLOCK == 0 and (table := self._states.take()) is not None:
                 yield table
-        for interpreter in interpreters.values():
-            interpreter.finish()
         if (table := self._states.take(is_end=True)) is not None:
             yield table
 

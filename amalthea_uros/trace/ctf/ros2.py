@@ -64,9 +64,6 @@ class Ros2(Interpreter):
         #: Of each thread the message that it has taken last, of which the callback has not begun.
         self._taken: dict[int, tuple[_RosSubscription, int]] = {}
 
-    def finish(self) -> None:
-        """Nothing: messages that no callback has taken are chains without a second step."""
-
     def _node_init(self, event: CtfEvent) -> None:
         fields = event.fields
         namespace = str(fields.get("namespace", "/")).rstrip("/")

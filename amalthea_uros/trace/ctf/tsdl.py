@@ -59,8 +59,6 @@ def tokens(source: str, most: int) -> list[TsdlToken]:
     return [*found, TsdlToken("end", "", line)]
 
 
-# Parses metadata in TSDL (CTF 1.8, section 7 and appendix C): types and the blocks trace, env, clock, stream, event.
-
 #: The depth of types and blocks in each other.
 _DEPTH = 32
 _MOST_TOKENS = 2_000_000

@@ -28,6 +28,7 @@ class ThreadLogReader(TraceReader):
         self._rows = EventRows(self._index, self._problems)
         self._states = ThreadStates(self._rows, self._problems)
         self._names = UniqueNames()
+        self._place = TracePlace()
 
     def numbered(self) -> Iterator[NumberedTable]:
         """The events, with the number of the line of each."""
@@ -35,15 +36,23 @@ class ThreadLogReader(TraceReader):
             for number, line in enumerate(stream, 1):
                 text = line.rstrip("\r\n")
                 if text and not text.isspace():
-                    self._read(text, number)
+                    self._place = TracePlace(number, 1, text)
+                    self._read(text)
                 if number % BLOCK == 0 and (table := self._states.take()) is not None:
                     yield table
         if (table := self._states.take(is_end=True)) is not None:
             yield table
 
     @abstractmethod
-    def _read(self, text: str, number: int) -> None:
-        """Read a line that is not empty."""
+    def _read(self, text: str) -> None:
+        """Read a line that is not empty, which is at `_place`."""
+
+    def _switch_to(self, core: int, name: str, is_idle: bool) -> None:
+        """Have a core execute a task from now on, or nothing."""
+        if is_idle:
+            self._states.switch_out(core)
+        else:
+            self._states.switch_in(core, self._task(name))
 
     def _core(self, number: int) -> int:
         return self._index.index(EntityKind.CORE, f"Core {number}")
@@ -57,25 +66,25 @@ class ThreadLogReader(TraceReader):
     def _runnable(self, name: str) -> int:
         return self._index.index(EntityKind.RUNNABLE, name)
 
-    def _move_to(self, time: int, number: int, text: str) -> bool:
+    def _move_to(self, time: int) -> bool:
         """Whether an event can be at a time; without it, what is open cannot go on."""
-        is_in_order = self._rows.move_to(time, number, TracePlace(number, 1, text))
+        is_in_order = self._rows.move_to(time, self._place.line or 0, self._place)
         if not is_in_order:
             self._states.lose()
         return is_in_order
 
-    def _reject(self, message: str, number: int, text: str) -> None:
+    def _reject(self, message: str) -> None:
         """Report a line that may have been an event; without it, what is open cannot go on."""
-        self._problems.add("TRC002", Severity.ERROR, f"{message}; this line is ignored", TracePlace(number, 1, text))
+        self._problems.add("TRC002", Severity.ERROR, f"{message}; this line is ignored", self._place)
         self._states.lose()
 
-    def _leave_out(self, message: str, number: int, text: str) -> None:
-        self._problems.add("TRC003", Severity.WARNING, f"{message}; it is ignored", TracePlace(number, 1, text))
+    def _leave_out(self, message: str) -> None:
+        self._problems.add("TRC003", Severity.WARNING, f"{message}; it is ignored", self._place)
 
-    def _lose(self, number: int, text: str, lost: int = NO_NOTE) -> None:
+    def _lose(self, lost: int = NO_NOTE) -> None:
         """Take a loss of events over that the recorder states."""
         advice = "Record into a larger buffer, or fewer kinds of events."
-        self._problems.add("TRC022", Severity.WARNING, "the recorder has lost events", TracePlace(number, 1, text), advice)
+        self._problems.add("TRC022", Severity.WARNING, "the recorder has lost events", self._place, advice)
         self._states.lose(lost=lost)
 
     def _mark(self, core: int, text: str) -> None:

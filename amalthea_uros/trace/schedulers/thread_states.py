@@ -205,23 +205,13 @@ class ThreadStates:
         """Whether a core executes a thread, interrupted or not."""
         return self._core(core_entity).thread is self._thread(entity)
 
-    def executing(self, core_entity: int) -> int | None:
-        """The interrupt or thread that a core executes, None if that is not known."""
-        thread = self._executing(core_entity)
-        return None if thread is None else thread.entity
-
     def start_runnable(self, entity: int, runnable: int) -> None:
         """A thread begins with a runnable."""
         self._start(self._thread(entity), runnable)
 
-    def end_runnable(self, entity: int, runnable: int | None = None) -> bool:
-        """A thread is at the end of a runnable; False if it is not in it.
-
-        Parameters
-        ----------
-        runnable : None: the innermost one
-        """
-        return self._end(self._thread(entity), runnable)
+    def end_runnable(self, entity: int, runnable: int) -> None:
+        """A thread is at the end of a runnable."""
+        self._end(self._thread(entity), runnable)
 
     def start_runnable_on(self, core_entity: int, runnable: int) -> None:
         """What a core executes begins with a runnable."""
@@ -237,8 +227,8 @@ class ThreadStates:
         if self._executing(core_entity) is not None:
             self.end_runnable_on(core_entity, runnable)
 
-    def end_runnable_on(self, core_entity: int, runnable: int | None = None) -> None:
-        """What a core executes is at the end of a runnable."""
+    def end_runnable_on(self, core_entity: int, runnable: int | None) -> None:
+        """What a core executes is at the end of a runnable; None: of the innermost one."""
         thread = self._executing(core_entity)
         if thread is None:
             self._report("the end of a runnable without its begin")
@@ -256,16 +246,15 @@ class ThreadStates:
         thread.runnables.append((runnable, instance))
         self._rows.add(EventKind.RUNNABLE_START, thread.entity, thread.instance, runnable, instance)
 
-    def _end(self, thread: _TracedThread, runnable: int | None) -> bool:
+    def _end(self, thread: _TracedThread, runnable: int | None) -> None:
         if not any(runnable in (None, each) for each, _ in thread.runnables):
             self._report("the end of a runnable without its begin")
-            return False
-        while True:
-            inner, instance = thread.runnables.pop()
-            if runnable in (None, inner):
-                self._rows.add(EventKind.RUNNABLE_TERMINATE, thread.entity, thread.instance, inner, instance)
-                return True
+            return
+        inner, instance = thread.runnables.pop()
+        while runnable not in (None, inner):
             self._report("a runnable that does not end before the one in which it began", "; it is dropped")
+            inner, instance = thread.runnables.pop()
+        self._rows.add(EventKind.RUNNABLE_TERMINATE, thread.entity, thread.instance, inner, instance)
 
     def lose(self, reason: str = "", lost: int = NO_NOTE) -> None:
         """Events have been lost: nothing that is open goes on.
@@ -293,16 +282,10 @@ class ThreadStates:
         )
 
     def _thread(self, entity: int) -> _TracedThread:
-        found = self._threads.get(entity)
-        if found is None:
-            found = self._threads[entity] = _TracedThread(entity)
-        return found
+        return self._threads.get(entity) or self._threads.setdefault(entity, _TracedThread(entity))
 
     def _core(self, entity: int) -> _TracedCore:
-        found = self._cores.get(entity)
-        if found is None:
-            found = self._cores[entity] = _TracedCore(entity)
-        return found
+        return self._cores.get(entity) or self._cores.setdefault(entity, _TracedCore(entity))
 
     def _add(self, kind: EventKind, core: _TracedCore, thread: _TracedThread) -> list[int]:
         return self._rows.add(kind, core.entity, 0, thread.entity, thread.instance)

@@ -68,23 +68,23 @@ class TableLogReader(ThreadLogReader):
     _exponent = _UNITS["s"]
 
     @abstractmethod
-    def _read_row(self, fields: Mapping[str, str], number: int, text: str) -> None:
+    def _read_row(self, fields: Mapping[str, str]) -> None:
         """Read a row of which the time is that of the next events."""
 
-    def _read(self, text: str, number: int) -> None:
+    def _read(self, text: str) -> None:
         if self._places is None:
             self._read_heading(text)
             return
         row = fields_of(text, self._delimiter)
         if len(row) <= max(self._places.values()):
-            self._reject("a line has fewer fields than the headings", number, text)
+            self._reject("a line has fewer fields than the headings")
             return
         fields = {column: row[place] for column, place in self._places.items()}
         time = picoseconds(_plain(fields["time"]), self._exponent)
         if time is None:
-            self._reject("the time is not a number", number, text)
-        elif self._move_to(time, number, text):
-            self._read_row(fields, number, text)
+            self._reject("the time is not a number")
+        elif self._move_to(time):
+            self._read_row(fields)
 
     def _read_heading(self, text: str) -> None:
         found = headings(text, self.columns)
@@ -135,12 +135,12 @@ class SystemviewReader(TableLogReader):
     def _unit(self, heading: str, text: str) -> int:
         return 12  # SystemView shows seconds
 
-    def _read_row(self, fields: Mapping[str, str], number: int, text: str) -> None:
+    def _read_row(self, fields: Mapping[str, str]) -> None:
         states, context, detail = self._states, fields["context"], fields["detail"]
         event = " ".join(fields["event"].lower().split())
         core = self._core(_core_number(fields.get("core", "")))
         if "overflow" in event or "*** OVERFLOW ***" in detail:
-            self._lose(number, text)
+            self._lose()
             if "overflow" in event:
                 return
         if event == "task run":
@@ -150,7 +150,7 @@ class SystemviewReader(TableLogReader):
         elif event == "task stop":
             states.switch_out(core, self._task(context), Leaving.BLOCKED)
         elif event in ("task ready", "task block"):
-            self._change_state(event, _task_of(detail), number, text)
+            self._change_state(event, _task_of(detail))
         elif event == "isr enter":
             states.enter_interrupt(core, self._interrupt(context))
         elif event == "isr exit" or event.startswith("isr exit to scheduler"):
@@ -158,12 +158,12 @@ class SystemviewReader(TableLogReader):
         elif match := _MARKER.fullmatch(event):
             self._read_marker(core, match, detail)
         elif not _UNTIMED.fullmatch(event):
-            self._leave_out("an event that is not about tasks, interrupts or markers", number, text)
+            self._leave_out("an event that is not about tasks, interrupts or markers")
 
-    def _change_state(self, event: str, name: str, number: int, text: str) -> None:
+    def _change_state(self, event: str, name: str) -> None:
         """Of these events the context is what causes them; the task is in the detail."""
         if not name:
-            self._reject("the detail does not name the task", number, text)
+            self._reject("the detail does not name the task")
         elif event == "task ready":
             self._states.make_ready(self._task(name))
         else:
@@ -225,14 +225,14 @@ class TracealyzerReader(TableLogReader):
 
     columns = _TRACEALYZER
 
-    def _read_row(self, fields: Mapping[str, str], number: int, text: str) -> None:
+    def _read_row(self, fields: Mapping[str, str]) -> None:
         states, event, actor = self._states, fields["event"], fields["actor"]
-        digits = re.sub(r"[^0-9]", "", fields.get("core", ""))[:4]
-        core = self._core(int(digits or 0))
+        core = self._core(_core_number(fields.get("core", "")))
         if _LOST.fullmatch(event):
-            self._lose(number, text)
+            self._lose()
         elif match := _SWITCH.fullmatch(event):
-            self._switch(self._core(int(match[1])) if match[1] else core, match[2].strip())
+            name = match[2].strip()
+            self._switch_to(self._core(int(match[1])) if match[1] else core, name, _IDLE.fullmatch(name) is not None)
         elif match := _READY.fullmatch(event):
             if not _IDLE.fullmatch(match[1].strip()):
                 states.make_ready(self._task(match[1].strip()))
@@ -245,13 +245,7 @@ class TracealyzerReader(TableLogReader):
         elif _BLOCK.fullmatch(event) and actor and not _IDLE.fullmatch(actor):
             states.block(self._task(actor))
         else:
-            self._leave_out("an event that is not about scheduling, interrupts or user events", number, text)
-
-    def _switch(self, core: int, name: str) -> None:
-        if _IDLE.fullmatch(name):
-            self._states.switch_out(core)
-        else:
-            self._states.switch_in(core, self._task(name))
+            self._leave_out("an event that is not about scheduling, interrupts or user events")
 
 
 def _text_of(channel: str, text: str) -> str:
