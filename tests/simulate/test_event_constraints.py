@@ -8,9 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from amalthea_uros.perf.constraints import DelayConstraint, EventSynchronization, Matching, RepetitionConstraint
-from amalthea_uros.simulate.metrics.delays import delays
-from amalthea_uros.simulate.metrics.repetitions import Repetitions
-from amalthea_uros.simulate.metrics.synchronizations import AllOccurrences, SubsequentOccurrences
+from amalthea_uros.simulate.metrics.event_constraints import AllOccurrences, Repetitions, SubsequentOccurrences, delays
 
 
 def observed(metrics, occurrences, end, sizes=(1000,)):
@@ -203,7 +201,7 @@ def has_ideal_points(times, span, lower, upper, jitter):
 
 def spread(reading, occurrences, end=100, sizes=(1000,), events=2, tolerance=5):
     constraint = EventSynchronization(name="S", events=("a", "b"), tolerance=tolerance)
-    metrics = reading(constraint=constraint, events=events, base=1)
+    metrics = reading(constraint, 1, events=events)
     (found,) = observed(metrics, occurrences, end, sizes)
     return found
 

@@ -1,14 +1,16 @@
-"""The smallest and the greatest of many times, and when they were observed."""
+"""The values that a constraint limits: the smallest and the greatest of many times, and when they were observed."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from abc import ABC, abstractmethod
+from collections.abc import Iterator
+from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import NamedTuple
 
 from amalthea_uros._internal.arrays import Numbers
 from amalthea_uros.judge.evidence import ObservedValues
-from amalthea_uros.judge.limits import SystemLimit
+from amalthea_uros.judge.limits import EventConstraint, SystemLimit, limits_of
 
 #: So many occurrences are kept that wait for a corresponding one; what corresponds to older ones is not evaluated.
 WINDOW = 2**16
@@ -58,3 +60,33 @@ class Extremes:
             low_at=Fraction(self.low[1], self.base),
             high_at=Fraction(self.high[1], self.base),
         )
+
+
+@dataclass(slots=True)
+class ConstraintMetrics(ABC):
+    """The values that a constraint limits.
+
+    Attributes
+    ----------
+    base : time units in a picosecond
+    """
+
+    constraint: EventConstraint
+    base: int
+    extremes: Extremes = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.extremes = Extremes(self.base)
+
+    @abstractmethod
+    def add(self, times: Numbers, which: Numbers) -> None:
+        """Take occurrences in, in the order of time, each with a number that says of what it is."""
+
+    def quantities(self, end: int) -> Iterator[LimitedQuantity]:
+        """What was observed up to the end of the run, in time units."""
+        values = self._values(end)
+        yield from (LimitedQuantity(limit, values) for limit in limits_of(self.constraint))
+
+    @abstractmethod
+    def _values(self, end: int) -> ObservedValues:
+        """The values, and what is missing of them."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import Protocol
 
 import numpy as np
 
@@ -21,12 +20,10 @@ from amalthea_uros.perf.constraints import (
 from amalthea_uros.perf.events import Event, EventSet, ProcessChange, ProcessEvent, RunnableEvent, SemaphoreEvent
 from amalthea_uros.perf.system import System
 from amalthea_uros.simulate.kernel.layout import Observation
-from amalthea_uros.simulate.metrics.delays import delays
-from amalthea_uros.simulate.metrics.extremes import LimitedQuantity
+from amalthea_uros.simulate.metrics.event_constraints import AllOccurrences, Repetitions, SubsequentOccurrences, delays
+from amalthea_uros.simulate.metrics.extremes import ConstraintMetrics, LimitedQuantity
 from amalthea_uros.simulate.metrics.label_values import DataAges, LabelAges, LabelValues, Reading
-from amalthea_uros.simulate.metrics.repetitions import Repetitions
-from amalthea_uros.simulate.metrics.runnable_orders import ExecutionOrder, RunnableOrder
-from amalthea_uros.simulate.metrics.synchronizations import AllOccurrences, SubsequentOccurrences
+from amalthea_uros.simulate.metrics.runnable_orders import ExecutionOrder, OrderMetrics, RunnableOrder
 from amalthea_uros.simulate.observations import LabelObservation
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.program.build import KernelProgram
@@ -121,21 +118,11 @@ def in_order(places: Iterable[Numbers]) -> tuple[Numbers, Numbers]:
     return together[order], which[order]
 
 
-class Metrics(Protocol):
-    """The values that a constraint limits."""
-
-    def add(self, times: Numbers, which: Numbers) -> None:
-        """Take occurrences in, in the order of time, each with a number that says of what it is."""
-
-    def quantities(self, end: int) -> Iterator[LimitedQuantity]:
-        """What was observed up to the end of the run, in time units."""
-
-
 @dataclass(slots=True)
 class _Observer:
     """Gives metrics the occurrences of some tables."""
 
-    metrics: Metrics
+    metrics: ConstraintMetrics
     tables: list[EventTable]
 
     def add(self, rows: Numbers) -> None:
@@ -195,7 +182,7 @@ class Observers:
         elif metrics := self._metrics(constraint, names):
             self._of_constraints[id(constraint)] = [_Observer(metrics, [table for table in found if table is not None])]
 
-    def _metrics(self, constraint: Constraint, names: Sequence[str]) -> Metrics | None:
+    def _metrics(self, constraint: Constraint, names: Sequence[str]) -> ConstraintMetrics | None:
         base = self.program.units
         match constraint:
             case DelayConstraint():
@@ -204,7 +191,7 @@ class Observers:
                 return Repetitions(constraint, base)
             case EventSynchronization() | ChainSynchronization() if names:
                 reading = AllOccurrences if constraint.every_occurrence else SubsequentOccurrences
-                return reading(constraint=constraint, events=len(names), base=base)
+                return reading(constraint, base, events=len(names))
         return None
 
     def _observe_order(self, order: OrderConstraint) -> None:
@@ -217,8 +204,8 @@ class Observers:
         calling = {source.process for source in self.program.sources if is_of_order(source) and source.name in limited}
         found = [self._order_of_jobs(order, process) for process in scope.alone if process in calling]
         if scope.together:
-            sources = [source for source in together if source is not None]
-            found.append(self._tables_of(ExecutionOrder(order, scope.processes, sources, self.program.units), sources))
+            names, sources = ", ".join(scope.processes), [source for source in together if source is not None]
+            found.append(self._tables_of(ExecutionOrder(order, self.program.units, processes=names, sources=sources)))
         self._of_constraints[id(order)] = found
 
     def _sources(self, event: Event) -> Iterator[EventSource]:
@@ -226,10 +213,10 @@ class Observers:
 
     def _order_of_jobs(self, order: OrderConstraint, process: str) -> _Observer:
         sources = [source for source in self.program.sources if is_of_order(source) and source.process == process]
-        return self._tables_of(RunnableOrder(order, process, sources, self.program.units), sources)
+        return self._tables_of(RunnableOrder(order, self.program.units, processes=process, sources=sources))
 
-    def _tables_of(self, metrics: Metrics, sources: Sequence[EventSource]) -> _Observer:
-        return _Observer(metrics, [self._table(lambda each, source=source: each == source) for source in sources])  # type: ignore[misc]
+    def _tables_of(self, metrics: OrderMetrics) -> _Observer:
+        return _Observer(metrics, [self._table(source.__eq__) for source in metrics.sources])
 
     # Rows and results.
 

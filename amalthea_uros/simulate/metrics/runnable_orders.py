@@ -15,30 +15,54 @@ from amalthea_uros.judge.evidence import ObservedValues
 from amalthea_uros.judge.limits import without_number
 from amalthea_uros.perf.constraints import OrderConstraint, Ordering
 from amalthea_uros.perf.events import ProcessChange, ProcessEvent, RunnableChange
-from amalthea_uros.simulate.metrics.extremes import LimitedQuantity
+from amalthea_uros.simulate.metrics.extremes import ConstraintMetrics, LimitedQuantity
 from amalthea_uros.simulate.program.watches import EventSource
 from amalthea_uros.timing.dataflow.runnable_order import satisfies_order
 
 
 @dataclass(slots=True)
-class RunnableOrder:
+class OrderMetrics(ConstraintMetrics):
+    """What is executed in another order than that of a constraint.
+
+    Attributes
+    ----------
+    processes : their names
+    sources : of the occurrences, in the order of their numbers in `add`
+    wrong : number of jobs or executions in another order
+    """
+
+    constraint: OrderConstraint
+    processes: str = field(kw_only=True)
+    sources: Sequence[EventSource] = field(kw_only=True)
+    wrong: int = 0
+    _first_wrong: int = -1
+
+    def _note_wrong(self, time: int) -> None:
+        self.wrong += 1
+        self._first_wrong = time if self._first_wrong < 0 else self._first_wrong
+
+    def quantities(self, end: int) -> Iterator[LimitedQuantity]:  # noqa: D102
+        yield LimitedQuantity(without_number(self.constraint, self.processes, "order of runnables"), self._values(end))
+
+    def _of(self, total: str, reason: str) -> ObservedValues:
+        """The number of those in another order, of all that there were, or the reason why it is not known."""
+        values = ObservedValues(reason=reason) if reason and not self.wrong else ObservedValues.only(self.wrong)
+        if self.wrong:
+            violation = f"{self.wrong:,} of {total} in another order"
+            values = replace(values, violation=violation, violated_at=Fraction(self._first_wrong, self.base))
+        return values
+
+
+@dataclass(slots=True)
+class RunnableOrder(OrderMetrics):
     """The calls of the jobs of a process, each job on its own.
 
     Attributes
     ----------
-    sources : of the process, in the order of their numbers in `add`
-    base : time units in a picosecond
     jobs : number of jobs that called one of the runnables, or more
-    wrong : number of those in another order
     """
 
-    constraint: OrderConstraint
-    process: str
-    sources: Sequence[EventSource]
-    base: int
     jobs: int = 0
-    wrong: int = 0
-    _first_wrong: int = -1
     _calls: list[int] = field(default_factory=list)
     #: Whether a sequence of calls has the order; None if the constraint is not about it.
     _known: dict[tuple[int, ...], bool | None] = field(default_factory=dict)
@@ -63,36 +87,23 @@ class RunnableOrder:
         is_right = self._known[calls]
         self.jobs += is_right is not None
         if is_right is False:
-            self.wrong += 1
-            self._first_wrong = time if self._first_wrong < 0 else self._first_wrong
+            self._note_wrong(time)
 
-    def quantities(self, _end: int) -> Iterator[LimitedQuantity]:
-        """What was observed."""
-        values = ObservedValues.only(self.wrong) if self.jobs else ObservedValues(reason="no job called one of the runnables")
-        if self.wrong:
-            violation = f"{self.wrong:,} of {self.jobs:,} jobs in another order"
-            values = replace(values, violation=violation, violated_at=Fraction(self._first_wrong, self.base))
-        yield LimitedQuantity(without_number(self.constraint, self.process, "order of runnables"), values)
+    def _values(self, end: int) -> ObservedValues:
+        return self._of(f"{self.jobs:,} jobs", "" if self.jobs else "no job called one of the runnables")
 
 
 @dataclass(slots=True)
-class ExecutionOrder:
+class ExecutionOrder(OrderMetrics):
     """The executions of runnables in several processes, of which those with the same number belong together.
 
     Attributes
     ----------
-    sources : starts and ends of the runnables, in the order of their numbers in `add`
-    base : time units in a picosecond
+    sources : starts and ends of the runnables
     """
 
-    constraint: OrderConstraint
-    processes: Sequence[str]
-    sources: Sequence[EventSource]
-    base: int
     _started: Counter[str] = field(default_factory=Counter)
     _ended: Counter[str] = field(default_factory=Counter)
-    _wrong: int = 0
-    _first_wrong: int = -1
 
     def add(self, times: Numbers, which: Numbers) -> None:
         """Take starts and ends in, in the order of time; what ends at the time at which something starts, ends before it."""
@@ -104,8 +115,7 @@ class ExecutionOrder:
                 self._ended[name] += 1
                 continue
             if any(self._ended[before] <= self._started[name] for before in self._before(name)):
-                self._wrong += 1
-                self._first_wrong = time if self._first_wrong < 0 else self._first_wrong
+                self._note_wrong(time)
             self._started[name] += 1
 
     def _before(self, name: str) -> Iterator[str]:
@@ -113,17 +123,10 @@ class ExecutionOrder:
         for group in takewhile(lambda group: name not in group, self.constraint.groups):
             yield from group
 
-    def quantities(self, _end: int) -> Iterator[LimitedQuantity]:
-        """What was observed."""
-        executions = self._started.total()
-        is_known = executions and (self._wrong or self.constraint.ordering is Ordering.SUCCESSOR)
-        reason = (
-            "only the order of these runnables is observed, not what is executed in between"
-            if executions
-            else "none of them ran"
-        )
-        values = ObservedValues.only(self._wrong) if is_known else ObservedValues(reason=reason)
-        if self._wrong:
-            violation = f"{self._wrong:,} of {executions:,} executions in another order"
-            values = replace(values, violation=violation, violated_at=Fraction(self._first_wrong, self.base))
-        yield LimitedQuantity(without_number(self.constraint, ", ".join(self.processes), "order of runnables"), values)
+    def _values(self, end: int) -> ObservedValues:
+        executions, reason = self._started.total(), ""
+        if not executions:
+            reason = "none of them ran"
+        elif self.constraint.ordering is not Ordering.SUCCESSOR:
+            reason = "only the order of these runnables is observed, not what is executed in between"
+        return self._of(f"{executions:,} executions", reason)

@@ -77,22 +77,14 @@ def limited_values(limit: Limit, process: ProcessObservation, duration: Time, pe
         case JitterLimit(metric=metric):
             of_times = limited_values(TimeLimit(metric=metric, value=limit.value), process, duration, period)
             return _jitter(metric, of_times, process.jobs, process.name, period)
-        case TimeLimit(metric=TimeMetric.CORE_EXECUTION_TIME) if process.migrations.total:
-            return ObservedValues(reason="jobs migrate, and their execution times on each core are not observed")
-        case TimeLimit(metric=TimeMetric.RESPONSE_TIME):
-            found = process.response_time
-            pending = process.longest_unfinished
-            if found is None:
-                return ObservedValues(pending=pending, reason=_missing(process))
-            return replace(observed_values(found, ""), pending=pending)
-        case TimeLimit(metric=metric) if metric in JOB_METRICS:
-            return observed_values(process.metrics.get(JOB_METRICS[metric]), _missing(process, JOB_METRICS[metric]))
-        case CountLimit(metric=CountMetric.PREEMPTIONS) if process.jobs:
-            return ObservedValues(low=Fraction(process.preemptions.min), high=Fraction(process.preemptions.max))
-        case CountLimit(metric=CountMetric.FULL_MIGRATIONS) if process.jobs:
-            return ObservedValues(low=Fraction(process.migrations.min), high=Fraction(process.migrations.max))
+        case TimeLimit(metric=metric) if metric in JOB_METRICS and not _is_of_migrating_jobs(limit, process):
+            found = observed_values(process.metrics.get(JOB_METRICS[metric]), _missing(process, JOB_METRICS[metric]))
+            is_pending = metric is TimeMetric.RESPONSE_TIME
+            return replace(found, pending=process.longest_unfinished) if is_pending else found
         case CountLimit(metric=CountMetric.LOST_ACTIVATIONS):
             return ObservedValues.only(process.lost_activations)
+        case CountLimit(metric=CountMetric.PREEMPTIONS | CountMetric.FULL_MIGRATIONS) if process.jobs:
+            return _counted(limit, process)
         case CountLimit(metric=CountMetric.BOUNDED_MIGRATIONS | CountMetric.FULL_MIGRATIONS) if process.core is not None:
             return ObservedValues.only(0)
         case CountLimit(metric=CountMetric.ACTIVATIONS, bound=bound, value=value):
@@ -110,8 +102,11 @@ def limited_values(limit: Limit, process: ProcessObservation, duration: Time, pe
             times = process.metrics.get(_SHARES[metric])
             return ObservedValues.only(0 if times is None else times.total / duration)
         case RatioLimit(metric=metric) if metric in _RATIOS:
-            return _normalized(process, _RATIOS[metric])
-    return ObservedValues(reason=f"the simulation does not observe the {limit.metric}")
+            relative = process.metrics.get(_RATIOS[metric])
+            if relative is None or not process.deadline:
+                return ObservedValues(reason=_missing(process, JobMetric.LATENESS))
+            return ObservedValues(low=relative.min / process.deadline, high=relative.max / process.deadline)
+    return _not_observed(limit, process)
 
 
 def limited_values_of_runnable(limit: Limit, runnable: RunnableObservation) -> ObservedValues:
@@ -123,20 +118,29 @@ def limited_values_of_runnable(limit: Limit, runnable: RunnableObservation) -> O
         case JitterLimit(metric=metric):
             of_times = limited_values_of_runnable(TimeLimit(metric=metric, value=limit.value), runnable)
             return _jitter(metric, of_times, runnable.executions, runnable.name, period=None)
-        case TimeLimit(metric=TimeMetric.CORE_EXECUTION_TIME) if runnable.migrations.total:
-            return ObservedValues(reason="jobs migrate, and their execution times on each core are not observed")
         case TimeLimit(metric=TimeMetric.LATENESS | TimeMetric.ACTIVATE_TO_ACTIVATE as metric):
             return ObservedValues(reason=f"a runnable has no {metric} of its own")
-        case TimeLimit(metric=metric) if metric in JOB_METRICS:
+        case TimeLimit(metric=metric) if metric in JOB_METRICS and not _is_of_migrating_jobs(limit, runnable):
             few = missing if not runnable.executions else f"only one execution of {runnable.name!r} ended"
             return observed_values(runnable.metrics.get(JOB_METRICS[metric]), few)
-        case CountLimit(metric=CountMetric.PREEMPTIONS) if runnable.executions:
-            return ObservedValues(low=Fraction(runnable.preemptions.min), high=Fraction(runnable.preemptions.max))
-        case CountLimit(metric=CountMetric.FULL_MIGRATIONS) if runnable.executions:
-            return ObservedValues(low=Fraction(runnable.migrations.min), high=Fraction(runnable.migrations.max))
         case CountLimit(metric=CountMetric.PREEMPTIONS | CountMetric.FULL_MIGRATIONS):
-            return ObservedValues(reason=missing)
-    return ObservedValues(reason=f"the simulation does not observe the {limit.metric} of runnables")
+            return _counted(limit, runnable) if runnable.executions else ObservedValues(reason=missing)
+    return _not_observed(limit, runnable, " of runnables")
+
+
+def _counted(limit: CountLimit, observed: ProcessObservation | RunnableObservation) -> ObservedValues:
+    found = observed.preemptions if limit.metric is CountMetric.PREEMPTIONS else observed.migrations
+    return ObservedValues(low=Fraction(found.min), high=Fraction(found.max))
+
+
+def _is_of_migrating_jobs(limit: Limit, observed: ProcessObservation | RunnableObservation) -> bool:
+    return limit.metric is TimeMetric.CORE_EXECUTION_TIME and observed.migrations.total > 0
+
+
+def _not_observed(limit: Limit, observed: ProcessObservation | RunnableObservation, of: str = "") -> ObservedValues:
+    if _is_of_migrating_jobs(limit, observed):
+        return ObservedValues(reason="jobs migrate, and their execution times on each core are not observed")
+    return ObservedValues(reason=f"the simulation does not observe the {limit.metric}{of}")
 
 
 def _jitter(metric: TimeMetric, times: ObservedValues, count: int, name: str, period: Time | None) -> ObservedValues:
@@ -146,15 +150,7 @@ def _jitter(metric: TimeMetric, times: ObservedValues, count: int, name: str, pe
     return ObservedValues(reason=f"only one job of {name!r} ended") if count == 1 else times.jitter()
 
 
-def _normalized(process: ProcessObservation, metric: JobMetric) -> ObservedValues:
-    """A time relative to the deadline."""
-    found, deadline = process.metrics.get(metric), process.deadline
-    if found is None or not deadline:
-        return ObservedValues(reason=_missing(process, JobMetric.LATENESS))
-    return ObservedValues(low=found.min / deadline, high=found.max / deadline)
-
-
-def _missing(process: ProcessObservation, metric: JobMetric = JobMetric.RESPONSE_TIME) -> str:
+def _missing(process: ProcessObservation, metric: JobMetric) -> str:
     """Why a metric of a process was not observed."""
     if not process.jobs:
         return f"no job of {process.name!r} ended"
@@ -261,11 +257,23 @@ def _of_requirement(
 def _of_chain(
     limit: SystemLimit, constraint: LatencyConstraint, chains: Results[ChainObservation], system: System
 ) -> ObservedValues:
-    """What a latency constraint limits; the paths through a fork are observed one by one, although only some of them decide."""
-    chain = system.chains.get(constraint.chain)
-    if constraint.kind is LatencyKind.REACTION and chain is not None and _decide_some(chain, limit, system):
+    """What a latency constraint limits: data age at each response, or reaction at each stimulus, also if there is none.
+
+    The paths through a fork are observed one by one, although only some of them decide.
+    """
+    model, is_age = system.chains.get(constraint.chain), constraint.kind is LatencyKind.AGE
+    if constraint.kind is LatencyKind.REACTION and model is not None and _decide_some(model, limit, system):
         return ObservedValues(reason="only some of the paths through the chain decide, and each of them is observed by itself")
-    return _of_latency(limit, constraint, chains)
+    chain = next((each for each in chains if each.name == constraint.chain), None)
+    if chain is None:
+        return ObservedValues(reason=f"the chain {constraint.chain!r} is not defined in the model")
+    quantity = ChainQuantity.REDUCED_DATA_AGE if is_age else ChainQuantity.REDUCED_REACTION_TIME
+    values = observed_values(chain.quantities.get(quantity), chain.reason or "there was no response to a stimulus")
+    if chain.not_evaluated:
+        reason = f"{chain.not_evaluated:,} latencies are longer than those that can be observed"
+        values = replace(values, is_complete=False, reason=reason)
+    values = values if is_age else replace(values, pending=chain.longest_unanswered)
+    return values.jitter() if limit.is_jitter else values
 
 
 def _decide_some(chain: EventChain, limit: SystemLimit, system: System) -> bool:
@@ -277,18 +285,3 @@ def _decide_some(chain: EventChain, limit: SystemLimit, system: System) -> bool:
     is_earlier = any(fork.needed < len(fork.branches) for fork in found)
     is_later = any(fork.needed > 1 for fork in found)
     return is_earlier or is_later if limit.is_jitter else is_earlier if limit.is_upper else is_later
-
-
-def _of_latency(limit: SystemLimit, constraint: LatencyConstraint, chains: Results[ChainObservation]) -> ObservedValues:
-    """What a latency constraint limits: data age at each response, or reaction at each stimulus, also if there is none."""
-    chain = next((each for each in chains if each.name == constraint.chain), None)
-    if chain is None:
-        return ObservedValues(reason=f"the chain {constraint.chain!r} is not defined in the model")
-    is_age = constraint.kind is LatencyKind.AGE
-    quantity = ChainQuantity.REDUCED_DATA_AGE if is_age else ChainQuantity.REDUCED_REACTION_TIME
-    values = observed_values(chain.quantities.get(quantity), chain.reason or "there was no response to a stimulus")
-    if chain.not_evaluated:
-        reason = f"{chain.not_evaluated:,} latencies are longer than those that can be observed"
-        values = replace(values, is_complete=False, reason=reason)
-    values = values if is_age else replace(values, pending=chain.longest_unanswered)
-    return values.jitter() if limit.is_jitter else values
