@@ -7,9 +7,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
 
-from opponent.constructs import constructs_of
 from opponent.observation import Observation, observe
-from opponent.systems import PlainSystem
+from opponent.systems import PlainSystem, constructs_of
 from opponent.to_perf import MICROSECOND, to_perf
 
 from amalthea_uros.analyze.results.analysis import Analysis

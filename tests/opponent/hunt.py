@@ -1,4 +1,7 @@
-"""Looks for false claims in many random systems: `python -m opponent.hunt --seeds 0..100000` with `tests` on the path."""
+"""Looks for false claims in many random systems: `python -m opponent.hunt --seeds 0..100000` with `tests` on the path.
+
+With `--simulation` it looks for systems that are simulated wrongly.
+"""
 
 from __future__ import annotations
 
@@ -9,11 +12,11 @@ from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 
 from opponent.claims import FalseClaim, Tally, false_claims
-from opponent.constructs import constructs_of
-from opponent.describe import described
 from opponent.generator import random_system
+from opponent.invariants import violations
 from opponent.shrink import shrink
-from opponent.systems import PlainSystem
+from opponent.simulation import contradictions
+from opponent.systems import PlainSystem, constructs_of, described
 
 Found = tuple[int, list[FalseClaim], Tally]
 
@@ -45,6 +48,7 @@ def _arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="opponent.hunt", description=__doc__)
     parser.add_argument("--seeds", default="0..10000", metavar="FROM..TO", help="the last one is not included")
     parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--simulation", action="store_true", help="look at simulations, in one process")
     parser.add_argument("--plays", type=int, default=4, help="under each reading")
     parser.add_argument("--without", nargs="*", default=(), metavar="CONSTRUCT", help="skip systems with these")
     parser.add_argument(
@@ -63,9 +67,22 @@ def _results(arguments: argparse.Namespace) -> Iterator[Found]:
         yield from pool.map(one, seeds, chunksize=20)
 
 
+def _hunt_simulations(seeds: str) -> None:
+    """Print the smallest systems that are simulated wrongly."""
+    first, end = map(int, seeds.split(".."))
+    for seed in range(first, end):
+        for check in (contradictions, violations):
+            if check(random_system(seed)):
+                system = shrink(random_system(seed), lambda candidate, check=check: bool(check(candidate)))  # type: ignore[misc]
+                print(f"seed {seed}: {check(system)}\n{described(system)}", flush=True)  # noqa: T201
+
+
 def main() -> None:
     """Print the failing seeds, each with its smallest system, then the share of unknowns."""
     arguments = _arguments()
+    if arguments.simulation:
+        _hunt_simulations(arguments.seeds)
+        return
     total, kinds = Tally(), Counter[tuple[str, ...]]()
     for seed, claims, tally in _results(arguments):
         total.add_all(tally)

@@ -1,4 +1,4 @@
-"""Random systems in the plain form that ../shared/vectors/constructs/README.md describes."""
+"""Random systems in the plain form that ../shared/vectors/constructs/README.md describes: their items, constructs and text."""
 
 from __future__ import annotations
 
@@ -37,3 +37,89 @@ def has_open_choices(system: PlainSystem) -> bool:
         "switch" in item or not item.get("ordered", True) or ("execute" in item and item["execute"][0] != item["execute"][1])
         for item in items_of(system)
     )
+
+
+# Which constructs a system has, by names.
+
+
+def constructs_of(system: PlainSystem) -> frozenset[str]:
+    """The names of the constructs in a system, for statistics."""
+    processes, items = system["processes"], items_of(system)
+    found = {
+        "non-interruptible group": any(not item.get("interruptible", True) for item in items),
+        "unordered group": any(not item.get("ordered", True) for item in items),
+        "group": any("group" in item for item in items),
+        "switch": any("switch" in item for item in items),
+        "call": any("call" in item for item in items),
+        "counter of a call": any("call" in item and "prescaler" in item for item in items),
+        "counter of a trigger": any("trigger" in item and "prescaler" in item for item in items),
+        "counter of a stimulus": any("prescaler" in process["arrival"].get("trigger", ()) for process in processes),
+        "schedule point": any("point" in item for item in items),
+        "trigger": any("trigger" in item for item in items),
+        "offset": any("offset" in given for p in processes for kind, given in p["arrival"].items() if kind != "trigger"),
+        "jitter": any("jitter" in p["arrival"].get("periodic", ()) for p in processes),
+        "sporadic": any("sporadic" in p["arrival"] for p in processes),
+        "interrupt service routine": any(p["kind"] == "isr" for p in processes),
+        "variable times": any("execute" in item and item["execute"][0] < item["execute"][1] for item in items),
+        "equal priorities": len({(p["core"], p["kind"], p["priority"]) for p in processes}) < len(processes),
+        "two cores": len(system["cores"]) > 1,
+    }
+    requested = {item["request"] for item in items if "request" in item}
+    found["semaphore with ceiling"] = any(system["semaphores"][name]["ceiling"] for name in requested)
+    found["semaphore without ceiling"] = any(not system["semaphores"][name]["ceiling"] for name in requested)
+    names = {name for name, is_there in found.items() if is_there}
+    names |= {p["preemption"] for p in processes if p["kind"] == "task"}
+    names |= {f"chain {system['chain']['communication']}"} if "chain" in system else set()
+    return frozenset(names | set(system["cores"].values()))
+
+
+# A plain system as short text.
+
+
+def described(system: PlainSystem) -> str:
+    """A line for each process and runnable."""
+    lines = [f"{process['name']}: {_process(system, process)}" for process in system["processes"]]
+    lines += [f"{name}: {_body(body)}" for name, body in system["runnables"].items()]
+    if "chain" in system:
+        lines.append(f"chain: {' > '.join(system['chain']['processes'])}, {system['chain']['communication']}")
+    without = [name for name, given in system["semaphores"].items() if not given["ceiling"]]
+    lines += [f"without ceiling: {', '.join(without)}"] if without else []
+    return "\n".join(lines)
+
+
+def _process(system: PlainSystem, process: dict[str, Any]) -> str:
+    core = process["core"] if len(system["cores"]) > 1 else ""
+    (kind, given), *_ = process["arrival"].items()
+    arrival = " ".join(f"{key} {value}" for key, value in given.items())
+    rank = f"{process['kind']} {process['preemption'] if process['kind'] == 'task' else ''} {system['cores'][process['core']]} {core}"
+    urgency = f"deadline {process['deadline']}" if "deadline" in process else f"priority {process['priority']}"
+    time_slice = f", slice {process['slice']}" if "slice" in process else ""
+    return f"{' '.join(rank.split())}, {urgency}{time_slice}, {kind} {arrival}: {_body(process['body'])}"
+
+
+def _body(body: list[Item]) -> str:
+    return " ".join(_item(item) for item in body)
+
+
+def _item(item: Item) -> str:
+    counter = f"/{item['prescaler']}+{item['offset']}" if "prescaler" in item else ""
+    match item:
+        case {"execute": [least, most]}:
+            return str(least) if least == most else f"{least}..{most}"
+        case {"call": runnable}:
+            return f"{runnable}(){counter}"
+        case {"group": body}:
+            mark = "" if item.get("ordered", True) else "unordered"
+            return f"{mark}[{_body(body)}]" if item.get("interruptible", True) else f"{mark}![{_body(body)}]"
+        case {"switch": branches}:
+            return f"<{' | '.join(_body(branch) for _, branch in branches)}>"
+        case {"request": semaphore}:
+            return f"({semaphore}"
+        case {"release": semaphore}:
+            return f"{semaphore})"
+        case {"trigger": process}:
+            return f"->{process}{counter}"
+        case {"point": _}:
+            return "."
+    kind, label = next(iter(item.items()))
+    return f"{kind} {label}"

@@ -1,24 +1,33 @@
-"""The latencies observed at a chain: against independent tools on played schedules, and against the definitions read literally."""
+"""The latencies observed at a chain: against independent tools on simulated schedules, and against the definitions read literally."""
 
 import heapq
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from itertools import pairwise
 from math import ceil
 
 import numpy as np
 import pytest
+from hand_made_systems import READ, WRITE, Proc, access, system, ticks
 from hypothesis import given
 from hypothesis import strategies as st
 from support import SHARED
 
+from amalthea_uros import analyze_system
 from amalthea_uros.analyze.chains.job_chains import build_job_chains
 from amalthea_uros.analyze.chains.read_write_times import ReadWriteTimes
+from amalthea_uros.judge.verdict import ObservedVerdict
+from amalthea_uros.perf.constraints import Constraints, LatencyConstraint
+from amalthea_uros.perf.events import EventChain, Parallel, ProcessChange, ProcessEvent, Segment, Sequence
+from amalthea_uros.perf.software import Label
 from amalthea_uros.simulate.kernel.layout import RESPONSE, STIMULUS
 from amalthea_uros.simulate.metrics.chains import RouteMetrics, add_rows, chain_observation
+from amalthea_uros.simulate.options import Options
+from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.timing.basics.quantities import ChainQuantity as Q
 from amalthea_uros.timing.observed import chain_latencies
+from amalthea_uros.units import MICROSECOND as US
 
 MAX_JOBS = 1500
 
@@ -302,3 +311,43 @@ def test_what_is_no_longer_kept_is_counted_in_any_chunks(observed, cuts, window)
     evaluated = sum(found.count for q, found in one.quantities.items() if q in (Q.REDUCED_REACTION_TIME, Q.REDUCED_DATA_AGE))
     complete = literal(observed)
     assert evaluated + one.not_evaluated == len(complete[Q.REDUCED_REACTION_TIME]) + len(complete[Q.REDUCED_DATA_AGE])
+
+
+# Reactions of chains with parallel parts: one of them is enough, or all are needed.
+
+
+@pytest.mark.parametrize(("completed", "verdict"), [(1, ObservedVerdict.NOT_OBSERVED), (2, ObservedVerdict.MISSED)])
+def test_ways_of_which_only_some_decide(completed, verdict):
+    # A starts at 0, and R ends at 4 with what A wrote; B reads it at 10, so that R gets that way only at 20, in the next job.
+    names = ("A", "B", "R")
+    events = tuple(
+        ProcessEvent(name=f"{name} {change}", process=name, change=change)
+        for name in names
+        for change in (ProcessChange.START, ProcessChange.TERMINATE)
+    )
+    ways = (("A start", "R terminate"), ("A start", "B terminate", "R terminate"))
+    branches = tuple(
+        Segment(
+            stimulus=way[0],
+            response=way[-1],
+            items=Sequence(tuple(Segment(stimulus=one, response=other) for one, other in pairwise(way))),
+        )
+        for way in ways
+    )
+    chain = EventChain(
+        name="ways", stimulus="A start", response="R terminate", items=Parallel(items=branches, completed=completed)
+    )
+    built = system(
+        Proc("A", (ticks(1), access("L", WRITE), access("K", WRITE)), 20, priority=3),
+        Proc("B", (access("K", READ), ticks(1), access("M", WRITE)), 20, 10, priority=2),
+        Proc("R", (access("L", READ), access("M", READ), ticks(3)), 20, priority=1),
+        labels=tuple(Label(name=name) for name in "KLM"),
+        events=events,
+        chains=(chain,),
+    )
+    limit = LatencyConstraint(name="limit", chain="ways", maximum=10 * US)
+    built = replace(built, constraints=Constraints(constraints=(limit,)))
+    (found,) = simulate_system(built, Options(duration=200 * US)).requirements
+    assert found.verdict is verdict
+    (proved,) = analyze_system(built).requirements
+    assert str(proved.verdict) == ("met" if completed == 1 else "unknown")
