@@ -28,14 +28,25 @@ _FROM_STIMULUS = (*_BY_TIME, ChainQuantity.DATA_AGE, ChainQuantity.LAST_TO_FIRST
 
 
 class LatencyLists:
-    """The latencies of a chain, in the order in which they are complete."""
+    """The latencies of a chain, in the order in which they are complete.
+
+    Attributes
+    ----------
+    unanswered : number of stimuli without a response
+    """
 
     def __init__(self) -> None:
+        self.unanswered = 0
         self._values: dict[ChainQuantity, list[Numbers]] = {}
         self._times: dict[ChainQuantity, list[Numbers]] = {}
 
-    def note(self, quantity: ChainQuantity, values: Numbers, _stimuli: Numbers, starts: Numbers) -> None:
-        """Take values in."""
+    def add(self, is_response: Flags, time: Numbers, stamps: Numbers) -> None:
+        """Take a part of the events in that nothing is missing in; `stamps` says which stimulus each shows."""
+        latencies = ObservedRouteLatencies(self._note)
+        latencies.add(is_response, time, stamps)
+        self.unanswered += latencies.stimuli - 1 - latencies.answered
+
+    def _note(self, quantity: ChainQuantity, values: Numbers, _stimuli: Numbers, starts: Numbers) -> None:
         self._values.setdefault(quantity, []).append(values)
         self._times.setdefault(quantity, []).append(starts + values)
 
@@ -82,16 +93,14 @@ def reactions(
     # A step back ends what can be compared.
     is_back = np.concatenate([[False], (time[1:] < time[:-1]) & (segment[1:] == segment[:-1])])[: len(time)]
     segment = segment + np.cumsum(is_back)
-    found, unanswered = LatencyLists(), 0
+    found = LatencyLists()
     borders = [0, *(np.flatnonzero(np.diff(segment)) + 1).tolist(), len(segment)]
     for first, end in pairwise(borders if len(segment) else []):
         here = slice(first, end)
-        latencies = ObservedRouteLatencies(found.note)
         kept, stamps, repeated = _stamped(is_response[here], None if number is None else number[here])
         duplicated += repeated
-        latencies.add(is_response[here][kept], time[here][kept], stamps)
-        unanswered += latencies.stimuli - 1 - latencies.answered
-    counts = Counts(incomplete=unanswered, lost=lost, duplicated=duplicated, reordered=int(np.count_nonzero(is_back)))
+        found.add(is_response[here][kept], time[here][kept], stamps)
+    counts = Counts(incomplete=found.unanswered, lost=lost, duplicated=duplicated, reordered=int(np.count_nonzero(is_back)))
     if number is None:
         method = "each response with the latest stimulus before it (the least possible)"
         yield from (replace(series, is_least=True) for series in found.series(name, counts, method, _BY_TIME))
@@ -231,15 +240,13 @@ class ChainSteps:
 
 
 def _latencies(name: str, steps: _ChainEnds, begin: EventKind) -> Iterator[Series]:
-    found, unanswered = LatencyLists(), 0
+    found = LatencyLists()
     order = np.argsort(steps.segment, kind="stable")
     for here in np.split(order, np.flatnonzero(np.diff(steps.segment[order])) + 1):
         is_response, stimulus = steps.is_response[here], steps.stimulus[here]
-        latencies = ObservedRouteLatencies(found.note)
-        latencies.add(is_response, steps.time[here], _in_order(is_response, stimulus))
-        unanswered += latencies.stimuli - 1 - latencies.answered
+        found.add(is_response, steps.time[here], _in_order(is_response, stimulus))
     method = f"from the {BEGINS[begin]} of the job with the first step to the last step, by the number of the stimulus"
-    yield from found.series(name, Counts(incomplete=unanswered), method, BY_NUMBER)
+    yield from found.series(name, Counts(incomplete=found.unanswered), method, BY_NUMBER)
 
 
 def _in_order(is_response: Flags, stimulus: Numbers) -> Numbers:

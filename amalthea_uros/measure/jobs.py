@@ -110,10 +110,11 @@ class JobFollower:
             elif EventKind.RUNNABLE_START <= kind <= EventKind.RUNNABLE_TERMINATE:
                 self._execute(time, kind, source, source_instance, target, instance)
             elif kind == EventKind.GAP:
-                self._drop_all()
+                self.gaps += 1
+                self.finish()
 
     def finish(self) -> None:
-        """Drop the jobs that have not ended."""
+        """Drop the jobs that have not ended, as at a gap or at the end of the trace."""
         for key in list(self._open):
             self._drop(key)
 
@@ -173,11 +174,6 @@ class JobFollower:
         for runnable, *_ in job.runnables:
             self._of_runnable(key[0], runnable).incomplete += 1
         self._of(key[0]).add(key[1], self.gaps, job.activation, job.start, time, job.times, is_numbered=True)
-
-    def _drop_all(self) -> None:
-        self.gaps += 1
-        for key in list(self._open):
-            self._drop(key)
 
     def _drop(self, key: tuple[int, int]) -> None:
         job = self._open.pop(key)
@@ -259,14 +255,27 @@ def _series(kind: MeasuredKind, name: str, ended: _EndedJobs) -> Iterator[Series
         yield Series(kind=kind, name=name, quantity=JobMetric.RESPONSE_TIME, statistics=None, counts=counts)
         return
     jobs, follows = _table(ended)
-    is_activated = jobs[JobColumn.ACTIVATION] != _UNACTIVATED
-    for metric, values in zip(OWN, own_times(jobs), strict=True):
-        yield from _of_metric(kind, name, metric, values, jobs[JobColumn.END], is_activated, counts)
-    values = times_between(jobs[:, :-1], jobs[:, 1:])
-    is_known = follows[1:]
-    both = is_activated[1:] & is_activated[:-1]
-    for metric, row in zip(BETWEEN, values, strict=True):
-        yield from _of_metric(kind, name, metric, row[is_known], jobs[JobColumn.END, 1:][is_known], both[is_known], counts)
+    is_activated, is_known = jobs[JobColumn.ACTIVATION] != _UNACTIVATED, follows[1:]
+    are_activated = is_activated[1:] & is_activated[:-1] & is_known
+    whole = zip(OWN, own_times(jobs), strict=True)
+    between = zip(BETWEEN, times_between(jobs[:, :-1], jobs[:, 1:]), strict=True)
+    found = [(metric, row, jobs[JobColumn.END], np.ones(len(follows), bool), is_activated) for metric, row in whole]
+    found += [(metric, row, jobs[JobColumn.END, 1:], is_known, are_activated) for metric, row in between]
+    method = "from the events of jobs" if kind is MeasuredKind.PROCESS else "from the events of runnables and their jobs"
+    for metric, row, ends, is_there, is_from_activation in found:
+        is_used = is_from_activation if metric in _FROM_ACTIVATION else is_there
+        values = row[is_used]
+        if len(values):
+            yield Series(
+                kind=kind,
+                name=name,
+                quantity=metric,
+                statistics=statistics_of(values),
+                values=values,
+                times=ends[is_used],
+                counts=counts,
+                method=method,
+            )
 
 
 def _table(ended: _EndedJobs) -> tuple[Numbers, Flags]:
@@ -275,29 +284,3 @@ def _table(ended: _EndedJobs) -> tuple[Numbers, Flags]:
     jobs = np.zeros((len(JobColumn), rows.shape[1]), np.int64)
     jobs[[JobColumn.INSTANCE, JobColumn.ACTIVATION, JobColumn.START, JobColumn.END, *_COLUMNS.values()]] = rows[:-1]
     return jobs, rows[-1].astype(bool)
-
-
-def _of_metric(
-    kind: MeasuredKind,
-    name: str,
-    metric: JobMetric,
-    values: Numbers,
-    ends: Numbers,
-    is_activated: Flags,
-    counts: Counts,
-) -> Iterator[Series]:
-    if metric in _FROM_ACTIVATION:
-        values, ends = values[is_activated], ends[is_activated]
-    if len(values):
-        statistics = statistics_of(values)
-        method = "from the events of jobs" if kind is MeasuredKind.PROCESS else "from the events of runnables and their jobs"
-        yield Series(
-            kind=kind,
-            name=name,
-            quantity=metric,
-            statistics=statistics,
-            values=values,
-            times=ends,
-            counts=counts,
-            method=method,
-        )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from fractions import Fraction
 from math import ceil, log, sqrt
@@ -60,9 +60,10 @@ def statistics_of(values: Numbers) -> TimeStatistics:
     """
     import numpy as np
 
+    from amalthea_uros._internal.exact_sums import sums, sums_of_squares
+
     if not len(values):
         raise InvalidArgumentError("there are no values, so they have no statistics")
-    from amalthea_uros._internal.exact_sums import sums, sums_of_squares
 
     ordered = np.sort(values)
     count, first = len(ordered), int(ordered[0])
@@ -114,14 +115,9 @@ def merged(parts: Sequence[TimeStatistics]) -> TimeStatistics:
 
 def shifted(statistics: TimeStatistics, by: Time) -> TimeStatistics:
     """The statistics of the values with a time added to each."""
-    return TimeStatistics(
-        count=statistics.count,
-        min=statistics.min + by,
-        mean=statistics.mean + by,
-        max=statistics.max + by,
-        variance=statistics.variance,
-        percentiles={share: value + by for share, value in statistics.percentiles.items()},
-    )
+    percentiles = {share: value + by for share, value in statistics.percentiles.items()}
+    low, mean, high = statistics.min + by, statistics.mean + by, statistics.max + by
+    return replace(statistics, min=low, mean=mean, max=high, percentiles=percentiles)
 
 
 class MeasuredKind(StrEnum):

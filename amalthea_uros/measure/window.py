@@ -3,14 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.arrays import Flags, Numbers
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.units import Time, time_text
-
-if TYPE_CHECKING:
-    pass
 
 
 @dataclass(frozen=True, slots=True)

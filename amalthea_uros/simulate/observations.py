@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.judge.limits import DEADLINE, PERIOD, SystemLimit
@@ -17,9 +16,6 @@ from amalthea_uros.judge.margins import margin_of
 from amalthea_uros.judge.verdict import ObservedJudgement, ObservedVerdict
 from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
 from amalthea_uros.units import Time
-
-if TYPE_CHECKING:
-    pass
 
 #: The metrics of processes of which histograms are kept; of chains, all quantities have one.
 WITH_HISTOGRAM = (JobMetric.NET_EXECUTION_TIME, JobMetric.RESPONSE_TIME)
