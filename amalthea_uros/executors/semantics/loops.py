@@ -52,7 +52,7 @@ def min_pace(executor: Executor) -> Time:
 def is_paced(executor: Executor) -> bool:
     """Whether iterations keep a distance from each other by themselves, by a sleep or a period that the wait cannot exceed."""
     loop = executor.loop
-    return loop.sleep > 0 or (loop.period is not None and loop.timeout <= loop.period)
+    return loop.sleep > 0 or (loop.period is not None and timeout_of(executor) <= loop.period)
 
 
 def returns_at_once(executor: Executor) -> bool:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from amalthea_uros.executors.semantics.loops import is_paced, iterations_follow_at_once
+from amalthea_uros.executors.semantics.loops import is_paced, iterations_follow_at_once, timeout_of
 from amalthea_uros.perf.activities import Trigger, walk
 from amalthea_uros.perf.distributions import Boundaries, Uniform
 from amalthea_uros.perf.executors import Executor, HandleKind, Loop
@@ -62,7 +62,7 @@ def activation(executor: Executor, callbacks: Sequence[Callback], min_iteration:
         yield _after_sleeps(name, loop, min_iteration)
     elif loop.period is not None and is_paced(executor):
         # An iteration executes when its wait ends.
-        yield Periodic(name=name, period=loop.period, offset=offset, jitter=Boundaries(lower=0, upper=loop.timeout))
+        yield Periodic(name=name, period=loop.period, offset=offset, jitter=Boundaries(lower=0, upper=timeout_of(executor)))
     elif reason:
         unknown = Custom(name=name, description=f"{reason}, and the execution time of an iteration is not specified")
         yield _at_least(name, min_iteration) if min_iteration else unknown

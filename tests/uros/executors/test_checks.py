@@ -52,6 +52,13 @@ def test_an_executor_with_timers_only_polls_unless_it_sleeps():
     assert "EXE006" not in findings_of("{loop: {spin: 1 s}}")
 
 
+@pytest.mark.parametrize("timeout", ["", ", timeout: 1 s", ", timeout: 20 ms"])
+def test_a_wait_that_returns_at_once_does_not_exceed_the_period(timeout):
+    # rclc_executor_spin_one_period sleeps until the next period, whatever the timeout is that it does not wait for.
+    assert not {"EXE002", "EXE003", "EXE006"} & {*findings_of(f"{{loop: {{spin_period: 20 ms{timeout}}}}}", TIMER)}
+    assert "EXE002" in findings_of("{loop: {spin_period: 20 ms}}")
+
+
 def test_tasks_of_callbacks_that_publish_are_threads_too():
     own = CALLBACKS.replace("publishes: [state]", "publishes: [state], runs_in: own-task")
     assert "EXE008" in findings_of(f"{{{LOOP}}}", own)
