@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import accumulate, pairwise
-from typing import NamedTuple
 
 from amalthea_uros.analyze.chains import bounds, job_chains
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
@@ -17,7 +16,7 @@ from amalthea_uros.analyze.explanations.hop_causes import HopReasons, cause
 from amalthea_uros.analyze.phases.cases import PhaseCases
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import LatencyQuantity, LatencyValue
-from amalthea_uros.analyze.results.explanations import CauseKind, ChainExplanation, Execution, LatencyCause, ProcessHop
+from amalthea_uros.analyze.results.explanations import CauseKind, ChainExplanation, LatencyCause, ProcessHop
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.constraints import LatencyConstraint
 from amalthea_uros.perf.events import EventChain
@@ -27,25 +26,6 @@ from amalthea_uros.timing.dataflow.routes import Route, route_text
 from amalthea_uros.timing.dataflow.stages import Stage
 from amalthea_uros.timing.jobs.counters import ALWAYS
 from amalthea_uros.units import Time
-
-
-class _Step(NamedTuple):
-    """A hop in time units, before its place in the whole is known: release and start are counted back from the read.
-
-    The times of executions are relative to the read.
-    """
-
-    process: str
-    wait: Time
-    run: Time
-    job: int | None = None
-    release: Time | None = None
-    start: Time | None = None
-    period: Time | None = None
-    one_in: int = 1
-    wait_causes: tuple[LatencyCause, ...] = ()
-    run_causes: tuple[LatencyCause, ...] = ()
-    executions: tuple[Execution, ...] = ()
 
 
 def explain_chain(
@@ -97,7 +77,10 @@ def _evaluators(chain: EventChain, analysis: Analysis) -> Iterator[ChainEvaluato
 
 @dataclass(frozen=True, slots=True)
 class _RouteExplanation:
-    """The explanation of a value by one route of a chain."""
+    """The explanation of a value by one route of a chain.
+
+    Until its place in the whole is known, the times of a hop are in time units and counted from its read.
+    """
 
     evaluator: ChainEvaluator
     route: Route
@@ -127,11 +110,11 @@ class _RouteExplanation:
         same = (found.quantity, found.value) == (self.quantity, self.value.value)
         return same and self.value.method.startswith(found.method)
 
-    def _steps(self, latencies: RouteLatencies) -> tuple[list[_Step], Time]:
+    def _steps(self, latencies: RouteLatencies) -> tuple[list[ProcessHop], Time]:
         groups = self.evaluator.groups(self.route)
         if self.value.source != job_chains.SOURCE:
             return self._of_bound([timed for part in latencies.parts for timed in part], groups), 0
-        found: list[_Step] = []
+        found: list[ProcessHop] = []
         overwritten = 0
         for number, part in enumerate(latencies.parts):
             here, groups = groups[: len(part)], groups[len(part) :]
@@ -140,7 +123,7 @@ class _RouteExplanation:
                 return [], 0
             steps = self._of_jobs(path, here, part)
             late = (*cause(CauseKind.JUST_MISSED, overwritten), *steps[0].wait_causes)
-            found += [steps[0]._replace(wait=steps[0].wait + overwritten, wait_causes=late), *steps[1:]]
+            found += [replace(steps[0], wait=steps[0].wait + overwritten, wait_causes=late), *steps[1:]]
             overwritten = path.overwritten
         return found, overwritten
 
@@ -152,8 +135,8 @@ class _RouteExplanation:
 
     # By job chains
 
-    def _of_jobs(self, path: JobPath, groups: Sequence[Sequence[Stage]], part: Sequence[TimedStage]) -> list[_Step]:
-        found: list[_Step] = []
+    def _of_jobs(self, path: JobPath, groups: Sequence[Sequence[Stage]], part: Sequence[TimedStage]) -> list[ProcessHop]:
+        found: list[ProcessHop] = []
         previous = path.begin
         for job, times, group, timed in zip(path.jobs, path.times, groups, part, strict=True):
             release = int(times.releases[job])
@@ -165,13 +148,13 @@ class _RouteExplanation:
             number = self._number(group[0], release)
             start = self._start(name, number)
             step, *triggered = self._with_triggered(
-                _Step(
-                    name,
+                ProcessHop(
+                    process=name,
                     wait=read - previous,
                     run=write - read,
                     job=number,
-                    release=read - release,
-                    start=None if start is None else read - start,
+                    release=release - read,
+                    start=None if start is None else start - read,
                     period=timed.task.period,
                     one_in=(group[0].counter or ALWAYS).prescaler,
                 ),
@@ -181,7 +164,7 @@ class _RouteExplanation:
             wait, run, executed = reasons.of_job(previous, release, read, read + step.run)
             if not found and step.wait:
                 wait = cause(CauseKind.JUST_MISSED, step.wait)
-            found += [step._replace(wait_causes=wait, run_causes=run, executions=executed), *triggered]
+            found += [replace(step, wait_causes=wait, run_causes=run, executions=executed), *triggered]
             previous = write
         return found
 
@@ -206,31 +189,31 @@ class _RouteExplanation:
         start = int(latest[job]) + cycles * found.cycle
         return start * self.timing.unit // self.evaluator.context.time_base(process)
 
-    def _with_triggered(self, step: _Step, group: Sequence[Stage]) -> list[_Step]:
+    def _with_triggered(self, step: ProcessHop, group: Sequence[Stage]) -> list[ProcessHop]:
         """A step, and those of the processes that it triggers, which add the same time to every job."""
         parts = [self.timing.group(group[:count], None).task.response for count in range(1, len(group) + 1)]
         delays = [more - less for less, more in pairwise(parts)]
         if step.run < sum(delays):
             return [step]
         triggered = [
-            _Step(stage.process.name, 0, delay, run_causes=cause(CauseKind.TRIGGERED, delay))
+            ProcessHop(process=stage.process.name, wait=0, run=delay, run_causes=cause(CauseKind.TRIGGERED, delay))
             for stage, delay in zip(group[1:], delays, strict=True)
         ]
-        return [step._replace(run=step.run - sum(delays)), *triggered]
+        return [replace(step, run=step.run - sum(delays)), *triggered]
 
     # By a bound
 
-    def _of_bound(self, timed: Sequence[TimedStage], groups: Sequence[Sequence[Stage]]) -> list[_Step]:
+    def _of_bound(self, timed: Sequence[TimedStage], groups: Sequence[Sequence[Stage]]) -> list[ProcessHop]:
         table = bounds.REDUCED_DATA_AGE if self.quantity is LatencyQuantity.MAX_REDUCED_DATA_AGE else bounds.REACTION_TIME
         of_method = next((table[source] for source in table if self.value.source.startswith(source)), None)
         if of_method is None:
             return []
-        found: list[_Step] = []
+        found: list[ProcessHop] = []
         for term, group, each in zip(of_method([each.task for each in timed]) or (), groups, timed, strict=True):
             is_reduced = self.quantity is LatencyQuantity.MAX_REDUCED_REACTION_TIME and not found
             step, *triggered = self._with_triggered(
-                _Step(
-                    group[0].process.name,
+                ProcessHop(
+                    process=group[0].process.name,
                     wait=0 if is_reduced else term.wait,
                     run=term.run,
                     period=each.task.period if each.task.is_regular else None,
@@ -240,7 +223,7 @@ class _RouteExplanation:
             )
             waits = CauseKind.FULL_PERIOD if step.wait == each.task.period else CauseKind.NEXT_JOB
             runs = CauseKind.LOGICAL if each.is_logical else CauseKind.RESPONSE
-            found += [step._replace(wait_causes=cause(waits, step.wait), run_causes=cause(runs, step.run)), *triggered]
+            found += [replace(step, wait_causes=cause(waits, step.wait), run_causes=cause(runs, step.run)), *triggered]
         return found
 
     # Times
@@ -248,34 +231,31 @@ class _RouteExplanation:
     def _picoseconds(self, time: Time) -> Time:
         return -(-time // self.timing.unit)
 
-    def _placed(self, steps: Sequence[_Step]) -> tuple[ProcessHop, ...]:
+    def _placed(self, steps: Sequence[ProcessHop]) -> tuple[ProcessHop, ...]:
         """The hops in picoseconds; as all times are rounded from the beginning, waits and runs still add up."""
         found = []
         now, origin = 0, self._picoseconds(steps[0].wait)
+
+        def placed(time: Time) -> Time:
+            return self._picoseconds(time) - origin
+
         for step in steps:
             read, write = now + step.wait, now + step.wait + step.run
             found.append(
-                ProcessHop(
-                    process=step.process,
-                    job=step.job,
-                    release=None if step.release is None else self._picoseconds(read - step.release) - origin,
-                    start=None if step.start is None else self._picoseconds(read - step.start) - origin,
-                    read=self._picoseconds(read) - origin,
-                    write=self._picoseconds(write) - origin,
-                    wait=self._picoseconds(read) - self._picoseconds(now),
-                    run=self._picoseconds(write) - self._picoseconds(read),
+                replace(
+                    step,
+                    release=None if step.release is None else placed(read + step.release),
+                    start=None if step.start is None else placed(read + step.start),
+                    read=placed(read),
+                    write=placed(write),
+                    wait=placed(read) - placed(now),
+                    run=placed(write) - placed(read),
                     core=self._core(step.process),
                     period=None if step.period is None else self._picoseconds(step.period),
-                    one_in=step.one_in,
                     wait_causes=self._rounded(step.wait_causes, now),
                     run_causes=self._rounded(step.run_causes, read),
                     executions=tuple(
-                        replace(
-                            each,
-                            begin=self._picoseconds(read + each.begin) - origin,
-                            end=self._picoseconds(read + each.end) - origin,
-                        )
-                        for each in step.executions
+                        replace(each, begin=placed(read + each.begin), end=placed(read + each.end)) for each in step.executions
                     ),
                 )
             )

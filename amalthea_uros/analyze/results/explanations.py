@@ -209,13 +209,13 @@ class ProcessHop:
     """
 
     process: str
-    job: int | None
-    release: Time | None
-    start: Time | None
-    read: Time
-    write: Time
     wait: Time
     run: Time
+    job: int | None = None
+    release: Time | None = None
+    start: Time | None = None
+    read: Time = 0
+    write: Time = 0
     core: str | None = None
     period: Time | None = None
     one_in: int = 1
