@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from hand_made_systems import READ, WRITE, Proc, access, chain, system, ticks
 
-from amalthea_uros.analyze.chains.messages.evaluate import evaluate_executors_and_messages
+from amalthea_uros.analyze.chains.message_chains import evaluate_executors_and_messages
 from amalthea_uros.analyze.response_times.propagation import solve
 from amalthea_uros.executors.semantics.loops import timing_context
 from amalthea_uros.perf.activities import Call, Chance, ProbabilitySwitch

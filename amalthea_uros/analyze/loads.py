@@ -1,4 +1,4 @@
-"""The load of cores, and which overloads are certain."""
+"""The load of cores, which overloads are certain, and what of it is ignored or lost."""
 
 from __future__ import annotations
 
@@ -8,10 +8,14 @@ from fractions import Fraction
 
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.results.processes import ProcessorResult
+from amalthea_uros.perf.network import Purpose
+from amalthea_uros.perf.software import Task
+from amalthea_uros.perf.stimuli import RelativePeriodic
 from amalthea_uros.timing.activation.load import CoreLoad, certain_loads, suppressible
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.demand.job_paths import JobDemand
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
+from amalthea_uros.timing.demand.overheads import COUNTED
 from amalthea_uros.timing.jobs.executed import states_mean
 from amalthea_uros.timing.response import Response
 from amalthea_uros.timing.scheduling.allocation import allocated_cores
@@ -106,3 +110,39 @@ def _never_suppressed(names: Iterable[str], solution: Solution) -> list[str]:
 
 def _sum(values: Iterable[Fraction]) -> Fraction:
     return sum(values, Fraction(0))
+
+
+def note_ignored(solution: Solution) -> None:
+    """Report what the analysis does not take into account."""
+    _note_regular_frames(solution)
+    system, notes = solution.context.system, solution.context.notes
+    overheads = {overhead.name: overhead for overhead in system.os.overheads}
+    for operating_system in system.os.systems:
+        overhead = overheads.get(operating_system.overhead or "")
+        for service, _ in overhead.services if overhead else ():
+            if service not in COUNTED:
+                message = f"the overhead of {service!r} in {operating_system.name!r} is ignored"
+                notes.warning("ANA006", message, overhead)
+    for name, response in solution.responses.items():
+        process = solution.context.scheduled[name].process
+        if isinstance(process, Task) and response.worst is not None and name in solution.losing:
+            jobs, limit = solution.event_models[name].eta_plus(response.worst), process.activation_limit
+            message = (
+                f"{name!r} can have {jobs} pending activations, more than its activation limit {limit}; the others are lost"
+            )
+            notes.warning("ANA007", message, process)
+
+
+def _note_regular_frames(solution: Solution) -> None:
+    """Report which foreign frames are assumed to be on time; a DBC file states no jitter."""
+    system = solution.context.system
+    stimuli = {stimulus.name: stimulus for stimulus in system.stimuli.stimuli}
+    regular = [
+        each.name
+        for each in system.network.transmissions
+        if each.purpose is Purpose.FOREIGN
+        and any(isinstance(stimuli.get(name), RelativePeriodic) for name in system.processes[each.name].stimuli)
+    ]
+    if regular:
+        names = ", ".join(regular)
+        solution.context.notes.assume(f"frames of others without a stated jitter never come earlier than their period: {names}")

@@ -9,12 +9,12 @@ from amalthea_uros._internal.by_name import Results
 from amalthea_uros.analyze.callbacks import CallbackEvaluator
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.chains.job_chains import JobBudget
-from amalthea_uros.analyze.chains.messages.evaluate import evaluate_executors_and_messages
+from amalthea_uros.analyze.chains.message_chains import evaluate_executors_and_messages
 from amalthea_uros.analyze.constraints.evaluator import ConstraintEvaluator
 from amalthea_uros.analyze.constraints.requirements import evaluate_requirements
-from amalthea_uros.analyze.loads import processor_results
+from amalthea_uros.analyze.loads import note_ignored, processor_results
 from amalthea_uros.analyze.phases.cases import PhaseCases
-from amalthea_uros.analyze.phases.merged import merged, merged_chain
+from amalthea_uros.analyze.phases.merged import merged, over_all_phases
 from amalthea_uros.analyze.processes import process_results
 from amalthea_uros.analyze.response_times.propagation import solve
 from amalthea_uros.analyze.response_times.solution import Solution
@@ -24,10 +24,6 @@ from amalthea_uros.executors.bounds.findings import note_executors
 from amalthea_uros.executors.results import ExecutorResult
 from amalthea_uros.executors.semantics.loops import timing_context
 from amalthea_uros.judge.summary import summarize
-from amalthea_uros.perf.events import EventChain
-from amalthea_uros.perf.network import Purpose
-from amalthea_uros.perf.software import Task
-from amalthea_uros.perf.stimuli import RelativePeriodic
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.activation.phases import (
     ExternalInput,
@@ -36,7 +32,6 @@ from amalthea_uros.timing.activation.phases import (
     with_stated_phases,
 )
 from amalthea_uros.timing.basics.settings import Settings
-from amalthea_uros.timing.demand.overheads import COUNTED
 
 
 def analyze_system(system: System, settings: Settings | None = None) -> Analysis:
@@ -91,13 +86,12 @@ def _analysis(
     """
     context = solution.context
     system = context.system
-    _note_ignored(solution)
-    _note_regular_frames(solution)
+    note_ignored(solution)
     evaluation = ChainEvaluator(solution, budget)
     processes = Results(process_results(solution, executors))
     callbacks = Results(CallbackEvaluator(solution, executors).all())
     known = {chain.name: chain for chain in crossing}
-    chains = Results(known.get(chain.name) or _chain(chain, evaluation) for chain in system.events.chains)
+    chains = Results(known.get(chain.name) or over_all_phases(chain, evaluation) for chain in system.events.chains)
     verdicts = evaluate_requirements(system, processes, callbacks, context.notes)
     requirements = Results((*verdicts, *ConstraintEvaluator(evaluation, {chain.name: chain for chain in chains}).all()))
     processors = Results(processor_results(solution))
@@ -113,51 +107,3 @@ def _analysis(
         findings=tuple(context.notes.found),
         executors=executors,
     )
-
-
-def _chain(chain: EventChain, evaluation: ChainEvaluator) -> ChainResult:
-    """A chain, over all unknown phases of the jobs that it passes if these are not too many."""
-    cases = PhaseCases.of(evaluation.solution, evaluation.occurrences(chain))
-    if cases is None:
-        return evaluation.chain(chain)
-    of_chain = cases.of_chain(chain)
-    results = []
-    for _, solution in cases.solutions(of_chain):
-        results.append(ChainEvaluator(solution, evaluation.budget).chain(chain))
-        evaluation.context.notes.include(solution.context.notes)
-    return merged_chain(results, list(of_chain.values()))
-
-
-def _note_regular_frames(solution: Solution) -> None:
-    """Tell which frames of others are taken to be on time; a DBC file states no jitter."""
-    system = solution.context.system
-    stimuli = {stimulus.name: stimulus for stimulus in system.stimuli.stimuli}
-    regular = [
-        each.name
-        for each in system.network.transmissions
-        if each.purpose is Purpose.FOREIGN
-        and any(isinstance(stimuli.get(name), RelativePeriodic) for name in system.processes[each.name].stimuli)
-    ]
-    if regular:
-        names = ", ".join(regular)
-        solution.context.notes.assume(f"frames of others without a stated jitter never come earlier than their period: {names}")
-
-
-def _note_ignored(solution: Solution) -> None:
-    """Report what the analysis does not take into account."""
-    system, notes = solution.context.system, solution.context.notes
-    overheads = {overhead.name: overhead for overhead in system.os.overheads}
-    for operating_system in system.os.systems:
-        overhead = overheads.get(operating_system.overhead or "")
-        for service, _ in overhead.services if overhead else ():
-            if service not in COUNTED:
-                message = f"the overhead of {service!r} in {operating_system.name!r} is ignored"
-                notes.warning("ANA006", message, overhead)
-    for name, response in solution.responses.items():
-        process = solution.context.scheduled[name].process
-        if isinstance(process, Task) and response.worst is not None and name in solution.losing:
-            jobs, limit = solution.event_models[name].eta_plus(response.worst), process.activation_limit
-            message = (
-                f"{name!r} can have {jobs} pending activations, more than its activation limit {limit}; the others are lost"
-            )
-            notes.warning("ANA007", message, process)

@@ -12,12 +12,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from amalthea_uros.analyze.chains.read_write_times import ReadWriteBounds, ReadWriteTimes
 from amalthea_uros.analyze.response_times import schedule
 from amalthea_uros.analyze.response_times.core_schedule import Busy, times_of_completion
 from amalthea_uros.analyze.response_times.fixed_priority import time_until_executed
 from amalthea_uros.analyze.response_times.schedule import Jobs
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.perf.activities import Communication, Execute, ExecutionNeed
+from amalthea_uros.perf.stimuli import Periodic
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.dataflow.events import JobPhase
 from amalthea_uros.timing.dataflow.stages import At, Boundary, Fire, Pass, Read, Stage, Write
@@ -222,3 +224,66 @@ class BoundaryWindows:
     @property
     def _core(self) -> str:
         return self.solution.context.scheduled[self.stage.process.name].core
+
+
+def logical(releases: Periodic, unit: int) -> ReadWriteBounds:
+    """The times of a periodic task under logical execution time (LET): it reads at its release and publishes at the end of its period.
+
+    They do not depend on the schedule, so that job chains are exact (J. Martinez, I. Sañudo and M. Bertogna, "Analytical
+    characterization of end-to-end communication delays with logical execution time", IEEE Transactions on CAD 37(11), 2018).
+    """
+    period, offset = releases.period * unit, releases.offset * unit
+    reads = np.array([offset], dtype=np.int64)
+    times = ReadWriteTimes(releases=reads, reads=reads, writes=reads + period, cycle=period, until=offset + period)
+    return ReadWriteBounds(pessimistic=times, optimistic=times, steady_state_start=offset, is_logical=True)
+
+
+def by_schedule(stage: Stage, solution: Solution, unit: int) -> ReadWriteBounds | None:
+    """The times of a stage by the schedule of its core; None if that is unknown or too long."""
+    context, name = solution.context, stage.process.name
+    scheduled = context.scheduled.get(name)
+    inside = any(map(is_inside, (stage.enter, stage.leave)))
+    found = None if scheduled is None else solution.schedule(scheduled.core, inside)
+    if found is None:
+        return None
+    period, time_base = found.tasks[name].period, context.time_base(name)
+    best, worst = MultiframeDemand.best_of, MultiframeDemand.worst_of
+    early = BoundaryTimes(context, stage, found.best[name], period, best)
+    late = BoundaryTimes(context, stage, found.worst[name], period, worst, found.busy_above(name) if inside else None)
+
+    def unified(times: Numbers, is_upper: bool) -> Numbers:
+        """Times of the core in the unit that all cores share; rounded up or down if that is coarser."""
+        if unit % time_base == 0:
+            return times if unit == time_base else times * (unit // time_base)
+        return -(-times // time_base) if is_upper else times // time_base
+
+    def read_write_times(read: BoundaryTimes, write: BoundaryTimes) -> ReadWriteTimes:
+        return ReadWriteTimes(
+            releases=unified(early.jobs.releases, is_upper=False),
+            reads=unified(read.at(stage.enter), is_upper=read is late),
+            writes=unified(write.at(stage.leave), is_upper=write is late),
+            cycle=found.cycle * unit // time_base,
+            until=found.until * unit // time_base,
+        )
+
+    return ReadWriteBounds(
+        pessimistic=read_write_times(early, late),
+        optimistic=read_write_times(late, early),
+        steady_state_start=found.steady_state_start * unit // time_base,
+    )
+
+
+def by_response(windows: BoundaryWindows, releases: Periodic) -> ReadWriteBounds:
+    """The times of a stage by its windows, of which the period is that of the releases."""
+    stage, period, offset = windows.stage, windows.period, releases.offset * windows.unit
+    release_times = offset + period * np.arange(2, dtype=np.int64)
+
+    def read_write_times(read: Time, write: Time) -> ReadWriteTimes:
+        reads, writes = release_times + read, release_times + write
+        return ReadWriteTimes(releases=release_times, reads=reads, writes=writes, cycle=period, until=offset + 2 * period)
+
+    return ReadWriteBounds(
+        pessimistic=read_write_times(windows.earliest(stage.enter), windows.latest(stage.leave)),
+        optimistic=read_write_times(windows.latest(stage.enter), windows.earliest(stage.leave)),
+        steady_state_start=offset,
+    )

@@ -89,22 +89,6 @@ class ReadWriteTimes:
         )
 
 
-def let_times(period: Time, offset: Time, cycle: Time) -> ReadWriteTimes:
-    """The jobs of a periodic task under logical execution time (LET): it reads at its release and publishes at the end of its period.
-
-    This does not depend on the schedule, so that job chains are exact (J. Martinez, I. Sañudo and M. Bertogna, "Analytical
-    characterization of end-to-end communication delays with logical execution time", IEEE Transactions on CAD 37(11), 2018).
-
-    Parameters
-    ----------
-    cycle : time after which the whole chain repeats, a multiple of the period
-    """
-    cycle = lcm(cycle, period)
-    until = offset + cycle
-    releases = offset + period * np.arange(cycle // period, dtype=np.int64)
-    return ReadWriteTimes(releases=releases, reads=releases, writes=releases + period, cycle=cycle, until=until)
-
-
 def reach(chain: Sequence[ReadWriteTimes]) -> Time:
     """An upper bound of the time between the releases of the jobs of any job chain.
 

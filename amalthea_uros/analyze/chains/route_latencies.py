@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 from amalthea_uros.analyze.chains import bounds, job_chains
 from amalthea_uros.analyze.chains.bounds import ChainTask, total
 from amalthea_uros.analyze.chains.read_write_times import TimedStage
-from amalthea_uros.analyze.chains.stage_timing import in_picoseconds
 from amalthea_uros.analyze.results.chains import LatencyQuantity, LatencyValue
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.timing.response import Claim
@@ -273,3 +272,8 @@ def _wait_at_start(tasks: Sequence[ChainTask]) -> Time:
 def _not_released(tasks: Sequence[ChainTask]) -> Time:
     """The time of the whole periods before their first jobs in which the tasks of a chain would have been released otherwise."""
     return sum(task.first_release // task.period * task.period for task in tasks[1:])
+
+
+def in_picoseconds(value: Fraction | Time, unit: int, is_upper: bool) -> Time:
+    """A time in whole picoseconds; upper bounds are rounded up, lower bounds down."""
+    return -int(-value // unit) if is_upper else int(value // unit)

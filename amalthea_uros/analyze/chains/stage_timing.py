@@ -8,39 +8,40 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from fractions import Fraction
-from functools import reduce
-from itertools import pairwise
 from math import lcm
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from amalthea_uros.analyze.chains.boundary_times import BoundaryTimes, BoundaryWindows, is_inside, is_logical, kind
+from amalthea_uros.analyze.chains.boundary_times import (
+    BoundaryWindows,
+    by_response,
+    by_schedule,
+    is_inside,
+    is_logical,
+    kind,
+    logical,
+)
 from amalthea_uros.analyze.chains.bounds import ChainTask
-from amalthea_uros.analyze.chains.read_write_times import ReadWriteBounds, ReadWriteTimes, TimedStage, let_times
+from amalthea_uros.analyze.chains.participation import Participation
+from amalthea_uros.analyze.chains.read_write_times import ReadWriteBounds, ReadWriteTimes, TimedStage
 from amalthea_uros.analyze.response_times.blocking import Blocking
 from amalthea_uros.analyze.response_times.schedule import MAX_JOBS
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.errors import UnknownError
-from amalthea_uros.perf.activities import Communication, Trigger
+from amalthea_uros.perf.activities import Communication
 from amalthea_uros.perf.software import Process
-from amalthea_uros.perf.stimuli import Counter, EventTriggered, InterProcess, Periodic
-from amalthea_uros.perf.system import System
+from amalthea_uros.perf.stimuli import Counter, Periodic
 from amalthea_uros.timing.activation.releases import known_releases, latest_first_release
 from amalthea_uros.timing.basics.time_base import LIMIT
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.dataflow.events import EventOccurrence, JobPhase
-from amalthea_uros.timing.dataflow.stages import NEXT_JOB, SAME_JOB, At, Boundary, Fire, Pass, Read, Stage
+from amalthea_uros.timing.dataflow.stages import NEXT_JOB, SAME_JOB, At, Fire, Pass, Read, Stage
 from amalthea_uros.timing.demand.model import MAX_TIME_BASE
-from amalthea_uros.timing.demand.multiframe import MultiframeDemand
-from amalthea_uros.timing.jobs.counters import ALWAYS, composed, first_effect, is_always, max_distance
-from amalthea_uros.timing.jobs.positions import ActivityPosition, can_be_skipped
+from amalthea_uros.timing.jobs.counters import first_effect, is_always, max_distance
 from amalthea_uros.timing.response import Response
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
-    from amalthea_uros.analyze.response_times.kernel import Numbers
+    pass
 
 
 @dataclass(slots=True)
@@ -49,6 +50,7 @@ class StageTiming:
 
     solution: Solution
     unit: int = field(init=False)
+    participation: Participation = field(init=False)
     _blocking: dict[str, Blocking] = field(default_factory=dict)
     _whole_jobs: dict[tuple[str, JobPhase | None, JobPhase | None], ReadWriteBounds] = field(default_factory=dict)
 
@@ -58,6 +60,7 @@ class StageTiming:
         return self.solution.context
 
     def __post_init__(self) -> None:
+        self.participation = Participation(self.context)
         unit = lcm(*(self.context.demand_model.time_base(core) for core in self.context.system.cores))
         self.unit = unit if unit <= MAX_TIME_BASE else 1
 
@@ -122,9 +125,9 @@ class StageTiming:
 
     def _stimulus_wait(self, stages: Sequence[Stage]) -> Time | None:
         """The maximum time from a job that triggers to the next one of which the counters of stimuli let the trigger have an effect."""
-        if all(is_always(self._counter_of(name)) for stage in stages[1:] for name in stage.process.stimuli):
+        if all(is_always(self.participation.counter_of(name)) for stage in stages[1:] for name in stage.process.stimuli):
             return 0
-        counter = self._counter(stages)
+        counter = self.participation.counter(stages)
         if self._why_irregular(stages[0].process):
             return None
         jobs = max(max_distance(counter), first_effect(counter)) - 1
@@ -139,10 +142,10 @@ class StageTiming:
                 )
         max_delay = sum(self._windows(stage).latest(stage.leave) for stage in triggered)
         min_delay = sum(self._windows(stage).earliest(stage.leave) for stage in triggered)
-        counter = self._counter(stages)
+        counter = self.participation.counter(stages)
         preempts_reader = self._preempts_reader(base, follower) and not triggered
         is_visible_at_once = self._is_visible_at_once(stages[-1], follower)
-        why_uncertain = self._why_uncertain(stages)
+        why_uncertain = self.participation.why_uncertain(stages)
         why_irregular = why_uncertain or self._why_irregular(stages[0].process)
         releases = known_releases(base.process, self.context.system)
         read_write = None if releases is None else self._read_write(base, releases)
@@ -208,51 +211,6 @@ class StageTiming:
         self._worst(stage.process)
         return BoundaryWindows(self.solution, stage, self._response(stage.process), self.unit, period)
 
-    def _counter(self, stages: Sequence[Stage]) -> Counter:
-        """The counter that lets only some jobs of the first stage take part, including those of triggers."""
-        found = stages[0].counter or ALWAYS
-        for stage, then in pairwise(stages):
-            assert isinstance(stage.leave, Fire)
-            for flaw in filter(None, map(self.context.activations.flaws.of_stimulus, then.process.stimuli)):
-                raise UnknownError(flaw)
-            fired = stage.leave.position
-            if fired is not None and isinstance(fired.activity, Trigger):
-                found = composed(found, fired.activity.counter or ALWAYS)
-            of_stimuli = [self._counter_of(name) for name in then.process.stimuli]
-            others = [counter for counter in (*of_stimuli, then.counter or ALWAYS) if not is_always(counter)]
-            if others and not self._is_only_cause(fired, then.process):
-                raise UnknownError(f"a counter of {then.process.name!r} also counts activations by others")
-            found = reduce(composed, others, found)
-        return found
-
-    def _counter_of(self, stimulus: str) -> Counter:
-        found = self.context.system.stimuli_by_name.get(stimulus)
-        return (found.counter or ALWAYS) if isinstance(found, InterProcess | EventTriggered) else ALWAYS
-
-    def _is_only_cause(self, fired: ActivityPosition | None, triggered: Process) -> bool:
-        """Whether each job of a triggered process is activated at one position, which jobs reach once."""
-        if fired is None or len(triggered.stimuli) > 1:
-            return False
-        causes = self.context.dataflow.fired_at(triggered.stimuli[0])
-        return len(causes) == 1 and causes[0].times == 1 and causes[0].number == fired.number
-
-    def _why_uncertain(self, stages: Sequence[Stage]) -> str:
-        """Why it is unknown which jobs take part; "" if it is known."""
-        system, modes = self.context.system, self.context.settings.modes
-        for stage in stages:
-            if stage.counter is None:
-                return f"it is unknown which jobs of {stage.process.name!r} take part"
-            if any(can_be_skipped(position, system, modes) for position in stage.positions):
-                return f"jobs of {stage.process.name!r} can end without the access or event of the chain"
-        for stage in stages[1:]:
-            if self._has_condition(stage.process):
-                return f"a trigger of {stage.process.name!r} has no effect if the condition of its stimulus is false"
-        return ""
-
-    def _has_condition(self, process: Process) -> bool:
-        stimuli = self.context.system.stimuli_by_name
-        return any(stimuli[name].condition is not None for name in process.stimuli if name in stimuli)
-
     def _why_irregular(self, process: Process) -> str:
         """Why there is no maximum time between two jobs of a process; "" if there is one."""
         events = self.solution.event_models.get(process.name)
@@ -292,12 +250,13 @@ class StageTiming:
             # A job passes the effect on to itself, or else to the next one at the latest.
             return 0 if base.jobs_later == SAME_JOB else self._max_interarrival(base.process)
         if is_logical(base.leave):
-            name, period = base.process.name, _period(base.process, self.context.system)
-            if period is None:
-                raise UnknownError(f"{name!r} has no period, as LET communication requires")
-            if worst > period * self.unit:
-                raise UnknownError(f"{name!r} does not always end within its period, as LET communication requires")
-            return period * self.unit
+            name = base.process.name
+            match [self.context.system.stimuli_by_name.get(each) for each in base.process.stimuli]:
+                case [Periodic(period=period)] if worst <= period * self.unit:
+                    return period * self.unit
+                case [Periodic()]:
+                    raise UnknownError(f"{name!r} does not always end within its period, as LET communication requires")
+            raise UnknownError(f"{name!r} has no period, as LET communication requires")
         if read_write is None:
             return self._windows(base).latest(base.leave)
         return int((read_write.pessimistic.writes - read_write.pessimistic.releases).max())
@@ -349,75 +308,18 @@ class StageTiming:
     def _read_write(self, stage: Stage, releases: Periodic) -> ReadWriteBounds:
         """The times of all jobs of a process."""
         if is_logical(stage.enter) and is_logical(stage.leave):
-            return self._logical(releases)
+            return logical(releases, self.unit)
         if is_inside(stage.enter) or is_inside(stage.leave):
-            return self._by_schedule(stage, releases) or self._by_response(stage, releases)
+            return self._bounds(stage, releases)
         # Many chains pass the same processes from the start to the end of their jobs.
         key = (stage.process.name, kind(stage.enter), kind(stage.leave))
         if key not in self._whole_jobs:
-            self._whole_jobs[key] = self._by_schedule(stage, releases) or self._by_response(stage, releases)
+            self._whole_jobs[key] = self._bounds(stage, releases)
         return self._whole_jobs[key]
 
-    def _logical(self, releases: Periodic) -> ReadWriteBounds:
-        period, offset = releases.period * self.unit, releases.offset * self.unit
-        times = let_times(period, offset, period)
-        return ReadWriteBounds(pessimistic=times, optimistic=times, steady_state_start=offset, is_logical=True)
-
-    def _by_schedule(self, stage: Stage, releases: Periodic) -> ReadWriteBounds | None:
-        scheduled = self.context.scheduled.get(stage.process.name)
-        if scheduled is None:
-            return None
-        inside = any(map(is_inside, (stage.enter, stage.leave)))
-        found = self.solution.schedule(scheduled.core, inside)
-        if found is None:
-            return None
-        name, period = stage.process.name, found.tasks[stage.process.name].period
-        best, worst = MultiframeDemand.best_of, MultiframeDemand.worst_of
-        early = BoundaryTimes(self.context, stage, found.best[name], period, best)
-        late = BoundaryTimes(self.context, stage, found.worst[name], period, worst, found.busy_above(name) if inside else None)
-        time_base = self.context.demand_model.time_base(scheduled.core)
-
-        def read_write_times(reads: Numbers, writes: Numbers) -> ReadWriteTimes:
-            return ReadWriteTimes(
-                releases=self._unified(early.jobs.releases, time_base, is_upper=False),
-                reads=reads,
-                writes=writes,
-                cycle=found.cycle * self.unit // time_base,
-                until=found.until * self.unit // time_base,
-            )
-
-        def lower(boundary: Boundary) -> Numbers:
-            return self._unified(early.at(boundary), time_base, is_upper=False)
-
-        def upper(boundary: Boundary) -> Numbers:
-            return self._unified(late.at(boundary), time_base, is_upper=True)
-
-        return ReadWriteBounds(
-            pessimistic=read_write_times(lower(stage.enter), upper(stage.leave)),
-            optimistic=read_write_times(upper(stage.enter), lower(stage.leave)),
-            steady_state_start=found.steady_state_start * self.unit // time_base,
-        )
-
-    def _unified(self, times: Numbers, time_base: int, is_upper: bool) -> Numbers:
-        """Times of a core in the unit that all cores share; rounded up or down if that is coarser."""
-        if self.unit % time_base == 0:
-            return times if self.unit == time_base else times * (self.unit // time_base)
-        return -(-times // time_base) if is_upper else times // time_base
-
-    def _by_response(self, stage: Stage, releases: Periodic) -> ReadWriteBounds:
-        period, offset = releases.period * self.unit, releases.offset * self.unit
-        release_times = offset + period * np.arange(2, dtype=np.int64)
-        windows = self._windows(stage, period)
-
-        def read_write_times(read: Time, write: Time) -> ReadWriteTimes:
-            reads, writes = release_times + read, release_times + write
-            return ReadWriteTimes(releases=release_times, reads=reads, writes=writes, cycle=period, until=offset + 2 * period)
-
-        return ReadWriteBounds(
-            pessimistic=read_write_times(windows.earliest(stage.enter), windows.latest(stage.leave)),
-            optimistic=read_write_times(windows.latest(stage.enter), windows.earliest(stage.leave)),
-            steady_state_start=offset,
-        )
+    def _bounds(self, stage: Stage, releases: Periodic) -> ReadWriteBounds:
+        found = by_schedule(stage, self.solution, self.unit)
+        return by_response(self._windows(stage, releases.period * self.unit), releases) if found is None else found
 
 
 def _responds_before_read(stage: Stage) -> bool:
@@ -432,16 +334,3 @@ def _responds_before_read(stage: Stage) -> bool:
 
 def _later(times: ReadWriteTimes, delay: Time) -> ReadWriteTimes:
     return replace(times, writes=times.writes + delay) if delay else times
-
-
-def _period(process: Process, system: System) -> Time | None:
-    """The period of a process with a single periodic stimulus, with or without jitter."""
-    match [system.stimuli_by_name.get(name) for name in process.stimuli]:
-        case [Periodic(period=period)]:
-            return period
-    return None
-
-
-def in_picoseconds(value: Fraction | Time, unit: int, is_upper: bool) -> Time:
-    """A time in whole picoseconds; upper bounds are rounded up, lower bounds down."""
-    return -int(-value // unit) if is_upper else int(value // unit)

@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros._internal.plural import counted
+from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.phases.cases import PhaseCases
 from amalthea_uros.analyze.response_times import metrics
 from amalthea_uros.analyze.response_times.solution import Solution
@@ -21,6 +22,7 @@ from amalthea_uros.judge.evidence import Ends
 from amalthea_uros.judge.limits import SystemLimit
 from amalthea_uros.judge.summary import summarize
 from amalthea_uros.judge.verdict import WORST_FIRST, prove
+from amalthea_uros.perf.events import EventChain
 from amalthea_uros.timing.basics.quantities import jitter_of
 from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.units import Time
@@ -49,7 +51,7 @@ def merged(analyses: Mapping[int, Analysis], cases: PhaseCases, solution: Soluti
         callbacks.append(_callback([analyses[number].callbacks[index] for number in of_process], list(of_process.values())))
     chains = []
     for index, of_chain in enumerate(cases.of_chains):
-        chains.append(merged_chain([analyses[number].chains[index] for number in of_chain], list(of_chain.values())))
+        chains.append(_merged_chain([analyses[number].chains[index] for number in of_chain], list(of_chain.values())))
     requirements = Results(_requirements(list(analyses.values())))
     return replace(
         first,
@@ -106,7 +108,20 @@ def _over_all(method: str, counts: Sequence[int]) -> str:
     return f"{method}, over all {counted(sum(counts), 'phase')}"
 
 
-def merged_chain(results: Sequence[ChainResult], counts: Sequence[int]) -> ChainResult:
+def over_all_phases(chain: EventChain, evaluation: ChainEvaluator) -> ChainResult:
+    """The result of a chain, over all unknown phases of the jobs that it passes if these are not too many."""
+    cases = PhaseCases.of(evaluation.solution, evaluation.occurrences(chain))
+    if cases is None:
+        return evaluation.chain(chain)
+    of_chain = cases.of_chain(chain)
+    results = []
+    for _, solution in cases.solutions(of_chain):
+        results.append(ChainEvaluator(solution, evaluation.budget).chain(chain))
+        evaluation.context.notes.include(solution.context.notes)
+    return _merged_chain(results, list(of_chain.values()))
+
+
+def _merged_chain(results: Sequence[ChainResult], counts: Sequence[int]) -> ChainResult:
     """The values over all phases: the maximum, the minimum, and the mean of the means; none that is missing in some phase.
 
     Parameters

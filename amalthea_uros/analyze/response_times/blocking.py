@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class Level:
+class InterferenceLevel:
     """The processes that interfere with a process: those of at least a rank.
 
     Attributes
@@ -80,7 +80,7 @@ class Blocking:
     open_semaphores: frozenset[str] = frozenset()
     is_possible: bool = field(init=False)
     _ceilings: dict[str, Rank] = field(default_factory=dict)
-    _levels: dict[Rank, Level] = field(default_factory=dict)
+    _levels: dict[Rank, InterferenceLevel] = field(default_factory=dict)
     _of_ranks: dict[Rank, _Above] = field(default_factory=dict)
 
     @classmethod
@@ -113,19 +113,19 @@ class Blocking:
         is_preemptive = preemption(item) is Preemption.PREEMPTIVE and item.group is None
         return not is_preemptive or bool(uses.semaphores) or uses.has_non_interruptible_group
 
-    def level(self, item: SchedulingContext) -> Level:
+    def level(self, item: SchedulingContext) -> InterferenceLevel:
         """The level of the busy window of a process or server."""
         if item.rank not in self._levels:
-            self._levels[item.rank] = self._level(item) if self.is_possible else Level(item.rank)
+            self._levels[item.rank] = self._level(item) if self.is_possible else InterferenceLevel(item.rank)
         return self._levels[item.rank]
 
-    def _level(self, item: SchedulingContext) -> Level:
+    def _level(self, item: SchedulingContext) -> InterferenceLevel:
         rank = item.rank
         while True:
             above = self._above(rank)
             lowest = min([rank, *self._holders(above), *self._between(above)])
             if lowest == rank:
-                return Level(rank, self._is_flat(item, rank, above))
+                return InterferenceLevel(rank, self._is_flat(item, rank, above))
             rank = lowest
 
     def _above(self, rank: Rank) -> _Above:
@@ -183,7 +183,7 @@ class Blocking:
         """The maximum time for which a process below the level of a process or server keeps it off."""
         return max((length for _, length in self.stretches_below(self.level(item))), default=0) if self.is_possible else 0
 
-    def stretches_below(self, level: Level) -> Iterator[tuple[ScheduledProcess, Time]]:
+    def stretches_below(self, level: InterferenceLevel) -> Iterator[tuple[ScheduledProcess, Time]]:
         """The longest stretch of each process below a level in which it keeps off one of the level."""
         above = self._above(level.rank)
         for other in self.processes:

@@ -4,7 +4,6 @@ import json
 from dataclasses import replace
 from functools import cache
 from itertools import pairwise
-from math import lcm
 from random import Random
 
 import numpy as np
@@ -15,11 +14,13 @@ from hypothesis import strategies as st
 from support import SHARED
 
 from amalthea_uros.analyze.chains import job_chains
+from amalthea_uros.analyze.chains.boundary_times import logical
 from amalthea_uros.analyze.chains.bounds import ChainTask, becker, bi, davare, duerr, duerr_data_age, hamann, kloda, total
-from amalthea_uros.analyze.chains.read_write_times import ReadWriteTimes, let_times
+from amalthea_uros.analyze.chains.read_write_times import ReadWriteTimes
 from amalthea_uros.analyze.response_times import priority_levels, schedule
 from amalthea_uros.analyze.response_times.schedule import PeriodicTask
 from amalthea_uros.analyze.response_times.task import AnalysedTask
+from amalthea_uros.perf.stimuli import Periodic
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.event_models import PeriodicEvents
 
@@ -135,9 +136,11 @@ def test_published_bounds(case):
 
 
 def logically(periods, offsets=None):
-    cycle = lcm(*periods)
     offsets = offsets or [0] * len(periods)
-    chain_times = [let_times(period, offset, cycle) for period, offset in zip(periods, offsets, strict=True)]
+    chain_times = [
+        logical(Periodic(name="t", period=period, offset=offset), unit=1).pessimistic
+        for period, offset in zip(periods, offsets, strict=True)
+    ]
     return job_chains.build_job_chains(chain_times, max(offsets))
 
 

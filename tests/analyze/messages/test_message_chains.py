@@ -10,7 +10,7 @@ import pytest
 from hand_made_systems import ticks
 from message_board import ACK, CMD, MS, ODOM, US, Publication, Span, Wire, WireKind, board, message_chains, tick
 
-from amalthea_uros.analyze.chains.messages.evaluate import evaluate_executors_and_messages
+from amalthea_uros.analyze.chains.message_chains import evaluate_executors_and_messages
 from amalthea_uros.analyze.response_times.propagation import solve
 from amalthea_uros.analyze.results.chains import LatencyQuantity
 from amalthea_uros.analyze.system import analyze_system

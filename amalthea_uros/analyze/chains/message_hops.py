@@ -15,11 +15,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
-from amalthea_uros.analyze.chains.messages.segments import CallbackSegment, EntryKind, TaskSegment
-from amalthea_uros.analyze.chains.route_latencies import RouteLatencies
+from amalthea_uros.analyze.chains.segments import CallbackSegment, EntryKind, TaskSegment
 from amalthea_uros.analyze.results.chains import LatencyQuantity, LatencyValue
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.results import ExecutorResult, HandleResult, Hop, HopKind, TimePart
@@ -132,56 +132,54 @@ def task_hop(segment: TaskSegment, entry: EntryKind, is_last: bool, evaluator: C
             "does not wait.",
         )
     try:
-        bounds = _bounds(_events(segment, entry, is_last), entry, evaluator)
+        bound = _bound(_events(segment, entry, is_last), entry, evaluator)
     except UnknownError as error:
         return _unknown(entry, name, str(error), f"See the results of {name!r}.")
-    if bounds is None:
+    wait: Time | None = 0
+    if entry is EntryKind.POLLING:
+        activations = evaluator.solution.event_models.get(segment.processes[0])
+        wait = None if activations is None else activations.max_interarrival
+    if wait is None:
         reason = f"the maximum time between two activations of {segment.processes[0]!r} is unknown"
         return _unknown(entry, name, reason, f"See the results of {segment.processes[0]!r}.")
-    value, wait = bounds
     parts = (
         TimePart(name=f"until {segment.processes[0]} is activated", least=0, most=wait),
-        TimePart(name=f"from its activation through {name}", least=0, most=value.value),
+        TimePart(name=f"from its activation through {name}", least=0, most=bound.value),
     )
     return Hop(
-        kind=_kind(entry),
+        kind=entry.hop,
         name=name,
         best=_best(segment, evaluator) if is_last and entry is EntryKind.FIRST else 0,
-        worst=(value.value or 0) + wait,
-        source=f"{value.method} ({value.source})",
+        worst=(bound.value or 0) + wait,
+        source=f"{bound.method} ({bound.source})",
         parts=parts if wait else (),
     )
 
 
-def _bounds(events: Sequence[Event], entry: EntryKind, evaluator: ChainEvaluator) -> tuple[LatencyValue, Time] | None:
-    """The tightest bound of a latency, and how long a message waits until then; None if it has no maximum."""
+def _bound(events: Sequence[Event], entry: EntryKind, evaluator: ChainEvaluator) -> LatencyValue:
+    """The tightest bound of the latency from the first event to the last one.
+
+    Raises
+    ------
+    UnknownError : there is none.
+    """
     quantity = LatencyQuantity.MAX_REACTION_TIME if entry is EntryKind.DATA else LatencyQuantity.MAX_REDUCED_REACTION_TIME
-    bounds = []
-    for route in routes(events, evaluator.context.dataflow):
-        for link, first, then in zip(route.links, route.events, route.events[1:], strict=False):
+    found = routes(events, evaluator.context.dataflow)
+    for route in found:
+        for link, (first, then) in zip(route.links, pairwise(route.events), strict=True):
             if link.kind in UNTIMED:
                 raise UnknownError(f"nothing of known time connects {first!r} to {then!r}")
-        latencies = evaluator.latencies(route)
-        best = _tightest(latencies, quantity)
-        if best is None:
-            raise UnknownError(latencies.why_unbounded or "no method bounds it")
-        bounds.append(best)
-    value = max(bounds, key=lambda each: each.value or 0)
-    if entry is not EntryKind.POLLING:
-        return value, 0
-    activations = evaluator.solution.event_models.get(getattr(events[0], "process", ""))
-    wait = activations.max_interarrival if activations is not None else None
-    return None if wait is None else (value, wait)
+    bound = next((value for value in evaluator.worst(found) if value.quantity is quantity), None)
+    if bound is None:
+        whys = (evaluator.latencies(route).why_unbounded for route in found)
+        raise UnknownError(next(filter(None, whys), "no method bounds it"))
+    return bound
 
 
 def _best(segment: TaskSegment, evaluator: ChainEvaluator) -> Time:
     """A lower bound of the time from the first to the last event."""
-    times = []
-    for route in routes(segment.events, evaluator.context.dataflow):
-        values = evaluator.latencies(route).values()
-        bounds = [each.value for each in values if each.quantity is LatencyQuantity.MIN_FIRST_TO_FIRST]
-        times.append(max((time for time in bounds if time is not None), default=0))
-    return min(times, default=0)
+    values = evaluator.worst(routes(segment.events, evaluator.context.dataflow))
+    return next((value.value or 0 for value in values if value.quantity is LatencyQuantity.MIN_FIRST_TO_FIRST), 0)
 
 
 def _events(segment: TaskSegment, entry: EntryKind, is_last: bool) -> list[Event]:
@@ -196,14 +194,5 @@ def _events(segment: TaskSegment, entry: EntryKind, is_last: bool) -> list[Event
     return events
 
 
-def _tightest(latencies: RouteLatencies, quantity: LatencyQuantity) -> LatencyValue | None:
-    bounds = [each for each in latencies.values() if each.quantity is quantity and each.value is not None]
-    return min(bounds, key=lambda each: each.value or 0, default=None)
-
-
-def _kind(entry: EntryKind) -> HopKind:
-    return {EntryKind.POLLING: HopKind.POLLING, EntryKind.DATA: HopKind.SAMPLING}.get(entry, HopKind.TASKS)
-
-
 def _unknown(entry: EntryKind, name: str, reason: str, remedy: str) -> Hop:
-    return Hop(kind=_kind(entry), name=name, best=0, worst=None, reason=reason, remedy=remedy)
+    return Hop(kind=entry.hop, name=name, best=0, worst=None, reason=reason, remedy=remedy)

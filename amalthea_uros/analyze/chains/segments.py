@@ -7,6 +7,7 @@ from enum import Enum
 from typing import TypeAlias
 
 from amalthea_uros.errors import UnknownError
+from amalthea_uros.executors.results import HopKind
 from amalthea_uros.perf.activities import Call
 from amalthea_uros.perf.events import CustomEvent, Event, EventChain, RunnableChange, RunnableEvent
 from amalthea_uros.perf.executors import Executor, Handle
@@ -16,13 +17,6 @@ from amalthea_uros.timing.dataflow.chains import sequences, unfold
 from amalthea_uros.timing.dataflow.events import EventOccurrence
 from amalthea_uros.timing.dataflow.links import LinkKind
 from amalthea_uros.timing.jobs.positions import ActivityPosition
-
-
-@dataclass(frozen=True, slots=True)
-class MessageSegment:
-    """A message on a wire."""
-
-    transmission: Transmission
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +35,8 @@ class TaskSegment:
     processes: tuple[str, ...]
 
 
-ChainSegment: TypeAlias = MessageSegment | CallbackSegment | TaskSegment
+#: A message on a wire is a segment by itself.
+ChainSegment: TypeAlias = Transmission | CallbackSegment | TaskSegment
 
 
 class EntryKind(Enum):
@@ -52,13 +47,17 @@ class EntryKind(Enum):
     DATA = "it reads data at its own times"
     POLLING = "it looks for messages in each job"
 
+    @property
+    def hop(self) -> HopKind:
+        """The kind of the hop from there on."""
+        return {EntryKind.POLLING: HopKind.POLLING, EntryKind.DATA: HopKind.SAMPLING}.get(self, HopKind.TASKS)
+
 
 def name_of(segment: ChainSegment, *, is_end: bool = False) -> str:
     """What people call a segment: its topic, its callback, its first or its last process."""
     match segment:
-        case MessageSegment(transmission):
-            topic = transmission.topic
-            return transmission.name if topic is None else f"/{topic.removeprefix('/')}"
+        case Transmission(name=name, topic=topic):
+            return name if topic is None else f"/{topic.removeprefix('/')}"
         case CallbackSegment(_, handle):
             return handle.name
         case TaskSegment(_, processes):
@@ -110,7 +109,7 @@ class Segments:
     def _at(self, event: Event, occurrence: EventOccurrence) -> ChainSegment:
         system, process = self.context.system, occurrence.process.name
         if process in system.transmissions:
-            return MessageSegment(system.transmissions[process])
+            return system.transmissions[process]
         executor = system.executor_of_task.get(process)
         if executor is None:
             return TaskSegment((event,), (process,))
@@ -139,13 +138,13 @@ class Segments:
         completed: list[ChainSegment] = []
         for segment in segments:
             before = completed[-1] if completed else None
-            if not isinstance(segment, TaskSegment) or not isinstance(before, MessageSegment):
+            if not isinstance(segment, TaskSegment) or not isinstance(before, Transmission):
                 completed.append(segment)
                 continue
-            passed = before.transmission.processes
+            passed = before.processes
             kept = [each for each in zip(segment.events, segment.processes, strict=True) if each[1] not in passed]
             if kept:
-                completed += self._takers(before.transmission)
+                completed += self._takers(before)
                 completed.append(TaskSegment(tuple(event for event, _ in kept), tuple(process for _, process in kept)))
         return completed
 
@@ -170,14 +169,14 @@ class Segments:
         if before is None:
             return EntryKind.FIRST
         if isinstance(segment, TaskSegment):
-            if isinstance(before, MessageSegment):
+            if isinstance(before, Transmission):
                 # The last process that it passes may activate the next one.
-                last = before.transmission.processes[-1:]
+                last = before.processes[-1:]
                 is_activated = any(self.context.dataflow.triggers(each, segment.processes[0]) for each in last)
                 return EntryKind.TRIGGER if is_activated else EntryKind.POLLING
             if self.activates(before, segment.processes[0]):
                 return EntryKind.TRIGGER
-        assert not isinstance(before, MessageSegment)
+        assert not isinstance(before, Transmission)
         kinds = {
             link.kind
             for one in self._ends(before, -1)

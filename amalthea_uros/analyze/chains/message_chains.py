@@ -9,16 +9,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from typing import TypeGuard
 
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
-from amalthea_uros.analyze.chains.messages.hops import CallbackHops, task_hop
-from amalthea_uros.analyze.chains.messages.segments import (
+from amalthea_uros.analyze.chains.message_hops import CallbackHops, task_hop
+from amalthea_uros.analyze.chains.segments import (
     CallbackSegment,
     ChainSegment,
     EntryKind,
-    MessageSegment,
     Segments,
     TaskSegment,
     name_of,
@@ -42,7 +40,6 @@ from amalthea_uros.units import Time
 METHOD = "sum of hop bounds"
 #: Response times of the parts are added up, which needs no assumption on when their worst cases occur.
 SOURCE = "compositional analysis, K. Richter 2005"
-_WHY = "bounds: the worst cases of the hops need not occur together"
 _SUM = "the latency of a chain over wires or executors is the sum of the worst cases of its hops, which need not occur together"
 _POLLED = "{!r} takes each message in the first job that is activated after the message has arrived"
 _THERE_AND_BACK = "a message that comes back takes 'to_host' and 'to_controller' in the agent at most"
@@ -116,17 +113,22 @@ class MessageChains:
             if written and isinstance(last, CallbackSegment):
                 hops[-1] = self._until_written(last, hops[-1])
         except UnknownError as error:
-            return _result(chain, chain.stimulus or "", chain.response or "", (), reason=str(error))
+            unknown_hops = ChainResult(name=chain.name, communication="", reason=str(error))
+            return _result(replace(unknown_hops, start=chain.stimulus or "", end=chain.response or ""))
         unknown = next((hop for hop in hops if hop.worst is None), None)
+        loss = "; ".join(dict.fromkeys(self._losses(segments)))
         return _result(
-            chain,
-            name_of(segments[0]),
-            written or name_of(segments[-1], is_end=True),
-            hops,
-            assumptions=(_SUM, *assumptions),
-            reason=unknown.reason if unknown is not None else "",
-            remedy=unknown.remedy if unknown is not None else "",
-            loss="; ".join(dict.fromkeys(self._losses(segments))),
+            ChainResult(
+                name=chain.name,
+                communication="",
+                start=name_of(segments[0]),
+                end=written or name_of(segments[-1], is_end=True),
+                hops=Results(hops),
+                assumptions=(_SUM, *assumptions),
+                reason=unknown.reason if unknown is not None else loss,
+                remedy=unknown.remedy if unknown is not None else "",
+                loss=loss,
+            )
         )
 
     def _hops(self, segments: Sequence[ChainSegment]) -> tuple[list[Hop], list[str]]:
@@ -134,11 +136,11 @@ class MessageChains:
         assumptions: list[str] = []
         for index, segment in enumerate(segments):
             before, is_last = (segments[index - 1] if index else None), index == len(segments) - 1
-            if isinstance(before, CallbackSegment) and not isinstance(segment, MessageSegment):
+            if isinstance(before, CallbackSegment) and not isinstance(segment, Transmission):
                 hops[-1] = self._until_written(before, hops[-1])
             match segment:
-                case MessageSegment(transmission):
-                    if isinstance(before, MessageSegment):
+                case Transmission() as transmission:
+                    if isinstance(before, Transmission):
                         assumptions.append(_THERE_AND_BACK)
                     hops += self._message(before, transmission, hops)
                 case CallbackSegment():
@@ -153,7 +155,7 @@ class MessageChains:
     def _message(self, before: ChainSegment | None, transmission: Transmission, hops: list[Hop]) -> Iterator[Hop]:
         agent, topic = agent_hop(transmission, self.solution), transmission.topic
         if transmission.direction is Direction.TO_CONTROLLER:
-            is_from_host = isinstance(before, MessageSegment) and before.transmission.direction is Direction.TO_AGENT
+            is_from_host = isinstance(before, Transmission) and before.direction is Direction.TO_AGENT
             if before is not None and not is_from_host:
                 raise UnknownError(f"{name_of(before)!r} sends nothing that the agent forwards to {topic!r}")
             yield agent
@@ -164,7 +166,7 @@ class MessageChains:
                 if all(each.transmission != transmission.name for each in handle.publications):
                     raise UnknownError(f"{handle.name!r} does not publish {topic!r}")
                 hops[-1] = _until_sent(hops[-1], self.sending[transmission.name], self._least_sending(before))
-            case MessageSegment():
+            case Transmission():
                 raise UnknownError(f"{name_of(before)!r} sends nothing")
             case TaskSegment() if not self.segments.activates(before, transmission.name):
                 raise UnknownError(f"{name_of(before, is_end=True)!r} does not publish {topic!r}")
@@ -174,7 +176,7 @@ class MessageChains:
     def _callback(self, before: ChainSegment | None, segment: CallbackSegment) -> Iterator[Hop]:
         transmission = self.context.system.transmissions.get(segment.handle.transmission or "")
         passed = transmission.processes if transmission is not None else ()
-        if isinstance(before, MessageSegment) and before.transmission != transmission:
+        if isinstance(before, Transmission) and before != transmission:
             raise UnknownError(f"{name_of(before)!r} does not make {segment.handle.name!r} ready")
         if isinstance(before, TaskSegment) and before.processes[-1] in passed:
             for name in passed[passed.index(before.processes[-1]) + 1 :]:
@@ -199,19 +201,18 @@ class MessageChains:
         lossy = {wire.name for wire in self.context.system.network.wires if wire.loses_messages}
         before: ChainSegment | None = None
         for segment in segments:
-            if isinstance(segment, MessageSegment):
-                if segment.transmission.wire in lossy:
-                    yield f"messages can be lost on {segment.transmission.wire!r}"
-                if segment.transmission.is_dropped_when_busy:
-                    topic = segment.transmission.topic
-                    yield f"a message of {topic!r} is dropped if another thread of the middleware is sending"
-            elif isinstance(before, MessageSegment | TaskSegment) and _takes_messages(segment):
+            if isinstance(segment, Transmission):
+                if segment.wire in lossy:
+                    yield f"messages can be lost on {segment.wire!r}"
+                if segment.is_dropped_when_busy:
+                    yield f"a message of {segment.topic!r} is dropped if another thread of the middleware is sending"
+            elif (
+                isinstance(segment, CallbackSegment)
+                and segment.handle.transmission is not None
+                and isinstance(before, Transmission | TaskSegment)
+            ):
                 yield from filter(None, [self.callbacks.loss(segment)])
             before = segment
-
-
-def _takes_messages(segment: ChainSegment) -> TypeGuard[CallbackSegment]:
-    return isinstance(segment, CallbackSegment) and segment.handle.transmission is not None
 
 
 def _until_sent(hop: Hop, sending: Span, least: Time) -> Hop:
@@ -231,40 +232,23 @@ def _until_sent(hop: Hop, sending: Span, least: Time) -> Hop:
     return replace(hop, worst=hop.worst - sending.most, parts=parts)
 
 
-def _result(
-    chain: EventChain,
-    start: str,
-    end: str,
-    hops: Sequence[Hop],
-    *,
-    reason: str,
-    assumptions: tuple[str, ...] = (),
-    remedy: str = "",
-    loss: str = "",
-) -> ChainResult:
-    """The result of a chain in the terms of all chains, so that limits are judged by it."""
+def _result(found: ChainResult) -> ChainResult:
+    """The result with what its hops add up to, in the terms of all chains, so that limits are judged by it."""
+    hops, worst = found.hops, found.worst_if_not_lost
     values = [_value(LatencyQuantity.MIN_FIRST_TO_FIRST, sum(hop.best for hop in hops))] if hops else []
-    times = [hop.worst for hop in hops if hop.worst is not None]
-    if hops and len(times) == len(hops):
-        worst = sum(times)
-        hops = [replace(hop, share=Fraction(hop.worst or 0, worst)) if worst else hop for hop in hops]
-        if not loss:
-            values.append(_value(LatencyQuantity.MAX_REDUCED_REACTION_TIME, worst))
-    return ChainResult(
-        name=chain.name,
+    if worst:
+        hops = Results(replace(hop, share=Fraction(hop.worst or 0, worst)) for hop in hops)
+    if worst is not None and not found.loss:
+        values.append(_value(LatencyQuantity.MAX_REDUCED_REACTION_TIME, worst))
+    return replace(
+        found,
         communication="over wires and executors",
-        routes=(" -> ".join((start, *dict.fromkeys(hop.name for hop in hops), end)),),
+        routes=(" -> ".join((found.start, *dict.fromkeys(hop.name for hop in hops), found.end)),),
         values=tuple(values),
         all_values=tuple(values),
-        why=_WHY,
-        reason=reason or loss,
+        why="bounds: the worst cases of the hops need not occur together",
         crosses_messages=True,
-        start=start,
-        end=end,
-        hops=Results(hops),
-        assumptions=assumptions,
-        remedy=remedy,
-        loss=loss,
+        hops=hops,
     )
 
 
