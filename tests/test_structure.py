@@ -16,7 +16,7 @@ from support import ROOT
 LINES = {
     "__init__": 229,
     "__main__": 3,
-    "_internal": 664,
+    "_internal": 666,
     "_version": 1,
     "am": 2,
     "analyze": 7244,
@@ -29,7 +29,7 @@ LINES = {
     "editor": 507,
     "errors": 13,
     "executors": 1456,
-    "findings": 494,
+    "findings": 506,
     "judge": 561,
     "measure": 1052,
     "metamodel": 3329,
@@ -45,7 +45,7 @@ LINES = {
     "trace": 4828,
     "units": 164,
     "uros": 5983,
-    "validate": 7880,
+    "validate": 3476,
     "xmi": 8635,
 }
 

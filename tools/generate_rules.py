@@ -35,7 +35,8 @@ def _rows(profile: RuleProfile) -> Iterator[str]:
     yield "| rule | severity | problem | why it matters |"
     yield "|---|---|---|---|"
     for identifier in registry.ids((profile,)):
-        rule = registry.rule(identifier)
+        rule = registry.kind(identifier)
+        assert rule is not None
         yield f"| {rule.id} | {rule.severity} | {rule.title} | {rule.rationale} |"
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from amalthea_uros.findings import catalogue
 from amalthea_uros.findings.kind import FindingKind
 from amalthea_uros.validate import registry
-from amalthea_uros.validate.rule import ModelRule, RuleProfile
+from amalthea_uros.validate.rule import RuleProfile
 
 #: Families of findings whose examples are logs.
 _TRACES = ("CAN", "TRC")
@@ -46,7 +46,7 @@ def _text(kind: FindingKind) -> Iterator[str]:
 
 
 def _examples(kind: FindingKind) -> Iterator[str]:
-    if isinstance(kind, ModelRule) and kind.beside is not None:
+    if kind.beside is not None:
         yield _example("With another file of the model", kind.beside)
     if kind.fails:
         yield _example("Fails", kind.fails, "text" if kind.id[:3] in _TRACES else "yaml")

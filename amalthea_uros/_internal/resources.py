@@ -32,6 +32,11 @@ def known_rtoses() -> list[str]:
 
 def yaml_data(path: Path) -> Any:
     """The content of a YAML file that is shipped with the package."""
+    return parsed_yaml(path.read_text(encoding="utf-8"))
+
+
+def parsed_yaml(text: str) -> Any:
+    """The content of a YAML text that is shipped with the package."""
     import yaml
 
-    return yaml.load(path.read_text(encoding="utf-8"), getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+    return yaml.load(text, getattr(yaml, "CSafeLoader", yaml.SafeLoader))

@@ -6,7 +6,7 @@ import click
 
 from amalthea_uros.services.rules import find_kind
 from amalthea_uros.validate import registry
-from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rule import ModelCheck
 
 
 @click.command("explain")
@@ -17,10 +17,10 @@ def command(identifier: str) -> None:
     profile = registry.profile_of(kind.id)
     click.echo(f"{kind.id}: {kind.title} ({kind.severity}{f', profile {profile}' if profile else ''})\n")
     click.echo(f"{kind.rationale}\n{kind.remedy}")
-    if isinstance(kind, ModelRule):
-        click.echo(f"\nChecked objects: {_targets(kind)}")
-        if kind.beside is not None:
-            click.echo(f"\nWith another file of the model:\n{kind.beside.rstrip()}")
+    if isinstance(check := registry.check(kind.id), ModelCheck):
+        click.echo(f"\nChecked objects: {_targets(check)}")
+    if kind.beside is not None:
+        click.echo(f"\nWith another file of the model:\n{kind.beside.rstrip()}")
     if kind.fails:
         click.echo(f"\nFails:\n\n{kind.fails.strip()}")
     if kind.passes:
@@ -29,7 +29,7 @@ def command(identifier: str) -> None:
         click.echo(f"\nSee {url}")
 
 
-def _targets(rule: ModelRule) -> str:
+def _targets(rule: ModelCheck) -> str:
     """The classes of objects, and the AMALTHEA versions, that a rule checks."""
     targets = rule.target if isinstance(rule.target, tuple) else (rule.target,)
     versions = [f" since AMALTHEA {rule.since}"] if rule.since else []

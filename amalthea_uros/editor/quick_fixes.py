@@ -14,7 +14,7 @@ from amalthea_uros.errors import AmurosError
 from amalthea_uros.services.fix import fix_files
 from amalthea_uros.services.settings import CheckSettings
 from amalthea_uros.validate import registry
-from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rule import ModelCheck
 
 FIX_ALL = f"{types.CodeActionKind.SourceFixAll.value}.{SOURCE}"
 
@@ -52,10 +52,8 @@ def _is_wanted(kind: str, kinds: Sequence[str] | None) -> bool:
 
 
 def _is_repairable(identifier: str) -> bool:
-    if registry.profile_of(identifier) is None:
-        return False
-    rule = registry.rule(identifier)
-    return isinstance(rule, ModelRule) and (rule.fix is not None or rule.in_canonical_form)
+    rule = registry.check(identifier)
+    return isinstance(rule, ModelCheck) and (rule.fix is not None or rule.in_canonical_form)
 
 
 def _edit(document: TextDocument, settings: CheckSettings) -> types.WorkspaceEdit | None:

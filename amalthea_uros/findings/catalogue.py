@@ -1,20 +1,15 @@
 """The kinds of findings that no rule of `validate` reports.
 
-The entries of each family of ids are a file in `families`, which is read when one of them is needed.
+Each family of ids is a file in `families`.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
-from functools import cache
+from collections.abc import Iterator
 from pathlib import Path
-from string import Template
-from typing import Any
 
-from amalthea_uros._internal.resources import yaml_data
-from amalthea_uros.diagnostics import Severity
-from amalthea_uros.findings.kind import FindingKind
+from amalthea_uros.findings.kind import FindingKind, ids_in, kind_in
 
 #: The letters with which the ids of a family start, and where its findings come from.
 FAMILIES = {
@@ -41,27 +36,17 @@ FAMILIES = {
 
 _FOLDER = Path(__file__).parent / "families"
 _ID = re.compile(r"([A-Z]{2,3})\d{3}")
-_ENTRY = re.compile(rf"^({_ID.pattern}):$", re.MULTILINE)
 
 
-@cache
 def kinds(family: str) -> tuple[FindingKind, ...]:
     """The kinds of findings of a family, by id; none if there is no such family."""
-    entries: dict[str, dict[str, Any]] = yaml_data(_file(family)) if _file(family).exists() else {}
-    snippets = entries.pop("snippets", {})
-    return tuple(_kind(identifier, entry, snippets) for identifier, entry in entries.items())
+    file = _file(family)
+    return tuple(kind_in(file, identifier) for identifier in ids_in(file)) if file.exists() else ()
 
 
-def _kind(identifier: str, entry: dict[str, Any], snippets: Mapping[str, str]) -> FindingKind:
-    """A kind of finding as it is written in its file; `$name` in its example is a text that several examples share."""
-    fails = Template(entry.pop("fails", "")).substitute(snippets)
-    return FindingKind(id=identifier, severity=Severity(entry.pop("severity")), fails=fails, **entry)
-
-
-@cache
 def ids_of(family: str) -> tuple[str, ...]:
-    """The ids of a family, without reading the rest of its entries."""
-    return tuple(found[0] for found in _ENTRY.findall(_file(family).read_text(encoding="utf-8")))
+    """The ids of a family."""
+    return ids_in(_file(family))
 
 
 def ids() -> Iterator[str]:
@@ -72,7 +57,8 @@ def ids() -> Iterator[str]:
 def find(identifier: str) -> FindingKind | None:
     """A kind of finding by its id, None if no family has it."""
     match = _ID.fullmatch(identifier)
-    return next((kind for kind in kinds(match[1]) if kind.id == identifier), None) if match is not None else None
+    file = _file(match[1]) if match is not None else None
+    return kind_in(file, identifier) if file is not None and file.exists() and identifier in ids_in(file) else None
 
 
 def _file(family: str) -> Path:

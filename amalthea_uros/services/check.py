@@ -26,7 +26,7 @@ from amalthea_uros.services.inputs import ModelInput, as_paths, open_model
 from amalthea_uros.services.settings import CheckSettings, project_settings
 from amalthea_uros.validate import registry
 from amalthea_uros.validate.engine import run, run_system
-from amalthea_uros.validate.rule import ModelRule, RuleProfile, SystemRule
+from amalthea_uros.validate.rule import ModelCheck, RuleProfile, SystemCheck
 from amalthea_uros.validate.selection import Selection, UnknownPatternError, select
 from amalthea_uros.validate.user_rules import rules_of_file
 
@@ -262,14 +262,14 @@ def _run(model: Model, identifiers: Collection[str], system: System | None = Non
     ----------
     system : the one that the model was built from, if it was
     """
-    rules = registry.rules_with_checks(identifiers)
+    rules = [registry.check(identifier) for identifier in identifiers]
     with paused_garbage_collection():
-        findings = run(model, [rule for rule in rules if isinstance(rule, ModelRule)])
-        findings += _system_findings(model, system, [rule for rule in rules if isinstance(rule, SystemRule)])
+        findings = run(model, [rule for rule in rules if isinstance(rule, ModelCheck)])
+        findings += _system_findings(model, system, [rule for rule in rules if isinstance(rule, SystemCheck)])
         return findings + _schema_findings(model, identifiers)
 
 
-def _system_findings(model: Model, system: System | None, rules: Sequence[SystemRule]) -> list[Finding]:
+def _system_findings(model: Model, system: System | None, rules: Sequence[SystemCheck]) -> list[Finding]:
     if not rules:
         return []
     if system is None:

@@ -14,7 +14,7 @@ from amalthea_uros.services.inputs import as_paths
 from amalthea_uros.services.settings import CheckSettings, project_settings
 from amalthea_uros.validate import registry
 from amalthea_uros.validate.repair import repair
-from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rule import ModelCheck
 from amalthea_uros.xmi.load import load
 
 
@@ -97,7 +97,7 @@ def _repair(paths: tuple[Path, ...], model: Model, rules: Collection[str], write
     from amalthea_uros.xmi.emf.writer import document_text
     from amalthea_uros.xmi.save import save_documents
 
-    repairs = repair(model, [rule for rule in registry.rules_with_checks(rules) if isinstance(rule, ModelRule)])
+    repairs = repair(model, [rule for rule in map(registry.check, rules) if isinstance(rule, ModelCheck)])
     changed = tuple(
         FileChange(document.path, document.source.text, document_text(document, document in repairs.rewritten))
         for document in model.documents

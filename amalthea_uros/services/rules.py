@@ -46,7 +46,7 @@ def find_rules(
     except UnknownPatternError as error:
         raise unknown_rule(error.pattern, error.known) from None
     wanted = frozenset(severities) or frozenset(Severity)
-    rules = map(registry.rule, selection.rules())
+    rules = filter(None, map(registry.kind, selection.rules()))
     return RulesResult(tuple(rule for rule in rules if rule.severity in wanted and text.casefold() in _words(rule)))
 
 

@@ -6,41 +6,44 @@ from collections.abc import Iterable, Iterator
 
 from amalthea_uros._internal.failures import failure
 from amalthea_uros.diagnostics import Finding, Severity
+from amalthea_uros.findings.kind import FindingKind
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.perf.named import Named
 from amalthea_uros.perf.system import System
+from amalthea_uros.validate import registry
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Downgraded, ModelRule, SystemRule
+from amalthea_uros.validate.rule import Downgraded, ModelCheck, SystemCheck
 from amalthea_uros.validate.system_context import SystemContext
 
 _REPORT = "Report it to the author of the rule, with the model if possible."
 
 
-def run(model: Model, rules: Iterable[ModelRule]) -> list[Finding]:
+def run(model: Model, rules: Iterable[ModelCheck]) -> list[Finding]:
     """The findings of rules; a rule that crashes is reported as a finding."""
     context = Context(model)
     return [finding for rule in rules for finding in _findings(rule, context)]
 
 
-def run_system(system: System, rules: Iterable[SystemRule]) -> list[Finding]:
+def run_system(system: System, rules: Iterable[SystemCheck]) -> list[Finding]:
     """The findings of rules on a system. A rule that crashes is a finding, too."""
     context = SystemContext(system)
     return [finding for rule in rules for finding in _system_findings(rule, context)]
 
 
-def _system_findings(rule: SystemRule, context: SystemContext) -> Iterator[Finding]:
+def _system_findings(rule: SystemCheck, context: SystemContext) -> Iterator[Finding]:
     try:
         problems = list(rule.check(context))
     except Exception as error:
         yield Finding("CHK001", Severity.ERROR, f"the rule {rule.id} failed: {failure(error)}", help=_REPORT)
         return
+    kind = _kind_of(rule)
     for item, message, name, severity in problems:
         object_name = name or (item.name if isinstance(item, Named) else "")
-        yield Finding(rule.id, severity or rule.severity, message, item.origin, rule.remedy, object_name)
+        yield Finding(rule.id, severity or kind.severity, message, item.origin, kind.remedy, object_name)
 
 
-def _findings(rule: ModelRule, context: Context) -> Iterator[Finding]:
+def _findings(rule: ModelCheck, context: Context) -> Iterator[Finding]:
     try:
         elements = list(concerned(rule, context))
     except Exception as error:
@@ -54,11 +57,19 @@ def _findings(rule: ModelRule, context: Context) -> Iterator[Finding]:
             yield _finding("CHK001", Severity.ERROR, failed, element, _REPORT)
             continue
         for message in messages:
-            text, severity = message if isinstance(message, Downgraded) else (message, rule.severity)
-            yield _finding(rule.id, severity, text, element, rule.remedy)
+            kind = _kind_of(rule)
+            text, severity = message if isinstance(message, Downgraded) else (message, kind.severity)
+            yield _finding(rule.id, severity, text, element, kind.remedy)
 
 
-def concerned(rule: ModelRule, context: Context) -> Iterator[Element]:
+def _kind_of(rule: ModelCheck | SystemCheck) -> FindingKind:
+    """The texts of a rule that found something; those of this package are only read then."""
+    kind = rule if isinstance(rule, FindingKind) else registry.kind(rule.id)
+    assert kind is not None
+    return kind
+
+
+def concerned(rule: ModelCheck, context: Context) -> Iterator[Element]:
     """The objects that a rule checks."""
     versions = [version for version in context.versions if (rule.since or "") <= version <= (rule.until or "9")]
     if rule.among is not None and versions:

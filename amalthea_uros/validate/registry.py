@@ -1,8 +1,7 @@
-"""All rules by id. Those of this package are found by the text of their files, so that only those that are used are imported."""
+"""All rules by id. Those of this package are found by the files of their texts, so that only those that are used are imported."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from functools import cache
 from importlib import import_module
@@ -11,8 +10,8 @@ from pathlib import Path
 
 from amalthea_uros._internal.addresses import page_of_finding
 from amalthea_uros.findings import catalogue
-from amalthea_uros.findings.kind import FindingKind
-from amalthea_uros.validate.rule import ModelRule, RuleProfile, SystemRule
+from amalthea_uros.findings.kind import FindingKind, ids_in, kind_in
+from amalthea_uros.validate.rule import CHECKS, ModelCheck, ModelRule, RuleProfile, SystemCheck
 from amalthea_uros.validate.user_rules import check_id, installed_rules
 
 #: The families of findings that are selected like rules, although something else reports them.
@@ -20,9 +19,6 @@ _FAMILIES = {RuleProfile.SCHEMA: "XSD", RuleProfile.MICRO_ROS: "UR"}
 
 #: The profiles whose rules are part of this package.
 _BUILT_IN = tuple(profile for profile in RuleProfile if profile is not RuleProfile.USER)
-
-#: The part of a file that defines the id of a rule.
-_ID = re.compile(r'^ +id="([^"]+)",$', re.MULTILINE)
 
 #: Rules that were added in this process, by id.
 _added: dict[str, ModelRule] = {}
@@ -63,33 +59,23 @@ def rule_url(identifier: str) -> str | None:
     return page_of_finding(identifier) if is_known else None
 
 
-def rule(identifier: str) -> FindingKind:
-    """A rule by its id.
-
-    Raises
-    ------
-    KeyError : there is no such rule.
-    """
-    profile = profile_of(identifier)
-    if profile is None:
-        raise KeyError(identifier)
-    if profile is RuleProfile.USER:
-        return _user_rules()[identifier]
-    if profile in _FAMILIES:
-        return next(kind for kind in catalogue.kinds(_FAMILIES[profile]) if kind.id == identifier)
-    return _rules_of(f"{profile}.{_modules(profile)[identifier]}")[identifier]
-
-
-def rules_with_checks(identifiers: Iterable[str]) -> list[ModelRule | SystemRule]:
-    """The rules of some ids, without those whose findings something else reports."""
-    rules = (rule(identifier) for identifier in identifiers if _built_in_profile(identifier) not in _FAMILIES)
-    return [rule for rule in rules if isinstance(rule, ModelRule | SystemRule)]
-
-
 def kind(identifier: str) -> FindingKind | None:
     """What all findings of an id have in common, whether a rule reports them or not; None if there are none."""
-    found = catalogue.find(identifier)
-    return found if found is not None or profile_of(identifier) is None else rule(identifier)
+    profile = _built_in_profile(identifier)
+    if profile is None:
+        return catalogue.find(identifier) or _user_rules().get(identifier)
+    return catalogue.find(identifier) if profile in _FAMILIES else kind_in(_files(profile)[identifier], identifier)
+
+
+def check(identifier: str) -> ModelCheck | SystemCheck | None:
+    """What a rule demands; None if there is no such rule, and if something else reports its findings."""
+    profile = _built_in_profile(identifier)
+    if profile is None:
+        return _user_rules().get(identifier)
+    if profile in _FAMILIES:
+        return None
+    import_module(f"amalthea_uros.validate.rules.{profile}.{_files(profile)[identifier].stem}")
+    return CHECKS[identifier]
 
 
 def _user_rules() -> Mapping[str, ModelRule]:
@@ -117,18 +103,11 @@ def _built_in_profile(identifier: str) -> RuleProfile | None:
 
 def _built_in(profile: RuleProfile) -> Collection[str]:
     """The ids of the rules of a profile that are part of this package."""
-    return catalogue.ids_of(_FAMILIES[profile]) if profile in _FAMILIES else _modules(profile)
+    return catalogue.ids_of(_FAMILIES[profile]) if profile in _FAMILIES else _files(profile)
 
 
 @cache
-def _modules(profile: RuleProfile) -> Mapping[str, str]:
-    """The names of the modules of the rules of a profile, by id."""
-    files = (Path(__file__).parent / "rules" / profile).glob("*.py")
-    return {identifier: file.stem for file in files for identifier in _ID.findall(file.read_text(encoding="utf-8"))}
-
-
-@cache
-def _rules_of(module: str) -> Mapping[str, FindingKind]:
-    """The rules of a module, which defines one, or a table of them."""
-    content = import_module(f"amalthea_uros.validate.rules.{module}")
-    return {rule.id: rule for rule in getattr(content, "RULES", None) or (content.RULE,)}
+def _files(profile: RuleProfile) -> Mapping[str, Path]:
+    """The file with the texts of each rule of a profile, by id; the module of the same name has its check."""
+    files = (Path(__file__).parent / "rules" / profile).glob("*.yaml")
+    return {identifier: file for file in files for identifier in ids_in(file)}

@@ -10,7 +10,7 @@ from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Document, Model
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.engine import concerned
-from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rule import ModelCheck
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +29,7 @@ class Repairs:
     rewritten: set[Document] = field(default_factory=set)
 
 
-def repair(model: Model, rules: Iterable[ModelRule]) -> Repairs:
+def repair(model: Model, rules: Iterable[ModelCheck]) -> Repairs:
     """Repair the findings of rules in a model where possible."""
     repairs = Repairs()
     for rule in rules:
@@ -47,7 +47,7 @@ def repair(model: Model, rules: Iterable[ModelRule]) -> Repairs:
     return repairs
 
 
-def _with_findings(rule: ModelRule, context: Context) -> Iterator[Element]:
+def _with_findings(rule: ModelCheck, context: Context) -> Iterator[Element]:
     for element in concerned(rule, context):
         try:
             if any(rule.check(element, context)):

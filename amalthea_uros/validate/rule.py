@@ -7,7 +7,7 @@ of findings: violations of the XML schema, and problems of building a system.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import Any, NamedTuple
 
@@ -39,44 +39,6 @@ class Downgraded(NamedTuple):
     severity: Severity = Severity.WARNING
 
 
-#: Yields one message for each problem of an object.
-Check = Callable[[Any, Context], Iterator[str | Downgraded]]
-
-#: Repairs an object with a finding if there is exactly one way to do so; returns whether it did.
-Fix = Callable[[Any, Context], bool]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ModelRule(FindingKind):
-    """A rule about the objects of a class.
-
-    Attributes
-    ----------
-    target : the class or classes whose objects are checked, including those of subclasses
-    check : yields the messages for one object
-    among : a preselection of the objects to check; None: all objects of the target
-    concerns : whether objects of a class can have findings in an AMALTHEA version; other classes are skipped
-    fix : repairs one object
-    in_canonical_form : writing the file in EMF's form removes the findings
-    example_version : AMALTHEA version of the failing example
-    beside : content of a second file, of AMALTHEA 3.3.0, that is loaded together with each example
-    since, until : the first and the last AMALTHEA version to which the rule applies; None: no limit
-    is_about_files : the rule reports problems found while reading a file, such as unknown elements
-    """
-
-    target: type[Element] | tuple[type[Element], ...]
-    check: Check
-    among: Callable[[Context], Iterable[Element]] | None = None
-    concerns: Callable[[type[Element], str], object] | None = None
-    fix: Fix | None = None
-    example_version: str = "3.3.0"
-    beside: str | None = None
-    since: str | None = None
-    until: str | None = None
-    is_about_files: bool = False
-    in_canonical_form: bool = False
-
-
 class SystemProblem(NamedTuple):
     """What is wrong with an object of a system."""
 
@@ -86,13 +48,95 @@ class SystemProblem(NamedTuple):
     severity: Severity | None = None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SystemRule(FindingKind):
-    """A rule about what a system means in time, whether it comes from a model or from a description.
+#: Yields one message for each problem of an object.
+Check = Callable[[Any, Context], Iterator[str | Downgraded]]
+
+#: Finds the problems of a system.
+CheckOfSystem = Callable[[SystemContext], Iterator[SystemProblem]]
+
+#: Repairs an object with a finding if there is exactly one way to do so; returns whether it did.
+Fix = Callable[[Any, Context], bool]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ModelCheck:
+    """What a rule demands of the objects of a class.
 
     Attributes
     ----------
+    id : the id of the rule
+    target : the class or classes whose objects are checked, including those of subclasses
+    check : yields the messages for one object
+    among : a preselection of the objects to check; None: all objects of the target
+    concerns : whether objects of a class can have findings in an AMALTHEA version; other classes are skipped
+    fix : repairs one object
+    in_canonical_form : writing the file in EMF's form removes the findings
+    since, until : the first and the last AMALTHEA version to which the rule applies; None: no limit
+    is_about_files : the rule reports problems found while reading a file, such as unknown elements
+    """
+
+    id: str
+    target: type[Element] | tuple[type[Element], ...]
+    check: Check
+    among: Callable[[Context], Iterable[Element]] | None = None
+    concerns: Callable[[type[Element], str], object] | None = None
+    fix: Fix | None = None
+    since: str | None = None
+    until: str | None = None
+    is_about_files: bool = False
+    in_canonical_form: bool = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class SystemCheck:
+    """What a rule demands of a system in time, whether it comes from a model or from a description.
+
+    Attributes
+    ----------
+    id : the id of the rule
     check : finds the problems of a system
     """
 
-    check: Callable[[SystemContext], Iterator[SystemProblem]]
+    id: str
+    check: CheckOfSystem
+
+
+@dataclass(frozen=True, kw_only=True)
+class ModelRule(FindingKind, ModelCheck):
+    """A rule of a user: a check together with its texts. Those of this package have their texts in a file beside the check."""
+
+
+#: The checks of the modules that were imported, by the ids of their rules.
+CHECKS: dict[str, ModelCheck | SystemCheck] = {}
+
+
+def model_rule(identifier: str, *target: type[Element], **options: Any) -> Callable[[Check], Check]:
+    """Make a function the check of a rule about objects; the options are attributes of `ModelCheck`."""
+
+    def register(check: Check) -> Check:
+        CHECKS[identifier] = ModelCheck(id=identifier, target=target, check=check, **options)
+        return check
+
+    return register
+
+
+def repair_of(identifier: str) -> Callable[[Fix], Fix]:
+    """Make a function the repair of a rule whose check is defined above it."""
+
+    def register(fix: Fix) -> Fix:
+        check = CHECKS[identifier]
+        assert isinstance(check, ModelCheck)
+        CHECKS[identifier] = replace(check, fix=fix)
+        return fix
+
+    return register
+
+
+def system_rule(identifier: str) -> Callable[[CheckOfSystem], CheckOfSystem]:
+    """Make a function the check of a rule about systems."""
+
+    def register(check: CheckOfSystem) -> CheckOfSystem:
+        CHECKS[identifier] = SystemCheck(id=identifier, check=check)
+        return check
+
+    return register

@@ -11,7 +11,7 @@ from amalthea_uros.services.check import check_files
 from amalthea_uros.services.fix import fix_files
 from amalthea_uros.validate import registry
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rule import ModelCheck
 
 RELATIVE = """
 <stimuliModel>
@@ -155,10 +155,9 @@ def test_many_objects_are_named_in_one_pass(tmp_path, monkeypatch):
 def test_one_run_repairs_everything_and_makes_nothing_worse(tmp_path):
     """For what every rule with a repair complains about, alone and together with that of another one."""
 
-    rules = [rule for rule in map(registry.rule, registry.ids()) if isinstance(rule, ModelRule)]
-    repairable = [
-        rule.fails for rule in rules if rule.fails and "<am:" not in rule.fails and (rule.fix or rule.in_canonical_form)
-    ]
+    checks = [check for check in map(registry.check, registry.ids()) if isinstance(check, ModelCheck)]
+    examples = [registry.kind(check.id).fails for check in checks if check.fix or check.in_canonical_form]
+    repairable = [example for example in examples if example and "<am:" not in example]
     path = tmp_path / "model.amxmi"
     neighbours = zip(repairable, [*repairable[1:], repairable[0]], strict=True)
     for excerpt, other in [*((one, "") for one in repairable), *neighbours]:

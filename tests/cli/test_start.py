@@ -36,8 +36,9 @@ MODELS = {"amalthea_uros.metamodel.classes", "amalthea_uros.xmi"}
 SYSTEMS = {"amalthea_uros.perf", "amalthea_uros.timing"}
 #: pydantic looks for plugins in the distributions that are installed.
 DESCRIPTIONS = {"pydantic", "yaml", "email", "socket", "importlib.metadata"}
-#: So do the rules of users; the settings of a project are TOML.
+#: So do the rules of users; the settings of a project are TOML, the texts of rules YAML.
 RULES = {
+    "yaml",
     "amalthea_uros.validate",
     "amalthea_uros.findings.catalogue",
     "tomllib",

@@ -82,6 +82,6 @@ def test_each_object_of_a_name_is_reported(excerpts, count, tmp_path):
 
 def test_documented_constraints_are_not_said_to_be_reported():
     for identifier in registry.ids([RuleProfile.APP4MC]):
-        rationale = registry.rule(identifier).rationale
+        rationale = registry.kind(identifier).rationale
         assert rationale.endswith("APP4MC's validation also reports it.") is identifier.startswith("AM-")
         assert ("The APP4MC documentation requires" in rationale) is identifier.startswith("DOC-")

@@ -242,7 +242,7 @@ def test_each_rule_with_errors_rests_on_something_seen():
     failing = [name for name in set(VERDICTS) - NO_MODEL if VERDICTS[name]["exit"]]
     shown = set().union(*(errors(vector(name)) for name in failing))
     assert not shown & set(SEEN_ELSEWHERE)
-    assert shown | set(SEEN_ELSEWHERE) == {rule for rule in RULES if registry.rule(rule).severity is Severity.ERROR}
+    assert shown | set(SEEN_ELSEWHERE) == {rule for rule in RULES if registry.kind(rule).severity is Severity.ERROR}
 
 
 # What no vector shows

@@ -18,7 +18,7 @@ from amalthea_uros.metamodel.model import Document, Model
 from amalthea_uros.validate import registry
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.engine import run
-from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rule import ModelCheck
 
 SAMPLES = [pytest.param(path, id=path.name) for path in sorted((ROOT / "samples").glob("*.amxmi"))]
 
@@ -64,14 +64,14 @@ CLASSES = [cls for cls in vars(classes).values() if isinstance(cls, type) and is
 
 @pytest.mark.parametrize("identifier", list(registry.ids()))
 def test_no_rule_fails_where_nothing_is_set(identifier):
-    rule = registry.rule(identifier)
-    if isinstance(rule, ModelRule):
+    rule = registry.check(identifier)
+    if isinstance(rule, ModelCheck):
         context = Context(Model([Document(Amalthea())]))
         for element in (cls() for cls in CLASSES if issubclass(cls, rule.target)):
             list(rule.check(element, context))
 
 
-RULES = [rule for rule in map(registry.rule, registry.ids()) if isinstance(rule, ModelRule)]
+RULES = [rule for rule in map(registry.check, registry.ids()) if isinstance(rule, ModelCheck)]
 
 
 @examples(18)

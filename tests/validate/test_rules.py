@@ -12,7 +12,7 @@ from amalthea_uros.diagnostics import Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.validate import registry
 from amalthea_uros.validate.engine import run
-from amalthea_uros.validate.rule import RuleProfile, SystemRule
+from amalthea_uros.validate.rule import ModelCheck, RuleProfile
 
 IDS = list(registry.ids())
 
@@ -29,7 +29,7 @@ def model(excerpt, folder, version="3.3.0", beside=None):
 
 @pytest.mark.parametrize("identifier", IDS)
 def test_a_rule(identifier, tmp_path):
-    rule = registry.rule(identifier)
+    rule = registry.kind(identifier)
     assert rule.id == identifier
     assert rule.title[0].islower()
     assert rule.title[-1] != "."
@@ -53,12 +53,9 @@ def found_in(rule, example, folder):
         path = folder / "model.amxmi"
         path.write_text(example)
         return check(load(path), [rule.id])
-    if isinstance(rule, SystemRule):
-        read = model(example, folder, "3.3.0")
-    else:
-        version = rule.example_version if example == rule.fails else "3.3.0"
-        read = model(example, folder, version, rule.beside)
-    if isinstance(rule, SystemRule) or not rule.is_about_files:
+    read = model(example, folder, rule.example_version if example == rule.fails else "3.3.0", rule.beside)
+    check_of_rule = registry.check(rule.id)
+    if not (isinstance(check_of_rule, ModelCheck) and check_of_rule.is_about_files):
         # The examples are models of which everything is understood.
         assert not read.findings
     findings = check(read, [rule.id])
@@ -85,7 +82,7 @@ def found_by_rules(model):
 def test_every_row_of_the_reference_table_is_a_rule():
     # The severity of a rule is that of the worst that it finds.
     rows = {rule: min(letter for other, letter, _ in inchron.ROWS if other == rule) for rule, _, _ in inchron.ROWS}
-    assert rows == {rule: LETTERS[registry.rule(rule).severity] for rule in registry.ids([RuleProfile.INCHRON])}
+    assert rows == {rule: LETTERS[registry.kind(rule).severity] for rule in registry.ids([RuleProfile.INCHRON])}
 
 
 PATHS = [*sorted((ROOT / "samples").glob("*.amxmi")), *sorted((SHARED / "vectors" / "am2inc").glob("*.amxmi"))]
@@ -121,7 +118,7 @@ def test_a_rule_that_fails_is_a_finding(tmp_path):
         raise RuntimeError("oh")
         yield
 
-    rule = replace(registry.rule("INC-SW-LABELSIZE"), check=broken)
+    rule = replace(registry.check("INC-SW-LABELSIZE"), check=broken)
     (finding,) = run(model('<swModel><labels name="L"/></swModel>', tmp_path), [rule])
     assert finding.rule == "CHK001"
     assert "INC-SW-LABELSIZE failed" in finding.message
@@ -136,4 +133,4 @@ def test_only_what_is_selected_is_imported():
     )
     process = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert "INC-OS-ALGORITHM" in process.stdout
-    assert process.stderr.strip() == "['amalthea_uros.validate.rules.inchron.inc_os_algorithm']"
+    assert process.stderr.strip() == "['amalthea_uros.validate.rules.inchron.scheduling']"

@@ -1,15 +1,32 @@
-"""Ports and connections of hardware."""
+"""Ports, connections, access paths and structures of hardware."""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator
+from itertools import pairwise
 
-from amalthea_uros.diagnostics import Severity
-from amalthea_uros.metamodel.classes import ConnectionHandler, HwConnection, HwModule, HwPort, HwStructure, PortInterface
+from amalthea_uros._internal.plural import counted
+from amalthea_uros.metamodel.classes import (
+    ConnectionHandler,
+    ConnectionHandlerDefinition,
+    HwAccessElement,
+    HwAccessPath,
+    HwConnection,
+    HwDestination,
+    HwModule,
+    HwPathElement,
+    HwPort,
+    HwStructure,
+    Memory,
+    PortInterface,
+    PortType,
+    ProcessingUnit,
+)
 from amalthea_uros.metamodel.element import Element
+from amalthea_uros.metamodel.magnitudes import bits
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rule import model_rule
 
 
 def is_internal(connection: HwConnection) -> bool:
@@ -43,6 +60,7 @@ def _has(element: Element, port: HwPort) -> bool:
     return port in _ports(element) if isinstance(element, HwConnection) else port.container is element
 
 
+@model_rule("AM-HW-Connection", HwConnection)
 def _check_connection(element: HwConnection, context: Context) -> Iterator[str]:
     first, second = element.port1, element.port2
     for name, port in (("port1", first), ("port2", second)):
@@ -58,18 +76,21 @@ def _check_connection(element: HwConnection, context: Context) -> Iterator[str]:
             yield f"connection {element.name!r} connects different interfaces: {' and '.join(sorted(map(str, interfaces)))}"
 
 
+@model_rule("AM-HW-Port", HwPort)
 def _check_connections(element: HwPort, context: Context) -> Iterator[str]:
     count = context.once(connections_outside)[element]
     if count > 1 and not isinstance(element.container, HwStructure):
         yield f"port {element.qualified_name!r} has {count} connections, but at most 1 is allowed"
 
 
+@model_rule("AM-HW-Port-Definition", HwPort)
 def _check_definition(element: HwPort, context: Context) -> Iterator[str]:
     for feature in ("port_type", "port_interface"):
         if getattr(element, feature) in (None, "_undefined_"):
             yield f"port {element.name!r} has no {feature.replace('_', ' ')}"
 
 
+@model_rule("DOC-HwPort-Single-Connection", HwPort)
 def _check_single_connection(element: HwPort, context: Context) -> Iterator[str]:
     count = context.once(connections_outside)[element]
     most = 2 if isinstance(element.container, HwStructure) else 1
@@ -77,100 +98,87 @@ def _check_single_connection(element: HwPort, context: Context) -> Iterator[str]
         yield f"port {element.qualified_name!r} has {count} connections, but at most {most} {'is' if most == 1 else 'are'} allowed"
 
 
-RULES = (
-    ModelRule(
-        id="AM-HW-Connection",
-        title="invalid hardware connection",
-        severity=Severity.ERROR,
-        target=HwConnection,
-        check=_check_connection,
-        rationale="No data can be transferred over such a connection. APP4MC's validation also reports it.",
-        remedy="Connect two different ports with the same interface.",
-        fails="""
-<hwModel>
-  <structures name="ECU">
-    <connections name="wire"/>
-  </structures>
-</hwModel>
-""",
-        edits={
-            '<connections name="wire"/>': """<ports name="a" portInterface="AXI"/>
-    <ports name="b" portInterface="AXI"/>
-    <connections name="wire" port1="ECU/a?type=HwPort" port2="ECU/b?type=HwPort"/>""",
-        },
-    ),
-    ModelRule(
-        id="AM-HW-Port",
-        title="port with several connections",
-        severity=Severity.ERROR,
-        target=HwPort,
-        check=_check_connections,
-        rationale="A connection links exactly two ports; only a connection handler can link more. APP4MC's validation also reports it.",
-        remedy="Use a separate port for each connection, or insert a connection handler.",
-        fails="""
-<hwModel>
-  <structures name="ECU">
-    <modules xsi:type="am:ProcessingUnit" name="core">
-      <ports name="p"/>
-    </modules>
-    <modules xsi:type="am:Memory" name="RAM">
-      <ports name="p"/>
-      <ports name="q"/>
-    </modules>
-    <connections name="a" port1="core/p?type=HwPort" port2="RAM/p?type=HwPort"/>
-    <connections name="b" port1="core/p?type=HwPort" port2="RAM/q?type=HwPort"/>
-  </structures>
-</hwModel>
-""",
-        edits={
-            """</modules>
-    <modules xsi:type="am:Memory" name="RAM">""": """  <ports name="q"/>
-    </modules>
-    <modules xsi:type="am:Memory" name="RAM">""",
-            'name="b" port1="core/p?type=HwPort"': 'name="b" port1="core/q?type=HwPort"',
-        },
-    ),
-    ModelRule(
-        id="AM-HW-Port-Definition",
-        title="port without a type or interface",
-        severity=Severity.WARNING,
-        target=HwPort,
-        check=_check_definition,
-        rationale="Without a type and an interface, connections to the port cannot be checked. APP4MC's validation also reports it.",
-        remedy="Set the port type and the port interface.",
-        fails="""
-<hwModel>
-  <structures name="ECU">
-    <ports name="a"/>
-  </structures>
-</hwModel>
-""",
-        edits={'name="a"': 'name="a" portType="initiator" portInterface="AXI"'},
-    ),
-    ModelRule(
-        id="DOC-HwPort-Single-Connection",
-        title="too many connections at a port",
-        severity=Severity.ERROR,
-        target=HwPort,
-        check=_check_single_connection,
-        rationale="A port of a structure has one outer and one inner connection, any other port only one; connections inside "
-        "connection handlers are not counted. The APP4MC documentation requires this.",
-        remedy="Use a separate port for each connection, or insert a connection handler.",
-        fails="""
-<hwModel>
-  <structures name="ECU">
-    <ports name="p"/>
-    <modules xsi:type="am:Memory" name="RAM">
-      <ports name="a"/>
-      <ports name="b"/>
-      <ports name="c"/>
-    </modules>
-    <connections name="x" port1="ECU/p?type=HwPort" port2="RAM/a?type=HwPort"/>
-    <connections name="y" port1="ECU/p?type=HwPort" port2="RAM/b?type=HwPort"/>
-    <connections name="z" port1="ECU/p?type=HwPort" port2="RAM/c?type=HwPort"/>
-  </structures>
-</hwModel>
-""",
-        edits={'    <connections name="z" port1="ECU/p?type=HwPort" port2="RAM/c?type=HwPort"/>\n': ""},
-    ),
-)
+@model_rule("AM-HW-AccessPath", HwAccessPath)
+def _check_accesspath(element: HwAccessPath, context: Context) -> Iterator[str]:
+    access = element.container
+    destination = access.destination if isinstance(access, HwAccessElement) else None
+    yield from _addresses(element, destination)
+    if element.path_elements:
+        source = access.container if access is not None else None
+        yield from _end(element.path_elements[0], source, "start")
+        if destination is None:
+            yield "the path has no destination"
+        yield from _end(element.path_elements[-1], destination, "end")
+        for first, second in pairwise(element.path_elements):
+            if share_no_port(first, second):
+                yield f"{first.qualified_name!r} and {second.qualified_name!r} are adjacent, but share no port"
+
+
+def _addresses(path: HwAccessPath, destination: HwDestination | None) -> Iterator[str]:
+    start, end, offset = (path.start_address or 0), (path.end_address or 0), (path.mem_offset or 0)
+    if end < start:
+        yield f"the end address {end:#x} is below the start address {start:#x}"
+    if not isinstance(destination, Memory) or destination.unresolved is not None:
+        return
+    if destination.definition is None:
+        yield f"the destination memory {destination.name!r} has no definition"
+        return
+    size = bits(destination.definition.size)
+    if size is not None and start <= end and 8 * (offset + end - start) > size:
+        yield f"{end - start:#x} bytes at offset {offset:#x} exceed the {size // 8:#x} bytes of {destination.name!r}"
+
+
+def _end(element: HwPathElement, neighbour: Element | None, which: str) -> Iterator[str]:
+    if element.unresolved is not None:
+        return
+    if not isinstance(element, HwConnection):
+        yield f"{element.qualified_name!r} at the {which} of the path is not a connection"
+    elif neighbour is not None and share_no_port(element, neighbour):
+        yield f"connection {element.name!r} at the {which} of the path has no port of {neighbour.qualified_name!r}"
+
+
+_TYPES = (PortType.INITIATOR, PortType.RESPONDER)
+
+
+@model_rule("AM-HW-Structure", HwConnection)
+def _check_structure(element: HwConnection, context: Context) -> Iterator[str]:
+    structure, first, second = element.container, element.port1, element.port2
+    if not isinstance(structure, HwStructure) or first is None or second is None or first is second:
+        return
+    if not {first.port_type, second.port_type}.issubset(_TYPES):
+        return
+    outer = {_is_outer(first, structure), _is_outer(second, structure)}
+    if outer == {True, False} and first.port_type != second.port_type:
+        yield f"connection {element.name!r} delegates between ports of type {first.port_type} and {second.port_type}"
+    elif outer in ({True}, {False}) and first.port_type == second.port_type:
+        yield f"connection {element.name!r} connects two ports of type {first.port_type}"
+
+
+def _is_outer(port: HwPort, structure: HwStructure) -> bool | None:
+    """True for a port of the structure itself, False for a port of its direct parts, None for any other port."""
+    holder = port.container
+    if holder is structure:
+        return True
+    if holder is not None and isinstance(holder.container, ProcessingUnit):
+        holder = holder.container  # the port belongs to a cache
+    return False if holder is not None and holder.container is structure else None
+
+
+@model_rule("DOC-ConnectionHandler-Transfers", ConnectionHandlerDefinition)
+def _check_connectionhandler_transfers(element: ConnectionHandlerDefinition, context: Context) -> Iterator[str]:
+    transfers = element.max_concurrent_transfers
+    for handler in context.once(_handlers).get(element, []):
+        count = Counter(port.port_type for port in handler.ports)
+        if transfers is not None and handler.ports and count.keys() <= set(_TYPES):
+            fewest = min(_TYPES, key=count.__getitem__)
+            if transfers > count[fewest]:
+                ports = counted(count[fewest], f"{fewest} port")
+                yield f"{handler.name!r} has {ports}, too few for {counted(transfers, 'concurrent transfer')}"
+
+
+def _handlers(context: Context) -> dict[ConnectionHandlerDefinition, list[ConnectionHandler]]:
+    found: dict[ConnectionHandlerDefinition, list[ConnectionHandler]] = {}
+    for handler in context.all(ConnectionHandler):
+        if handler.definition is not None:
+            found.setdefault(handler.definition, []).append(handler)
+    return found

@@ -1,27 +1,58 @@
-"""Values that must be positive or not negative, and units."""
+"""Ranges and units of values, sizes and shares of transmitted data."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
-from amalthea_uros.diagnostics import Severity
-from amalthea_uros.metamodel.classes import AbstractMemoryElement, ClockFunction, Counter, Frequency, FrequencyDomain, Quantity
+from amalthea_uros.metamodel.classes import (
+    AbstractMemoryElement,
+    ArrivalCurveEntry,
+    Channel,
+    ChannelAccess,
+    ClockFunction,
+    ClockStep,
+    ClockStepList,
+    Counter,
+    DataAgeTime,
+    DataSize,
+    DelayConstraint,
+    EventChainLatencyConstraint,
+    FixedPeriodic,
+    Frequency,
+    FrequencyDomain,
+    LabelAccess,
+    PeriodicActivation,
+    PeriodicSyntheticStimulus,
+    Quantity,
+    RepetitionConstraint,
+    SingleActivation,
+    SingleStimulus,
+    SynchronizationConstraint,
+    Time,
+    TransmissionPolicy,
+    TypeDefinition,
+    TypeRef,
+)
+from amalthea_uros.metamodel.element import Element
+from amalthea_uros.metamodel.magnitudes import bits
 from amalthea_uros.metamodel.naming import name_of
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.examples import runnable_with
-from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rule import model_rule
 
 
+@model_rule("AM-Basic-Counter", Counter)
 def _check_counter(element: Counter, context: Context) -> Iterator[str]:
     if (element.offset or 0) < 0:
         yield f"the counter offset is {element.offset}, but must be 0 or more"
 
 
+@model_rule("AM-Basic-Data-Size", AbstractMemoryElement)
 def _check_size(element: AbstractMemoryElement, context: Context) -> Iterator[str]:
     if element.size is not None and (element.size.value or 0) <= 0:
         yield f"the size of {element.name!r} is {element.size.value or 0}, but must be greater than 0"
 
 
+@model_rule("AM-Basic-Frequency", Frequency)
 def _check_frequency(element: Frequency, context: Context) -> Iterator[str]:
     holder = element.container
     decides = isinstance(holder, FrequencyDomain) or (isinstance(holder, ClockFunction) and holder.y_offset is element)
@@ -29,76 +60,91 @@ def _check_frequency(element: Frequency, context: Context) -> Iterator[str]:
         yield f"the frequency of {name_of(holder)!r} is {element.value or 0}, but must be greater than 0"
 
 
+@model_rule("AM-Basic-Quantity", Quantity)
 def _check_unit(element: Quantity, context: Context) -> Iterator[str]:
     if getattr(element, "unit", None) in (None, "_undefined_"):
         yield f"the {type(element).__name__} has no unit"
 
 
-RULES = (
-    ModelRule(
-        id="AM-Basic-Counter",
-        title="negative counter offset",
-        severity=Severity.ERROR,
-        target=Counter,
-        check=_check_counter,
-        rationale="A counter cannot take effect before the first occurrence. APP4MC's validation also reports it.",
-        remedy="Set the offset to 0 or more.",
-        fails=runnable_with("""
-<items xsi:type="am:RunnableCall">
-  <counter prescaler="2" offset="-1"/>
-</items>
-"""),
-        edits={'offset="-1"': 'offset="1"'},
-    ),
-    ModelRule(
-        id="AM-Basic-Data-Size",
-        title="size of zero or less",
-        severity=Severity.ERROR,
-        target=AbstractMemoryElement,
-        check=_check_size,
-        rationale="An object in memory occupies at least one bit. APP4MC's validation also reports it.",
-        remedy="Set a size greater than 0, or remove the size.",
-        fails="""
-<swModel>
-  <labels name="L">
-    <size value="0" unit="B"/>
-  </labels>
-</swModel>
-""",
-        edits={'value="0"': 'value="4"'},
-    ),
-    ModelRule(
-        id="AM-Basic-Frequency",
-        title="frequency of zero or less",
-        severity=Severity.ERROR,
-        target=Frequency,
-        check=_check_frequency,
-        rationale="A clock needs a positive frequency to tick. APP4MC's validation also reports it.",
-        remedy="Set a frequency greater than 0.",
-        fails="""
-<hwModel>
-  <domains xsi:type="am:FrequencyDomain" name="c">
-    <defaultValue value="0.0" unit="MHz"/>
-  </domains>
-</hwModel>
-""",
-        edits={'value="0.0"': 'value="1.0"'},
-    ),
-    ModelRule(
-        id="AM-Basic-Quantity",
-        title="quantity without a unit",
-        severity=Severity.ERROR,
-        target=Quantity,
-        check=_check_unit,
-        rationale="A value without a unit is meaningless, even if it is 0. APP4MC's validation also reports it.",
-        remedy="Add the unit.",
-        fails="""
-<swModel>
-  <labels name="L">
-    <size value="4"/>
-  </labels>
-</swModel>
-""",
-        edits={'value="4"': 'value="4" unit="B"'},
-    ),
+_POSITIVE, _NOT_NEGATIVE = "greater than 0", "0 or more"
+
+
+#: The smallest allowed value in any unit: times are whole numbers.
+_MINIMUM = {_POSITIVE: 1, _NOT_NEGATIVE: 0}
+
+
+#: The required range of times, by class and feature; all other times are unrestricted.
+_ROLES: tuple[tuple[type[Element], str, str], ...] = (
+    (FixedPeriodic, "recurrence", _POSITIVE),
+    (FixedPeriodic, "offset", _NOT_NEGATIVE),
+    (SingleStimulus, "occurrence", _NOT_NEGATIVE),
+    (PeriodicSyntheticStimulus, "occurrence_times", _NOT_NEGATIVE),
+    (ArrivalCurveEntry, "lower_time_border", _NOT_NEGATIVE),
+    (ArrivalCurveEntry, "upper_time_border", _NOT_NEGATIVE),
+    (PeriodicActivation, "recurrence", _POSITIVE),
+    (PeriodicActivation, "offset", _NOT_NEGATIVE),
+    (PeriodicActivation, "min", _NOT_NEGATIVE),
+    (PeriodicActivation, "max", _NOT_NEGATIVE),
+    (SingleActivation, "min", _NOT_NEGATIVE),
+    (SingleActivation, "max", _NOT_NEGATIVE),
+    (ClockFunction, "period", _POSITIVE),
+    (ClockFunction, "x_offset", _NOT_NEGATIVE),
+    (ClockStepList, "period", _POSITIVE),
+    (ClockStep, "time", _NOT_NEGATIVE),
+    (DataAgeTime, "minimum_time", _NOT_NEGATIVE),
+    (DataAgeTime, "maximum_time", _NOT_NEGATIVE),
+    (DelayConstraint, "lower", _NOT_NEGATIVE),
+    (DelayConstraint, "upper", _NOT_NEGATIVE),
+    (EventChainLatencyConstraint, "minimum", _NOT_NEGATIVE),
+    (EventChainLatencyConstraint, "maximum", _NOT_NEGATIVE),
+    (RepetitionConstraint, "lower", _NOT_NEGATIVE),
+    (RepetitionConstraint, "upper", _NOT_NEGATIVE),
+    (RepetitionConstraint, "jitter", _NOT_NEGATIVE),
+    (RepetitionConstraint, "period", _NOT_NEGATIVE),
+    (SynchronizationConstraint, "tolerance", _NOT_NEGATIVE),
 )
+
+
+@model_rule("AM-Basic-Time-Range", Time)
+def _check_time_range(element: Time, context: Context) -> Iterator[str]:
+    feature, required = context.once(_required_ranges).get(element, ("", ""))
+    value = element.value or 0
+    if required and value < _MINIMUM[required]:
+        yield f"the {feature.replace('_', ' ')} is {value} {element.unit or ''}".rstrip() + f", but must be {required}"
+
+
+def _required_ranges(context: Context) -> dict[Time, tuple[str, str]]:
+    found: dict[Time, tuple[str, str]] = {}
+    for cls, feature, required in _ROLES:
+        for holder in context.all(cls):
+            held = getattr(holder, feature)
+            found.update((time, (feature, required)) for time in (held if isinstance(held, list) else [held]))
+    return found
+
+
+@model_rule("DOC-Transmission-Chunk", TransmissionPolicy)
+def _check_chunk(element: TransmissionPolicy, context: Context) -> Iterator[str]:
+    chunk, whole = element.chunk_size, _transmitted(element.container)
+    chunk_bits, whole_bits = bits(chunk), bits(whole)
+    if chunk is None or whole is None or chunk_bits is None or whole_bits is None:
+        return
+    if chunk_bits > whole_bits:
+        yield f"the chunk size of {chunk.value} {chunk.unit} is larger than the transmitted {whole.value} {whole.unit}"
+
+
+def _transmitted(access: Element | None) -> DataSize | None:
+    """The size of the label, or of an element of the channel, if it is known."""
+    match access:
+        case LabelAccess(data=data) if data is not None:
+            return data.size
+        case ChannelAccess(data=Channel(element_type=TypeDefinition(size=size))):
+            return size
+        case ChannelAccess(data=Channel(element_type=TypeRef(type_def=TypeDefinition(size=size)))):
+            return size
+    return None
+
+
+@model_rule("DOC-Transmission-Ratio", TransmissionPolicy)
+def _check_ratio(element: TransmissionPolicy, context: Context) -> Iterator[str]:
+    if element.transmit_ratio is not None and not 0 <= element.transmit_ratio <= 1:
+        yield f"the transmit ratio is {element.transmit_ratio}, but must be from 0 to 1"

@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import (
     EnumMode,
     Mode,
@@ -16,7 +15,7 @@ from amalthea_uros.metamodel.classes import (
     NumericMode,
 )
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rule import model_rule
 
 _INTEGER = re.compile(r"-?[0-9]+")
 
@@ -37,6 +36,7 @@ def allowed_values(mode: Mode | None) -> str:
     return "an integer"
 
 
+@model_rule("AM-EMF-INTRINSIC/ModeLabel", ModeLabel)
 def _check_label(element: ModeLabel, context: Context) -> Iterator[str]:
     if element.mode is None:
         yield f"mode label {element.name!r} has no mode"
@@ -44,6 +44,7 @@ def _check_label(element: ModeLabel, context: Context) -> Iterator[str]:
         yield f"the initial value {element.initial_value!r} of {element.name!r} is not {allowed_values(element.mode)}"
 
 
+@model_rule("AM-EMF-INTRINSIC/ModeLabelAccess", ModeLabelAccess)
 def _check_access(element: ModeLabelAccess, context: Context) -> Iterator[str]:
     label = element.data
     if label is None:
@@ -54,6 +55,7 @@ def _check_access(element: ModeLabelAccess, context: Context) -> Iterator[str]:
         yield f"the value {element.value!r} set in {label.name!r} is not {allowed_values(label.mode)}"
 
 
+@model_rule("AM-EMF-INTRINSIC/ModeValue", ModeValue)
 def _check_value(element: ModeValue, context: Context) -> Iterator[str]:
     label = element.label
     if label is None:
@@ -64,74 +66,3 @@ def _check_value(element: ModeValue, context: Context) -> Iterator[str]:
         yield f"mode label {label.name!r} is used without a value"
     elif not is_value_of(label.mode, element.value):
         yield f"the value {element.value!r} for {label.name!r} is not {allowed_values(label.mode)}"
-
-
-RULES = (
-    ModelRule(
-        id="AM-EMF-INTRINSIC/ModeLabel",
-        title="mode label without a mode or with an invalid initial value",
-        severity=Severity.ERROR,
-        target=ModeLabel,
-        check=_check_label,
-        rationale="Conditions on the mode label cannot be evaluated. APP4MC's validation also reports it.",
-        remedy="Set a mode, and use one of its values as the initial value.",
-        fails="""
-<swModel>
-  <modes xsi:type="am:EnumMode" name="M">
-    <literals name="on"/>
-    <literals name="off"/>
-  </modes>
-  <modeLabels name="L" mode="M?type=EnumMode" initialValue="half"/>
-</swModel>
-""",
-        edits={'initialValue="half"': 'initialValue="on"'},
-    ),
-    ModelRule(
-        id="AM-EMF-INTRINSIC/ModeLabelAccess",
-        title="invalid mode label access",
-        severity=Severity.ERROR,
-        target=ModeLabelAccess,
-        check=_check_access,
-        rationale="The access leaves the mode label without a valid value. APP4MC's validation also reports it.",
-        remedy="Refer to a mode label that has a mode, and set one of the values of this mode.",
-        fails="""
-<swModel>
-  <modes xsi:type="am:EnumMode" name="M">
-    <literals name="on"/>
-    <literals name="off"/>
-  </modes>
-  <modeLabels name="L" mode="M?type=EnumMode"/>
-  <runnables name="R">
-    <activityGraph>
-      <items xsi:type="am:ModeLabelAccess" data="L?type=ModeLabel" access="set" value="half"/>
-    </activityGraph>
-  </runnables>
-</swModel>
-""",
-        edits={'value="half"': 'value="off"'},
-    ),
-    ModelRule(
-        id="AM-EMF-INTRINSIC/ModeValue",
-        title="invalid mode value",
-        severity=Severity.ERROR,
-        target=ModeValue,
-        check=_check_value,
-        rationale="The condition is never true, or the assignment has no effect. APP4MC's validation also reports it.",
-        remedy="Refer to a mode label that has a mode, and use one of the values of this mode.",
-        fails="""
-<swModel>
-  <modes xsi:type="am:EnumMode" name="M">
-    <literals name="on"/>
-    <literals name="off"/>
-  </modes>
-  <modeLabels name="L" mode="M?type=EnumMode"/>
-  <runnables name="R">
-    <executionCondition>
-      <entries xsi:type="am:ModeValueCondition" label="L?type=ModeLabel" value="half"/>
-    </executionCondition>
-  </runnables>
-</swModel>
-""",
-        edits={'value="half"': 'value="off"'},
-    ),
-)

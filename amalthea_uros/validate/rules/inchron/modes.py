@@ -5,10 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import EnumMode, Mode, ModeLabel, ModeLabelAccess, ModeValueCondition, NumericMode
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import ModelRule
+from amalthea_uros.validate.rule import model_rule
 
 _INTEGER = re.compile(r"\s*[+-]?[0-9]+").fullmatch
 
@@ -24,11 +23,13 @@ def fault(value: str | None, mode: Mode | None) -> str | None:
     return None if is_integer else f"{value or ''!r}, which is not a 32-bit integer"
 
 
+@model_rule("INC-SW-MODE-MISSING", ModeLabel)
 def _check_missing(element: ModeLabel, context: Context) -> Iterator[str]:
     if element.mode is None:
         yield f"the mode label {element.name or ''!r} has no mode"
 
 
+@model_rule("INC-SW-MODE-NUMSET", ModeLabelAccess)
 def _check_numeric_access(element: ModeLabelAccess, context: Context) -> Iterator[str]:
     match element:
         case ModeLabelAccess(data=ModeLabel(mode=NumericMode()) as label, access="set"):
@@ -36,6 +37,7 @@ def _check_numeric_access(element: ModeLabelAccess, context: Context) -> Iterato
             yield f"the mode label {label.name or ''!r} is set to the step {step} instead of {element.value or ''!r}"
 
 
+@model_rule("INC-SW-MODE-VALUE", ModeLabel, ModeValueCondition, ModeLabelAccess)
 def _check_value(element: ModeLabel | ModeValueCondition | ModeLabelAccess, context: Context) -> Iterator[str]:
     match element:
         case ModeLabel() if element.mode is not None and element.initial_value:
@@ -50,66 +52,3 @@ def _faults(label: ModeLabel, value: str | None, use: str) -> Iterator[str]:
     found = fault(value, label.mode)
     if found is not None:
         yield f"the mode label {label.name or ''!r} {use} {found}"
-
-
-RULES = (
-    ModelRule(
-        id="INC-SW-MODE-MISSING",
-        title="mode label without a mode",
-        severity=Severity.WARNING,
-        target=ModeLabel,
-        check=_check_missing,
-        rationale="am2inc ignores the mode label and prints a warning.",
-        remedy="Assign a mode to the mode label.",
-        fails="""
-<swModel>
-  <modeLabels name="L"/>
-</swModel>
-""",
-        edits={
-            '<modeLabels name="L"/>': """<modes xsi:type="am:NumericMode" name="M"/>
-  <modeLabels name="L" mode="M?type=NumericMode"/>""",
-        },
-    ),
-    ModelRule(
-        id="INC-SW-MODE-NUMSET",
-        title="mode label set to a number",
-        severity=Severity.WARNING,
-        target=ModeLabelAccess,
-        check=_check_numeric_access,
-        rationale="am2inc silently uses the step of the access instead of its value.",
-        remedy="Increment or decrement the mode label instead.",
-        fails="""
-<swModel>
-  <runnables name="R">
-    <activityGraph>
-      <items xsi:type="am:ModeLabelAccess" data="L?type=ModeLabel" access="set" value="5"/>
-    </activityGraph>
-  </runnables>
-  <modes xsi:type="am:NumericMode" name="M"/>
-  <modeLabels name="L" mode="M?type=NumericMode"/>
-</swModel>
-""",
-        edits={'access="set" value="5"': 'access="increment" step="5"'},
-    ),
-    ModelRule(
-        id="INC-SW-MODE-VALUE",
-        title="invalid mode value",
-        severity=Severity.WARNING,
-        target=(ModeLabel, ModeValueCondition, ModeLabelAccess),
-        check=_check_value,
-        rationale="am2inc gives a mode label no initial mode or 0, gives a condition no value or 0, and drops an access. It "
-        "prints a warning only for numeric modes.",
-        remedy="Use a literal of the mode, or a 32-bit integer if the mode is numeric.",
-        fails="""
-<swModel>
-  <modes xsi:type="am:EnumMode" name="M">
-    <literals name="on"/>
-    <literals name="off"/>
-  </modes>
-  <modeLabels name="L" mode="M?type=EnumMode" initialValue="up"/>
-</swModel>
-""",
-        edits={'initialValue="up"': 'initialValue="on"'},
-    ),
-)

@@ -1,0 +1,93 @@
+"""Items of activity graphs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.metamodel.classes import (
+    BooleanObject,
+    Condition,
+    ConditionConjunction,
+    CustomProperty,
+    EnumMode,
+    EventMask,
+    Group,
+    LabelAccess,
+    ModeLabel,
+    ModeLabelAccess,
+    ModeLabelCondition,
+    ModeValueCondition,
+    NumericMode,
+    SemaphoreAccess,
+    StringObject,
+    Task,
+)
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import Downgraded, model_rule
+from amalthea_uros.validate.rules.inchron.importer import metamodel
+
+
+@model_rule("INC-SW-ACCESS", LabelAccess, ModeLabelAccess, SemaphoreAccess)
+def _check_access(element: LabelAccess | ModeLabelAccess | SemaphoreAccess, context: Context) -> Iterator[str]:
+    match element:
+        case LabelAccess() if element.access not in ("read", "write"):
+            yield "the label access is neither a read nor a write"
+        case ModeLabelAccess(data=ModeLabel(mode=EnumMode()) as label) if element.access not in ("read", "set"):
+            yield f"the access to the mode label {label.name or ''!r} neither reads nor sets a literal and is dropped by am2inc"
+        case ModeLabelAccess(data=ModeLabel() as label, access=None | "_undefined_"):
+            yield f"the access to the mode label {label.name or ''!r} has no access type and is dropped by am2inc"
+        case SemaphoreAccess(semaphore=None):
+            yield "the semaphore access has no semaphore"
+
+
+@model_rule("INC-SW-CONDKIND", Condition)
+def _check_condkind(element: Condition, context: Context) -> Iterator[str | Downgraded]:
+    if isinstance(element, ModeValueCondition):
+        if element.label is None:
+            yield "the condition has no mode label"
+    elif isinstance(element, ModeLabelCondition):
+        first, second = element.label1, element.label2
+        if first is None or second is None:
+            yield "the condition has fewer than two mode labels"
+        elif first.unresolved is None and second.unresolved is None and not _is_of_same_kind(first, second):
+            yield Downgraded(f"the mode labels {first.name or ''!r} and {second.name or ''!r} have modes of different kinds")
+    else:
+        message = f"the {type(element).__name__} does not compare modes"
+        yield message if isinstance(element.container, ConditionConjunction) else Downgraded(message)
+
+
+def _is_of_same_kind(first: ModeLabel, second: ModeLabel) -> bool:
+    """Whether both have an enum mode or both a numeric one; am2inc reads a first label without a mode as numeric."""
+    return isinstance(second.mode, EnumMode if isinstance(first.mode, EnumMode) else NumericMode)
+
+
+#: The orders in which a group of a callback server can dispatch its services.
+_POLICIES = ("FIFO", "LIFO", "Priority")
+
+
+@model_rule("INC-SW-DISPATCH", CustomProperty)
+def _check_dispatch(element: CustomProperty, context: Context) -> Iterator[str]:
+    if metamodel(element) < "3":
+        return
+    holder, value = element.container, element.value
+    if isinstance(holder, Task) and element.key == "callbackServer" and not isinstance(value, BooleanObject):
+        yield f"the custom property 'callbackServer' of the task {holder.name or ''!r} is not a BooleanObject"
+    if isinstance(holder, Group) and element.key == "dispatchingPolicy" and _is_server(holder.enclosing(Task)):
+        policy = value.value if isinstance(value, StringObject) else None
+        if policy not in _POLICIES:
+            yield f"the custom property 'dispatchingPolicy' of the group {holder.name or ''!r} is not one of {', '.join(_POLICIES)}"
+
+
+def _is_server(task: Task | None) -> bool:
+    """Whether a task is a callback server, whose groups are services."""
+    properties = task.custom_properties if task is not None else []
+    return any(p.key == "callbackServer" and isinstance(p.value, BooleanObject) and p.value.value for p in properties)
+
+
+@model_rule("INC-SW-EVENTMASK", EventMask)
+def _check_eventmask(element: EventMask, context: Context) -> Iterator[str]:
+    match len(element.events):
+        case 0:
+            yield "the event mask is empty, so the access has no effect"
+        case count if count > 1:
+            yield f"only the first of the {count} events in the mask is used by am2inc"

@@ -1,0 +1,214 @@
+"""Events and event chains: what am2inc converts of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from amalthea_uros.metamodel.classes import (
+    AbstractEventChain,
+    Event,
+    EventChain,
+    EventChainLatencyConstraint,
+    EventChainReference,
+    EventSet,
+    LabelEvent,
+    ProcessEvent,
+    RunnableEvent,
+    Task,
+)
+from amalthea_uros.validate.chains import ends, events, parts
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import Downgraded, model_rule
+
+#: The classes of events that am2inc converts.
+CONVERTED = (ProcessEvent, RunnableEvent, LabelEvent)
+
+
+_OF_PROCESSES = frozenset({"activate", "start", "terminate"})
+
+
+def moments(event: Event) -> frozenset[str]:
+    """The types that am2inc converts for an event."""
+    match event:
+        case RunnableEvent():
+            return frozenset({"start", "terminate"})
+        case LabelEvent():
+            return frozenset({"read", "write"})
+        case ProcessEvent(entity=Task()):
+            return _OF_PROCESSES | {"resume", "wait", "release"}
+        case ProcessEvent():
+            return _OF_PROCESSES
+    return frozenset()
+
+
+def is_converted(event: Event) -> bool:
+    """Whether am2inc converts an event, or all events of a set, as part of a chain."""
+    if event.unresolved is not None:
+        return False
+    if isinstance(event, EventSet):
+        return all(map(is_converted, event.events))
+    if not isinstance(event, CONVERTED) or event.entity is None or event.entity.unresolved is not None:
+        return False
+    return event.event_type in moments(event)
+
+
+def is_parallel(chain: AbstractEventChain) -> bool:
+    """Whether am2inc reads the items as parallel branches; a single item is read as a sequence."""
+    return chain.item_type == "parallel" and len(chain.items) > 1
+
+
+def events_read(chain: AbstractEventChain) -> Iterable[Event]:
+    """The events that am2inc reads of a chain, each once: its ends unless it is a segment, and the stimuli of its later segments."""
+    inner = [] if is_parallel(chain) else [part.stimulus for part in parts(chain)[1:]]
+    read = [*ends(chain), *inner] if isinstance(chain, EventChain) else inner
+    return dict.fromkeys(event for end in read for event in events(end) if event.unresolved is None)
+
+
+def dropped(context: Context) -> set[AbstractEventChain]:
+    """The chains that are not converted."""
+    holders: dict[AbstractEventChain, list[AbstractEventChain]] = {}
+    for chain in context.all(AbstractEventChain):
+        for part in parts(chain):
+            holders.setdefault(part, []).append(chain)
+    found: set[AbstractEventChain] = set()
+    pending = [chain for chain in context.all(AbstractEventChain) if _is_refused(chain)]
+    while pending:
+        chain = pending.pop()
+        if chain not in found:
+            found.add(chain)
+            pending += holders.get(chain, [])
+    return found | {chain for chain in context.all(EventChain) if not all(map(_is_end, ends(chain)))}
+
+
+def _is_refused(chain: AbstractEventChain) -> bool:
+    """Whether something inside a chain prevents its conversion, and that of every chain of which it is a part."""
+    if not chain.items:
+        return None in ends(chain)
+    if any(part.unresolved is not None for part in parts(chain)):
+        return True
+    if is_parallel(chain):
+        return any(ends(branch) != ends(chain) for branch in parts(chain))
+    return not all(part.stimulus is not None and is_converted(part.stimulus) for part in parts(chain)[1:])
+
+
+def _is_end(event: Event | None) -> bool:
+    return event is not None and is_converted(event) and not (isinstance(event, EventSet) and len(event.events) > 1)
+
+
+@model_rule("INC-EC-CYCLE", EventChain)
+def _check_cycle(element: EventChain, context: Context) -> Iterator[str]:
+    if element in context.once(_endless):
+        yield f"the event chain {element.name or ''!r} is part of a reference cycle or leads into one"
+
+
+def _endless(context: Context) -> set[EventChain]:
+    """The chains that remain after repeatedly removing those without references to a remaining chain."""
+    holders: dict[EventChain, list[EventChain]] = {}
+    left: dict[EventChain, int] = dict.fromkeys(context.all(EventChain), 0)
+    for reference in context.all(EventChainReference):
+        holder = reference.enclosing(EventChain)
+        if holder is not None and reference.event_chain in left:
+            holders.setdefault(reference.event_chain, []).append(holder)
+            left[holder] += 1
+    pending = [chain for chain, count in left.items() if not count]
+    while pending:
+        chain = pending.pop()
+        del left[chain]
+        for holder in holders.get(chain, []):
+            left[holder] -= 1
+            if not left[holder]:
+                pending.append(holder)
+    return set(left)
+
+
+@model_rule("INC-EC-SEQ", AbstractEventChain)
+def _check_seq(element: AbstractEventChain, context: Context) -> Iterator[str]:
+    if is_parallel(element) or not element.items:
+        return
+    name, segments = element.name or "", parts(element)
+    if len(segments) < len(element.items):
+        yield f"the event chain {name!r} has an item without a chain, which am2inc skips"
+    if any(segment.unresolved is not None for segment in segments):
+        return
+    expected = [element.stimulus, *(segment.response for segment in segments)]
+    if segments and ([segment.stimulus for segment in segments] != expected[:-1] or expected[-1] is not element.response):
+        yield f"the segments of the event chain {name!r} do not connect its stimulus to its response"
+
+
+@model_rule("INC-EC-SET", AbstractEventChain)
+def _check_set(element: AbstractEventChain, context: Context) -> Iterator[str | Downgraded]:
+    name = element.name or ""
+    if isinstance(element, EventChain):
+        for end, event in (("stimulus", element.stimulus), ("response", element.response)):
+            count = _size(event)
+            if count == 0:
+                yield f"the {end} of the event chain {name!r} is an empty event set"
+            elif count > 1:
+                yield Downgraded(f"the {end} of the event chain {name!r} is a set of {count} events")
+    for segment in [] if is_parallel(element) else parts(element)[1:]:
+        count = _size(segment.stimulus)
+        if segment.stimulus is not None and count != 1 and is_converted(segment.stimulus):
+            size = f"a set of {count} events" if count else "an empty event set"
+            yield f"the stimulus of the segment {segment.name or ''!r} of the event chain {name!r} is {size}"
+
+
+def _size(end: Event | None) -> int:
+    """The number of events of a set; an event is a set of one."""
+    return len(end.events) if isinstance(end, EventSet) and end.unresolved is None else 1
+
+
+@model_rule("INC-EC-PAR", AbstractEventChain)
+def _check_ends(element: AbstractEventChain, context: Context) -> Iterator[str]:
+    if not is_parallel(element):
+        return
+    branches = parts(element)
+    for branch in branches:
+        if ends(branch) != ends(element):
+            yield f"the branch {branch.name or ''!r} and its event chain {element.name or ''!r} differ in stimulus or response"
+    if len(branches) < len(element.items):
+        yield f"the event chain {element.name or ''!r} has an item without a chain, which am2inc skips"
+
+
+@model_rule("INC-EC-PAR-ITEMS", AbstractEventChain)
+def _check_items(element: AbstractEventChain, context: Context) -> Iterator[str | Downgraded]:
+    branches = parts(element) if is_parallel(element) else []
+    # Otherwise the event chain is dropped.
+    is_converted = all(ends(branch) == ends(element) for branch in branches)
+    for branch in branches:
+        if not branch.items:
+            message = f"the branch {branch.name or ''!r} of the event chain {element.name or ''!r} has no items"
+            yield message if is_converted else Downgraded(message)
+
+
+@model_rule("INC-LC-SCOPE", EventChainLatencyConstraint)
+def _check_scope(element: EventChainLatencyConstraint, context: Context) -> Iterator[str]:
+    name = element.name or ""
+    if element.scope is None:
+        yield f"the latency constraint {name!r} has no scope"
+    elif element.scope.unresolved is not None:
+        yield f"the event chain of the latency constraint {name!r} cannot be resolved"
+    elif element.scope in context.once(dropped):
+        yield f"the latency constraint {name!r} is dropped by am2inc together with its event chain {element.scope.name or ''!r}"
+
+
+@model_rule("INC-EV-KIND", Event, AbstractEventChain)
+def _check_kind(element: Event | AbstractEventChain, context: Context) -> Iterator[str]:
+    if isinstance(element, Event) and not isinstance(element, CONVERTED):
+        how = "converted only as part of an event chain" if isinstance(element, EventSet) else "not converted by am2inc"
+        yield f"the {type(element).__name__} {element.name or ''!r} is {how}"
+    for event in events_read(element) if isinstance(element, AbstractEventChain) else ():
+        if not isinstance(event, CONVERTED):
+            cause = f"the {type(event).__name__} {event.name or ''!r}"
+            yield f"the event chain {element.name or ''!r} is dropped by am2inc because of {cause}"
+
+
+@model_rule("INC-EV-TYPE", *CONVERTED, AbstractEventChain)
+def _check_type(element: Event | AbstractEventChain, context: Context) -> Iterator[str]:
+    if isinstance(element, CONVERTED):
+        if element.entity is None:
+            yield f"the event {element.name or ''!r} has no entity"
+        elif element.event_type not in moments(element):
+            yield f"the type of the event {element.name or ''!r} is not one of {', '.join(sorted(moments(element)))}"
+    for event in events_read(element) if isinstance(element, AbstractEventChain) else ():
+        if isinstance(event, CONVERTED) and not is_converted(event):
+            yield f"the event chain {element.name or ''!r} is dropped by am2inc because of the event {event.name or ''!r}"

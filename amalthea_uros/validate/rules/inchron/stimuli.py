@@ -1,0 +1,105 @@
+"""Stimuli that am2inc does not convert, or changes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import dropwhile
+
+from amalthea_uros.metamodel.classes import (
+    ArrivalCurveStimulus,
+    CustomStimulus,
+    EventStimulus,
+    PeriodicBurstStimulus,
+    PeriodicStimulus,
+    Process,
+    RelativePeriodicStimulus,
+    Stimulus,
+    Time,
+    TimeConstant,
+    TimeGaussDistribution,
+    TimeUniformDistribution,
+    VariableRateStimulus,
+)
+from amalthea_uros.metamodel.magnitudes import TIMES, picoseconds
+from amalthea_uros.metamodel.naming import name_of
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import Downgraded, model_rule, repair_of
+from amalthea_uros.validate.rules.inchron.importer import amount
+
+#: The classes of stimuli that am2inc does not convert.
+NOT_CONVERTED = (EventStimulus, CustomStimulus, ArrivalCurveStimulus, VariableRateStimulus)
+
+
+@model_rule("INC-ST-TYPE", Process, *NOT_CONVERTED)
+def _check_type(element: Stimulus | Process, context: Context) -> Iterator[str]:
+    if isinstance(element, NOT_CONVERTED):
+        yield f"the {type(element).__name__} {name_of(element)!r} is not converted by am2inc"
+    if isinstance(element, Process):
+        for stimulus in element.stimuli:
+            if isinstance(stimulus, NOT_CONVERTED):
+                yield f"{element.name or ''!r} is not activated by its stimulus {stimulus.name or ''!r}, which am2inc does not convert"
+
+
+@model_rule("INC-ST-ORDER", Process)
+def _check_order(element: Process, context: Context) -> Iterator[str]:
+    dropped = list(dropwhile(lambda stimulus: not isinstance(stimulus, NOT_CONVERTED), element.stimuli))
+    for stimulus in dropped:
+        if not isinstance(stimulus, NOT_CONVERTED):
+            cause = f"it follows the unsupported {dropped[0].name!r}"
+            yield f"the stimulus {stimulus.name or ''!r} of {element.name or ''!r} is dropped by am2inc because {cause}"
+
+
+@repair_of("INC-ST-ORDER")
+def _fix_order(element: Process, context: Context) -> bool:
+    # The order of the stimuli has no meaning: each of them activates the process.
+    element.stimuli = sorted(element.stimuli, key=lambda stimulus: isinstance(stimulus, NOT_CONVERTED))
+    return True
+
+
+@model_rule("INC-ST-BURST", PeriodicBurstStimulus)
+def _check_burst(element: PeriodicBurstStimulus, context: Context) -> Iterator[str]:
+    count = 1 if element.occurrence_count is None else element.occurrence_count
+    if count < 1 and not amount(element.occurrence_min_distance) > 0:
+        yield f"the burst stimulus {element.name or ''!r} has neither a positive occurrence count nor a positive minimum distance"
+
+
+@model_rule("INC-ST-JITTER", PeriodicStimulus)
+def _check_jitter(element: PeriodicStimulus, context: Context) -> Iterator[str]:
+    jitter = element.jitter
+    if isinstance(jitter, TimeGaussDistribution):
+        if jitter.lower_bound is None or jitter.upper_bound is None or (jitter.mean is not None and jitter.mean.value):
+            yield f"the Gaussian jitter of the stimulus {element.name or ''!r} has a missing bound or a mean other than 0"
+    elif jitter is not None and not isinstance(jitter, TimeConstant | TimeUniformDistribution):
+        yield f"the jitter of the stimulus {element.name or ''!r} is dropped by am2inc"
+
+
+@model_rule("INC-ST-RELPER", RelativePeriodicStimulus)
+def _check_relper(element: RelativePeriodicStimulus, context: Context) -> Iterator[str | Downgraded]:
+    if element.next_occurrence is None:
+        yield Downgraded(f"the stimulus {element.name or ''!r} has no next occurrence")
+    elif not isinstance(element.next_occurrence, TimeGaussDistribution | TimeUniformDistribution):
+        yield f"the next occurrence of the stimulus {element.name or ''!r} is not a uniform or Gaussian distribution"
+
+
+@model_rule("INC-ST-RELPER-UNIT", RelativePeriodicStimulus)
+def _check_relper_unit(element: RelativePeriodicStimulus, context: Context) -> Iterator[str]:
+    if len({bound.unit for bound in _bounds(element)}) > 1:
+        yield f"the bounds of the next occurrence of the stimulus {element.name or ''!r} have different units"
+
+
+def _bounds(stimulus: RelativePeriodicStimulus) -> list[Time]:
+    distance = stimulus.next_occurrence
+    bounds = [distance.lower_bound, distance.upper_bound] if isinstance(distance, TimeUniformDistribution) else []
+    return [bound for bound in bounds if bound is not None]
+
+
+@repair_of("INC-ST-RELPER-UNIT")
+def _fix_relper_unit(element: RelativePeriodicStimulus, context: Context) -> bool:
+    """State both bounds in the finer unit, in which both are whole numbers."""
+    times = [(bound, picoseconds(bound)) for bound in _bounds(element)]
+    unit = min((bound.unit for bound, _ in times if bound.unit in TIMES), key=TIMES.__getitem__, default=None)
+    if unit is None or any(time is None for _, time in times):
+        return False
+    for bound, time in times:
+        bound.value, bound.unit = (time or 0) // TIMES[unit], unit
+    return True

@@ -1,0 +1,67 @@
+"""Values that am2inc replaces by a default if they are missing."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from amalthea_uros.metamodel.classes import (
+    ISR,
+    Cache,
+    DataSize,
+    FixedPeriodic,
+    Frequency,
+    HwModule,
+    HwPort,
+    Label,
+    Memory,
+    Runnable,
+    Stimulus,
+    Task,
+    Time,
+)
+from amalthea_uros.validate.context import Context
+from amalthea_uros.validate.rule import model_rule
+from amalthea_uros.validate.rules.inchron.importer import amount, has_unit, metamodel
+
+
+@model_rule("INC-HW-BITWIDTH", HwPort)
+def _check_bit_width(element: HwPort, context: Context) -> Iterator[str]:
+    if isinstance(element.container, HwModule) and not (element.bit_width or 0) > 0:
+        yield f"the port {element.name or ''!r} of {element.container.name or ''!r} has no positive bit width"
+
+
+@model_rule("INC-HW-MEM-SIZE", Memory, Cache)
+def _check_memory_size(element: Memory | Cache, context: Context) -> Iterator[str]:
+    size = element.definition.size if element.definition is not None else None
+    if size is None or not has_unit(size):
+        yield f"the memory {element.name or ''!r} has no definition with a size and a unit"
+
+
+@model_rule("INC-ST-NONE", Task, ISR)
+def _check_stimulus(element: Task | ISR, context: Context) -> Iterator[str]:
+    if not element.stimuli:
+        yield f"{element.name or ''!r} has no stimulus"
+
+
+@model_rule("INC-ST-PERIOD", Stimulus)
+def _check_recurrence(element: Stimulus, context: Context) -> Iterator[str]:
+    if isinstance(element, FixedPeriodic) and not amount(element.recurrence) > 0:
+        yield f"the stimulus {element.name or ''!r} has no positive recurrence with a unit"
+
+
+@model_rule("INC-ST-UNIT", Time, Frequency, DataSize)
+def _check_unit(element: Time | Frequency | DataSize, context: Context) -> Iterator[str]:
+    if not has_unit(element):
+        yield f"the {type(element).__name__} value {element.value} has no unit"
+
+
+@model_rule("INC-SW-GRAPH", Runnable)
+def _check_activity_graph(element: Runnable, context: Context) -> Iterator[str]:
+    if element.activity_graph is None and metamodel(element) >= "3":
+        yield f"the runnable {element.name or ''!r} has no activity graph"
+
+
+@model_rule("INC-SW-LABELSIZE", Label)
+def _check_label_size(element: Label, context: Context) -> Iterator[str]:
+    if element.size is None:
+        yield f"the label {element.name or ''!r} has no size"
