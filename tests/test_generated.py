@@ -17,7 +17,7 @@ ROOT = Path(__file__).parents[1]
         ("generate_findings.py", "docs/findings", "*.md"),
         ("generate_rules.py", "docs/rules", "*.md"),
         ("generate_benchmarks.py", "docs", "benchmarks.md"),
-        ("generate_metamodel.py", "amalthea_uros/metamodel/classes", "*.py"),
+        ("generate_metamodel.py", "amalthea_uros/metamodel", "classes*.py"),
     ],
 )
 def test_what_is_committed_is_what_the_tool_generates(tool, committed, pattern, tmp_path):

@@ -1,4 +1,4 @@
-"""Generate `amalthea_uros/metamodel/classes/` from the facts.
+"""Generate `amalthea_uros/metamodel/classes*.py` from the facts.
 
 Usage: python tools/generate_metamodel.py [TARGET]
 """
@@ -14,7 +14,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 from templating import ROOT, templates
 from union import Union, UnionClass, constant_case, union
 
-TARGET = ROOT / "amalthea_uros" / "metamodel" / "classes"
+TARGET = ROOT / "amalthea_uros" / "metamodel"
 DESCRIPTIONS = ROOT / "tools" / "metamodel_descriptions.txt"
 
 
@@ -66,7 +66,7 @@ def lines(names: list[str], indent: str = "    ") -> str:
 
 def importing(module: str, names: list[str]) -> str:
     """The import of names that are needed for types."""
-    start = f"    from amalthea_uros.metamodel.classes.{module} import "
+    start = f"    from amalthea_uros.metamodel.classes_{module} import "
     line = start + ", ".join(names)
     return line if len(line) <= WIDTH else f"{start}(\n{lines(names, ' ' * 8)},\n    )"
 
@@ -97,10 +97,10 @@ def render() -> dict[str, str]:
         "versions": merged.versions,
         "all_versions": set(merged.versions),
     }
-    files = {"enums.py": environment.get_template("metamodel/enums.py.jinja").render(shared)}
+    files = {"classes_enums.py": environment.get_template("metamodel/enums.py.jinja").render(shared)}
     for module, classes in by_module.items():
         quantities = [cls for cls in classes if "Quantity" in cls.bases]
-        files[f"{module}.py"] = environment.get_template("metamodel/classes.py.jinja").render(
+        files[f"classes_{module}.py"] = environment.get_template("metamodel/classes.py.jinja").render(
             shared,
             module=module,
             classes=list(in_base_order(classes, merged)),
@@ -111,7 +111,7 @@ def render() -> dict[str, str]:
             unit_imports=[f"{cls.name}Unit" for cls in quantities],
         )
     exported = {module: sorted(cls.name for cls in classes) for module, classes in sorted(by_module.items())}
-    files["__init__.py"] = environment.get_template("metamodel/classes_init.py.jinja").render(
+    files["classes.py"] = environment.get_template("metamodel/all_classes.py.jinja").render(
         exported={"enums": sorted(merged.enums), **exported}
     )
     return files

@@ -11,7 +11,7 @@ from amalthea_uros.bridge.context import Building, Extracting
 from amalthea_uros.bridge.kinds import ObjectKind
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel import magnitudes
-from amalthea_uros.metamodel.classes.enums import DataRateUnit, DataSizeUnit
+from amalthea_uros.metamodel.classes_enums import DataRateUnit, DataSizeUnit
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.magnitudes import bits, bits_per_second, hertz, picoseconds
 

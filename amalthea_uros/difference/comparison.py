@@ -20,7 +20,7 @@ from amalthea_uros.difference.names import ElementNames, has_identity
 from amalthea_uros.difference.parts import PartsMatcher, Side
 from amalthea_uros.difference.unset import UnsetAttributes
 from amalthea_uros.difference.value_text import UNSET, is_inline, label, readable_name, shortened, value_text
-from amalthea_uros.metamodel.classes.base import Amalthea
+from amalthea_uros.metamodel.classes_base import Amalthea
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.features import ElementFeature, features_of
 from amalthea_uros.metamodel.naming import name_of

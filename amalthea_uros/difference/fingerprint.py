@@ -6,9 +6,9 @@ import re
 from typing import TYPE_CHECKING, Any
 
 from amalthea_uros.difference.names import has_identity
-from amalthea_uros.metamodel.classes.common import ListObject
-from amalthea_uros.metamodel.classes.constraints import AbstractEventChain
-from amalthea_uros.metamodel.classes.sw import IActivityGraphItemContainer, ModeSwitch, Switch
+from amalthea_uros.metamodel.classes_common import ListObject
+from amalthea_uros.metamodel.classes_constraints import AbstractEventChain
+from amalthea_uros.metamodel.classes_sw import IActivityGraphItemContainer, ModeSwitch, Switch
 from amalthea_uros.metamodel.containment import ContainmentList
 from amalthea_uros.metamodel.element import Element, Extras
 from amalthea_uros.metamodel.features import ElementFeature, features_of

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from amalthea_uros.metamodel.classes.sw import CallArgument, RunnableCall
+from amalthea_uros.metamodel.classes_sw import CallArgument, RunnableCall
 from amalthea_uros.metamodel.element import references_of
 from amalthea_uros.metamodel.naming import TYPE_MARK, segments
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from amalthea_uros.difference.alignment import align, increasing
 from amalthea_uros.difference.matching import Pair, pair_up
 from amalthea_uros.difference.value_text import first_reference
-from amalthea_uros.metamodel.classes.base import INamed
+from amalthea_uros.metamodel.classes_base import INamed
 from amalthea_uros.metamodel.element import Element
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ from enum import Enum
 from typing import Any
 
 from amalthea_uros.difference.names import has_identity
-from amalthea_uros.metamodel.classes.common import CustomProperty, ListObject, MapObject, Quantity, ReferenceObject, Value
+from amalthea_uros.metamodel.classes_common import CustomProperty, ListObject, MapObject, Quantity, ReferenceObject, Value
 from amalthea_uros.metamodel.element import Element, references_of
 from amalthea_uros.metamodel.features import features_of
 from amalthea_uros.metamodel.naming import qualified_name, segments

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any, Literal
+from enum import StrEnum
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 from amalthea_uros.metamodel.containment import ContainmentList, ReferenceList
 
 if TYPE_CHECKING:
     from amalthea_uros.metamodel.element import Element
+
+Unit = TypeVar("Unit", bound=StrEnum)
+Number = TypeVar("Number", bound=float | None)
 
 #: `either` is a containment in some versions and a reference in others (the data type of labels and channels).
 FeatureKind = Literal["attribute", "reference", "containment", "either"]
@@ -114,3 +118,32 @@ def containments_of(cls: type[Element]) -> tuple[ElementFeature, ...]:
         found = tuple(f for f in features_of(cls).values() if f.kind in ("containment", "either"))
         _CONTAINMENTS[cls] = found
     return found
+
+
+# Units of the quantities are given by name: `Time(10, "ms")`
+
+
+def number_of(given: Number) -> Number:
+    """The number of a quantity.
+
+    Raises
+    ------
+    TypeError : a text was given, such as "2 ms".
+    """
+    if isinstance(given, str):
+        raise TypeError(f"expected a number and a unit, e.g. Time(2, 'ms'), not the text {given!r}; parse_time() reads texts")
+    return given
+
+
+def unit_of(units: type[Unit], given: Unit | str | None) -> Unit | None:
+    """The unit of that name.
+
+    Raises
+    ------
+    ValueError : no such unit; the text lists those that exist.
+    """
+    try:
+        return None if given is None else units(given)
+    except ValueError:
+        known = ", ".join(unit.value for unit in units if unit.name != "UNDEFINED")
+        raise ValueError(f"unknown unit {given!r}, expected one of {known}") from None

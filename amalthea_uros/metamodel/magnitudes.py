@@ -13,8 +13,8 @@ from math import isfinite
 from typing import TypeVar
 
 from amalthea_uros import units
-from amalthea_uros.metamodel.classes.common import DataRate, DataSize, Frequency, Time
-from amalthea_uros.metamodel.classes.enums import DataRateUnit, DataSizeUnit, FrequencyUnit, TimeUnit
+from amalthea_uros.metamodel.classes_common import DataRate, DataSize, Frequency, Time
+from amalthea_uros.metamodel.classes_enums import DataRateUnit, DataSizeUnit, FrequencyUnit, TimeUnit
 
 Unit = TypeVar("Unit", bound=StrEnum)
 

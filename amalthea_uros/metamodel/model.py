@@ -9,9 +9,9 @@ from typing import NamedTuple, TypeVar
 from amalthea_uros._internal.plural import counted
 from amalthea_uros._internal.similar import did_you_mean
 from amalthea_uros.diagnostics import Finding, Location
-from amalthea_uros.metamodel.changes import Changes
-from amalthea_uros.metamodel.classes.base import Amalthea
-from amalthea_uros.metamodel.containment import Revision
+from amalthea_uros.metamodel.classes_base import Amalthea
+from amalthea_uros.metamodel.classes_sw import CallArgument, RunnableCall
+from amalthea_uros.metamodel.containment import Revision, path_of
 from amalthea_uros.metamodel.editing import Editing
 from amalthea_uros.metamodel.element import Element, references_of
 from amalthea_uros.metamodel.naming import qualified_name
@@ -22,6 +22,26 @@ E = TypeVar("E", bound=Element)
 
 #: So many names are listed.
 _MOST_NAMES = 10
+
+
+class Changes:
+    """The modifications of a document since it was read; the rest can be copied from the source.
+
+    Attributes
+    ----------
+    modified : modified objects and all their containers
+    renamed : objects whose unique names may have changed, or which were added or removed
+    """
+
+    def __init__(self) -> None:
+        self.modified: set[Element] = set()
+        self.renamed: set[Element] = set()
+
+    def note(self, path: list[Element], renames: bool) -> None:
+        """Note the change of an object, given with its containers."""
+        self.modified.update(path)
+        if renames:
+            self.renamed.add(path[0])
 
 
 class Spelling(NamedTuple):
@@ -237,3 +257,30 @@ def _known(names: Sequence[str]) -> str:
     """The names that there are, unless they are too many to be read."""
     more = f" and {len(names) - _MOST_NAMES} more" if len(names) > _MOST_NAMES else ""
     return f"known: {', '.join(map(str, names[:_MOST_NAMES]))}{more}" if names else "there is none"
+
+
+def propagate_renames(documents: Iterable[tuple[Element, Changes]]) -> None:
+    """Mark as modified, in all documents (root and changes) of a model, everything in which the name of a renamed object occurs.
+
+    These are its parts, whose own names may be derived from it, and the holders of references to it and to them.
+    """
+    documents = tuple(documents)
+    renamed = {element for _, changes in documents for element in changes.renamed}
+    affected: set[Element] = set()
+    while renamed - affected:
+        affected |= {part for element in renamed for part in element.walk()}
+        for root, changes in documents:
+            for holder in root.walk():
+                if holder in affected and holder.is_referable:
+                    changes.modified.update(path_of(holder))
+                for name, value in references_of(holder):
+                    if not _refers_to_any(value, affected):
+                        continue
+                    changes.modified.update(path_of(holder))
+                    # The names of namespace members and of call arguments are derived from those of their references.
+                    if name == "namespace" or isinstance(holder, RunnableCall | CallArgument):
+                        renamed.add(holder)
+
+
+def _refers_to_any(value: Element | list[Element], affected: set[Element]) -> bool:
+    return not affected.isdisjoint(value) if isinstance(value, list) else value in affected

@@ -10,24 +10,7 @@ import re
 from collections.abc import Callable
 from urllib.parse import quote_plus, unquote_plus
 
-from amalthea_uros.metamodel.classes.base import INamed
-from amalthea_uros.metamodel.classes.common import ModeLiteral, Namespace
-from amalthea_uros.metamodel.classes.components import (
-    Component,
-    ComponentInstance,
-    ComponentPort,
-    ComponentStructure,
-    SubInterface,
-)
-from amalthea_uros.metamodel.classes.hw import HwConnection, HwFeature, HwPort
-from amalthea_uros.metamodel.classes.sw import (
-    CallArgument,
-    LocalModeLabel,
-    Process,
-    Runnable,
-    RunnableCall,
-    RunnableParameter,
-)
+from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.containment import ContainmentList
 from amalthea_uros.metamodel.element import Element
 
@@ -126,7 +109,7 @@ def _step(holder: Element, part: Element) -> str:
 def _container_name(element: Element) -> list[str]:
     """One level only: neither the container's own prefix nor its containers."""
     holder = element.container
-    return [name_of(holder)] if isinstance(holder, INamed) else []
+    return [name_of(holder)] if isinstance(holder, am.INamed) else []
 
 
 def _container_segments(*classes: type[Element]) -> Callable[[Element], list[str]]:
@@ -138,10 +121,10 @@ def _container_segments(*classes: type[Element]) -> Callable[[Element], list[str
 
 
 def _call_argument_prefix(element: Element) -> list[str]:
-    holder = element.enclosing(Runnable) or element.enclosing(Process)
+    holder = element.enclosing(am.Runnable) or element.enclosing(am.Process)
     call = element.container
-    called = call.runnable if isinstance(call, RunnableCall) else None
-    parameter = element.parameter if isinstance(element, CallArgument) else None
+    called = call.runnable if isinstance(call, am.RunnableCall) else None
+    parameter = element.parameter if isinstance(element, am.CallArgument) else None
     return [
         *(segments(holder) if holder else []),
         "calls",
@@ -152,16 +135,16 @@ def _call_argument_prefix(element: Element) -> list[str]:
 
 
 _PREFIXES: dict[type[Element], Callable[[Element], list[str]]] = {
-    HwFeature: _container_name,
-    HwPort: _container_name,
-    HwConnection: _container_name,
-    ComponentInstance: _container_name,
-    ModeLiteral: _container_name,
-    ComponentPort: _container_segments(Component),
-    SubInterface: _container_segments(Element),
-    ComponentStructure: _container_segments(ComponentStructure),
-    Namespace: _container_segments(Namespace),
-    RunnableParameter: _container_segments(Runnable),
-    LocalModeLabel: _container_segments(Process, Runnable),
-    CallArgument: _call_argument_prefix,
+    am.HwFeature: _container_name,
+    am.HwPort: _container_name,
+    am.HwConnection: _container_name,
+    am.ComponentInstance: _container_name,
+    am.ModeLiteral: _container_name,
+    am.ComponentPort: _container_segments(am.Component),
+    am.SubInterface: _container_segments(Element),
+    am.ComponentStructure: _container_segments(am.ComponentStructure),
+    am.Namespace: _container_segments(am.Namespace),
+    am.RunnableParameter: _container_segments(am.Runnable),
+    am.LocalModeLabel: _container_segments(am.Process, am.Runnable),
+    am.CallArgument: _call_argument_prefix,
 }

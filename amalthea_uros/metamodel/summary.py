@@ -8,32 +8,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from amalthea_uros.metamodel.classes import (
-    ISR,
-    EventChain,
-    EventChainItem,
-    Frequency,
-    IntegerObject,
-    InterProcessStimulus,
-    ISRAllocation,
-    MappingModel,
-    Memory,
-    PeriodicBurstStimulus,
-    PeriodicStimulus,
-    PeriodicSyntheticStimulus,
-    Process,
-    ProcessingUnit,
-    Quantity,
-    RelativePeriodicStimulus,
-    RunnableCall,
-    Scheduler,
-    SchedulerAllocation,
-    SchedulingParameter,
-    SingleStimulus,
-    Stimulus,
-    Task,
-    TaskAllocation,
-)
+from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Document, Model
 from amalthea_uros.metamodel.naming import name_of
@@ -120,10 +95,10 @@ def summarise(model: Model) -> ModelSummary:
     return ModelSummary(
         documents=tuple(_document(document) for document in model.documents),
         counts=dict(ordered),
-        cores=tuple(_core(core, schedulers.get(core, ())) for core in _of(objects, ProcessingUnit)),
-        memories=tuple(name_of(memory) for memory in _of(objects, Memory)),
-        processes=tuple(_process(process, allocations.get(process)) for process in _of(objects, Process)),
-        chains=tuple(_chain(chain) for chain in _of(objects, EventChain)),
+        cores=tuple(_core(core, schedulers.get(core, ())) for core in _of(objects, am.ProcessingUnit)),
+        memories=tuple(name_of(memory) for memory in _of(objects, am.Memory)),
+        processes=tuple(_process(process, allocations.get(process)) for process in _of(objects, am.Process)),
+        chains=tuple(_chain(chain) for chain in _of(objects, am.EventChain)),
         unresolved=sum(1 for _ in model.unresolved()),
     )
 
@@ -146,13 +121,13 @@ def _document(document: Document) -> DocumentSummary:
 
 def _schedulers_of_cores(objects: list[Element]) -> dict[Element, tuple[str, ...]]:
     found: dict[Element, tuple[str, ...]] = {}
-    for allocation in _of(objects, SchedulerAllocation):
+    for allocation in _of(objects, am.SchedulerAllocation):
         for core in allocation.responsibility:
             found[core] = (*found.get(core, ()), _scheduler(allocation.scheduler))
     return found
 
 
-def _scheduler(scheduler: Scheduler | None) -> str:
+def _scheduler(scheduler: am.Scheduler | None) -> str:
     """Name and algorithm: `Scheduler_1 (OSEK)`."""
     if scheduler is None:
         return ""
@@ -163,7 +138,7 @@ def _scheduler(scheduler: Scheduler | None) -> str:
     return f"{name_of(scheduler)} ({algorithm})" if algorithm else name_of(scheduler)
 
 
-def _core(core: ProcessingUnit, schedulers: tuple[str, ...]) -> CoreSummary:
+def _core(core: am.ProcessingUnit, schedulers: tuple[str, ...]) -> CoreSummary:
     domain = core.frequency_domain
     return CoreSummary(
         name=name_of(core),
@@ -174,7 +149,7 @@ def _core(core: ProcessingUnit, schedulers: tuple[str, ...]) -> CoreSummary:
     )
 
 
-def _frequency(value: Frequency | None) -> str:
+def _frequency(value: am.Frequency | None) -> str:
     """A frequency in the unit that all results use for it; as it is in the model without a known unit."""
     unit = FREQUENCY.units.get(value.unit.value) if value is not None and value.unit is not None else None
     if value is None or unit is None:
@@ -182,7 +157,7 @@ def _frequency(value: Frequency | None) -> str:
     return frequency_text(Fraction(str(value.value or 0)) * unit)
 
 
-def quantity(value: Quantity | None) -> str:
+def quantity(value: am.Quantity | None) -> str:
     """A quantity as text: `10 ms`, `300 MHz`; "" for none."""
     if value is None:
         return ""
@@ -192,64 +167,64 @@ def quantity(value: Quantity | None) -> str:
     return text if unit is None or unit.name == "UNDEFINED" else f"{text} {unit.value}"
 
 
-def _allocations(objects: list[Element]) -> dict[Element, TaskAllocation | ISRAllocation]:
-    found: dict[Element, TaskAllocation | ISRAllocation] = {}
-    for allocation in _of(objects, TaskAllocation):
+def _allocations(objects: list[Element]) -> dict[Element, am.TaskAllocation | am.ISRAllocation]:
+    found: dict[Element, am.TaskAllocation | am.ISRAllocation] = {}
+    for allocation in _of(objects, am.TaskAllocation):
         if allocation.task is not None:
             found[allocation.task] = allocation
-    for allocation in _of(objects, ISRAllocation):
+    for allocation in _of(objects, am.ISRAllocation):
         if allocation.isr is not None:
             found[allocation.isr] = allocation
     return found
 
 
-def _process(process: Process, allocation: TaskAllocation | ISRAllocation | None) -> ProcessSummary:
+def _process(process: am.Process, allocation: am.TaskAllocation | am.ISRAllocation | None) -> ProcessSummary:
     controller: Element | None = None
-    if isinstance(allocation, TaskAllocation):
+    if isinstance(allocation, am.TaskAllocation):
         controller = allocation.scheduler
     elif allocation is not None:
         controller = allocation.controller
-    preemption = process.preemption.value if isinstance(process, Task) and process.preemption else ""
+    preemption = process.preemption.value if isinstance(process, am.Task) and process.preemption else ""
     return ProcessSummary(
         name=name_of(process),
-        kind="isr" if isinstance(process, ISR) else "task",
+        kind="isr" if isinstance(process, am.ISR) else "task",
         stimuli=tuple(map(stimulus_text, process.stimuli)),
         priority=priority_text(allocation),
         preemption=preemption,
         scheduler=name_of(controller),
-        runnable_calls=sum(isinstance(part, RunnableCall) for part in process.walk()),
+        runnable_calls=sum(isinstance(part, am.RunnableCall) for part in process.walk()),
     )
 
 
-def priority_text(allocation: TaskAllocation | ISRAllocation | None) -> str:
+def priority_text(allocation: am.TaskAllocation | am.ISRAllocation | None) -> str:
     """The priority of an allocation; "" if it states none."""
-    if isinstance(allocation, ISRAllocation):
+    if isinstance(allocation, am.ISRAllocation):
         return str(allocation.priority) if allocation.priority is not None else ""
     for parameter in allocation.scheduling_parameters if allocation else ():
-        if not isinstance(parameter, SchedulingParameter):
+        if not isinstance(parameter, am.SchedulingParameter):
             return str(parameter.priority) if parameter.priority is not None else ""
-        if name_of(parameter.key) == "priority" and isinstance(parameter.value, IntegerObject):
+        if name_of(parameter.key) == "priority" and isinstance(parameter.value, am.IntegerObject):
             return str(parameter.value.value)
     return ""
 
 
-def stimulus_text(stimulus: Stimulus) -> str:
+def stimulus_text(stimulus: am.Stimulus) -> str:
     """A short description of a stimulus: `every 10 ms, offset 2 ms`."""
-    if isinstance(stimulus, PeriodicStimulus | PeriodicSyntheticStimulus | PeriodicBurstStimulus):
+    if isinstance(stimulus, am.PeriodicStimulus | am.PeriodicSyntheticStimulus | am.PeriodicBurstStimulus):
         offset = f", offset {quantity(stimulus.offset)}" if stimulus.offset and stimulus.offset.value else ""
-        what = "" if isinstance(stimulus, PeriodicStimulus) else f" ({type(stimulus).__name__})"
+        what = "" if isinstance(stimulus, am.PeriodicStimulus) else f" ({type(stimulus).__name__})"
         return f"every {quantity(stimulus.recurrence) or '?'}{offset}{what}"
-    if isinstance(stimulus, RelativePeriodicStimulus):
+    if isinstance(stimulus, am.RelativePeriodicStimulus):
         return f"sporadic ({name_of(stimulus)})"
-    if isinstance(stimulus, SingleStimulus):
+    if isinstance(stimulus, am.SingleStimulus):
         return f"once at {quantity(stimulus.occurrence) or '?'}"
-    if isinstance(stimulus, InterProcessStimulus):
+    if isinstance(stimulus, am.InterProcessStimulus):
         return f"triggered ({name_of(stimulus)})"
     return f"{type(stimulus).__name__.removesuffix('Stimulus')} ({name_of(stimulus)})"
 
 
-def _chain(chain: EventChain) -> ChainSummary:
-    items = sum(isinstance(part, EventChainItem) for part in chain.walk())
+def _chain(chain: am.EventChain) -> ChainSummary:
+    items = sum(isinstance(part, am.EventChainItem) for part in chain.walk())
     return ChainSummary(name_of(chain), name_of(chain.stimulus), name_of(chain.response), items)
 
 
@@ -270,22 +245,22 @@ def representation(element: Element) -> str:
 
 def _details(element: Element) -> list[str]:
     match element:
-        case Stimulus():
+        case am.Stimulus():
             return [stimulus_text(element)]
-        case Quantity():
+        case am.Quantity():
             return [quantity(element)]
-        case Process():
+        case am.Process():
             priority = next(filter(None, map(priority_text, _allocations_of(element))), "")
             return [*map(stimulus_text, element.stimuli), *([f"priority {priority}"] if priority else [])]
     return []
 
 
-def _allocations_of(process: Process) -> Iterator[TaskAllocation | ISRAllocation]:
+def _allocations_of(process: am.Process) -> Iterator[am.TaskAllocation | am.ISRAllocation]:
     """The allocations of a process, in the files of its model."""
     model = process.model
     roots = [document.root for document in model.documents] if model is not None else []
-    for mapping in (part for root in roots for part in root.contents() if isinstance(part, MappingModel)):
-        if isinstance(process, Task):
+    for mapping in (part for root in roots for part in root.contents() if isinstance(part, am.MappingModel)):
+        if isinstance(process, am.Task):
             yield from (each for each in mapping.task_allocation if each.task is process)
-        if isinstance(process, ISR):
+        if isinstance(process, am.ISR):
             yield from (each for each in mapping.isr_allocation if each.isr is process)

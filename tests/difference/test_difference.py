@@ -44,7 +44,7 @@ from amalthea_uros.metamodel.classes import (
     Ticks,
     Time,
 )
-from amalthea_uros.metamodel.classes.common import CommonElements
+from amalthea_uros.metamodel.classes_common import CommonElements
 from amalthea_uros.metamodel.model import Document, Model
 from amalthea_uros.xmi.load import load
 from amalthea_uros.xmi.save import save

@@ -10,9 +10,8 @@ from __future__ import annotations
 import re
 
 from amalthea_uros.errors import WriteError
-from amalthea_uros.metamodel.changes import propagate_renames
 from amalthea_uros.metamodel.element import Element
-from amalthea_uros.metamodel.model import Document
+from amalthea_uros.metamodel.model import Document, propagate_renames
 from amalthea_uros.metamodel.source import Prefixes, SourceText
 from amalthea_uros.metamodel.versions import NAMESPACE_PREFIX, version_key
 from amalthea_uros.xmi.emf.escape import escape

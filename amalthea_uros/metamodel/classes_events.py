@@ -7,22 +7,21 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from amalthea_uros.metamodel.classes.base import BaseObject, IDescription, ITaggable, ReferableBaseObject
+from amalthea_uros.metamodel.classes_base import BaseObject, IDescription, ITaggable, ReferableBaseObject
 from amalthea_uros.metamodel.features import attribute, containments, reference, references
 
 if TYPE_CHECKING:
-    from amalthea_uros.metamodel.classes.components import Component
-    from amalthea_uros.metamodel.classes.enums import (
+    from amalthea_uros.metamodel.classes_components import Component
+    from amalthea_uros.metamodel.classes_enums import (
         ChannelEventType, ComponentEventType, LabelEventType, ModeLabelEventType, ProcessEventType, RunnableEventType, SemaphoreEventType,
     )
-    from amalthea_uros.metamodel.classes.hw import ProcessingUnit
-    from amalthea_uros.metamodel.classes.os import Semaphore
-    from amalthea_uros.metamodel.classes.stimuli import Stimulus
-    from amalthea_uros.metamodel.classes.sw import Channel, Label, ModeLabel, Process, ProcessChain, Runnable
+    from amalthea_uros.metamodel.classes_hw import ProcessingUnit
+    from amalthea_uros.metamodel.classes_os import Semaphore
+    from amalthea_uros.metamodel.classes_stimuli import Stimulus
+    from amalthea_uros.metamodel.classes_sw import Channel, Label, ModeLabel, Process, ProcessChain, Runnable
 
 class EventModel(BaseObject):
     """Sub-model of the events that chains, constraints, stimuli and traces speak about."""
-
     events: list[Event] = containments("events")
 
 class Event(ReferableBaseObject, ITaggable, IDescription, abstract=True):
@@ -30,7 +29,6 @@ class Event(ReferableBaseObject, ITaggable, IDescription, abstract=True):
 
 class EventSet(Event):
     """Set of events that all must occur in any order; it is complete when the last one has occurred."""
-
     events: list[EntityEvent] = references("events")
 
 class EntityEvent(Event, abstract=True):
@@ -46,7 +44,6 @@ class CustomEvent(TriggerEvent):
     ----------
     event_type : Free text that names the kind of the event.
     """
-
     event_type: str | None = attribute("eventType")
 
 class StimulusEvent(EntityEvent):
@@ -56,7 +53,6 @@ class StimulusEvent(EntityEvent):
     ----------
     entity : Stimulus to observe; unset means any.
     """
-
     entity: Stimulus | None = reference("entity")
 
 class ProcessEvent(EntityEvent):
@@ -68,7 +64,6 @@ class ProcessEvent(EntityEvent):
     entity : Task or ISR to observe; unset means any.
     processing_unit : Counts only what happens on this processing unit; unset means any.
     """
-
     event_type: ProcessEventType | None = attribute("eventType")
     entity: Process | None = reference("entity")
     processing_unit: ProcessingUnit | None = reference("processingUnit")
@@ -82,7 +77,6 @@ class ProcessChainEvent(EntityEvent):
     entity : Process chain to observe; unset means any.
     processing_unit : Counts only what happens on this processing unit; unset means any.
     """
-
     event_type: ProcessEventType | None = attribute("eventType")
     entity: ProcessChain | None = reference("entity")
     processing_unit: ProcessingUnit | None = reference("processingUnit")
@@ -97,7 +91,6 @@ class RunnableEvent(TriggerEvent):
     process : Counts only executions in this process; unset means any.
     processing_unit : Counts only what happens on this processing unit; unset means any.
     """
-
     event_type: RunnableEventType | None = attribute("eventType")
     entity: Runnable | None = reference("entity")
     process: Process | None = reference("process")
@@ -113,7 +106,6 @@ class LabelEvent(TriggerEvent):
     runnable : Counts only accesses by this runnable; unset means any.
     process : Counts only accesses by this process; unset means any.
     """
-
     event_type: LabelEventType | None = attribute("eventType")
     entity: Label | None = reference("entity")
     runnable: Runnable | None = reference("runnable")
@@ -129,7 +121,6 @@ class ModeLabelEvent(TriggerEvent):
     runnable : Counts only accesses by this runnable; unset means any.
     process : Counts only accesses by this process; unset means any.
     """
-
     event_type: ModeLabelEventType | None = attribute("eventType")
     entity: ModeLabel | None = reference("entity")
     runnable: Runnable | None = reference("runnable")
@@ -145,7 +136,6 @@ class ChannelEvent(TriggerEvent):
     runnable : Counts only accesses by this runnable; unset means any.
     process : Counts only accesses by this process; unset means any.
     """
-
     event_type: ChannelEventType | None = attribute("eventType")
     entity: Channel | None = reference("entity")
     runnable: Runnable | None = reference("runnable")
@@ -162,7 +152,6 @@ class SemaphoreEvent(EntityEvent):
     process : Counts only accesses by this process; unset means any.
     processing_unit : Counts only what happens on this processing unit; unset means any.
     """
-
     event_type: SemaphoreEventType | None = attribute("eventType")
     entity: Semaphore | None = reference("entity")
     runnable: Runnable | None = reference("runnable")
@@ -177,6 +166,5 @@ class ComponentEvent(EntityEvent):
     event_type : Start is that of the first runnable; end comes when all runnables were executed at least once.
     entity : Component to observe; unset means any.
     """
-
     event_type: ComponentEventType | None = attribute("eventType")
     entity: Component | None = reference("entity")

@@ -7,13 +7,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from amalthea_uros.metamodel.classes.base import BaseObject, IDescription, INamed, IReferable, ITaggable, ReferableBaseObject
+from amalthea_uros.metamodel.classes_base import BaseObject, IDescription, INamed, IReferable, ITaggable, ReferableBaseObject
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.features import attribute, containment, containments, reference, references
 
 if TYPE_CHECKING:
-    from amalthea_uros.metamodel.classes.common import CoreClassifier, DataRate, DataSize, Frequency, IDiscreteValueDeviation, MemoryClassifier, Voltage
-    from amalthea_uros.metamodel.classes.enums import CacheType, HwFeatureType, MemoryType, PortInterface, PortType, PuType, SchedPolicy, StructureType, WriteStrategy
+    from amalthea_uros.metamodel.classes_common import CoreClassifier, DataRate, DataSize, Frequency, IDiscreteValueDeviation, MemoryClassifier, Voltage
+    from amalthea_uros.metamodel.classes_enums import CacheType, HwFeatureType, MemoryType, PortInterface, PortType, PuType, SchedPolicy, StructureType, WriteStrategy
 
 class HWModel(BaseObject):
     """Sub-model of the hardware with its definitions, structures and domains.
@@ -22,7 +22,6 @@ class HWModel(BaseObject):
     ----------
     definitions : Types of processing units, memories, caches and connection handlers, to be shared by modules.
     """
-
     definitions: list[HwDefinition] = containments("definitions")
     feature_categories: list[HwFeatureCategory] = containments("featureCategories")
     structures: list[HwStructure] = containments("structures")
@@ -36,7 +35,6 @@ class HwStructure(ReferableBaseObject, ITaggable):
     structure_type : Kind of the part, such as ECU or microcontroller.
     ports : Outer ports; a connection from inside to them delegates the port.
     """
-
     structure_type: StructureType | None = attribute("structureType")
     ports: list[HwPort] = containments("ports")
     structures: list[HwStructure] = containments("structures")
@@ -50,7 +48,6 @@ class HwModule(ReferableBaseObject, ITaggable, abstract=True):
     ----------
     frequency_domain : Clock of the module; a processing unit without one has no execution times.
     """
-
     ports: list[HwPort] = containments("ports")
     power_domain: PowerDomain | None = reference("powerDomain")
     frequency_domain: FrequencyDomain | None = reference("frequencyDomain")
@@ -66,7 +63,6 @@ class FrequencyDomain(HwDomain):
     default_value : Clock frequency, greater than zero; it converts ticks and cycles to time.
     clock_gating : Whether the clock can be switched off.
     """
-
     default_value: Frequency | None = containment("defaultValue")
     clock_gating: bool | None = attribute("clockGating")
 
@@ -77,7 +73,6 @@ class PowerDomain(HwDomain):
     ----------
     power_gating : Whether the supply can be switched off.
     """
-
     default_value: Voltage | None = containment("defaultValue")
     power_gating: bool | None = attribute("powerGating")
 
@@ -96,24 +91,20 @@ class ProcessingUnit(HwModule, HwDestination, HwPathElement):
     access_elements : Destinations it can reach and what an access to each costs.
     caches : Caches that lie inside the processing unit.
     """
-
     definition: ProcessingUnitDefinition | None = reference("definition")
     access_elements: list[HwAccessElement] = containments("accessElements")
     caches: list[Cache] = containments("caches")
 
 class Memory(HwModule, HwDestination):
     """Memory module into which labels and other elements are mapped."""
-
     definition: MemoryDefinition | None = reference("definition")
 
 class Cache(HwModule, HwPathElement):
     """Cache module, inside a processing unit or shared in a structure."""
-
     definition: CacheDefinition | None = reference("definition")
 
 class HwFeatureCategory(ReferableBaseObject, IDescription):
     """Kind of hardware feature; the keys of execution needs name it."""
-
     feature_type: HwFeatureType | None = attribute("featureType")
     features: list[HwFeature] = containments("features")
 
@@ -124,7 +115,6 @@ class HwFeature(ReferableBaseObject):
     ----------
     value : Number in the sense of its category, such as ticks per unit of an execution need or instructions per cycle.
     """
-
     value: float | None = attribute("value")
 
 class HwPort(ReferableBaseObject, ITaggable):
@@ -137,7 +127,6 @@ class HwPort(ReferableBaseObject, ITaggable):
     port_type : Initiator or responder; a connection joins one of each, a delegation two of the same type.
     port_interface : Bus or protocol; connected ports must agree in it.
     """
-
     bit_width: int | None = attribute("bitWidth")
     priority: int | None = attribute("priority")
     port_type: PortType | None = attribute("portType")
@@ -150,7 +139,6 @@ class ConnectionHandler(HwModule, HwPathElement):
     ----------
     internal_connections : Connections between its own ports, whose latencies may override those of the definition.
     """
-
     definition: ConnectionHandlerDefinition | None = reference("definition")
     internal_connections: list[HwConnection] = containments("internalConnections")
 
@@ -163,7 +151,6 @@ class HwConnection(ReferableBaseObject, HwPathElement, ITaggable):
     write_latency : Cycles of a write request, at the frequency of the preceding path element.
     data_rate : Data per time, as an alternative to latencies.
     """
-
     read_latency: IDiscreteValueDeviation | None = containment("readLatency")
     write_latency: IDiscreteValueDeviation | None = containment("writeLatency")
     data_rate: DataRate | None = containment("dataRate")
@@ -180,7 +167,6 @@ class HwAccessElement(ITaggable, INamed):
     write_latency : Cycles of a write request, at the frequency of the processing unit.
     data_rate : Data per time, as an alternative to latencies.
     """
-
     destination: HwDestination | None = reference("destination")
     access_path: HwAccessPath | None = containment("accessPath")
     read_latency: IDiscreteValueDeviation | None = containment("readLatency")
@@ -198,7 +184,6 @@ class ProcessingUnitDefinition(HwDefinition):
     features : Hardware features, at most one per category.
     classifiers : Properties that core allocation constraints can ask for.
     """
-
     pu_type: PuType | None = attribute("puType")
     features: list[HwFeature] = references("features")
     classifiers: list[CoreClassifier] = references("classifiers")
@@ -214,7 +199,6 @@ class ConnectionHandlerDefinition(HwDefinition):
     data_rate : Data per time, as an alternative to latencies.
     max_concurrent_transfers : Transfers at the same time (default 1), not more than initiator or responder ports.
     """
-
     policy: SchedPolicy | None = attribute("policy")
     read_latency: IDiscreteValueDeviation | None = containment("readLatency")
     write_latency: IDiscreteValueDeviation | None = containment("writeLatency")
@@ -231,7 +215,6 @@ class MemoryDefinition(HwDefinition):
     data_rate : Data per time, as an alternative to the latency.
     classifiers : Properties that memory mapping constraints can ask for.
     """
-
     size: DataSize | None = containment("size")
     access_latency: IDiscreteValueDeviation | None = containment("accessLatency")
     data_rate: DataRate | None = containment("dataRate")
@@ -247,7 +230,6 @@ class CacheDefinition(HwDefinition):
     n_ways : Associativity as the number of ways; 0 (default) means not given.
     hit_rate : Percentage of the accesses that hit; how it combines with cache misses of label accesses is not specified.
     """
-
     size: DataSize | None = containment("size")
     line_size: DataSize | None = containment("lineSize")
     access_latency: IDiscreteValueDeviation | None = containment("accessLatency")
@@ -271,7 +253,6 @@ class HwAccessPath(HwPath, INamed):
     end_address : Last address of the range, not below the start address.
     mem_offset : Offset of the range in the memory; offset plus length must fit into its size in bytes.
     """
-
     path_elements: list[HwPathElement] = references("pathElements")
     start_address: int | None = attribute("startAddress")
     end_address: int | None = attribute("endAddress")

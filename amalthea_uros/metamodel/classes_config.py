@@ -7,18 +7,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from amalthea_uros.metamodel.classes.base import BaseObject, INamed
+from amalthea_uros.metamodel.classes_base import BaseObject, INamed
 from amalthea_uros.metamodel.features import containments, reference
 
 if TYPE_CHECKING:
-    from amalthea_uros.metamodel.classes.events import EntityEvent
+    from amalthea_uros.metamodel.classes_events import EntityEvent
 
 class ConfigModel(BaseObject):
     """Sub-model of settings for tools, such as the events to trace."""
-
     events_to_trace: list[EventConfig] = containments("eventsToTrace")
 
 class EventConfig(BaseObject, INamed):
     """Choice of one event for tracing."""
-
     event: EntityEvent | None = reference("event")

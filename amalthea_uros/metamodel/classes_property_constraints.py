@@ -7,13 +7,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from amalthea_uros.metamodel.classes.base import BaseObject
+from amalthea_uros.metamodel.classes_base import BaseObject
 from amalthea_uros.metamodel.features import attribute, containment, containments, reference, references
 
 if TYPE_CHECKING:
-    from amalthea_uros.metamodel.classes.common import CoreClassifier, MemoryClassifier
-    from amalthea_uros.metamodel.classes.enums import CombinatorialCondition, GroupingType
-    from amalthea_uros.metamodel.classes.sw import AbstractMemoryElement, Process, ProcessPrototype, Runnable
+    from amalthea_uros.metamodel.classes_common import CoreClassifier, MemoryClassifier
+    from amalthea_uros.metamodel.classes_enums import CombinatorialCondition, GroupingType
+    from amalthea_uros.metamodel.classes_sw import AbstractMemoryElement, Process, ProcessPrototype, Runnable
 
 class PropertyConstraintsModel(BaseObject):
     """Sub-model of demands on the properties of cores and memories.
@@ -23,38 +23,31 @@ class PropertyConstraintsModel(BaseObject):
     allocation_constraints : Demands on the cores that execute something.
     mapping_constraints : Demands on the memories that hold something.
     """
-
     allocation_constraints: list[CoreAllocationConstraint] = containments("allocationConstraints")
     mapping_constraints: list[MemoryMappingConstraint] = containments("mappingConstraints")
 
 class CoreAllocationConstraint(BaseObject, abstract=True):
     """Demand on the properties of the cores to which something may be allocated."""
-
     core_classification: CoreClassification | None = containment("coreClassification")
 
 class MemoryMappingConstraint(BaseObject, abstract=True):
     """Demand on the properties of the memories into which something may be mapped."""
-
     memory_classification: MemoryClassification | None = containment("memoryClassification")
 
 class ProcessAllocationConstraint(CoreAllocationConstraint):
     """Demand on the cores that may execute a process."""
-
     process: Process | None = reference("process")
 
 class ProcessPrototypeAllocationConstraint(CoreAllocationConstraint):
     """Demand on the cores that may execute the process made of a prototype."""
-
     process_prototype: ProcessPrototype | None = reference("processPrototype")
 
 class RunnableAllocationConstraint(CoreAllocationConstraint):
     """Demand on the cores that may execute a runnable."""
-
     runnable: Runnable | None = reference("runnable")
 
 class AbstractElementMappingConstraint(MemoryMappingConstraint):
     """Demand on the memories that may hold a label or another memory element."""
-
     abstract_element: AbstractMemoryElement | None = reference("abstractElement")
 
 class Classification(BaseObject, abstract=True):
@@ -65,16 +58,13 @@ class Classification(BaseObject, abstract=True):
     condition : Whether the classifiers are required or excluded.
     grouping : Whether all of the classifiers count or at least one of them.
     """
-
     condition: CombinatorialCondition | None = attribute("condition")
     grouping: GroupingType | None = attribute("grouping")
 
 class CoreClassification(Classification):
     """Condition on the classifiers of a core."""
-
     classifiers: list[CoreClassifier] = references("classifiers")
 
 class MemoryClassification(Classification):
     """Condition on the classifiers of a memory."""
-
     classifiers: list[MemoryClassifier] = references("classifiers")

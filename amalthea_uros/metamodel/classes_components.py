@@ -7,28 +7,25 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from amalthea_uros.metamodel.classes.base import BaseObject, INamed, INamespaceMember, ITaggable, ReferableBaseObject, ReferableObject
+from amalthea_uros.metamodel.classes_base import BaseObject, INamed, INamespaceMember, ITaggable, ReferableBaseObject, ReferableObject
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.features import attribute, containment, containments, reference, references
 
 if TYPE_CHECKING:
-    from amalthea_uros.metamodel.classes.enums import InterfaceKind
-    from amalthea_uros.metamodel.classes.os import Semaphore
-    from amalthea_uros.metamodel.classes.sw import AbstractProcess, Channel, Label, OsEvent, Runnable, TypeDefinition
+    from amalthea_uros.metamodel.classes_enums import InterfaceKind
+    from amalthea_uros.metamodel.classes_os import Semaphore
+    from amalthea_uros.metamodel.classes_sw import AbstractProcess, Channel, Label, OsEvent, Runnable, TypeDefinition
 
 class IComponentContainer(Element, abstract=True):
     """Object that contains components."""
-
     components: list[Component] = containments("components")
 
 class IInterfaceContainer(Element, abstract=True):
     """Object that contains interfaces."""
-
     interfaces: list[MainInterface] = containments("interfaces")
 
 class ComponentsModel(BaseObject, IComponentContainer, IInterfaceContainer):
     """Sub-model of components, their interfaces and the systems they form."""
-
     structures: list[ComponentStructure] = containments("structures")
     systems: list[System] = containments("systems")
 
@@ -39,7 +36,6 @@ class ISystem(Element, abstract=True):
     ----------
     grounded_ports : Ports of inner instances that stay unconnected on purpose.
     """
-
     component_instances: list[ComponentInstance] = containments("componentInstances")
     connectors: list[Connector] = containments("connectors")
     grounded_ports: list[QualifiedPort] = containments("groundedPorts")
@@ -52,14 +48,12 @@ class ComponentInterface(ReferableBaseObject, ITaggable, abstract=True):
     data_type : Type of the data; spelled datatype until 2.2.0.
     datatype : Type of the data; spelled dataType from 3.0.0 on.
     """
-
     data_type: TypeDefinition | None = reference("dataType")  # since 3.0.0
     sub_interfaces: list[SubInterface] = containments("subInterfaces")
     datatype: TypeDefinition | None = reference("datatype")  # until 2.2.0
 
 class IComponentStructureMember(Element, abstract=True):
     """Object that can be sorted into the tree of component structures."""
-
     structure: ComponentStructure | None = reference("structure")
 
 class MainInterface(ComponentInterface, INamespaceMember, IComponentStructureMember):
@@ -69,7 +63,6 @@ class MainInterface(ComponentInterface, INamespaceMember, IComponentStructureMem
     ----------
     version : Version as free text, 1.0 by default.
     """
-
     version: str | None = attribute("version")
 
 class SubInterface(ComponentInterface):
@@ -77,7 +70,6 @@ class SubInterface(ComponentInterface):
 
 class ComponentPort(ReferableBaseObject, ITaggable):
     """Point of a component at which an interface is provided or required."""
-
     kind: InterfaceKind | None = attribute("kind")
     interface: ComponentInterface | None = reference("interface")
 
@@ -88,7 +80,6 @@ class ComponentStructure(ReferableObject):
     ----------
     structure_type : Free text that names the kind of the node.
     """
-
     structure_type: str | None = attribute("structureType")
     sub_structures: list[ComponentStructure] = containments("subStructures")
 
@@ -100,7 +91,6 @@ class Component(ReferableBaseObject, ITaggable, INamespaceMember, IComponentStru
     processes : Processes, or prototypes of them, that belong to the component.
     runnables : Runnables of the component; its start and end events are derived from them.
     """
-
     ports: list[ComponentPort] = containments("ports")
     processes: list[AbstractProcess] = references("processes")
     runnables: list[Runnable] = references("runnables")
@@ -121,7 +111,6 @@ class ComponentInstance(ReferableBaseObject, ITaggable):
     ----------
     type : Component that is used.
     """
-
     type: Component | None = reference("type")
 
 class Connector(BaseObject, INamed, ITaggable):
@@ -131,14 +120,12 @@ class Connector(BaseObject, INamed, ITaggable):
     ----------
     implemented_interfaces : Channel that carries the data, by interface of the connected ports.
     """
-
     source_port: QualifiedPort | None = containment("sourcePort")
     target_port: QualifiedPort | None = containment("targetPort")
     implemented_interfaces: list[InterfaceChannel] = containments("implementedInterfaces")
 
 class InterfaceChannel(Element):
     """Map entry from an interface to the channel that implements it."""
-
     key: ComponentInterface | None = reference("key")
     value: Channel | None = reference("value")
 
@@ -149,6 +136,5 @@ class QualifiedPort(BaseObject):
     ----------
     instance : Instance that the port is taken of, because a port itself belongs to a component.
     """
-
     instance: ComponentInstance | None = reference("instance")
     port: ComponentPort | None = reference("port")

@@ -7,25 +7,25 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from amalthea_uros.metamodel.classes.base import BaseObject, IAnnotatable, IDescription, IDisplayName, INamed, INamespaceMember, ITaggable, ReferableBaseObject, ReferableObject
-from amalthea_uros.metamodel.classes.stimuli import Condition
+from amalthea_uros.metamodel.classes_base import BaseObject, IAnnotatable, IDescription, IDisplayName, INamed, INamespaceMember, ITaggable, ReferableBaseObject, ReferableObject
+from amalthea_uros.metamodel.classes_stimuli import Condition
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.features import attribute, containment, containment_or_reference, containments, reference, references
 
 if TYPE_CHECKING:
-    from amalthea_uros.metamodel.classes.common import (
+    from amalthea_uros.metamodel.classes_common import (
         DataSize, IContinuousValueDeviation, IDiscreteValueDeviation, ITimeDeviation, Mode, ModeLiteral, NumericStatistic, Time, TransmissionPolicy,
     )
-    from amalthea_uros.metamodel.classes.components import ComponentPort
-    from amalthea_uros.metamodel.classes.enums import (
+    from amalthea_uros.metamodel.classes_components import ComponentPort
+    from amalthea_uros.metamodel.classes_enums import (
         ASILType, AccessPrecedenceType, ArithmeticOperator, BlockingType, DataStabilityLevel, DirectionType, ISRCategory, LabelAccessDataStability, LabelAccessEnum,
         LabelAccessImplementation, LabelDataStability, ModeLabelAccessEnum, OrderType, Preemption, ReceiveOperation, RelationalOperator, SemaphoreAccessEnum, WaitEventType,
         WaitingBehaviour,
     )
-    from amalthea_uros.metamodel.classes.events import CustomEvent, TriggerEvent
-    from amalthea_uros.metamodel.classes.hw import ProcessingUnitDefinition
-    from amalthea_uros.metamodel.classes.os import Semaphore, TaskScheduler
-    from amalthea_uros.metamodel.classes.stimuli import ConditionDisjunction, InterProcessStimulus, ModeConditionDisjunction, Stimulus
+    from amalthea_uros.metamodel.classes_events import CustomEvent, TriggerEvent
+    from amalthea_uros.metamodel.classes_hw import ProcessingUnitDefinition
+    from amalthea_uros.metamodel.classes_os import Semaphore, TaskScheduler
+    from amalthea_uros.metamodel.classes_stimuli import ConditionDisjunction, InterProcessStimulus, ModeConditionDisjunction, Stimulus
 
 class SWModel(BaseObject):
     """Sub-model of the software with its tasks, ISRs, runnables, labels and types.
@@ -35,7 +35,6 @@ class SWModel(BaseObject):
     activations : Intended activations of runnables and prototypes; what really activates a process is a stimulus.
     events : Operating system events, not those of the event model.
     """
-
     isrs: list[ISR] = containments("isrs")
     tasks: list[Task] = containments("tasks")
     runnables: list[Runnable] = containments("runnables")
@@ -58,7 +57,6 @@ class AbstractMemoryElement(ReferableBaseObject, ITaggable, abstract=True):
     ----------
     size : Memory that the element needs, greater than zero.
     """
-
     size: DataSize | None = containment("size")
 
 class AbstractProcess(AbstractMemoryElement, abstract=True):
@@ -71,12 +69,10 @@ class CustomEntity(AbstractMemoryElement, IDescription):
     ----------
     type_name : Free text that names the kind of the element.
     """
-
     type_name: str | None = attribute("typeName")
 
 class ProcessChain(ReferableBaseObject):
     """List of processes that belong together; it does not say how they trigger each other."""
-
     processes: list[Process] = references("processes")
 
 class IExecutable(Element, abstract=True):
@@ -87,7 +83,6 @@ class IExecutable(Element, abstract=True):
     local_labels : Mode labels that exist once per execution.
     activity_graph : What is executed; a process or runnable without it does nothing.
     """
-
     local_labels: list[LocalModeLabel] = containments("localLabels")  # since 2.1.0
     activity_graph: ActivityGraph | None = containment("activityGraph")
 
@@ -98,7 +93,6 @@ class Process(AbstractProcess, IExecutable, abstract=True):
     ----------
     stimuli : What activates the process; several stimuli activate it independently of each other.
     """
-
     stimuli: list[Stimulus] = references("stimuli")
 
 class IActivityGraphItemContainer(Element, abstract=True):
@@ -108,7 +102,6 @@ class IActivityGraphItemContainer(Element, abstract=True):
     ----------
     items : Items in the order of execution.
     """
-
     items: list[ActivityGraphItem] = containments("items")
 
 class ActivityGraph(BaseObject, IActivityGraphItemContainer):
@@ -125,13 +118,11 @@ class Switch(ActivityGraphItem):
     entries : Branches in the order in which they are tested; the first satisfied one is executed.
     default_entry : Branch for the case that no condition is satisfied; without it nothing happens.
     """
-
     entries: list[SwitchEntry] = containments("entries")
     default_entry: SwitchDefault | None = containment("defaultEntry")
 
 class SwitchEntry(BaseObject, INamed, IActivityGraphItemContainer):
     """Branch of a switch with its condition. (since 2.0.0)"""
-
     condition: ConditionDisjunction | None = containment("condition")
 
 class SwitchDefault(BaseObject, IActivityGraphItemContainer):
@@ -139,7 +130,6 @@ class SwitchDefault(BaseObject, IActivityGraphItemContainer):
 
 class ProbabilitySwitch(ActivityGraphItem):
     """Branch chosen at random."""
-
     entries: list[ProbabilitySwitchEntry] = containments("entries")
 
 class ProbabilitySwitchEntry(BaseObject, IActivityGraphItemContainer):
@@ -149,7 +139,6 @@ class ProbabilitySwitchEntry(BaseObject, IActivityGraphItemContainer):
     ----------
     probability : Weight, relative to the sum over all entries, which need not be 1.
     """
-
     probability: float | None = attribute("probability")
 
 class WhileLoop(ActivityGraphItem, IActivityGraphItemContainer):
@@ -159,7 +148,6 @@ class WhileLoop(ActivityGraphItem, IActivityGraphItemContainer):
     ----------
     condition : Tested before each iteration; the loop ends only if the items change what it depends on.
     """
-
     condition: ConditionDisjunction | ModeConditionDisjunction | None = containment("condition")
 
 class Counter(BaseObject):
@@ -170,7 +158,6 @@ class Counter(BaseObject):
     prescaler : The n of every n-th time (default 1); counting goes on across the instances of a process.
     offset : Number of the first effective execution, counted from 1; 0 (default) stands for the prescaler itself.
     """
-
     prescaler: int | None = attribute("prescaler")
     offset: int | None = attribute("offset")
 
@@ -183,7 +170,6 @@ class WaitEvent(ActivityGraphItem):
     waiting_behaviour : Active waiting polls and keeps the core, passive waiting releases it.
     counter : Waits only every n-th time.
     """
-
     event_mask: EventMask | None = containment("eventMask")
     mask_type: WaitEventType | None = attribute("maskType")
     waiting_behaviour: WaitingBehaviour | None = attribute("waitingBehaviour")
@@ -197,7 +183,6 @@ class SetEvent(ActivityGraphItem):
     process : Process for which the events are set; unset means for every process.
     counter : Sets the events only every n-th time.
     """
-
     event_mask: EventMask | None = containment("eventMask")
     process: Process | None = reference("process")
     counter: Counter | None = containment("counter")
@@ -209,13 +194,11 @@ class ClearEvent(ActivityGraphItem):
     ----------
     counter : Clears the events only every n-th time.
     """
-
     event_mask: EventMask | None = containment("eventMask")
     counter: Counter | None = containment("counter")
 
 class EventMask(BaseObject):
     """Set of operating system events."""
-
     events: list[OsEvent] = references("events")
 
 class OsEvent(ReferableBaseObject, ITaggable):
@@ -225,7 +208,6 @@ class OsEvent(ReferableBaseObject, ITaggable):
     ----------
     communication_overhead_in_bit : Amount of data, in bit, that the event costs in communication.
     """
-
     communication_overhead_in_bit: int | None = attribute("communicationOverheadInBit")
 
 class InterProcessTrigger(ActivityGraphItem):
@@ -235,7 +217,6 @@ class InterProcessTrigger(ActivityGraphItem):
     ----------
     counter : Fires only every n-th time, in addition to the counter of the stimulus.
     """
-
     stimulus: InterProcessStimulus | None = reference("stimulus")
     counter: Counter | None = containment("counter")
 
@@ -246,7 +227,6 @@ class EnforcedMigration(ActivityGraphItem):
     ----------
     resource_owner : Scheduler to which the task moves.
     """
-
     resource_owner: TaskScheduler | None = reference("resourceOwner")
 
 class SchedulePoint(ActivityGraphItem):
@@ -259,7 +239,6 @@ class TerminateProcess(ActivityGraphItem):
     ----------
     counter : Terminates only every n-th time.
     """
-
     counter: Counter | None = containment("counter")
 
 class Task(Process):
@@ -270,7 +249,6 @@ class Task(Process):
     preemption : Whether other tasks may preempt it always, at schedule points only, or never; ISRs always may.
     multiple_task_activation_limit : Most instances at a time; activations beyond are lost, not queued. Read the default 0 as 1.
     """
-
     preemption: Preemption | None = attribute("preemption")
     multiple_task_activation_limit: int | None = attribute("multipleTaskActivationLimit")
 
@@ -281,7 +259,6 @@ class ISR(Process):
     ----------
     category : Category of OSEK, which decides the overhead that applies.
     """
-
     category: ISRCategory | None = attribute("category")
 
 class ProcessPrototype(AbstractProcess):
@@ -298,7 +275,6 @@ class ProcessPrototype(AbstractProcess):
     activation : Intended activation, which triggers nothing.
     runnable_calls : Runnables of the prototype, as calls.
     """
-
     preemption: Preemption | None = attribute("preemption")
     first_runnable: Runnable | None = reference("firstRunnable")
     last_runnable: Runnable | None = reference("lastRunnable")
@@ -310,7 +286,6 @@ class ProcessPrototype(AbstractProcess):
 
 class ChainedProcessPrototype(BaseObject):
     """Link to a prototype that is chained to another."""
-
     prototype: ProcessPrototype | None = reference("prototype")
     apply: int | None = attribute("apply")
     offset: int | None = attribute("offset")
@@ -323,19 +298,16 @@ class GeneralPrecedence(BaseObject, abstract=True):
     origin : Runnable on the first side of the precedence.
     target : Runnable on the second side of the precedence.
     """
-
     origin: Runnable | None = reference("origin")
     target: Runnable | None = reference("target")
 
 class AccessPrecedenceSpec(GeneralPrecedence):
     """Precedence between two runnables due to a label that both access."""
-
     label: Label | None = reference("label")
     order_type: AccessPrecedenceType | None = attribute("orderType")
 
 class OrderPrecedenceSpec(GeneralPrecedence):
     """Precedence between two runnables that is stated directly."""
-
     order_type: OrderType | None = attribute("orderType")
 
 class IDependsOn(Element, abstract=True):
@@ -345,7 +317,6 @@ class IDependsOn(Element, abstract=True):
     ----------
     depends_on : Data from which the written label, the outgoing parameter or the argument is computed.
     """
-
     depends_on: DataDependency | None = containment("dependsOn")
 
 class DataDependency(BaseObject):
@@ -357,14 +328,12 @@ class DataDependency(BaseObject):
     parameters : Incoming parameters of the containing runnable whose values are used.
     call_arguments : Results of calls in the containing runnable that are used.
     """
-
     labels: list[Label] = references("labels")
     parameters: list[RunnableParameter] = references("parameters")
     call_arguments: list[CallArgument] = references("callArguments")
 
 class RunnableParameter(ReferableBaseObject, IDependsOn):
     """Formal parameter of a runnable."""
-
     direction: DirectionType | None = attribute("direction")
     data_type: TypeDefinition | None = reference("dataType")
 
@@ -378,7 +347,6 @@ class Runnable(AbstractMemoryElement, IExecutable, INamespaceMember):
     service : Whether it is a service, called by other runnables and not directly by a task.
     section : Section into which the code is placed.
     """
-
     execution_condition: ConditionDisjunction | ModeConditionDisjunction | None = containment("executionCondition")
     parameters: list[RunnableParameter] = containments("parameters")
     activations: list[Activation] = references("activations")
@@ -398,7 +366,6 @@ class Label(AbstractMemoryElement, IDisplayName, INamespaceMember):
     stability_level : Interval in which all reads see the same value.
     section : Section into which the data is placed.
     """
-
     data_type: TypeDefinition | DataType | None = containment_or_reference("dataType")
     constant: bool | None = attribute("constant")
     b_volatile: bool | None = attribute("bVolatile")
@@ -415,7 +382,6 @@ class Channel(AbstractMemoryElement, IDisplayName, INamespaceMember):
     default_elements : Number of elements at the start, at most maxElements.
     max_elements : Capacity as a number of elements.
     """
-
     element_type: TypeDefinition | DataType | None = containment_or_reference("elementType")
     default_elements: int | None = attribute("defaultElements")
     max_elements: int | None = attribute("maxElements")
@@ -427,13 +393,11 @@ class ModeLabel(AbstractMemoryElement, IDisplayName):
     ----------
     initial_value : Name of a literal for an enum mode, integer as text for a numeric mode.
     """
-
     mode: Mode | None = reference("mode")
     initial_value: str | None = attribute("initialValue")
 
 class Section(ReferableBaseObject):
     """Named collection of labels and runnables that is placed in memory as a whole."""
-
     asil_level: ASILType | None = attribute("asilLevel")
 
 class ComputationItem(ActivityGraphItem, abstract=True):
@@ -446,7 +410,6 @@ class ExecutionNeed(ActivityGraphItem):
     ----------
     needs : Amounts by name of a hardware feature category; the amounts add up.
     """
-
     needs: list[NeedEntry] = containments("needs")
 
 class NeedEntry(Element):
@@ -456,7 +419,6 @@ class NeedEntry(Element):
     ----------
     key : Name of a hardware feature category as plain text, which nothing keeps in step with the category.
     """
-
     key: str | None = attribute("key")
     value: IDiscreteValueDeviation | None = containment("value")
 
@@ -468,13 +430,11 @@ class Ticks(ComputationItem):
     default : Cycles on every processing unit whose definition has no extended entry.
     extended : Cycles by definition of the processing unit; such an entry takes precedence over the default.
     """
-
     default: IDiscreteValueDeviation | None = containment("default")
     extended: list[TicksEntry] = containments("extended")
 
 class TicksEntry(Element):
     """Map entry from a processing unit definition to a number of cycles."""
-
     key: ProcessingUnitDefinition | None = reference("key")
     value: IDiscreteValueDeviation | None = containment("value")
 
@@ -487,7 +447,6 @@ class ModeLabelAccess(ActivityGraphItem):
     value : Value to set, the name of a literal or an integer as text; other accesses ignore it.
     step : Width of an increment or decrement (default 1); an enum mode stops at its first or last literal.
     """
-
     data: ModeLabel | None = reference("data")
     access: ModeLabelAccessEnum | None = attribute("access")
     value: str | None = attribute("value")
@@ -503,7 +462,6 @@ class LabelAccess(ComputationItem, ITaggable, IDependsOn):
     data_stability : How the value is kept stable; inherited or undefined leaves it to the label.
     implementation : Explicit access in place, implicit access with copies around the execution, or timed access as in LET.
     """
-
     data: Label | None = reference("data")
     access: LabelAccessEnum | None = attribute("access")
     statistic: LabelAccessStatistic | None = containment("statistic")
@@ -519,7 +477,6 @@ class ChannelAccess(ActivityGraphItem, abstract=True):
     elements : Number of elements; for receiving the largest number.
     transmission_policy : Cost of the transmission; the size of all elements together is divided into chunks.
     """
-
     data: Channel | None = reference("data")
     elements: int | None = attribute("elements")
     transmission_policy: TransmissionPolicy | None = containment("transmissionPolicy")
@@ -537,7 +494,6 @@ class ChannelReceive(ChannelAccess):
     element_index : Position of the first element, counted from the end at which the operation starts.
     lower_bound : Least number of elements to return, 0 to elements. The format defaults to 0; elements is meant by some.
     """
-
     receive_operation: ReceiveOperation | None = attribute("receiveOperation")
     data_must_be_new: bool | None = attribute("dataMustBeNew")
     element_index: int | None = attribute("elementIndex")
@@ -551,7 +507,6 @@ class SemaphoreAccess(ActivityGraphItem):
     access : An exclusive request is granted only when nobody else holds the semaphore.
     waiting_behaviour : Active waiting polls and keeps the core, passive waiting releases it.
     """
-
     semaphore: Semaphore | None = reference("semaphore")
     access: SemaphoreAccessEnum | None = attribute("access")
     waiting_behaviour: WaitingBehaviour | None = attribute("waitingBehaviour")
@@ -563,7 +518,6 @@ class SenderReceiverCommunication(ActivityGraphItem, abstract=True):
     ----------
     buffered : Whether the access works on a buffer.
     """
-
     buffered: bool | None = attribute("buffered")
     label: Label | None = reference("label")
     port: ComponentPort | None = reference("port")
@@ -578,12 +532,10 @@ class SenderReceiverWrite(SenderReceiverCommunication):
     ----------
     notified_runnables : Runnables that are told of the write.
     """
-
     notified_runnables: list[Runnable] = references("notifiedRunnables")
 
 class ServerCall(ActivityGraphItem, abstract=True):
     """Call of a runnable by client-server communication."""
-
     server_runnable: Runnable | None = reference("serverRunnable")
     port: ComponentPort | None = reference("port")
 
@@ -594,7 +546,6 @@ class SynchronousServerCall(ServerCall):
     ----------
     waiting_behaviour : Active waiting polls and keeps the core, passive waiting releases it.
     """
-
     waiting_behaviour: WaitingBehaviour | None = attribute("waitingBehaviour")
 
 class AsynchronousServerCall(ServerCall):
@@ -604,7 +555,6 @@ class AsynchronousServerCall(ServerCall):
     ----------
     result_runnable : Runnable that runs when the result has arrived.
     """
-
     result_runnable: Runnable | None = reference("resultRunnable")
 
 class GetResultServerCall(ServerCall):
@@ -614,7 +564,6 @@ class GetResultServerCall(ServerCall):
     ----------
     blocking_type : Whether and how to wait for a result that is not there yet.
     """
-
     blocking_type: BlockingType | None = attribute("blockingType")
 
 class Group(ActivityGraphItem, INamed, IActivityGraphItemContainer):
@@ -625,7 +574,6 @@ class Group(ActivityGraphItem, INamed, IActivityGraphItemContainer):
     ordered : Whether the items run in their order (true, default) or in any order.
     interruptible : Whether the group may be preempted (true, default).
     """
-
     ordered: bool | None = attribute("ordered")
     interruptible: bool | None = attribute("interruptible")  # since 1.2.0
 
@@ -636,7 +584,6 @@ class CallArgument(ReferableObject, IDependsOn):
     ----------
     parameter : Parameter of the runnable that is called.
     """
-
     parameter: RunnableParameter | None = reference("parameter")
 
 class RunnableCall(ActivityGraphItem, ITaggable):
@@ -648,7 +595,6 @@ class RunnableCall(ActivityGraphItem, ITaggable):
     counter : Calls the runnable only every n-th time.
     statistic : How often the call is performed.
     """
-
     runnable: Runnable | None = reference("runnable")
     arguments: list[CallArgument] = containments("arguments")
     context: list[LocalModeLabelAssignment] = containments("context")  # since 2.1.0
@@ -657,7 +603,6 @@ class RunnableCall(ActivityGraphItem, ITaggable):
 
 class CustomEventTrigger(ActivityGraphItem):
     """Raising of a custom event, which event stimuli can react to."""
-
     event: CustomEvent | None = reference("event")
 
 class DataType(Element, abstract=True):
@@ -668,12 +613,10 @@ class CompoundType(BaseObject, DataType, abstract=True):
 
 class Struct(CompoundType, ITaggable):
     """Data type of several named entries."""
-
     entries: list[StructEntry] = containments("entries")
 
 class StructEntry(BaseObject, INamed, ITaggable):
     """Entry of a struct."""
-
     data_type: DataType | None = containment("dataType")
 
 class Array(CompoundType):
@@ -683,7 +626,6 @@ class Array(CompoundType):
     ----------
     number_elements : Number of elements.
     """
-
     number_elements: int | None = attribute("numberElements")
     data_type: DataType | None = containment("dataType")
 
@@ -694,12 +636,10 @@ class Pointer(CompoundType):
     ----------
     data_type : Type of the data pointed to.
     """
-
     data_type: DataType | None = containment("dataType")
 
 class TypeRef(BaseObject, DataType):
     """Data type that is defined elsewhere."""
-
     type_def: TypeDefinition | None = reference("typeDef")
 
 class Alias(BaseObject):
@@ -710,23 +650,19 @@ class Alias(BaseObject):
     target : Environment in which the alias is used, as free text.
     alias : Name of the type in that environment.
     """
-
     target: str | None = attribute("target")
     alias: str | None = attribute("alias")
 
 class TypeDefinition(ReferableBaseObject, INamespaceMember, abstract=True):
     """Named data type."""
-
     size: DataSize | None = containment("size")
 
 class DataTypeDefinition(TypeDefinition):
     """Named data type that is built of others."""
-
     data_type: DataType | None = containment("dataType")
 
 class BaseTypeDefinition(TypeDefinition):
     """Elementary data type with its names in different environments."""
-
     aliases: list[Alias] = containments("aliases")
 
 class Activation(ReferableBaseObject, ITaggable, abstract=True):
@@ -740,7 +676,6 @@ class PeriodicActivation(Activation):
     recurrence : Period, greater than zero.
     offset : Time of the first activation; unset means zero.
     """
-
     min: Time | None = containment("min")
     max: Time | None = containment("max")
     recurrence: Time | None = containment("recurrence")
@@ -754,7 +689,6 @@ class VariableRateActivation(Activation, IDescription):
     step : Length of the time step to which the rate refers.
     occurrences_per_step : Occurrences per step, not necessarily an integer.
     """
-
     step: Time | None = containment("step")
     occurrences_per_step: IContinuousValueDeviation | None = containment("occurrencesPerStep")
 
@@ -765,7 +699,6 @@ class SporadicActivation(Activation, IDescription):
     ----------
     occurrence : Time deviation that describes the irregular occurrence.
     """
-
     occurrence: ITimeDeviation | None = containment("occurrence")
 
 class SingleActivation(Activation):
@@ -776,7 +709,6 @@ class SingleActivation(Activation):
     min : Lower limit of its time, zero or more.
     max : Upper limit of its time, zero or more.
     """
-
     min: Time | None = containment("min")
     max: Time | None = containment("max")
 
@@ -787,7 +719,6 @@ class EventActivation(Activation):
     ----------
     counter : Counts only every n-th event.
     """
-
     triggering_events: list[TriggerEvent] = references("triggeringEvents")
     counter: Counter | None = containment("counter")
 
@@ -802,7 +733,6 @@ class LabelAccessStatistic(BaseObject):
     value : Number of accesses.
     cache_misses : Number of accesses that miss the cache.
     """
-
     value: NumericStatistic | None = containment("value")
     cache_misses: NumericStatistic | None = containment("cacheMisses")
 
@@ -813,7 +743,6 @@ class RunEntityCallStatistic(BaseObject):
     ----------
     statistic : Number of calls.
     """
-
     statistic: NumericStatistic | None = containment("statistic")
 
 class LocalModeLabel(ReferableBaseObject):
@@ -823,13 +752,11 @@ class LocalModeLabel(ReferableBaseObject):
     ----------
     default_value : Value unless the caller or an assignment gives another, as the name of a literal or an integer.
     """
-
     mode: Mode | None = reference("mode")
     default_value: str | None = attribute("defaultValue")
 
 class LocalModeValue(Element, abstract=True):
     """Local mode label together with a source of a value. (since 2.1.0)"""
-
     label: LocalModeLabel | None = reference("label")
     value_source: ILocalModeValueSource | None = containment("valueSource")
 
@@ -838,7 +765,6 @@ class LocalModeLabelAssignment(LocalModeValue, ActivityGraphItem):
 
 class LocalModeCondition(LocalModeValue, Condition, IAnnotatable):
     """Comparison of a local mode label with a value. (since 2.1.0)"""
-
     relation: RelationalOperator | None = attribute("relation")
 
 class ILocalModeValueSource(Element, abstract=True):
@@ -846,39 +772,32 @@ class ILocalModeValueSource(Element, abstract=True):
 
 class ModeLiteralConst(ILocalModeValueSource):
     """Literal of an enum mode as a value. (since 2.1.0)"""
-
     value: ModeLiteral | None = reference("value")
 
 class IntegerConst(ILocalModeValueSource):
     """Integer as a value. (since 2.1.0)"""
-
     value: int | None = attribute("value")
 
 class ModeLabelRef(ILocalModeValueSource):
     """Current value of a mode label. (since 2.1.0)"""
-
     value: ModeLabel | None = reference("value")
 
 class LocalModeLabelRef(ILocalModeValueSource):
     """Current value of a local mode label. (since 2.1.0)"""
-
     value: LocalModeLabel | None = reference("value")
 
 class ChannelFillRef(ILocalModeValueSource):
     """Current number of elements in a channel as a value. (since 2.1.0)"""
-
     value: Channel | None = reference("value")
 
 class ArithmeticExpression(ILocalModeValueSource):
     """Value computed from two operands. (since 2.1.0)"""
-
     operand1: ILocalModeValueSource | None = containment("operand1")
     operand2: ILocalModeValueSource | None = containment("operand2")
     operator: ArithmeticOperator | None = attribute("operator")
 
 class ModeLabelAssignment(ActivityGraphItem):
     """Assignment between a mode label and a local mode label. (since 2.1.0)"""
-
     global_label: ModeLabel | None = reference("globalLabel")
     local_label: LocalModeLabel | None = reference("localLabel")
 
@@ -890,13 +809,11 @@ class ModeSwitch(ActivityGraphItem):
     entries : Branches in the order in which they are tested; the first satisfied one is executed.
     default_entry : Branch for the case that no condition is satisfied; without it nothing happens.
     """
-
     entries: list[ModeSwitchEntry] = containments("entries")
     default_entry: ModeSwitchDefault | None = containment("defaultEntry")
 
 class ModeSwitchEntry(BaseObject, INamed, IActivityGraphItemContainer):
     """Branch of a mode switch with its condition. (until 2.2.0)"""
-
     condition: ModeConditionDisjunction | None = containment("condition")
 
 class ModeSwitchDefault(BaseObject, IActivityGraphItemContainer):

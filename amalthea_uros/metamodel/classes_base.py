@@ -11,18 +11,18 @@ from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.features import attribute, containment, containments, reference, references
 
 if TYPE_CHECKING:
-    from amalthea_uros.metamodel.classes.common import CommonElements, CustomProperty, Namespace, Tag
-    from amalthea_uros.metamodel.classes.components import ComponentsModel
-    from amalthea_uros.metamodel.classes.config import ConfigModel
-    from amalthea_uros.metamodel.classes.constraints import ConstraintsModel
-    from amalthea_uros.metamodel.classes.events import EventModel
-    from amalthea_uros.metamodel.classes.hw import HWModel
-    from amalthea_uros.metamodel.classes.mapping import MappingModel
-    from amalthea_uros.metamodel.classes.measurement import MeasurementModel
-    from amalthea_uros.metamodel.classes.os import OSModel
-    from amalthea_uros.metamodel.classes.property_constraints import PropertyConstraintsModel
-    from amalthea_uros.metamodel.classes.stimuli import StimuliModel
-    from amalthea_uros.metamodel.classes.sw import SWModel
+    from amalthea_uros.metamodel.classes_common import CommonElements, CustomProperty, Namespace, Tag
+    from amalthea_uros.metamodel.classes_components import ComponentsModel
+    from amalthea_uros.metamodel.classes_config import ConfigModel
+    from amalthea_uros.metamodel.classes_constraints import ConstraintsModel
+    from amalthea_uros.metamodel.classes_events import EventModel
+    from amalthea_uros.metamodel.classes_hw import HWModel
+    from amalthea_uros.metamodel.classes_mapping import MappingModel
+    from amalthea_uros.metamodel.classes_measurement import MeasurementModel
+    from amalthea_uros.metamodel.classes_os import OSModel
+    from amalthea_uros.metamodel.classes_property_constraints import PropertyConstraintsModel
+    from amalthea_uros.metamodel.classes_stimuli import StimuliModel
+    from amalthea_uros.metamodel.classes_sw import SWModel
 
 class IAnnotatable(Element, abstract=True):
     """Object that may carry custom properties.
@@ -31,7 +31,6 @@ class IAnnotatable(Element, abstract=True):
     ----------
     custom_properties : User-defined values by key; a key may occur only once per object.
     """
-
     custom_properties: list[CustomProperty] = containments("customProperties")
 
 class BaseObject(IAnnotatable, abstract=True):
@@ -44,7 +43,6 @@ class Amalthea(BaseObject):
     ----------
     measurement_model : Measured runtimes; this sub-model was dropped in 1.0.0.
     """
-
     common_elements: CommonElements | None = containment("commonElements")
     sw_model: SWModel | None = containment("swModel")
     hw_model: HWModel | None = containment("hwModel")
@@ -65,7 +63,6 @@ class INamed(Element, abstract=True):
     ----------
     name : Raw text of any characters; only references encode it (a blank becomes a plus sign).
     """
-
     name: str | None = attribute("name")
 
 class IReferable(INamed, abstract=True):
@@ -79,7 +76,6 @@ class ReferableBaseObject(IAnnotatable, IReferable, abstract=True):
 
 class ITaggable(Element, abstract=True):
     """Object that may carry tags."""
-
     tags: list[Tag] = references("tags")
 
 class IDisplayName(Element, abstract=True):
@@ -89,12 +85,10 @@ class IDisplayName(Element, abstract=True):
     ----------
     display_name : Name to show to users; references always use the name.
     """
-
     display_name: str | None = attribute("displayName")
 
 class IDescription(Element, abstract=True):
     """Object with a free text that describes it."""
-
     description: str | None = attribute("description")
 
 class INamespaceMember(Element, abstract=True):
@@ -104,5 +98,4 @@ class INamespaceMember(Element, abstract=True):
     ----------
     namespace : Namespace of the name; it becomes part of every reference to the object.
     """
-
     namespace: Namespace | None = reference("namespace")

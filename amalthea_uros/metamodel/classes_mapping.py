@@ -7,15 +7,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from amalthea_uros.metamodel.classes.base import BaseObject, ReferableBaseObject
-from amalthea_uros.metamodel.classes.os import ISchedulingParameterContainer
+from amalthea_uros.metamodel.classes_base import BaseObject, ReferableBaseObject
+from amalthea_uros.metamodel.classes_os import ISchedulingParameterContainer
 from amalthea_uros.metamodel.features import attribute, containments, reference, references
 
 if TYPE_CHECKING:
-    from amalthea_uros.metamodel.classes.enums import MemoryAddressMappingType
-    from amalthea_uros.metamodel.classes.hw import Memory, ProcessingUnit
-    from amalthea_uros.metamodel.classes.os import InterruptController, ParameterExtension, Scheduler, TaskScheduler
-    from amalthea_uros.metamodel.classes.sw import AbstractMemoryElement, ISR, Label, Runnable, Section, Task
+    from amalthea_uros.metamodel.classes_enums import MemoryAddressMappingType
+    from amalthea_uros.metamodel.classes_hw import Memory, ProcessingUnit
+    from amalthea_uros.metamodel.classes_os import InterruptController, ParameterExtension, Scheduler, TaskScheduler
+    from amalthea_uros.metamodel.classes_sw import AbstractMemoryElement, ISR, Label, Runnable, Section, Task
 
 class MappingModel(BaseObject):
     """Sub-model that puts software on operating systems and hardware.
@@ -24,7 +24,6 @@ class MappingModel(BaseObject):
     ----------
     address_mapping_type : Whether addresses of memory mappings are absolute, offsets from the start of the memory, or not used.
     """
-
     scheduler_allocation: list[SchedulerAllocation] = containments("schedulerAllocation")
     runnable_allocation: list[RunnableAllocation] = containments("runnableAllocation")
     task_allocation: list[TaskAllocation] = containments("taskAllocation")
@@ -41,7 +40,6 @@ class SchedulerAllocation(BaseObject):
     responsibility : Processing units for which the scheduler decides; several make it a global scheduler.
     executing_pu : Processing unit that executes the scheduler itself, that is, its computation items.
     """
-
     scheduler: Scheduler | None = reference("scheduler")
     responsibility: list[ProcessingUnit] = references("responsibility")
     executing_pu: ProcessingUnit | None = reference("executingPU")
@@ -54,7 +52,6 @@ class TaskAllocation(BaseObject, ISchedulingParameterContainer):
     affinity : Restricts the task to some processing units of its scheduler; empty means all of them, several allow migration.
     parameter_extensions : Further scheduling parameters as text.
     """
-
     task: Task | None = reference("task")
     scheduler: TaskScheduler | None = reference("scheduler")
     affinity: list[ProcessingUnit] = references("affinity")
@@ -67,7 +64,6 @@ class ISRAllocation(BaseObject):
     ----------
     priority : Priority among ISRs; they outrank tasks whatever it is.
     """
-
     isr: ISR | None = reference("isr")
     controller: InterruptController | None = reference("controller")
     priority: int | None = attribute("priority")
@@ -79,7 +75,6 @@ class RunnableAllocation(BaseObject):
     ----------
     entity : Runnable that is assigned.
     """
-
     scheduler: Scheduler | None = reference("scheduler")
     entity: Runnable | None = reference("entity")
 
@@ -90,7 +85,6 @@ class MemoryMapping(BaseObject):
     ----------
     memory_position_address : Absolute address or offset in the memory, as the mapping model says (hexadecimal in files).
     """
-
     abstract_element: AbstractMemoryElement | None = reference("abstractElement")
     memory: Memory | None = reference("memory")
     memory_position_address: int | None = attribute("memoryPositionAddress")
@@ -105,7 +99,6 @@ class PhysicalSectionMapping(ReferableBaseObject):
     end_address : Last address of the range (hexadecimal in files).
     run_entities : Runnables that lie in the range.
     """
-
     origin: list[Section] = references("origin")
     memory: Memory | None = reference("memory")
     start_address: int | None = attribute("startAddress")

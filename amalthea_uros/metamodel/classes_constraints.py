@@ -7,25 +7,24 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from amalthea_uros.metamodel.classes.base import BaseObject, INamed, IReferable, ReferableBaseObject
+from amalthea_uros.metamodel.classes_base import BaseObject, INamed, IReferable, ReferableBaseObject
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.features import attribute, containment, containments, reference, references
 
 if TYPE_CHECKING:
-    from amalthea_uros.metamodel.classes.common import Frequency, Tag, Time
-    from amalthea_uros.metamodel.classes.components import Component
-    from amalthea_uros.metamodel.classes.enums import (
+    from amalthea_uros.metamodel.classes_common import Frequency, Tag, Time
+    from amalthea_uros.metamodel.classes_components import Component
+    from amalthea_uros.metamodel.classes_enums import (
         CPUPercentageMetric, CoherencyDirection, CountMetric, EventChainItemType, FrequencyMetric, LatencyType, LimitType, MappingType, PercentageMetric, RunnableOrderType,
         Severity, SynchronizationType, TimeMetric,
     )
-    from amalthea_uros.metamodel.classes.events import EntityEvent, Event
-    from amalthea_uros.metamodel.classes.hw import Memory, ProcessingUnit
-    from amalthea_uros.metamodel.classes.os import Scheduler
-    from amalthea_uros.metamodel.classes.sw import AbstractProcess, Label, Process, ProcessChain, Runnable, Section
+    from amalthea_uros.metamodel.classes_events import EntityEvent, Event
+    from amalthea_uros.metamodel.classes_hw import Memory, ProcessingUnit
+    from amalthea_uros.metamodel.classes_os import Scheduler
+    from amalthea_uros.metamodel.classes_sw import AbstractProcess, Label, Process, ProcessChain, Runnable, Section
 
 class ConstraintsModel(BaseObject):
     """Sub-model of event chains, constraints and requirements."""
-
     event_chains: list[EventChain] = containments("eventChains")
     timing_constraints: list[TimingConstraint] = containments("timingConstraints")
     affinity_constraints: list[AffinityConstraint] = containments("affinityConstraints")
@@ -45,7 +44,6 @@ class RunnableSequencingConstraint(ReferableBaseObject):
     runnable_groups : Two groups or more; all of a group terminate before one of the next starts, in any order within a group.
     process_scope : Processes in which the order is checked; runnables that run elsewhere do not count.
     """
-
     order_type: RunnableOrderType | None = attribute("orderType")
     runnable_groups: list[RunnableEntityGroup] = containments("runnableGroups")
     process_scope: list[AbstractProcess] = references("processScope")
@@ -66,7 +64,6 @@ class ProcessConstraint(Element, abstract=True):
     ----------
     target : Processing units or schedulers that count; unset or empty means all.
     """
-
     target: ProcessConstraintTarget | None = containment("target")
 
 class RunnableConstraint(Element, abstract=True):
@@ -76,7 +73,6 @@ class RunnableConstraint(Element, abstract=True):
     ----------
     target : Processing units or schedulers that count; unset or empty means all.
     """
-
     target: RunnableConstraintTarget | None = containment("target")
 
 class DataConstraint(Element, abstract=True):
@@ -86,7 +82,6 @@ class DataConstraint(Element, abstract=True):
     ----------
     target : Memories that count; unset or empty means all.
     """
-
     target: DataConstraintTarget | None = containment("target")
 
 class RunnableSeparationConstraint(SeparationConstraint, RunnableConstraint, BaseObject):
@@ -96,7 +91,6 @@ class RunnableSeparationConstraint(SeparationConstraint, RunnableConstraint, Bas
     ----------
     groups : Two groups are kept apart from each other, a single one is kept away from the targets.
     """
-
     groups: list[RunnableGroup] = containments("groups")
 
 class ProcessSeparationConstraint(SeparationConstraint, ProcessConstraint, BaseObject):
@@ -106,7 +100,6 @@ class ProcessSeparationConstraint(SeparationConstraint, ProcessConstraint, BaseO
     ----------
     groups : Two groups are kept apart from each other, a single one is kept away from the targets.
     """
-
     groups: list[ProcessGroup] = containments("groups")
 
 class DataSeparationConstraint(SeparationConstraint, DataConstraint, BaseObject):
@@ -116,22 +109,18 @@ class DataSeparationConstraint(SeparationConstraint, DataConstraint, BaseObject)
     ----------
     groups : Two groups are kept apart from each other, a single one is kept away from the targets.
     """
-
     groups: list[LabelEntityGroup] = containments("groups")
 
 class RunnablePairingConstraint(PairingConstraint, RunnableConstraint, BaseObject):
     """Demand that all runnables of a group run on one of the targets together."""
-
     group: RunnableGroup | None = containment("group")
 
 class ProcessPairingConstraint(PairingConstraint, ProcessConstraint, BaseObject):
     """Demand that all processes of a group run on one of the targets together."""
-
     group: ProcessGroup | None = containment("group")
 
 class DataPairingConstraint(PairingConstraint, DataConstraint, BaseObject):
     """Demand that all labels of a group lie in one of the targets together."""
-
     group: LabelGroup | None = containment("group")
 
 class RunnableConstraintTarget(Element, abstract=True):
@@ -150,7 +139,6 @@ class TargetMemory(DataConstraintTarget, BaseObject):
     ----------
     memories : Memories that count; an empty list means all.
     """
-
     memories: list[Memory] = references("memories")
 
 class TargetCore(RunnableConstraintTarget, ProcessConstraintTarget, BaseObject):
@@ -160,7 +148,6 @@ class TargetCore(RunnableConstraintTarget, ProcessConstraintTarget, BaseObject):
     ----------
     cores : Processing units that count; an empty list means all.
     """
-
     cores: list[ProcessingUnit] = references("cores")
 
 class TargetScheduler(RunnableConstraintTarget, ProcessConstraintTarget, BaseObject):
@@ -170,7 +157,6 @@ class TargetScheduler(RunnableConstraintTarget, ProcessConstraintTarget, BaseObj
     ----------
     schedulers : Schedulers that count; an empty list means all.
     """
-
     schedulers: list[Scheduler] = references("schedulers")
 
 class LabelGroup(Element, abstract=True):
@@ -184,22 +170,18 @@ class ProcessGroup(Element, abstract=True):
 
 class LabelEntityGroup(LabelGroup, BaseObject):
     """Groups labels by listing them one by one."""
-
     labels: list[Label] = references("labels")
 
 class RunnableEntityGroup(RunnableGroup, BaseObject):
     """Groups runnables by listing them one by one."""
-
     runnables: list[Runnable] = references("runnables")
 
 class ProcessEntityGroup(ProcessGroup, BaseObject):
     """Groups processes by listing them one by one."""
-
     processes: list[Process] = references("processes")
 
 class TagGroup(RunnableGroup, ProcessGroup, BaseObject):
     """Groups all processes or runnables that carry a tag."""
-
     tag: Tag | None = reference("tag")
 
 class AbstractEventChain(BaseObject, INamed, abstract=True):
@@ -213,7 +195,6 @@ class AbstractEventChain(BaseObject, INamed, abstract=True):
     item_type : Whether the items follow each other or run side by side; undefined is commonly read as sequence.
     min_items_completed : For parallel items, how many must complete; 1 (default) makes them alternatives, their number a join.
     """
-
     stimulus: Event | None = reference("stimulus")
     response: Event | None = reference("response")
     items: list[EventChainItem] = containments("items")
@@ -236,12 +217,10 @@ class EventChainReference(BaseObject, EventChainItem):
     ----------
     event_chain : Chain that is used as a part; references must not run in a circle.
     """
-
     event_chain: EventChain | None = reference("eventChain")
 
 class EventChainContainer(BaseObject, EventChainItem):
     """Part of an event chain that is defined on the spot."""
-
     event_chain: SubEventChain | None = containment("eventChain")
 
 class TimingConstraint(ReferableBaseObject, abstract=True):
@@ -249,7 +228,6 @@ class TimingConstraint(ReferableBaseObject, abstract=True):
 
 class PhysicalSectionConstraint(ReferableBaseObject):
     """Demand that a section is placed only in certain memories."""
-
     section: Section | None = reference("section")
     memories: list[Memory] = references("memories")
 
@@ -261,13 +239,11 @@ class SynchronizationConstraint(TimingConstraint, abstract=True):
     multiple_occurrences_allowed : Whether every occurrence counts (true) or only the next one of each event (false, default).
     tolerance : Width of the time window in which all of them must occur.
     """
-
     multiple_occurrences_allowed: bool | None = attribute("multipleOccurrencesAllowed")
     tolerance: Time | None = containment("tolerance")
 
 class EventSynchronizationConstraint(SynchronizationConstraint):
     """Demand that occurrences of several events lie in a common time window."""
-
     events: list[EntityEvent] = references("events")
 
 class EventChainSynchronizationConstraint(SynchronizationConstraint):
@@ -278,7 +254,6 @@ class EventChainSynchronizationConstraint(SynchronizationConstraint):
     scope : Exactly two chains.
     type : Whether the stimuli or the responses of the chains are compared.
     """
-
     scope: list[EventChain] = references("scope")
     type: SynchronizationType | None = attribute("type")
 
@@ -291,7 +266,6 @@ class DelayConstraint(TimingConstraint):
     upper : Longest delay; unset means no limit.
     lower : Shortest delay; unset means no limit.
     """
-
     mapping_type: MappingType | None = attribute("mappingType")
     source: EntityEvent | None = reference("source")
     target: EntityEvent | None = reference("target")
@@ -307,7 +281,6 @@ class EventChainLatencyConstraint(TimingConstraint):
     minimum : Shortest latency; unset means no limit.
     maximum : Longest latency; unset means no limit, not zero.
     """
-
     scope: EventChain | None = reference("scope")
     type: LatencyType | None = attribute("type")
     minimum: Time | None = containment("minimum")
@@ -324,7 +297,6 @@ class RepetitionConstraint(TimingConstraint):
     jitter : Longest delay of an occurrence after its ideal point in time.
     period : Nominal distance of occurrences.
     """
-
     event: EntityEvent | None = reference("event")
     span: int | None = attribute("span")
     lower: Time | None = containment("lower")
@@ -339,7 +311,6 @@ class DataAgeConstraint(ReferableBaseObject):
     ----------
     runnable : Runnable that writes the label, not one that reads it.
     """
-
     runnable: Runnable | None = reference("runnable")
     label: Label | None = reference("label")
     data_age: DataAge | None = containment("dataAge")
@@ -355,7 +326,6 @@ class DataAgeCycle(DataAge):
     minimum_cycle : Number of activations after the write from which on the data is valid.
     maximum_cycle : Number of activations after the write until which the data is valid.
     """
-
     minimum_cycle: int | None = attribute("minimumCycle")
     maximum_cycle: int | None = attribute("maximumCycle")
 
@@ -367,7 +337,6 @@ class DataAgeTime(DataAge):
     minimum_time : Time after the write from which on the data is valid.
     maximum_time : Time after the write until which the data is valid.
     """
-
     minimum_time: Time | None = containment("minimumTime")
     maximum_time: Time | None = containment("maximumTime")
 
@@ -379,28 +348,23 @@ class Requirement(BaseObject, INamed, abstract=True):
     severity : How bad a violation is.
     limit : Metric and its bound, which every instance must keep.
     """
-
     severity: Severity | None = attribute("severity")
     limit: RequirementLimit | None = containment("limit")
 
 class ProcessRequirement(Requirement):
     """Requirement on a process; an upper limit of the response time is its deadline."""
-
     process: AbstractProcess | None = reference("process")
 
 class RunnableRequirement(Requirement):
     """Requirement on a runnable."""
-
     runnable: Runnable | None = reference("runnable")
 
 class ArchitectureRequirement(Requirement):
     """Requirement on a component."""
-
     component: Component | None = reference("component")
 
 class ProcessChainRequirement(Requirement):
     """Requirement on a process chain."""
-
     process_chain: ProcessChain | None = reference("processChain")
 
 class RequirementLimit(Element, abstract=True):
@@ -410,7 +374,6 @@ class RequirementLimit(Element, abstract=True):
     ----------
     limit_type : Whether the metric must not exceed or not fall below the value; undefined leaves the limit unusable.
     """
-
     limit_type: LimitType | None = attribute("limitType")
 
 class CPUPercentageRequirementLimit(RequirementLimit):
@@ -421,14 +384,12 @@ class CPUPercentageRequirementLimit(RequirementLimit):
     limit_value : Bound; whether it is a percentage or a fraction of 1 is not specified.
     hardware_context : Processing unit whose capacity is 100 percent.
     """
-
     metric: CPUPercentageMetric | None = attribute("metric")
     limit_value: float | None = attribute("limitValue")
     hardware_context: ProcessingUnit | None = reference("hardwareContext")
 
 class FrequencyRequirementLimit(RequirementLimit):
     """Bound of how often something happens per time."""
-
     metric: FrequencyMetric | None = attribute("metric")
     limit_value: Frequency | None = containment("limitValue")
 
@@ -439,13 +400,11 @@ class PercentageRequirementLimit(RequirementLimit):
     ----------
     limit_value : Bound; whether it is a percentage or a fraction of 1 is not specified.
     """
-
     metric: PercentageMetric | None = attribute("metric")
     limit_value: float | None = attribute("limitValue")
 
 class CountRequirementLimit(RequirementLimit):
     """Bound of a count, such as that of activations."""
-
     metric: CountMetric | None = attribute("metric")
     limit_value: int | None = attribute("limitValue")
 
@@ -457,7 +416,6 @@ class TimeRequirementLimit(RequirementLimit):
     metric : What is measured; ResponseTime with an upper limit defines the deadline.
     limit_value : Bound, greater than zero for response times.
     """
-
     metric: TimeMetric | None = attribute("metric")
     limit_value: Time | None = containment("limitValue")
 
@@ -469,7 +427,6 @@ class DataCoherencyGroup(ReferableBaseObject):
     scope : Process, runnable or component within which the accesses are coherent.
     direction : Whether the coherence concerns reading (input) or writing (output).
     """
-
     labels: list[Label] = references("labels")
     scope: DataGroupScope | None = containment("scope")
     direction: CoherencyDirection | None = attribute("direction")
@@ -481,7 +438,6 @@ class DataStabilityGroup(ReferableBaseObject):
     ----------
     scope : Process, runnable or component within which the values stay the same.
     """
-
     labels: list[Label] = references("labels")
     scope: DataGroupScope | None = containment("scope")
 
@@ -490,15 +446,12 @@ class DataGroupScope(Element, abstract=True):
 
 class ProcessScope(DataGroupScope):
     """Range of one process."""
-
     process: AbstractProcess | None = reference("process")
 
 class RunnableScope(DataGroupScope):
     """Range of one runnable."""
-
     runnable: Runnable | None = reference("runnable")
 
 class ComponentScope(DataGroupScope):
     """Range of one component."""
-
     component: Component | None = reference("component")

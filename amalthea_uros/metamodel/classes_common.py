@@ -7,19 +7,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from amalthea_uros.metamodel.classes.base import BaseObject, IDescription, ReferableBaseObject, ReferableObject
-from amalthea_uros.metamodel.classes.enums import TimeUnit, FrequencyUnit, VoltageUnit, DataSizeUnit, DataRateUnit
+from amalthea_uros.metamodel.classes_base import BaseObject, IDescription, ReferableBaseObject, ReferableObject
+from amalthea_uros.metamodel.classes_enums import TimeUnit, FrequencyUnit, VoltageUnit, DataSizeUnit, DataRateUnit
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.features import attribute, containment, containments, reference
-from amalthea_uros.metamodel.quantity import number_of, unit_of
+from amalthea_uros.metamodel.features import number_of, unit_of
 
 if TYPE_CHECKING:
-    from amalthea_uros.metamodel.classes.base import IReferable
-    from amalthea_uros.metamodel.classes.enums import DataRateUnit, DataSizeUnit, FrequencyUnit, SamplingType, TimeUnit, VoltageUnit
+    from amalthea_uros.metamodel.classes_base import IReferable
+    from amalthea_uros.metamodel.classes_enums import DataRateUnit, DataSizeUnit, FrequencyUnit, SamplingType, TimeUnit, VoltageUnit
 
 class CommonElements(BaseObject):
     """Sub-model of elements that other sub-models share, such as tags and classifiers."""
-
     tags: list[Tag] = containments("tags")
     namespaces: list[Namespace] = containments("namespaces")
     core_classifiers: list[CoreClassifier] = containments("coreClassifiers")
@@ -32,7 +31,6 @@ class Tag(ReferableBaseObject, IDescription):
     ----------
     tag_type : Free text that sorts tags into kinds.
     """
-
     tag_type: str | None = attribute("tagType")
 
 class Namespace(ReferableObject):
@@ -42,7 +40,6 @@ class Namespace(ReferableObject):
     ----------
     next_segments : Namespaces below this one, each a longer qualified name.
     """
-
     next_segments: list[Namespace] = containments("nextSegments")
 
 class Classifier(ReferableBaseObject, IDescription, abstract=True):
@@ -63,7 +60,6 @@ class TransmissionPolicy(Element):
     chunk_processing_ticks : Ticks per chunk; all elements of an access are added up before the number of chunks is rounded up.
     transmit_ratio : Share of the data that is really transmitted, 0 to 1 (default 1); it does not scale the ticks.
     """
-
     chunk_size: DataSize | None = containment("chunkSize")
     chunk_processing_ticks: int | None = attribute("chunkProcessingTicks")
     transmit_ratio: float | None = attribute("transmitRatio")
@@ -85,7 +81,6 @@ class Time(Quantity, Value, TimeComparable):
     value : Integer in the given unit, of any size.
     unit : Unit from s to ps; left out, the time is undefined and not a number of nanoseconds.
     """
-
     value: int | None = attribute("value")
     unit: TimeUnit | None = attribute("unit")
 
@@ -99,7 +94,6 @@ class Frequency(Quantity):
     ----------
     value : Zero or more, in the given unit; the clock of a processing unit must be greater than zero.
     """
-
     value: float | None = attribute("value")
     unit: FrequencyUnit | None = attribute("unit")
 
@@ -108,7 +102,6 @@ class Frequency(Quantity):
 
 class Voltage(Quantity):
     """Electrical potential with a unit."""
-
     value: float | None = attribute("value")
     unit: VoltageUnit | None = attribute("unit")
 
@@ -123,7 +116,6 @@ class DataSize(Quantity):
     value : Integer in the given unit; sizes of labels and processes must be greater than zero.
     unit : Unit with prefix; sizes are often given in bit, so check before you take them for bytes.
     """
-
     value: int | None = attribute("value")
     unit: DataSizeUnit | None = attribute("unit")
 
@@ -135,7 +127,6 @@ class DataRateComparable(Element, abstract=True):
 
 class DataRate(Quantity, DataRateComparable):
     """Amount of data per second."""
-
     value: int | None = attribute("value")
     unit: DataRateUnit | None = attribute("unit")
 
@@ -144,58 +135,47 @@ class DataRate(Quantity, DataRateComparable):
 
 class CustomProperty(Element):
     """Map entry from a user-defined key to a value of any kind."""
-
     key: str | None = attribute("key")
     value: Value | None = containment("value")
 
 class ListObject(Value):
     """Value that is a list of values, which may be lists themselves."""
-
     values: list[Value] = containments("values")
 
 class MapObject(Value):
     """Value that is a map of keys to values. (since 1.2.0)"""
-
     entries: list[CustomProperty] = containments("entries")
 
 class StringObject(Value):
     """Value that is a text."""
-
     value: str | None = attribute("value")
 
 class BigIntegerObject(Value):
     """Value that is an integer of any size."""
-
     value: int | None = attribute("value")
 
 class ReferenceObject(Value):
     """Value that refers to an object of the model."""
-
     value: IReferable | None = reference("value")
 
 class IntegerObject(Value):
     """Value that is an integer of 32 bits."""
-
     value: int | None = attribute("value")
 
 class LongObject(Value):
     """Value that is an integer of 64 bits."""
-
     value: int | None = attribute("value")
 
 class FloatObject(Value):
     """Value that is a floating-point number of single precision."""
-
     value: float | None = attribute("value")
 
 class DoubleObject(Value):
     """Value that is a floating-point number of double precision."""
-
     value: float | None = attribute("value")
 
 class BooleanObject(Value):
     """Value that is true or false."""
-
     value: bool | None = attribute("value")
 
 class NumericStatistic(Element, abstract=True):
@@ -208,14 +188,12 @@ class MinAvgMaxStatistic(NumericStatistic):
     ----------
     avg : Average, which must lie between min and max.
     """
-
     min: int | None = attribute("min")
     avg: float | None = attribute("avg")
     max: int | None = attribute("max")
 
 class SingleValueStatistic(NumericStatistic):
     """Statistic of one number, usually the average."""
-
     value: float | None = attribute("value")
 
 class ITimeDeviation(Element, abstract=True):
@@ -229,13 +207,11 @@ class TimeInterval(Element, abstract=True):
     lower_bound : Smallest value, not above the upper bound.
     upper_bound : Largest value, the one that worst-case analyses use.
     """
-
     lower_bound: Time | None = containment("lowerBound")
     upper_bound: Time | None = containment("upperBound")
 
 class TimeConstant(ITimeDeviation):
     """Time that does not vary."""
-
     value: Time | None = containment("value")
 
 class TimeHistogram(ITimeDeviation):
@@ -245,7 +221,6 @@ class TimeHistogram(ITimeDeviation):
     ----------
     entries : Intervals of any width, which may overlap or leave gaps.
     """
-
     entries: list[TimeHistogramEntry] = containments("entries")
 
 class TimeHistogramEntry(TimeInterval):
@@ -255,7 +230,6 @@ class TimeHistogramEntry(TimeInterval):
     ----------
     occurrences : Weight of the interval, at least 1; how values spread inside the interval is undefined.
     """
-
     occurrences: int | None = attribute("occurrences")
 
 class BoundedTimeDistribution(TimeInterval, ITimeDeviation, abstract=True):
@@ -269,7 +243,6 @@ class TruncatedTimeDistribution(ITimeDeviation, abstract=True):
     lower_bound : Smallest value; unset means unbounded, which leaves no best case to analyse.
     upper_bound : Largest value; unset means unbounded, which leaves no worst case to analyse.
     """
-
     lower_bound: Time | None = containment("lowerBound")
     upper_bound: Time | None = containment("upperBound")
 
@@ -280,7 +253,6 @@ class TimeBoundaries(BoundedTimeDistribution):
     ----------
     sampling_type : Where values concentrate; the average is the centre of the bounds whatever is chosen here.
     """
-
     sampling_type: SamplingType | None = attribute("samplingType")
 
 class TimeStatistics(BoundedTimeDistribution):
@@ -290,7 +262,6 @@ class TimeStatistics(BoundedTimeDistribution):
     ----------
     average : Average, not necessarily the centre of the bounds.
     """
-
     average: Time | None = containment("average")
 
 class TimeUniformDistribution(BoundedTimeDistribution):
@@ -304,7 +275,6 @@ class TimeGaussDistribution(TruncatedTimeDistribution):
     mean : Mean of the normal distribution before it is truncated, thus not always the average.
     sd : Standard deviation of the normal distribution before it is truncated.
     """
-
     mean: Time | None = containment("mean")
     sd: Time | None = containment("sd")
 
@@ -316,7 +286,6 @@ class TimeWeibullEstimatorsDistribution(BoundedTimeDistribution):
     average : Average, strictly between the bounds.
     p_remain_promille : Probability, in per mille (default 1.0, that is 0.1 percent), that a value exceeds the upper bound.
     """
-
     average: Time | None = containment("average")
     p_remain_promille: float | None = attribute("pRemainPromille")
 
@@ -328,7 +297,6 @@ class TimeBetaDistribution(BoundedTimeDistribution):
     alpha : First shape parameter, greater than zero; the average is lower + (upper - lower) * alpha / (alpha + beta).
     beta : Second shape parameter, greater than zero.
     """
-
     alpha: float | None = attribute("alpha")
     beta: float | None = attribute("beta")
 
@@ -343,13 +311,11 @@ class DiscreteValueInterval(Element, abstract=True):
     lower_bound : Smallest value, not above the upper bound; for ticks it gives the BCET.
     upper_bound : Largest value; for ticks it gives the WCET.
     """
-
     lower_bound: int | None = attribute("lowerBound")
     upper_bound: int | None = attribute("upperBound")
 
 class DiscreteValueConstant(IDiscreteValueDeviation):
     """Integer that does not vary."""
-
     value: int | None = attribute("value")
 
 class DiscreteValueHistogram(IDiscreteValueDeviation):
@@ -359,7 +325,6 @@ class DiscreteValueHistogram(IDiscreteValueDeviation):
     ----------
     entries : Intervals of any width, which may overlap or leave gaps.
     """
-
     entries: list[DiscreteValueHistogramEntry] = containments("entries")
 
 class DiscreteValueHistogramEntry(DiscreteValueInterval):
@@ -369,7 +334,6 @@ class DiscreteValueHistogramEntry(DiscreteValueInterval):
     ----------
     occurrences : Weight of the interval, at least 1; how values spread inside the interval is undefined.
     """
-
     occurrences: int | None = attribute("occurrences")
 
 class BoundedDiscreteValueDistribution(DiscreteValueInterval, IDiscreteValueDeviation, abstract=True):
@@ -383,7 +347,6 @@ class TruncatedDiscreteValueDistribution(IDiscreteValueDeviation, abstract=True)
     lower_bound : Smallest value; unset means unbounded, which leaves no BCET to analyse.
     upper_bound : Largest value; unset means unbounded, which leaves no WCET to analyse.
     """
-
     lower_bound: int | None = attribute("lowerBound")
     upper_bound: int | None = attribute("upperBound")
 
@@ -394,7 +357,6 @@ class DiscreteValueBoundaries(BoundedDiscreteValueDistribution):
     ----------
     sampling_type : Where values concentrate; the average is the centre of the bounds whatever is chosen here.
     """
-
     sampling_type: SamplingType | None = attribute("samplingType")
 
 class DiscreteValueStatistics(BoundedDiscreteValueDistribution):
@@ -404,7 +366,6 @@ class DiscreteValueStatistics(BoundedDiscreteValueDistribution):
     ----------
     average : Average, not necessarily the centre of the bounds nor an integer.
     """
-
     average: float | None = attribute("average")
 
 class DiscreteValueUniformDistribution(BoundedDiscreteValueDistribution):
@@ -418,7 +379,6 @@ class DiscreteValueGaussDistribution(TruncatedDiscreteValueDistribution):
     mean : Mean of the normal distribution before it is truncated, thus not always the average.
     sd : Standard deviation of the normal distribution before it is truncated, greater than zero.
     """
-
     mean: float | None = attribute("mean")
     sd: float | None = attribute("sd")
 
@@ -430,7 +390,6 @@ class DiscreteValueWeibullEstimatorsDistribution(BoundedDiscreteValueDistributio
     average : Average, strictly between the bounds.
     p_remain_promille : Probability, in per mille (default 1.0, that is 0.1 percent), that a value exceeds the upper bound.
     """
-
     average: float | None = attribute("average")
     p_remain_promille: float | None = attribute("pRemainPromille")
 
@@ -442,7 +401,6 @@ class DiscreteValueBetaDistribution(BoundedDiscreteValueDistribution):
     alpha : First shape parameter, greater than zero; the average is lower + (upper - lower) * alpha / (alpha + beta).
     beta : Second shape parameter, greater than zero.
     """
-
     alpha: float | None = attribute("alpha")
     beta: float | None = attribute("beta")
 
@@ -457,13 +415,11 @@ class ContinuousValueInterval(Element, abstract=True):
     lower_bound : Smallest value, not above the upper bound.
     upper_bound : Largest value, not below the lower bound.
     """
-
     lower_bound: float | None = attribute("lowerBound")
     upper_bound: float | None = attribute("upperBound")
 
 class ContinuousValueConstant(IContinuousValueDeviation):
     """Real number that does not vary."""
-
     value: float | None = attribute("value")
 
 class ContinuousValueHistogram(IContinuousValueDeviation):
@@ -473,7 +429,6 @@ class ContinuousValueHistogram(IContinuousValueDeviation):
     ----------
     entries : Intervals of any width, which may overlap or leave gaps.
     """
-
     entries: list[ContinuousValueHistogramEntry] = containments("entries")
 
 class ContinuousValueHistogramEntry(ContinuousValueInterval):
@@ -483,7 +438,6 @@ class ContinuousValueHistogramEntry(ContinuousValueInterval):
     ----------
     occurrences : Weight of the interval, at least 1; how values spread inside the interval is undefined.
     """
-
     occurrences: int | None = attribute("occurrences")
 
 class BoundedContinuousValueDistribution(ContinuousValueInterval, IContinuousValueDeviation, abstract=True):
@@ -497,7 +451,6 @@ class TruncatedContinuousValueDistribution(IContinuousValueDeviation, abstract=T
     lower_bound : Smallest value; unset means unbounded.
     upper_bound : Largest value; unset means unbounded.
     """
-
     lower_bound: float | None = attribute("lowerBound")
     upper_bound: float | None = attribute("upperBound")
 
@@ -508,7 +461,6 @@ class ContinuousValueBoundaries(BoundedContinuousValueDistribution):
     ----------
     sampling_type : Where values concentrate; the average is the centre of the bounds whatever is chosen here.
     """
-
     sampling_type: SamplingType | None = attribute("samplingType")
 
 class ContinuousValueStatistics(BoundedContinuousValueDistribution):
@@ -518,7 +470,6 @@ class ContinuousValueStatistics(BoundedContinuousValueDistribution):
     ----------
     average : Average, not necessarily the centre of the bounds.
     """
-
     average: float | None = attribute("average")
 
 class ContinuousValueUniformDistribution(BoundedContinuousValueDistribution):
@@ -532,7 +483,6 @@ class ContinuousValueGaussDistribution(TruncatedContinuousValueDistribution):
     mean : Mean of the normal distribution before it is truncated, thus not always the average.
     sd : Standard deviation of the normal distribution before it is truncated, greater than zero.
     """
-
     mean: float | None = attribute("mean")
     sd: float | None = attribute("sd")
 
@@ -544,7 +494,6 @@ class ContinuousValueWeibullEstimatorsDistribution(BoundedContinuousValueDistrib
     average : Average, strictly between the bounds.
     p_remain_promille : Probability, in per mille (default 1.0, that is 0.1 percent), that a value exceeds the upper bound.
     """
-
     average: float | None = attribute("average")
     p_remain_promille: float | None = attribute("pRemainPromille")
 
@@ -556,7 +505,6 @@ class ContinuousValueBetaDistribution(BoundedContinuousValueDistribution):
     alpha : First shape parameter, greater than zero; the average is lower + (upper - lower) * alpha / (alpha + beta).
     beta : Second shape parameter, greater than zero.
     """
-
     alpha: float | None = attribute("alpha")
     beta: float | None = attribute("beta")
 
@@ -573,7 +521,6 @@ class EnumMode(Mode):
     ----------
     literals : Values in order; increment and decrement step along this order and stop at its ends.
     """
-
     literals: list[ModeLiteral] = containments("literals")
 
 class ModeLiteral(ReferableBaseObject):

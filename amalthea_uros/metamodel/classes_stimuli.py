@@ -7,19 +7,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from amalthea_uros.metamodel.classes.base import BaseObject, IDescription, ITaggable, ReferableBaseObject
+from amalthea_uros.metamodel.classes_base import BaseObject, IDescription, ITaggable, ReferableBaseObject
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.features import attribute, containment, containments, reference, references
 
 if TYPE_CHECKING:
-    from amalthea_uros.metamodel.classes.common import Frequency, IContinuousValueDeviation, ITimeDeviation, Time
-    from amalthea_uros.metamodel.classes.enums import CurveType, RelationalOperator
-    from amalthea_uros.metamodel.classes.events import TriggerEvent
-    from amalthea_uros.metamodel.classes.sw import Channel, Counter, ModeLabel
+    from amalthea_uros.metamodel.classes_common import Frequency, IContinuousValueDeviation, ITimeDeviation, Time
+    from amalthea_uros.metamodel.classes_enums import CurveType, RelationalOperator
+    from amalthea_uros.metamodel.classes_events import TriggerEvent
+    from amalthea_uros.metamodel.classes_sw import Channel, Counter, ModeLabel
 
 class StimuliModel(BaseObject):
     """Sub-model of the stimuli that activate processes, and of their clocks."""
-
     stimuli: list[Stimulus] = containments("stimuli")
     clocks: list[Clock] = containments("clocks")
 
@@ -31,13 +30,11 @@ class Stimulus(ReferableBaseObject, ITaggable, abstract=True):
     set_mode_value_list : Values assigned to mode labels at each occurrence, after the condition and before the activations.
     execution_condition : Tested at each occurrence; if it is false, nothing is set and nothing activated.
     """
-
     set_mode_value_list: ModeValueList | None = containment("setModeValueList")
     execution_condition: ConditionDisjunction | ModeConditionDisjunction | None = containment("executionCondition")
 
 class ModeValueList(BaseObject):
     """List of assignments to mode labels."""
-
     entries: list[ModeAssignment] = containments("entries")
 
 class ModeValueMapEntry(Element):
@@ -47,7 +44,6 @@ class ModeValueMapEntry(Element):
     ----------
     value : Name of a literal for an enum mode, integer as text for a numeric mode.
     """
-
     key: ModeLabel | None = reference("key")
     value: str | None = attribute("value")
 
@@ -58,7 +54,6 @@ class ModeValue(BaseObject, abstract=True):
     ----------
     value : Name of a literal for an enum mode, integer as text for a numeric mode.
     """
-
     label: ModeLabel | None = reference("label")
     value: str | None = attribute("value")
 
@@ -84,7 +79,6 @@ class ModeCondition(Condition, ModeConditionDisjunctionEntry, abstract=True):
     ----------
     relation : Operator; enum modes can only be compared with EQUAL and NOT_EQUAL.
     """
-
     relation: RelationalOperator | None = attribute("relation")
 
 class ModeValueCondition(ModeValue, ModeCondition):
@@ -98,18 +92,15 @@ class ModeLabelCondition(ModeCondition):
     label1 : Left side of the comparison.
     label2 : Right side of the comparison.
     """
-
     label1: ModeLabel | None = reference("label1")
     label2: ModeLabel | None = reference("label2")
 
 class ConditionDisjunction(BaseObject):
     """Condition that is true if at least one of its entries is. (since 2.0.0)"""
-
     entries: list[ConditionDisjunctionEntry] = containments("entries")
 
 class ConditionConjunction(BaseObject, ConditionDisjunctionEntry):
     """Condition that is true if all of its entries are. (since 2.0.0)"""
-
     entries: list[Condition] = containments("entries")
 
 class ChannelFillCondition(BaseObject, Condition):
@@ -119,7 +110,6 @@ class ChannelFillCondition(BaseObject, Condition):
     ----------
     fill_level : Number of elements, on the right side of the comparison.
     """
-
     channel: Channel | None = reference("channel")
     relation: RelationalOperator | None = attribute("relation")  # since 2.1.0
     fill_level: int | None = attribute("fillLevel")
@@ -132,7 +122,6 @@ class FixedPeriodic(Element, abstract=True):
     recurrence : Period, greater than zero.
     offset : Time of the first period, zero or more; unset means zero.
     """
-
     recurrence: Time | None = containment("recurrence")
     offset: Time | None = containment("offset")
 
@@ -144,7 +133,6 @@ class PeriodicStimulus(Stimulus, FixedPeriodic):
     jitter : Shift of each occurrence against the ideal grid, possibly negative; it does not accumulate.
     min_distance : Shortest distance between two actual occurrences.
     """
-
     jitter: ITimeDeviation | None = containment("jitter")
     min_distance: Time | None = containment("minDistance")
 
@@ -156,7 +144,6 @@ class RelativePeriodicStimulus(Stimulus):
     offset : Time of the first occurrence; unset means zero.
     next_occurrence : Distance to the next occurrence; its lower bound is the minimum inter-arrival time.
     """
-
     offset: Time | None = containment("offset")
     next_occurrence: ITimeDeviation | None = containment("nextOccurrence")
 
@@ -171,7 +158,6 @@ class VariableRateStimulus(Stimulus):
     max_decrease_per_step : Largest fall of the rate from one step to the next; unset means no limit.
     scenario : Clock that drives the occurrences; it replaces the statistical description.
     """
-
     step: Time | None = containment("step")
     occurrences_per_step: IContinuousValueDeviation | None = containment("occurrencesPerStep")
     max_increase_per_step: float | None = attribute("maxIncreasePerStep")
@@ -187,7 +173,6 @@ class Scenario(BaseObject):
     sampling_offset : Clock cycles before sampling starts; with 0 (default) the first occurrence comes after one recurrence.
     sampling_recurrence : Clock cycles between two occurrences (default 1).
     """
-
     clock: Clock | None = reference("clock")
     sampling_offset: float | None = attribute("samplingOffset")
     sampling_recurrence: float | None = attribute("samplingRecurrence")
@@ -199,7 +184,6 @@ class PeriodicSyntheticStimulus(Stimulus, FixedPeriodic):
     ----------
     occurrence_times : Times relative to the start of the period, zero or more.
     """
-
     occurrence_times: list[Time] = containments("occurrenceTimes")
 
 class CustomStimulus(Stimulus, IDescription):
@@ -212,7 +196,6 @@ class SingleStimulus(Stimulus):
     ----------
     occurrence : Time of the occurrence, counted from the start.
     """
-
     occurrence: Time | None = containment("occurrence")
 
 class InterProcessStimulus(Stimulus):
@@ -222,7 +205,6 @@ class InterProcessStimulus(Stimulus):
     ----------
     counter : Lets only every n-th trigger through, in addition to the counter of the trigger.
     """
-
     counter: Counter | None = containment("counter")
 
 class PeriodicBurstStimulus(Stimulus, FixedPeriodic):
@@ -234,7 +216,6 @@ class PeriodicBurstStimulus(Stimulus, FixedPeriodic):
     occurrence_min_distance : Distance of the occurrences in a burst, the first of which is at its start.
     occurrence_count : Occurrences per burst; the default is 1, but 0 until 1.1.0.
     """
-
     burst_length: Time | None = containment("burstLength")
     occurrence_min_distance: Time | None = containment("occurrenceMinDistance")
     occurrence_count: int | None = attribute("occurrenceCount")
@@ -247,13 +228,11 @@ class EventStimulus(Stimulus):
     triggering_events : Events of which each one fires the stimulus; process events cannot do so.
     counter : Lets only every n-th event through.
     """
-
     triggering_events: list[TriggerEvent] = references("triggeringEvents")
     counter: Counter | None = containment("counter")
 
 class ArrivalCurveStimulus(Stimulus):
     """Activation described only by limits of how close and how far apart occurrences are."""
-
     entries: list[ArrivalCurveEntry] = containments("entries")
 
 class ArrivalCurveEntry(BaseObject):
@@ -265,7 +244,6 @@ class ArrivalCurveEntry(BaseObject):
     lower_time_border : Shortest time from the first to the last of them; unset means no limit.
     upper_time_border : Longest time from the first to the last of them; unset means no limit.
     """
-
     number_of_occurrences: int | None = attribute("numberOfOccurrences")
     lower_time_border: Time | None = containment("lowerTimeBorder")
     upper_time_border: Time | None = containment("upperTimeBorder")
@@ -282,7 +260,6 @@ class ClockFunction(Clock):
     x_offset : Time at which the rising curve passes the middle between minimum and maximum.
     y_offset : Minimum of the curve, not its mean.
     """
-
     curve_type: CurveType | None = attribute("curveType")
     period: Time | None = containment("period")
     peak_to_peak: Frequency | None = containment("peakToPeak")
@@ -297,22 +274,18 @@ class ClockStepList(Clock):
     entries : Steps; the frequency is 0 before the first one.
     period : Time after which the steps repeat; without it the last frequency stays.
     """
-
     entries: list[ClockStep] = containments("entries")
     period: Time | None = containment("period")
 
 class ClockStep(BaseObject):
     """Frequency from a point in time on."""
-
     frequency: Frequency | None = containment("frequency")
     time: Time | None = containment("time")
 
 class ModeConditionDisjunction(BaseObject, ISatisfiable):
     """Condition on modes that is true if at least one of its entries is. (until 2.2.0)"""
-
     entries: list[ModeConditionDisjunctionEntry] = containments("entries")
 
 class ModeConditionConjunction(ModeConditionDisjunctionEntry):
     """Condition on modes that is true if all of its entries are. (until 2.2.0)"""
-
     entries: list[ModeCondition] = containments("entries")

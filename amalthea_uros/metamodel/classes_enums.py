@@ -7,14 +7,12 @@ from enum import StrEnum
 
 class AccessMultiplicity(StrEnum):
     """Whether protection covers all data or only data that is accessed several times."""
-
     UNDEFINED = "_undefined_"
     SINGLE_ACCESS = "singleAccess"
     MULTIPLE_ACCESSES = "multipleAccesses"
 
 class AccessPrecedenceType(StrEnum):
     """Rules for the order of write (W) and read (R) accesses to a label."""
-
     UNDEFINED = "_undefined_"
     DEFAULTWR = "defaultWR"
     IGNOREWR = "ignoreWR"
@@ -22,7 +20,6 @@ class AccessPrecedenceType(StrEnum):
 
 class ArithmeticOperator(StrEnum):
     """Operators of arithmetic expressions."""
-
     UNDEFINED = "_undefined_"
     ADD = "ADD"
     SUBTRACT = "SUBTRACT"
@@ -31,7 +28,6 @@ class ArithmeticOperator(StrEnum):
 
 class ASILType(StrEnum):
     """Automotive safety integrity levels from D (highest) to A, and QM."""
-
     UNDEFINED = "_undefined_"
     D = "D"
     C = "C"
@@ -41,7 +37,6 @@ class ASILType(StrEnum):
 
 class BlockingType(StrEnum):
     """How to wait for the result of a server call, actively, passively or not at all."""
-
     UNDEFINED = "_undefined_"
     ACTIVE_WAIT = "active_wait"
     PASSIVE_WAIT = "passive_wait"
@@ -49,7 +44,6 @@ class BlockingType(StrEnum):
 
 class CacheType(StrEnum):
     """What a cache holds, instructions, data or both (unified)."""
-
     UNDEFINED = "_undefined_"
     INSTRUCTION = "instruction"
     DATA = "data"
@@ -57,35 +51,30 @@ class CacheType(StrEnum):
 
 class ChannelEventType(StrEnum):
     """Accesses to a channel; the default stands for all of them."""
-
     ALL = "_all_"
     SEND = "send"
     RECEIVE = "receive"
 
 class CoherencyDirection(StrEnum):
     """Whether labels are read or written coherently."""
-
     UNDEFINED = "_undefined_"
     INPUT = "input"
     OUTPUT = "output"
 
 class CombinatorialCondition(StrEnum):
     """Whether classifiers are required or excluded; named Condition until 1.2.0."""
-
     UNDEFINED = "_undefined_"
     REQUIRES = "requires"
     EXCLUDES = "excludes"
 
 class ComponentEventType(StrEnum):
     """Start and end of a component; the default stands for both."""
-
     ALL = "_all_"
     START = "start"
     END = "end"
 
 class ConcurrencyType(StrEnum):
     """Degrees of safety against concurrent execution; no feature uses it."""
-
     UNDEFINED = "_undefined_"
     SINGLE_CORE_SAFE = "SingleCoreSafe"
     MULTI_CORE_SAFE = "MultiCoreSafe"
@@ -93,7 +82,6 @@ class ConcurrencyType(StrEnum):
 
 class CountMetric(StrEnum):
     """Counts, such as that of preemptions; MtaLimitExceeding counts the activations that were ignored."""
-
     UNDEFINED = "_undefined_"
     ACTIVATIONS = "Activations"
     BOUNDED_MIGRATIONS = "BoundedMigrations"
@@ -105,7 +93,6 @@ class CountMetric(StrEnum):
 
 class CPUPercentageMetric(StrEnum):
     """Shares of the capacity of a processing unit, by state of its processes."""
-
     UNDEFINED = "_undefined_"
     CPUBUFFERING = "CPUBuffering"
     CPULOAD = "CPULoad"
@@ -117,14 +104,12 @@ class CPUPercentageMetric(StrEnum):
 
 class CurveType(StrEnum):
     """Shapes of a clock function."""
-
     UNDEFINED = "_undefined_"
     SINE = "sine"
     TRIANGLE = "triangle"
 
 class DataRateUnit(StrEnum):
     """Units of data per second, with decimal (k is 1000) and binary (Ki is 1024) prefixes."""
-
     UNDEFINED = "_undefined_"
     BIT_PER_SECOND = "bitPerSecond"
     KBIT_PER_SECOND = "kbitPerSecond"
@@ -147,7 +132,6 @@ class DataRateUnit(StrEnum):
 
 class DataSizeUnit(StrEnum):
     """Units of data in bits and bytes, with decimal (k is 1000) and binary (Ki is 1024) prefixes."""
-
     UNDEFINED = "_undefined_"
     BIT = "bit"
     KBIT = "kbit"
@@ -170,7 +154,6 @@ class DataSizeUnit(StrEnum):
 
 class DataStabilityLevel(StrEnum):
     """Interval in which all reads of a label see the same value."""
-
     UNDEFINED = "_undefined_"
     PERIOD = "period"
     PROCESS = "process"
@@ -179,7 +162,6 @@ class DataStabilityLevel(StrEnum):
 
 class DirectionType(StrEnum):
     """Whether a parameter brings data into a runnable, out of it, or both."""
-
     UNDEFINED = "_undefined_"
     IN = "in"
     OUT = "out"
@@ -187,21 +169,18 @@ class DirectionType(StrEnum):
 
 class EventChainItemType(StrEnum):
     """Whether the items of an event chain follow each other or run in parallel."""
-
     UNDEFINED = "_undefined_"
     SEQUENCE = "sequence"
     PARALLEL = "parallel"
 
 class FrequencyMetric(StrEnum):
     """Numbers of cache hits and misses per time."""
-
     UNDEFINED = "_undefined_"
     CACHE_HIT_FREQUENCY = "CacheHitFrequency"
     CACHE_MISS_FREQUENCY = "CacheMissFrequency"
 
 class FrequencyUnit(StrEnum):
     """Units of frequency."""
-
     UNDEFINED = "_undefined_"
     HZ = "Hz"
     KHZ = "kHz"
@@ -210,14 +189,12 @@ class FrequencyUnit(StrEnum):
 
 class GroupingType(StrEnum):
     """Whether all classifiers count or at least one of them."""
-
     UNDEFINED = "_undefined_"
     ALL_OF_THEM = "allOfThem"
     AT_LEAST_ONE_OF_THEM = "atLeastOneOfThem"
 
 class HwFeatureType(StrEnum):
     """Whether hardware features concern performance, power or both."""
-
     UNDEFINED = "_undefined_"
     PERFORMANCE = "performance"
     POWER = "power"
@@ -225,7 +202,6 @@ class HwFeatureType(StrEnum):
 
 class InterfaceKind(StrEnum):
     """Whether a port provides or requires its interface, or both."""
-
     UNDEFINED = "_undefined_"
     PROVIDES = "provides"
     REQUIRES = "requires"
@@ -233,14 +209,12 @@ class InterfaceKind(StrEnum):
 
 class ISRCategory(StrEnum):
     """Categories of ISRs in OSEK; routines of category 2 run under control of the operating system."""
-
     UNDEFINED = "_undefined_"
     CATEGORY_1 = "CATEGORY_1"
     CATEGORY_2 = "CATEGORY_2"
 
 class LabelAccessDataStability(StrEnum):
     """Who keeps the value stable during an access; the label decides if it is inherited."""
-
     UNDEFINED = "_undefined_"
     INHERITED = "inherited"
     NO_PROTECTION = "noProtection"
@@ -250,14 +224,12 @@ class LabelAccessDataStability(StrEnum):
 
 class LabelAccessEnum(StrEnum):
     """Kinds of access to a label."""
-
     UNDEFINED = "_undefined_"
     READ = "read"
     WRITE = "write"
 
 class LabelAccessImplementation(StrEnum):
     """How an access is implemented, in place (explicit), with copies (implicit) or at fixed times (timed)."""
-
     UNDEFINED = "_undefined_"
     EXPLICIT = "explicit"
     IMPLICIT = "implicit"
@@ -265,7 +237,6 @@ class LabelAccessImplementation(StrEnum):
 
 class LabelDataStability(StrEnum):
     """Who keeps the value of a label stable."""
-
     UNDEFINED = "_undefined_"
     NO_PROTECTION = "noProtection"
     AUTOMATIC_PROTECTION = "automaticProtection"
@@ -274,28 +245,24 @@ class LabelDataStability(StrEnum):
 
 class LabelEventType(StrEnum):
     """Accesses to a label; the default stands for all of them."""
-
     ALL = "_all_"
     READ = "read"
     WRITE = "write"
 
 class LatencyType(StrEnum):
     """Whether a latency is a reaction time (forward from the stimulus) or a data age (backward from the response)."""
-
     UNDEFINED = "_undefined_"
     AGE = "Age"
     REACTION = "Reaction"
 
 class LimitType(StrEnum):
     """Whether a limit is the largest or the smallest allowed value."""
-
     UNDEFINED = "_undefined_"
     UPPER_LIMIT = "UpperLimit"
     LOWER_LIMIT = "LowerLimit"
 
 class MappingType(StrEnum):
     """How target occurrences belong to source occurrences; a Reaction may share targets, a UniqueReaction may not."""
-
     UNDEFINED = "_undefined_"
     ONETOONE = "OneToOne"
     REACTION = "Reaction"
@@ -303,7 +270,6 @@ class MappingType(StrEnum):
 
 class MemoryAddressMappingType(StrEnum):
     """How addresses of memory mappings are meant."""
-
     UNDEFINED = "_undefined_"
     NONE = "none"
     ADDRESS = "address"
@@ -311,7 +277,6 @@ class MemoryAddressMappingType(StrEnum):
 
 class MemoryType(StrEnum):
     """Technologies of memories."""
-
     UNDEFINED = "_undefined_"
     DRAM = "DRAM"
     SRAM = "SRAM"
@@ -320,7 +285,6 @@ class MemoryType(StrEnum):
 
 class ModeLabelAccessEnum(StrEnum):
     """Kinds of access to a mode label."""
-
     UNDEFINED = "_undefined_"
     READ = "read"
     SET = "set"
@@ -329,7 +293,6 @@ class ModeLabelAccessEnum(StrEnum):
 
 class ModeLabelEventType(StrEnum):
     """Accesses to a mode label; the default stands for all of them."""
-
     ALL = "_all_"
     READ = "read"
     WRITE = "write"
@@ -338,7 +301,6 @@ class ModeLabelEventType(StrEnum):
 
 class OrderType(StrEnum):
     """Kinds of order between two runnables, also at the start or the end of a sequence."""
-
     UNDEFINED = "_undefined_"
     ORDER = "order"
     DIRECT_ORDER = "directOrder"
@@ -347,7 +309,6 @@ class OrderType(StrEnum):
 
 class OsDataConsistencyMode(StrEnum):
     """Who protects data; automatic leaves it to the tool, custom was done elsewhere, or elements of the model do it."""
-
     UNDEFINED = "_undefined_"
     NO_PROTECTION = "noProtection"
     AUTOMATIC_PROTECTION = "automaticProtection"
@@ -356,7 +317,6 @@ class OsDataConsistencyMode(StrEnum):
 
 class ParameterType(StrEnum):
     """Types of scheduling parameters."""
-
     UNDEFINED = "_undefined_"
     INTEGER = "Integer"
     FLOAT = "Float"
@@ -366,7 +326,6 @@ class ParameterType(StrEnum):
 
 class PercentageMetric(StrEnum):
     """Ratios, such as those of response time or lateness to the deadline (normalized)."""
-
     UNDEFINED = "_undefined_"
     CACHE_HIT_RATIO = "CacheHitRatio"
     CACHE_MISS_RATIO = "CacheMissRatio"
@@ -378,7 +337,6 @@ class PercentageMetric(StrEnum):
 
 class PortInterface(StrEnum):
     """Buses and protocols of hardware ports."""
-
     UNDEFINED = "_undefined_"
     CUSTOM = "custom"
     CAN = "CAN"
@@ -395,14 +353,12 @@ class PortInterface(StrEnum):
 
 class PortType(StrEnum):
     """Whether a port starts transfers or answers them."""
-
     UNDEFINED = "_undefined_"
     INITIATOR = "initiator"
     RESPONDER = "responder"
 
 class Preemption(StrEnum):
     """Whether other tasks may preempt a task always, at schedule points only, or never."""
-
     UNDEFINED = "_undefined_"
     PREEMPTIVE = "preemptive"
     COOPERATIVE = "cooperative"
@@ -410,7 +366,6 @@ class Preemption(StrEnum):
 
 class ProcessEventType(StrEnum):
     """State transitions of a process, named as in BTF traces; the default stands for all of them."""
-
     ALL = "_all_"
     ACTIVATE = "activate"
     START = "start"
@@ -428,7 +383,6 @@ class ProcessEventType(StrEnum):
 
 class PuType(StrEnum):
     """Kinds of processing units."""
-
     UNDEFINED = "_undefined_"
     GPU = "GPU"
     CPU = "CPU"
@@ -436,7 +390,6 @@ class PuType(StrEnum):
 
 class ReceiveOperation(StrEnum):
     """From which end of a channel elements are received, and whether they stay (Read) or are removed (Take)."""
-
     UNDEFINED = "_undefined_"
     FIFO_READ = "FIFO_Read"
     FIFO_TAKE = "FIFO_Take"
@@ -445,7 +398,6 @@ class ReceiveOperation(StrEnum):
 
 class RelationalOperator(StrEnum):
     """Comparison operators; enum modes know only EQUAL and NOT_EQUAL."""
-
     UNDEFINED = "_undefined_"
     EQUAL = "EQUAL"
     NOT_EQUAL = "NOT_EQUAL"
@@ -456,7 +408,6 @@ class RelationalOperator(StrEnum):
 
 class RunnableEventType(StrEnum):
     """State transitions of a runnable; the default stands for all of them."""
-
     ALL = "_all_"
     START = "start"
     SUSPEND = "suspend"
@@ -465,7 +416,6 @@ class RunnableEventType(StrEnum):
 
 class RunnableOrderType(StrEnum):
     """Whether runnables of a sequence follow each other with others in between or at once, and where in the process."""
-
     UNDEFINED = "_undefined_"
     SUCCESSOR = "successor"
     IMMEDIATE_SUCCESSOR_START_SEQUENCE = "immediateSuccessorStartSequence"
@@ -474,7 +424,6 @@ class RunnableOrderType(StrEnum):
 
 class SamplingType(StrEnum):
     """Where values between two bounds concentrate, near the minimum, the maximum, the centre, both ends or nowhere."""
-
     DEFAULT = "default"
     BEST_CASE = "BestCase"
     WORST_CASE = "WorstCase"
@@ -484,7 +433,6 @@ class SamplingType(StrEnum):
 
 class SchedPolicy(StrEnum):
     """Arbitration of a connection handler between transfers."""
-
     UNDEFINED = "_undefined_"
     ROUND_ROBIN = "RoundRobin"
     FCFS = "FCFS"
@@ -492,7 +440,6 @@ class SchedPolicy(StrEnum):
 
 class SemaphoreAccessEnum(StrEnum):
     """Kinds of access to a semaphore."""
-
     UNDEFINED = "_undefined_"
     REQUEST = "request"
     EXCLUSIVE = "exclusive"
@@ -500,14 +447,12 @@ class SemaphoreAccessEnum(StrEnum):
 
 class SemaphoreEventType(StrEnum):
     """Accesses to a semaphore; the default stands for all of them."""
-
     ALL = "_all_"
     LOCK = "lock"
     UNLOCK = "unlock"
 
 class SemaphoreType(StrEnum):
     """Kinds of locks; a Resource is that of OSEK, a Spinlock is waited for actively across cores."""
-
     UNDEFINED = "_undefined_"
     COUNTING_SEMAPHORE = "CountingSemaphore"
     RESOURCE = "Resource"
@@ -516,7 +461,6 @@ class SemaphoreType(StrEnum):
 
 class Severity(StrEnum):
     """How bad the violation of a requirement is."""
-
     UNDEFINED = "_undefined_"
     COSMETIC = "Cosmetic"
     MINOR = "Minor"
@@ -525,7 +469,6 @@ class Severity(StrEnum):
 
 class StructureType(StrEnum):
     """Kinds of hardware structures."""
-
     UNDEFINED = "_undefined_"
     SYSTEM = "System"
     ECU = "ECU"
@@ -539,14 +482,12 @@ class StructureType(StrEnum):
 
 class SynchronizationType(StrEnum):
     """Whether the stimuli or the responses of event chains are synchronised."""
-
     UNDEFINED = "_undefined_"
     STIMULUS = "Stimulus"
     RESPONSE = "Response"
 
 class TimeMetric(StrEnum):
     """Times of process instances, e.g. ResponseTime from activation to termination; NetExecutionTime includes waiting."""
-
     UNDEFINED = "_undefined_"
     ACTIVATE_TO_ACTIVATE = "ActivateToActivate"
     CORE_EXECUTION_TIME = "CoreExecutionTime"
@@ -568,7 +509,6 @@ class TimeMetric(StrEnum):
 
 class TimeUnit(StrEnum):
     """Units of time."""
-
     UNDEFINED = "_undefined_"
     S = "s"
     MS = "ms"
@@ -578,7 +518,6 @@ class TimeUnit(StrEnum):
 
 class VoltageUnit(StrEnum):
     """Units of voltage."""
-
     UNDEFINED = "_undefined_"
     UV = "uV"
     MV = "mV"
@@ -586,21 +525,18 @@ class VoltageUnit(StrEnum):
 
 class WaitEventType(StrEnum):
     """Whether waiting needs all events of a mask or one of them."""
-
     UNDEFINED = "_undefined_"
     AND = "AND"
     OR = "OR"
 
 class WaitingBehaviour(StrEnum):
     """Whether waiting keeps the core (active) or releases it (passive)."""
-
     UNDEFINED = "_undefined_"
     ACTIVE = "active"
     PASSIVE = "passive"
 
 class WriteStrategy(StrEnum):
     """When a cache passes written data on to the memory."""
-
     UNDEFINED = "_undefined_"
     NONE = "none"
     WRITEBACK = "writeback"

@@ -7,18 +7,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from amalthea_uros.metamodel.classes.base import BaseObject, IDescription, INamed, ITaggable, ReferableBaseObject
+from amalthea_uros.metamodel.classes_base import BaseObject, IDescription, INamed, ITaggable, ReferableBaseObject
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.features import attribute, containment, containments, reference, references
 
 if TYPE_CHECKING:
-    from amalthea_uros.metamodel.classes.common import Time, Value
-    from amalthea_uros.metamodel.classes.enums import AccessMultiplicity, DataStabilityLevel, OsDataConsistencyMode, ParameterType, SemaphoreType
-    from amalthea_uros.metamodel.classes.sw import ComputationItem, Ticks
+    from amalthea_uros.metamodel.classes_common import Time, Value
+    from amalthea_uros.metamodel.classes_enums import AccessMultiplicity, DataStabilityLevel, OsDataConsistencyMode, ParameterType, SemaphoreType
+    from amalthea_uros.metamodel.classes_sw import ComputationItem, Ticks
 
 class OSModel(BaseObject):
     """Sub-model of operating systems with their schedulers, semaphores and overheads."""
-
     semaphores: list[Semaphore] = containments("semaphores")
     operating_systems: list[OperatingSystem] = containments("operatingSystems")
     os_overheads: list[OsOverhead] = containments("osOverheads")
@@ -32,7 +31,6 @@ class OsDataConsistency(BaseObject):
     ----------
     mode : Who ensures consistency; labels and label accesses may override it.
     """
-
     mode: OsDataConsistencyMode | None = attribute("mode")
     data_stability: DataStability | None = containment("dataStability")
     non_atomic_data_coherency: NonAtomicDataCoherency | None = containment("nonAtomicDataCoherency")
@@ -46,7 +44,6 @@ class DataStability(Element):
     access_multiplicity : Whether all data is protected or only data that is accessed several times.
     level : Interval in which all reads of a label see the same value.
     """
-
     enabled: bool | None = attribute("enabled")
     algorithm: str | None = attribute("algorithm")
     access_multiplicity: AccessMultiplicity | None = attribute("accessMultiplicity")
@@ -60,7 +57,6 @@ class NonAtomicDataCoherency(Element):
     algorithm : Free text that names the protection.
     access_multiplicity : Whether all data is protected or only data that is accessed several times.
     """
-
     enabled: bool | None = attribute("enabled")
     algorithm: str | None = attribute("algorithm")
     access_multiplicity: AccessMultiplicity | None = attribute("accessMultiplicity")
@@ -75,7 +71,6 @@ class Semaphore(ReferableBaseObject):
     ownership : Whether only the owner may release it (default true).
     priority_ceiling_protocol : Whether the holder runs at the highest priority of all users.
     """
-
     semaphore_type: SemaphoreType | None = attribute("semaphoreType")
     initial_value: int | None = attribute("initialValue")
     max_value: int | None = attribute("maxValue")
@@ -89,7 +84,6 @@ class ISchedulingParameterContainer(Element, abstract=True):
     ----------
     scheduling_parameters : Values by definition; until 1.2.0 one object of fixed fields. The highest priority wins.
     """
-
     scheduling_parameters: list[SchedulingParameter | SchedulingParameters] = containments("schedulingParameters")
 
 class Scheduler(ReferableBaseObject, ISchedulingParameterContainer, abstract=True):
@@ -100,7 +94,6 @@ class Scheduler(ReferableBaseObject, ISchedulingParameterContainer, abstract=Tru
     definition : Scheduling algorithm, by reference to its definition.
     computation_items : Cost of one scheduling decision, paid on the executing processing unit.
     """
-
     definition: SchedulerDefinition | None = reference("definition")  # since 2.0.0
     computation_items: list[ComputationItem] = containments("computationItems")
 
@@ -112,7 +105,6 @@ class TaskScheduler(Scheduler):
     parent_association : Link to a scheduler above; this one decides only while the parent grants it time.
     scheduling_algorithm : Scheduling algorithm as an object; replaced by the definition in 2.0.0.
     """
-
     parent_association: SchedulerAssociation | None = containment("parentAssociation")
     scheduling_algorithm: TaskSchedulingAlgorithm | None = containment("schedulingAlgorithm")  # until 1.2.0
 
@@ -123,7 +115,6 @@ class SchedulerAssociation(ISchedulingParameterContainer):
     ----------
     parameter_extensions : Further scheduling parameters as text.
     """
-
     parent: TaskScheduler | None = reference("parent")
     parameter_extensions: list[ParameterExtension] = containments("parameterExtensions")  # until 1.2.0
 
@@ -134,7 +125,6 @@ class InterruptController(Scheduler):
     ----------
     scheduling_algorithm : Scheduling algorithm as an object; replaced by the definition in 2.0.0.
     """
-
     scheduling_algorithm: InterruptSchedulingAlgorithm | None = containment("schedulingAlgorithm")  # until 1.2.0
 
 class OsDefinition(ReferableBaseObject, ITaggable, abstract=True):
@@ -151,7 +141,6 @@ class SchedulerDefinition(OsDefinition, IDescription):
     passes_parameters_upwards : Whether the process parameters of the children are handed to the parent scheduler.
     has_exactly_one_child : Whether it takes exactly one child, a task or a scheduler.
     """
-
     algorithm_parameters: list[SchedulingParameterDefinition] = references("algorithmParameters")
     process_parameters: list[SchedulingParameterDefinition] = references("processParameters")
     requires_parent_scheduler: bool | None = attribute("requiresParentScheduler")
@@ -167,7 +156,6 @@ class SchedulingParameterDefinition(OsDefinition):
     mandatory : Whether a value must be given (default true) unless there is a default value.
     default_value : Value for allocations that give none.
     """
-
     type: ParameterType | None = attribute("type")
     many: bool | None = attribute("many")
     mandatory: bool | None = attribute("mandatory")
@@ -180,13 +168,11 @@ class SchedulingParameter(Element):
     ----------
     value : Value of the type the definition demands, e.g. IntegerObject for a priority; a ListObject for several values.
     """
-
     key: SchedulingParameterDefinition | None = reference("key")
     value: Value | None = containment("value")
 
 class OsOverhead(OsDefinition):
     """Execution cost of operating system functions, to be shared by operating systems."""
-
     api_overhead: OsAPIOverhead | None = containment("apiOverhead")
     isr_category1_overhead: OsISROverhead | None = containment("isrCategory1Overhead")
     isr_category2_overhead: OsISROverhead | None = containment("isrCategory2Overhead")
@@ -206,7 +192,6 @@ class OsAPIOverhead(BaseObject):
     api_ioc_read : Cost of a read in communication between OS applications (IOC).
     api_ioc_write : Cost of a write in communication between OS applications (IOC).
     """
-
     api_send_message: Ticks | None = containment("apiSendMessage")
     api_terminate_task: Ticks | None = containment("apiTerminateTask")
     api_schedule: Ticks | None = containment("apiSchedule")
@@ -235,7 +220,6 @@ class OsISROverhead(BaseObject):
     pre_execution_overhead : Cost at the start of the ISR.
     post_execution_overhead : Cost at the termination of the ISR.
     """
-
     pre_execution_overhead: Ticks | None = containment("preExecutionOverhead")
     post_execution_overhead: Ticks | None = containment("postExecutionOverhead")
 
@@ -246,7 +230,6 @@ class OperatingSystem(BaseObject, INamed):
     ----------
     overhead : Cost of its functions; without it they take no time.
     """
-
     overhead: OsOverhead | None = reference("overhead")
     task_schedulers: list[TaskScheduler] = containments("taskSchedulers")
     interrupt_controllers: list[InterruptController] = containments("interruptControllers")
@@ -254,7 +237,6 @@ class OperatingSystem(BaseObject, INamed):
 
 class VendorOperatingSystem(OperatingSystem):
     """Operating system product with vendor and version."""
-
     os_name: str | None = attribute("osName")
     vendor: str | None = attribute("vendor")
     version: str | None = attribute("version")
@@ -269,7 +251,6 @@ class SchedulingParameters(Element):
     max_budget : Largest budget per replenishment, which counts if the budget is no interval.
     replenishment : Period after which the budget is restored.
     """
-
     priority: int | None = attribute("priority")
     min_budget: Time | None = containment("minBudget")
     max_budget: Time | None = containment("maxBudget")
@@ -277,7 +258,6 @@ class SchedulingParameters(Element):
 
 class ParameterExtension(Element):
     """Map entry from a key to a text, for parameters without a field. (until 1.2.0)"""
-
     key: str | None = attribute("key")
     value: str | None = attribute("value")
 
@@ -315,7 +295,6 @@ class Pfair(TaskSchedulingAlgorithm, abstract=True):
     ----------
     quant_size_ns : Length of a quantum in nanoseconds.
     """
-
     quant_size_ns: int | None = attribute("quantSizeNs")
 
 class PfairPD2(Pfair):
@@ -365,7 +344,6 @@ class Grouping(TaskSchedulingAlgorithm):
 
 class UserSpecificSchedulingAlgorithm(TaskSchedulingAlgorithm, InterruptSchedulingAlgorithm):
     """Algorithm of a tool or user, described by keys and texts. (until 1.2.0)"""
-
     parameter_extensions: list[ParameterExtension] = containments("parameterExtensions")
 
 class PriorityBased(InterruptSchedulingAlgorithm):

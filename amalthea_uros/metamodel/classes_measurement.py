@@ -7,17 +7,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from amalthea_uros.metamodel.classes.base import BaseObject
+from amalthea_uros.metamodel.classes_base import BaseObject
 from amalthea_uros.metamodel.features import containment, containments, reference
 
 if TYPE_CHECKING:
-    from amalthea_uros.metamodel.classes.common import ITimeDeviation, Time
-    from amalthea_uros.metamodel.classes.constraints import EventChain
-    from amalthea_uros.metamodel.classes.sw import Runnable, Task
+    from amalthea_uros.metamodel.classes_common import ITimeDeviation, Time
+    from amalthea_uros.metamodel.classes_constraints import EventChain
+    from amalthea_uros.metamodel.classes_sw import Runnable, Task
 
 class MeasurementModel(BaseObject):
     """Sub-model of measured runtimes. (until 0.9.9)"""
-
     measurements: list[Measurement] = containments("measurements")
 
 class Measurement(BaseObject, abstract=True):
@@ -28,21 +27,17 @@ class Measurement(BaseObject, abstract=True):
     runtimes : Measured values one by one.
     runtime_deviation : Measured values summarised as a deviation.
     """
-
     runtimes: list[Time] = containments("runtimes")
     runtime_deviation: ITimeDeviation | None = containment("runtimeDeviation")
 
 class EventChainMeasurement(Measurement):
     """Measured runtimes of an event chain. (until 0.9.9)"""
-
     event_chain: EventChain | None = reference("eventChain")
 
 class TaskMeasurement(Measurement):
     """Measured runtimes of a task. (until 0.9.9)"""
-
     task: Task | None = reference("task")
 
 class RunnableMeasurement(Measurement):
     """Measured runtimes of a runnable. (until 0.9.9)"""
-
     runnable: Runnable | None = reference("runnable")
