@@ -1,9 +1,5 @@
 """Models of ITEA versions: every sub-model has a namespace of its own."""
 
-from migration import meaning
-
-from amalthea_uros.xmi.tree.notes import StepNotes
-
 PACKAGES = (
     *("central", "common", "components", "config", "constraints", "events", "hw", "mapping", "os", "propertyconstraints"),
     *("stimuli", "sw"),
@@ -37,14 +33,6 @@ def only(models, *path):
 def all_of(models, tag):
     """Every node of a tag."""
     return [node for tree in models.trees for node in tree.root.walk() if node.tag == tag]
-
-
-def twice(models, step):
-    """The meaning of a set before and after a step is taken once more."""
-    before = meaning(models)
-    models.begin_step(models.trees[0].version)
-    step.change(models, StepNotes())
-    return before, meaning(models)
 
 
 def messages(notes, kind):

@@ -255,18 +255,6 @@ def test_a_default_that_was_changed_in_1_2_0_counts(models):
     assert meaning(migrated([path], "2.0.0")[0]) == models.read("2.0.0", content + allocated(integer("priority", 5)))
 
 
-def test_processes_of_all_kinds_keep_properties_that_are_parameters_in_1_2_0(models):
-    properties = "".join(
-        f'<customProperties key="{key}"><value t="StringObject" value="4"/></customProperties>'
-        for key in ("osekTaskGroup", "priority")
-    )
-    content = f"""<swModel><isrs name="I">{properties}</isrs></swModel>
-    <osModel><operatingSystems name="OS"><interruptControllers name="C"/></operatingSystems></osModel>
-    <mappingModel><isrAllocation isr="I?type=ISR" controller="C?type=InterruptController"/></mappingModel>"""
-    (isr,) = found(taken_back(models, content), "swModel", "isrs")
-    assert keys(isr) == ["AMALTHEA 2.0.0: customProperties/osekTaskGroup", "AMALTHEA 2.0.0: customProperties/priority"]
-
-
 @pytest.mark.parametrize(
     "parameters",
     [

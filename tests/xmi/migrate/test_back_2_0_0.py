@@ -9,20 +9,6 @@ def condition(content):
     return f'<swModel><runnables name="R"><executionCondition>{content}</executionCondition></runnables></swModel>'
 
 
-@pytest.mark.parametrize(
-    ("before", "after"),
-    [
-        ('maxValue="3"', 'maxValue="3"'),
-        ('maxValue="1"', 'maxValue="1"'),
-        ("", 'maxValue="1"'),
-    ],
-)
-def test_a_limit_that_is_not_stated_is_1(models, before, after):
-    content = '<osModel><semaphores name="S" {}/></osModel>'
-    assert models.migrate("2.1.0", "2.0.0", content.format(before)) == models.read("2.0.0", content.format(after))
-    assert len(models.messages(NoteKind.DEFAULTED)) == (before == "")
-
-
 @pytest.mark.parametrize("tag", ["tasks", "isrs", "runnables"])
 def test_local_mode_labels_are_an_error(models, tag):
     before = f"""<swModel>
@@ -59,15 +45,3 @@ def test_local_mode_labels_are_an_error(models, tag):
 def test_new_conditions_are_an_error(models, content):
     models.migrate("2.1.0", "2.0.0", condition(content))
     assert len(models.messages(NoteKind.LOST)) == 1
-
-
-@pytest.mark.parametrize(
-    "content",
-    [
-        '<entries t="ModeValueCondition" relation="LESS_THAN" value="1"/>',
-        '<entries t="ChannelFillCondition" fillLevel="1"/>',
-    ],
-)
-def test_older_conditions_stay(models, content):
-    assert models.migrate("2.1.0", "2.0.0", condition(content)) == models.read("2.0.0", condition(content))
-    assert models.notes == []

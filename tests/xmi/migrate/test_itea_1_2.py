@@ -1,10 +1,8 @@
 """ITEA 1.1.0 -> ITEA 1.2.0."""
 
 import pytest
-from itea import all_of, messages, model, only, twice, write
+from itea import all_of, messages, model, only, write
 from migration import migrated
-
-from amalthea_uros.xmi.migrate.steps.itea_1_2 import STEP
 
 TARGET = "ITEA 1.2.0"
 
@@ -25,11 +23,6 @@ def test_schedulers_move_into_one_operating_system_where_the_first_was(tmp_path)
     assert len(messages(notes, "moved")) == 2
 
 
-def test_an_os_model_without_schedulers_gets_no_operating_system(tmp_path):
-    models, _ = step(tmp_path, m__amxmi="<osModel/>")
-    assert only(models, "osModel").children == []
-
-
 def test_schedulers_of_a_file_with_the_os_model_alone(tmp_path):
     models, _ = step(tmp_path, os__amxmi_os=model("1.1.0", '<scheduler name="a"/>', "os:OSModel"))
     assert only(models, "operatingSystems", "taskSchedulers").name == "a"
@@ -44,12 +37,6 @@ def accesses(kind, content, tag="runnableItems"):
     return f'<swModel><runnables name="R">{inside}</runnables></swModel>'
 
 
-def test_the_statistic_of_anything_else_stays(tmp_path):
-    models, notes = step(tmp_path, m__amxmi=accesses("", STATISTICS).replace("LabelAccess", "RunnableCall"))
-    assert len(all_of(models, "statistic")[0].children) == 4
-    assert notes == []
-
-
 @pytest.mark.parametrize("tag", ["runnableItems", "runnableItem"])
 @pytest.mark.parametrize(
     ("kind", "value", "misses"), [("", "1", "3"), ('access="read"', "1", "3"), ('access="write"', "2", "4")]
@@ -61,28 +48,12 @@ def test_the_statistic_that_fits_the_access_is_kept(tmp_path, kind, value, misse
     assert len(messages(notes, "lost")) == 2
 
 
-def test_a_statistic_of_the_other_kind_alone_is_lost(tmp_path):
-    models, notes = step(tmp_path, m__amxmi=accesses("", '<write value="2"/>'))
-    assert all_of(models, "statistic")[0].children == []
-    assert len(messages(notes, "lost")) == 1
-
-
 SOFTWARE = '<swModel><isrs xmi:id="_i1" name="I 1"/><isrs xmi:id="_i2" name="I2"/><tasks xmi:id="_t" name="T"/></swModel>'
 SCHEDULERS = '<osModel><scheduler xmi:id="_s" name="S"/></osModel>'
 
 
 def allocation(references, kind="ProcessAllocation"):
     return f'<executableAllocation xsi:type="mapping:{kind}" {references}/>'
-
-
-def test_all_isrs_of_an_operating_system_share_a_new_controller(tmp_path):
-    allocations = allocation('process="_i1" scheduler="_s"') + allocation('process="_i2" scheduler="_s"')
-    models, notes = step(tmp_path, m__amxmi=f"{SOFTWARE}{SCHEDULERS}<mappingModel>{allocations}</mappingModel>")
-    [controller] = all_of(models, "interruptControllers")
-    first, second = all_of(models, "processAllocation")
-    assert first.type == second.type == "mapping:ISRAllocation"
-    assert first.target("scheduler") is second.target("scheduler") is controller
-    assert len(messages(notes, "lost")) == 2
 
 
 def test_files_refer_to_each_other_by_position(tmp_path):
@@ -98,18 +69,6 @@ def test_files_refer_to_each_other_by_position(tmp_path):
     assert made.type == "mapping:ISRAllocation"
     assert made.target("scheduler").root.tag == "OSModel"
     assert made.target("process").name == "I"
-
-
-@pytest.mark.parametrize(
-    ("kind", "tag"),
-    [('xsi:type="mapping:RunnableAllocation"', "runnableAllocation"), ("", "runnableAllocation")],
-)
-def test_allocations_of_runnables(tmp_path, kind, tag):
-    content = f"""<swModel><runnables xmi:id="_r" name="R"/></swModel><mappingModel>
-        <executableAllocation {kind} entity="_r"/></mappingModel>"""
-    models, _ = step(tmp_path, m__amxmi=content)
-    [made] = only(models, "mappingModel").children
-    assert (made.tag, made.target("entity").name) == (tag, "R")
 
 
 def test_the_scheduler_of_an_isr_in_a_missing_file_is_lost(tmp_path):
@@ -157,10 +116,3 @@ def test_incomplete_allocations(tmp_path, references, kind):
     content = f"{SOFTWARE}{SCHEDULERS}<mappingModel>{allocation(references)}</mappingModel>"
     models, _ = step(tmp_path, m__amxmi=content)
     assert [node.type for node in all_of(models, "processAllocation")] == [f"mapping:{kind}"]
-
-
-def test_the_step_leaves_what_is_already_converted(tmp_path):
-    taken = allocation('process="_i1" scheduler="_s"')
-    models, _ = step(tmp_path, m__amxmi=f"{SOFTWARE}{SCHEDULERS}<mappingModel>{taken}</mappingModel>")
-    before, after = twice(models, STEP)
-    assert after == before

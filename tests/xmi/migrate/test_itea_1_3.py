@@ -1,10 +1,8 @@
 """ITEA 1.2.0 -> ITEA 1.3.0."""
 
 import pytest
-from itea import all_of, messages, model, only, twice, write
+from itea import all_of, messages, model, only, write
 from migration import migrated
-
-from amalthea_uros.xmi.migrate.steps.itea_1_3 import STEP
 
 TARGET = "ITEA 1.3.0"
 
@@ -93,12 +91,6 @@ def test_what_was_the_default_is_written(tmp_path, content, tag, written):
     assert about == set(written)
 
 
-def test_what_is_stated_stays(tmp_path):
-    models, notes = step(tmp_path, m__amxmi='<swModel><tasks name="T" preemption="unknown"/></swModel>')
-    assert only(models, "swModel", "tasks").get("preemption") == "unknown"
-    assert notes == []
-
-
 TIMES = [
     ("stimuli", '<stimuliModel><stimuli xsi:type="stimuli:Periodic"><offset value="1"/></stimuli></stimuliModel>', "offset"),
     ("single", '<stimuliModel><stimuli xsi:type="stimuli:Single"><activation/></stimuli></stimuliModel>', "activation"),
@@ -131,19 +123,6 @@ def test_times_without_unit_are_picoseconds(tmp_path, content, tag):
     assert all_of(models, tag)[0].get("unit") == "ps"
 
 
-LIMIT = (
-    '<constraintsModel><requirements xsi:type="constraints:ProcessRequirement">'
-    '<limit xsi:type="constraints:TimeRequirementLimit"><limitValue value="5"/></limit></requirements></constraintsModel>'
-)
-
-
-@pytest.mark.parametrize("access", ["R"])
-def test_a_latency_without_kind_of_access_is_one_of_reading(tmp_path, access):
-    content = '<hwModel><accessPaths xsi:type="hw:LatencyAccessPath"><latencies xsi:type="hw:LatencyConstant"/></accessPaths></hwModel>'
-    models, _ = step(tmp_path, m__amxmi=content)
-    assert all_of(models, "latencies")[0].get("accessType") == access
-
-
 @pytest.mark.parametrize(
     ("root", "tag", "written"),
     [
@@ -173,57 +152,6 @@ def test_a_stimulus_that_is_a_file_gets_its_units(tmp_path):
     assert only(models, "stimuliModel", "stimuli", "recurrence").get("unit") == "ps"
 
 
-def test_a_time_of_a_custom_property_gets_its_unit(tmp_path):
-    content = """<swModel><customProperties key="k"><value xsi:type="common:TimeObject" value="3"/></customProperties>
-        <customProperties key="l"><value xsi:type="common:LongObject" value="3"/></customProperties></swModel>"""
-    models, _ = step(tmp_path, m__amxmi=content)
-    assert [value.get("unit") for value in all_of(models, "value")] == ["ps", ""]
-
-
-def test_unspecified_waiting_is_removed(tmp_path):
-    content = """<swModel><runnables><runnableItems xsi:type="sw:SynchronousServerCall" waitingBehaviour="unspecified"/>
-        <runnableItems xsi:type="sw:SynchronousServerCall" waitingBehaviour="active"/></runnables></swModel>"""
-    models, _ = step(tmp_path, m__amxmi=content)
-    assert [node.get("waitingBehaviour") for node in all_of(models, "runnableItems")] == ["", "active"]
-
-
-def test_attributes_that_were_misspelt(tmp_path):
-    content = """<constraintsModel><dataAgeConstraints><dataAge xsi:type="constraints:DataAgeCycle" maximumCyle="4"/>
-        </dataAgeConstraints></constraintsModel>"""
-    models, notes = step(tmp_path, m__amxmi=content)
-    assert all_of(models, "dataAge")[0].attributes == {"maximumCycle": "4"}
-    assert messages(notes, "renamed") == ["maximumCyle is maximumCycle"]
-
-
-def test_the_scheduling_unit_is_of_the_operating_system(tmp_path):
-    content = """<osModel><operatingSystems><taskSchedulers><schedulingUnit xsi:type="sw:SchedulingSWUnit"/></taskSchedulers>
-        </operatingSystems></osModel>"""
-    models, _ = step(tmp_path, m__amxmi=content)
-    assert all_of(models, "schedulingUnit")[0].type == "os:SchedulingSWUnit"
-
-
-# Components
-
-COMPONENTS = """<componentsModel>
-    <elements xsi:type="components:Component" name="A"><ports xsi:type="components:FInterfacePort" name="p" kind="REQUIRES"/></elements>
-    <elements xsi:type="components:System" name="S"><elements xsi:type="components:ComponentInstance" name="i"
-        type="//@componentsModel/@elements.0"/><elements xsi:type="components:Connector" name="c"><sourcePort
-        instance="//@componentsModel/@elements.1/@elements.0" port="//@componentsModel/@elements.0/@ports.0"/></elements></elements>
-    </componentsModel>"""
-
-
-def test_parts_of_components_are_told_apart_and_references_follow(tmp_path):
-    models, _ = step(tmp_path, m__amxmi=COMPONENTS)
-    component = only(models, "componentsModel", "components")
-    instance = only(models, "componentsModel", "systems", "componentInstances")
-    source = only(models, "componentsModel", "systems", "connectors", "sourcePort")
-    assert instance.target("type") is component
-    assert source.target("instance") is instance
-    assert source.target("port") is component.child("ports")
-    assert component.type == instance.type == ""
-    assert component.get("kind") == ""
-
-
 # Modes
 
 SWITCH = """<callGraph><graphEntries xsi:type="sw:LabelSwitch" label="_l"><entries value="2"/><entries/><entries value="2"/>
@@ -245,14 +173,6 @@ def test_a_label_switch_is_a_mode_switch(tmp_path, process):
     assert "lost" not in {note.kind for note in notes}
 
 
-def test_other_entries_of_a_call_graph_stay(tmp_path):
-    content = '<swModel><tasks name="P"><callGraph><graphEntries xsi:type="sw:CallSequence"><entries value="2"/></graphEntries>'
-    models, notes = step(tmp_path, m__amxmi=f"{content}</callGraph></tasks></swModel>")
-    assert [entry.type for entry in all_of(models, "graphEntries")] == ["sw:CallSequence"]
-    assert all_of(models, "modes") == []
-    assert {note.kind for note in notes} == {"defaulted"}
-
-
 def test_switches_in_several_files_share_the_mode_label_of_a_label(tmp_path):
     other = """<swModel><tasks name="P"><callGraph><graphEntries xsi:type="sw:LabelSwitch"><label href="a.amxmi#_l"/>
         <entries value="9"/></graphEntries></callGraph></tasks></swModel>"""
@@ -260,14 +180,6 @@ def test_switches_in_several_files_share_the_mode_label_of_a_label(tmp_path):
     models, _ = step(tmp_path, a__amxmi=own, b__amxmi=other)
     assert len(all_of(models, "modeLabels")) == 1
     assert [mode.name for mode in all_of(models, "modes")] == [f"mode_sw_{n}_migration_generated" for n in (0, 1)]
-
-
-@pytest.mark.parametrize("kind", ["sw:ModeSwitch"])
-def test_a_switch_without_label(tmp_path, kind):
-    content = """<swModel><tasks><callGraph><graphEntries xsi:type="sw:LabelSwitch"><entries value="1"/></graphEntries></callGraph>
-        </tasks></swModel>"""
-    models, _ = step(tmp_path, m__amxmi=content)
-    assert all_of(models, "graphEntries")[0].type == kind
 
 
 def test_a_label_in_a_missing_file(tmp_path):
@@ -281,17 +193,6 @@ def test_a_label_in_a_missing_file(tmp_path):
 STIMULUS = """<stimuli xsi:type="stimuli:Single" name="s"><setLabelsList><entries {0} value="3"/></setLabelsList>
     <enablingLabelsList><entries {0}/></enablingLabelsList><disablingLabelsList><entries {0} value="3"/></disablingLabelsList>
     </stimuli>"""
-
-
-def test_stimuli_set_mode_labels(tmp_path):
-    stimulus = STIMULUS.format('valueProvider="_l"')
-    content = f'<swModel><labels xmi:id="_l" name="L"/></swModel><stimuliModel>{stimulus}</stimuliModel>'
-    models, _ = step(tmp_path, m__amxmi=content)
-    lists = only(models, "stimuliModel", "stimuli").children
-    assert [part.tag for part in lists] == ["setModeValueList", "enablingModeValueList", "disablingModeValueList"]
-    assert [part.children[0].target("value").name for part in lists] == ["3", "0", "3"]
-    assert {part.children[0].target("valueProvider") for part in lists} == set(all_of(models, "modeLabels"))
-    assert [mode.name for mode in all_of(models, "modes")] == ["mode_stimuli_1_migration_generated"]
 
 
 def test_a_switch_uses_the_mode_label_that_a_stimulus_needs(tmp_path):
@@ -319,29 +220,12 @@ def test_a_stimuli_file_puts_its_mode_where_the_labels_are(tmp_path):
     assert all(entry.target("value").parent is mode for entry in all_of(models, "entries"))
 
 
-def test_a_model_without_software_gets_a_software_model_for_its_mode(tmp_path):
-    models, _ = step(
-        tmp_path,
-        a__amxmi=f"<stimuliModel>{STIMULUS.format('')}</stimuliModel>",
-        b__amxmi='<swModel><labels xmi:id="_l" name="L"/></swModel>',
-    )
-    assert [mode.root for mode in all_of(models, "modes")] == [models.trees[0].root]
-
-
 def test_a_stimuli_file_alone_becomes_a_model_that_can_hold_the_mode(tmp_path):
     text = model("1.2.0", STIMULUS.format(""), "stimuli:StimuliModel")
     models, _ = step(tmp_path, st__amxmi_stimuli=text)
     root = models.trees[0].root
     assert (root.tag, sorted(child.tag for child in root.children)) == ("AMALTHEA", ["stimuliModel", "swModel"])
     assert only(models, "swModel", "modes").child("literals").name == "3"
-
-
-def test_the_step_leaves_what_is_already_converted(tmp_path):
-    stimulus = STIMULUS.format('valueProvider="_l"')
-    content = f"""<swModel><tasks><deadline value="1"/>{SWITCH}</tasks><labels xmi:id="_l" name="L"/></swModel>
-        <stimuliModel>{stimulus}</stimuliModel>{COMPONENTS}"""
-    before, after = twice(step(tmp_path, m__amxmi=content)[0], STEP)
-    assert after == before
 
 
 # Deadlines
@@ -367,11 +251,6 @@ def test_deadlines_in_a_file_of_the_software_model(tmp_path):
     models, _ = step(tmp_path, sw__amxmi_sw=text)
     assert len(only(models, "constraintsModel").children) == 3
     assert len(only(models, "swModel").children) == 3
-
-
-def test_deadlines_of_runnables_stay(tmp_path):
-    models, _ = step(tmp_path, m__amxmi='<swModel><runnables><deadline value="1" unit="ms"/></runnables></swModel>')
-    assert len(all_of(models, "deadline")) == 1
 
 
 def test_the_initial_value_of_a_label_is_reported(tmp_path):

@@ -40,13 +40,6 @@ def test_the_curve_of_a_clock_is_stated_beyond_the_published_conversions(tmp_pat
     assert len(of_kind(notes, NoteKind.TO_CHECK)) == bool(expected)
 
 
-@pytest.mark.parametrize("target", ["0.9.5"])
-def test_until_then_the_curve_of_a_clock_is_a_text(tmp_path, target):
-    [found], notes = clocks_of(tmp_path, target, SINE)
-    assert [part.tag for part in found.children] == ["customProperties"]
-    assert of_kind(notes, NoteKind.LOST) == []
-
-
 # Execution times
 
 NEED = """<runnableItems t="ExecutionNeed">{default}<extended key="P?type=ProcessingUnitDefinition">
@@ -95,17 +88,6 @@ def test_ticks_are_never_less_than_the_instructions_take(tmp_path, target, expec
     assert any("upperBound 2 -> 3" in detail for _, detail in of_kind(notes, NoteKind.CONVERTED)) == (expected[0] == "1")
 
 
-def test_decimals_are_divided_exactly(tmp_path):
-    """7 instructions at 0.7 per cycle are 10 ticks, although 0.7 as a binary number is a little less."""
-    hardware = CORES.format(definitions=DEFINITION.format("P")).replace("2.0", "0.7")
-    need = NEED.format(default="", value='<value t="NeedConstant" value="7"/>')
-    content = f'<swModel><runnables name="R">{need}</runnables></swModel>{hardware}'
-    models, _ = migrated(written(tmp_path, "0.9.2", content), "3.3.0")
-    assert [
-        node.get("value") for tree in models.trees for node in tree.root.walk() if node.type == "DiscreteValueConstant"
-    ] == ["10"]
-
-
 @pytest.mark.parametrize("target", ["0.9.5", "3.3.0"])
 def test_an_upper_bound_that_is_not_stated_is_left_open(tmp_path, target):
     """Execution times of 0 would be a result, where the older model has a gap."""
@@ -136,15 +118,6 @@ def test_execution_times_without_upper_bound_are_no_execution_times(tmp_path):
     assert any("upperBound" in finding.message for finding in extraction.findings)
 
 
-def test_a_latency_without_upper_bound_is_unknown(tmp_path):
-    deviation = '<cycles><lowerBound t="LongObject" value="1"/><distribution t="UniformDistribution"/></cycles>'
-    definition = f"""<hwModel><definitions t="MemoryDefinition" name="M">
-        <accessLatency t="LatencyDeviation">{deviation}</accessLatency></definitions></hwModel>"""
-    models, _ = migrated(written(tmp_path, "0.9.2", definition), "3.3.0")
-    [latency] = models.parts("hwModel", "definitions", "accessLatency")
-    assert (latency.type, latency.attributes) == ("DiscreteValueUniformDistribution", {"lowerBound": "1"})
-
-
 def states_demand(system):
     """Whether something in the runnables of a system has a known demand."""
     return any(isinstance(item, Execute) for runnable in system.software.runnables for item in runnable.activities)
@@ -158,27 +131,6 @@ def test_a_jitter_without_bounds_is_unknown_and_not_none(tmp_path):
         model = amuros.migrate(written(tmp_path, "0.9.2", f"<stimuliModel>{content}</stimuliModel>")).model
         kinds += [type(found).__name__ for found in amuros.extract(model).system.stimuli.stimuli]
     assert kinds == ["Custom", "Periodic"]
-
-
-# Hardware
-
-
-@pytest.mark.parametrize(
-    ("kind", "target", "memory_type", "kept"),
-    [
-        ("FLASH_EXT", "3.3.0", "FLASH", ["FLASH_EXT"]),
-        ("FLASH_EXT", "0.9.5", "", ["FLASH_EXT"]),
-        ("RAM", "3.3.0", "", []),
-        ("_undefined_", "3.3.0", "", []),
-    ],
-)
-def test_the_kind_of_a_memory_comes_back(tmp_path, kind, target, memory_type, kept):
-    content = f'<hwModel><memoryTypes name="M" type="{kind}"/></hwModel>'
-    models, notes = migrated(written(tmp_path, "0.8.3", content), target)
-    [definition] = models.parts("hwModel", "definitions")
-    assert definition.get("memoryType") == memory_type
-    assert [value.get("value") for value in definition.find("customProperties", "value")] == kept
-    assert bool(of_kind(notes, NoteKind.LOST)) == (kind != "_undefined_" and not kept)
 
 
 # References
@@ -227,25 +179,3 @@ def test_the_labels_of_a_pairing_constraint_can_be_read(tmp_path, version, tag):
     [constraint] = model.all(amuros.am.DataPairingConstraint)
     assert [label.name for label in constraint.group.labels] == ["L"]
     assert model.findings == ()
-
-
-# Custom properties
-
-
-@pytest.mark.parametrize(
-    ("text", "expected"),
-    [
-        ("P+1?type=Periodic", "P+1?type=PeriodicStimulus"),
-        ("mode=Single", "mode=Single"),
-        ("a=b=Single", "a=b=Single"),
-        ("x?type=InterProcessActivation", "x?type=InterProcessActivation"),
-    ],
-)
-def test_texts_that_are_references_to_stimuli_follow(tmp_path, text, expected):
-    value = f'<{{}} t="StringObject" value="{text}"/>'
-    values = f'<value t="ListObject">{value.format("values")}</value>'
-    content = f"""<swModel><tasks name="T"><customProperties key="k">{value.format("value")}</customProperties>
-        <customProperties key="l">{values}</customProperties></tasks></swModel>"""
-    models, _ = migrated(written(tmp_path, "0.8.0", content), "0.8.1")
-    found = [node.get("value") for tree in models.trees for node in tree.root.walk() if "value" in node.attributes]
-    assert found == [expected, expected]

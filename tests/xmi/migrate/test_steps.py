@@ -2,16 +2,20 @@
 
 A line `from A to B` states the versions of a file or of one case, `== TITLE` starts a case, `--` the next one of the same title,
 and `file` the next file of the model. Lines of the model are in both versions, or after "-" in the old one only, or after "+" in the
-new one only. `KIND MESSAGE | DETAIL` is one of the notes, `only KIND ...` lines are all notes of the kind, `no KIND`
-means that there is none, and `2 KIND` that there are two.
+new one only. `early` versions are those that files of old content may declare, because their namespace was raised too soon.
+`KIND MESSAGE | DETAIL` is one of the notes, `only KIND ...` lines are all notes of the kind, `no KIND` means that there is none, and
+`2 KIND` that there are two.
 """
 
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import pytest
-from inline_models import written
+from inline_models import damaged, written
 from migration import meaning, migrated, opened
+
+from amalthea_uros.xmi.migrate.chain import migrate
+from amalthea_uros.xmi.tree.notes import NoteKind, StepNotes
 
 
 @dataclass
@@ -23,6 +27,7 @@ class Step:
     before: list[str] = field(default_factory=lambda: [""])
     after: list[str] = field(default_factory=lambda: [""])
     notes: list[str] = field(default_factory=list)
+    early: list[str] = field(default_factory=list)
 
 
 def read_steps(path):
@@ -37,6 +42,8 @@ def read_steps(path):
             steps.append(Step(steps[-1].name, versions_of(first)))
         elif line.startswith("from "):
             steps[-1].versions = versions_of(line)
+        elif line.startswith("early "):
+            steps[-1].early = line.split()[1:]
         elif line == "file":
             steps[-1].before.append("")
             steps[-1].after.append("")
@@ -52,7 +59,7 @@ def read_steps(path):
 
 def versions_of(line):
     """The versions of "from 0.9.2 to 0.9.3"."""
-    _, source, _, target = line.split()
+    source, _, target = line.removeprefix("from ").partition(" to ")
     return source, target
 
 
@@ -87,3 +94,33 @@ def stated(notes, kind, with_details):
     return [
         f"{note.message} | {note.detail}".rstrip() if with_details else note.message for note in notes if note.kind.name == kind
     ]
+
+
+@pytest.mark.parametrize("step", [step for step in STEPS if step.early], ids=lambda step: step.name)
+def test_a_file_whose_namespace_was_raised_early_takes_the_step(step, tmp_path):
+    source, target = step.versions
+    for declared in step.early:
+        early, _ = migrated(written(tmp_path, declared, *step.before), max(target, declared))
+        proper, _ = migrated(written(tmp_path, source, *step.before), max(target, declared))
+        assert meaning(early) == meaning(proper)
+
+
+@pytest.mark.parametrize("step", [step for step in STEPS if not step.name.startswith("back")], ids=lambda step: step.name)
+def test_what_is_converted_stays(step, tmp_path):
+    source, target = step.versions
+    models, _ = migrated(written(tmp_path, source, *step.before), target)
+    expected = meaning(models)
+    for tree in models.trees:
+        tree.version = source
+    notes = StepNotes()
+    migrate(models, target, notes)
+    assert meaning(models) == expected
+    assert not [note for note in notes.all if note.kind in (NoteKind.CONVERTED, NoteKind.MOVED, NoteKind.KEPT)]
+
+
+@pytest.mark.parametrize("step", STEPS, ids=[step.name for step in STEPS])
+def test_damaged_files_are_migrated(step, tmp_path):
+    source, target = step.versions
+    values = ["", "0", "x", "T?type=Task", "gone?type=Label gone?type=Core"]
+    for number in range(6):
+        migrated(written(tmp_path, source, *(damaged(text, values, number) for text in step.before)), target)

@@ -1,10 +1,9 @@
 """ITEA 1.3.0 -> 0.7.0."""
 
 import pytest
-from itea import all_of, messages, model, only, twice, write
+from itea import all_of, messages, model, only, write
 from migration import migrated
 
-from amalthea_uros.xmi.migrate.steps.v0_7_0 import STEP
 from amalthea_uros.xmi.tree.write import tree_text
 
 TARGET = "0.7.0"
@@ -89,45 +88,6 @@ def test_memory_types_of_property_constraints(tmp_path):
     assert models.trees[0].root.tag == "PropertyConstraintsModel"
 
 
-# Interfaces
-
-
-@pytest.mark.parametrize(("kind", "after"), [("PROVIDES", "provides"), ("REQUIRES", "requires"), ("other", "other")])
-def test_kinds_of_interfaces(tmp_path, kind, after):
-    content = f"""<componentsModel><components><ports xsi:type="components:FInterfacePort" kind="{kind}"/></components>
-        </componentsModel>"""
-    models, _ = step(tmp_path, m__amxmi=content)
-    assert all_of(models, "ports")[0].get("kind") == after
-
-
-def test_a_franca_interface_is_kept_with_its_file(tmp_path):
-    content = """<componentsModel><components><ports xsi:type="components:FInterfacePort"><interface xsi:type="franca:FInterface"
-        href="HVAC%20x.fidl#//@interfaces.6"/></ports></components></componentsModel>"""
-    models, notes = step(tmp_path, m__amxmi=content)
-    [made] = all_of(models, "ports")[0].children
-    assert made.get("key") == "Franca interface"
-    assert made.child("value").type == "StringObject"
-    assert made.child("value").get("value") == "HVAC%20x.fidl#//@interfaces.6"
-    assert len(messages(notes, "kept as custom property")) == 1
-    assert messages(notes, "lost") == []
-
-
-# Allocations
-
-MAPPING = """<swModel><isrs name="I"/><tasks name="T"/></swModel><osModel><operatingSystems><taskSchedulers name="S"/>
-    <interruptControllers name="C"/></operatingSystems></osModel><mappingModel>{}</mappingModel>"""
-ALLOCATION = """<processAllocation {} process="{}" scheduler="S?type=os.TaskScheduler" priority="3"><customProperties key="k"/>
-    </processAllocation>"""
-
-
-def test_an_allocation_without_class_is_that_of_its_process(tmp_path):
-    content = MAPPING.format(ALLOCATION.format("", "I?type=sw.ISR") + ALLOCATION.format("", "T?type=sw.Task"))
-    models, _ = step(tmp_path, m__amxmi=content)
-    assert only(models, "mappingModel", "isrAllocation").target("isr").name == "I"
-    assert only(models, "mappingModel", "isrAllocation").target("controller").name == "S"
-    assert only(models, "mappingModel", "taskAllocation").type == ""
-
-
 # Hardware
 
 
@@ -186,20 +146,6 @@ def test_attributes_of_one_name_stay_apart(tmp_path, second):
 
 
 # Mixed and early files
-
-
-def test_a_reference_without_package_is_followed(tmp_path):
-    content = """<swModel><labels name="L"/><runnables><runnableItems xsi:type="sw:LabelAccess" data="L?type=Label"/></runnables>
-        </swModel>"""
-    models, _ = step(tmp_path, m__amxmi=content)
-    assert all_of(models, "runnableItems")[0].target("data").name == "L"
-
-
-def test_the_step_leaves_what_is_already_converted(tmp_path):
-    content = MAPPING.format(ALLOCATION.format('xsi:type="mapping:TaskAllocation"', "T?type=sw.Task"))
-    models, _ = step(tmp_path, m__amxmi=content + hardware('<attribute xsi:type="hw:StrValue" name="a" value="b"/>'))
-    before, after = twice(models, STEP)
-    assert after == before
 
 
 def test_an_early_file_of_070_takes_the_step(tmp_path):

@@ -66,33 +66,6 @@ def bound(tag, value, kind="LongObject", more=""):
 # Instructions become ticks
 
 
-def test_entries_of_definitions_are_divided_once(same):
-    units = hardware(("P", "2.0"), ("Q", "4"))
-    same(
-        runnable(need(default(101), extended("P", 90))) + units,
-        runnable(ticks(constant(101), of_definition("P", constant(45, "value")), of_definition("Q", constant(25, "value"))))
-        + units,
-    )
-
-
-def test_definitions_without_need_stay_without(same):
-    units = hardware(("P", "2.0"), ("Q", "4"))
-    same(runnable(need(extended("P", 90))) + units, runnable(ticks(of_definition("P", constant(45, "value")))) + units)
-
-
-def test_hardware_in_another_file_counts(same):
-    units = hardware(("P", "2"))
-    same([runnable(need(default(10))), units], [runnable(ticks(constant(10), of_definition("P", constant(5, "value")))), units])
-
-
-def test_only_features_of_the_category_instructions_divide(same):
-    units = hardware(("P", "2.0"), category="FLOP")
-    same(
-        runnable(need(default(10), extended("P", 8))) + units,
-        runnable(ticks(constant(10), of_definition("P", constant(8, "value")))) + units,
-    )
-
-
 @pytest.mark.parametrize("value", ["0", "-1", "nan", "inf", "NaN", "Infinity", "much", ""])
 def test_impossible_instructions_per_cycle_divide_nothing(same, value):
     units = hardware(("P", value))
@@ -112,27 +85,6 @@ def test_instructions_per_cycle_in_a_missing_file_are_reported(tmp_path, feature
     assert of_kind(notes, NoteKind.DEFAULTED) == [(message, name) for name in missing]
 
 
-def test_what_is_no_number_stays(same):
-    units = hardware(("P", "2.0"))
-    notes = same(
-        runnable(need(extended("P", "many"))) + units,
-        runnable(ticks(of_definition("P", constant("many", "value")))) + units,
-    )
-    assert ("not a number, so not divided by the instructions per cycle", "many") in of_kind(notes, NoteKind.LOST)
-
-
-def test_bounds_and_mean_are_divided_the_standard_deviation_is_not(same):
-    units = hardware(("P", "2.0"))
-    gauss = '<distribution t="GaussDistribution">' + bound("sd", 6) + bound("mean", 15) + "</distribution>"
-    given = bound("lowerBound", 11) + bound("upperBound", 21) + gauss
-    entry = f'<value key="Instructions"><value t="NeedDeviation"><deviation>{given}</deviation></value></value>'
-    value = '<value t="DiscreteValueGaussDistribution" lowerBound="5" upperBound="10" mean="7" sd="6"/>'
-    same(
-        runnable(need(of_definition("P", entry))) + units,
-        runnable(ticks(of_definition("P", value))) + units,
-    )
-
-
 @pytest.mark.parametrize("other", ["", '<hwModel><definitions t="MemoryDefinition" name="M"/></hwModel>'])
 def test_missing_hardware_is_reported(tmp_path, other):
     _, notes = migrated(written(tmp_path, "0.9.2", runnable(need(default(1), extended("P", 8))) + other), "0.9.3")
@@ -140,30 +92,6 @@ def test_missing_hardware_is_reported(tmp_path, other):
         ("no definition of a processing unit in the files; assuming 1 instruction per cycle", ""),
         ("definition of a processing unit not found in the files; assuming 1 instruction per cycle", ""),
     ]
-
-
-def test_a_need_that_cannot_be_said_is_unknown_and_not_none(same):
-    given = runnable(need(extended("P", 3, "FLOP")))
-    notes = same(given, runnable(ticks()))
-    assert len(of_kind(notes, NoteKind.TO_CHECK)) == len(of_kind(notes, NoteKind.LOST)) == 1
-
-
-@pytest.mark.parametrize("scheduler", ["taskSchedulers", "interruptControllers"])
-def test_schedulers_have_no_needs_but_ticks(same, scheduler):
-    def system(items):
-        return f'<osModel><operatingSystems><{scheduler} name="S">{items}</{scheduler}></operatingSystems></osModel>'
-
-    notes = same(
-        system(need(default(5), default(2, "FLOP")).replace("runnableItems", "computationItems")),
-        system(ticks(constant(5), tag="computationItems")),
-    )
-    lost = ("schedulers no longer have execution needs other than ticks", "FLOP value=2")
-    assert of_kind(notes, NoteKind.LOST) == [lost]
-
-
-def test_of_two_needs_of_the_same_key_the_last_one_counts(same):
-    notes = same(runnable(need(default(5), default(6))), runnable(ticks(constant(6))))
-    assert of_kind(notes, NoteKind.LOST) == [("another need of the same key follows", "Instructions value=5")]
 
 
 def test_custom_properties_and_comments_stay(tmp_path):
@@ -243,19 +171,6 @@ def test_comments_inside_deviations_stay(tmp_path):
     models, _ = migrated(written(tmp_path, "0.9.2", runnable(need(deviation(given)))), "0.9.3")
     (found,) = models.parts("swModel", "runnables", "runnableItems", "default")
     assert sorted(found.comments or ()) == ["<!-- a -->", "<!-- b -->"]
-
-
-def test_a_missing_bound_of_a_number_is_0(same):
-    given = deviation(bound("upperBound", 20) + '<distribution t="UniformDistribution"/>')
-    result = '<default t="DiscreteValueUniformDistribution" lowerBound="0" upperBound="20"/>'
-    notes = same(runnable(need(given)), runnable(ticks(result)))
-    assert ("missing bound: 0", "lowerBound") in of_kind(notes, NoteKind.DEFAULTED)
-
-
-def test_a_gauss_distribution_without_bounds_is_not_cut_off(same):
-    gauss = f'<distribution t="GaussDistribution">{bound("mean", 5)}{bound("sd", 1)}</distribution>'
-    plain = '<default t="DiscreteValueGaussDistribution" mean="5" sd="1"/>'
-    same(runnable(need(deviation(gauss))), runnable(ticks(plain)))
 
 
 # Stimuli, hardware, operating systems

@@ -16,18 +16,6 @@ def same(tmp_path):
     return partial(check_step, tmp_path, "0.9.3", "0.9.4")
 
 
-# Deadlines
-
-
-@pytest.mark.parametrize(("target", "left"), [("0.9.5", 1), ("0.9.7", 0)])
-def test_a_deadline_without_value_is_no_requirement_for_0(tmp_path, target, left):
-    paths = written(tmp_path, "0.9.3", '<swModel><runnables name="A"><deadline unit="ms"/></runnables></swModel>')
-    models, notes = migrated(paths, target)
-    assert len(models.trees[0].root.find("constraintsModel", "requirements")) == left
-    said = [note for note in notes if note.message == "a deadline without value is no requirement"]
-    assert [note.kind for note in said] == [NoteKind.CONVERTED] * (1 - left)
-
-
 # Mode labels
 
 MODES = (
@@ -123,56 +111,11 @@ def test_what_disables_alone_is_excluded(becomes):
     )
 
 
-def test_what_disables_is_excluded_from_each_alternative_that_does_not_exclude_it_itself(becomes):
-    notes = becomes(
-        old_list("enabling", value("a", "1"), value("b", "2"), all_of(value("b", "2", False), value("a", "1", False)))
-        + old_list("disabling", value("a", "2"), value("c", "3")),
-        conditions(
-            all_of(
-                condition("a", "1", single=False),
-                condition("c", "3", "NOT_EQUAL", False),
-                kind="ModeConditionConjunction",
-            ),
-            all_of(
-                condition("b", "2", single=False),
-                condition("a", "2", "NOT_EQUAL", False),
-                condition("c", "3", "NOT_EQUAL", False),
-                kind="ModeConditionConjunction",
-            ),
-            all_of(
-                condition("b", "2", single=False),
-                condition("a", "1", single=False),
-                condition("c", "3", "NOT_EQUAL", False),
-                kind="ModeConditionConjunction",
-            ),
-        ),
-    )
-    message = "disablingModeValueList is now part of executionCondition"
-    assert (message, "a == 2 OR c == 3") in of_kind(notes, NoteKind.CONVERTED)
-
-
-def test_what_both_enables_and_disables_never_enables(becomes):
-    becomes(
-        old_list("enabling", value("a", "1")) + old_list("disabling", value("a", "1")),
-        conditions(
-            all_of(
-                condition("a", "1", single=False),
-                condition("a", "1", "NOT_EQUAL", False),
-                kind="ModeConditionConjunction",
-            )
-        ),
-    )
-
-
 def test_a_conjunction_that_disables_is_kept_as_text(becomes):
     given = old_list("disabling", value("c", "3"), all_of(value("a", "1", False), value("b", "2", False)))
     text = "c == 3 OR (a == 1 AND b == 2)"
     notes = becomes(given, text_property("disablingModeValueList", text))
     assert len(of_kind(notes, NoteKind.KEPT)) == 1
-
-
-def test_an_empty_list_disables_nothing(becomes):
-    becomes(old_list("disabling"), "")
 
 
 # Snapshots of the development, damaged files, large files

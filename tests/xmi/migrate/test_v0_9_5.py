@@ -3,10 +3,8 @@
 from functools import partial
 
 import pytest
-from inline_models import check_step, of_kind, text_property, written
-from migration import meaning, migrated
-
-from amalthea_uros.xmi.tree.notes import NoteKind
+from inline_models import check_step, written
+from migration import migrated
 
 
 @pytest.fixture
@@ -64,35 +62,6 @@ def test_call_graphs_of_processes(same, tag):
     same(process(tag, given), process(tag, result))
 
 
-def test_custom_properties_of_a_sequence_are_no_calls(same):
-    same(
-        process("tasks", sequence('name="s"', text_property("k", "v") + old_call())),
-        process("tasks", group('name="s"', text_property("k", "v") + new_call())),
-    )
-
-
-def test_calls_keep_counters_and_statistics(same):
-    statistic = '<statistic><statistic t="SingleValueStatistic" value="3"/></statistic>'
-    content = f'<counter prescaler="2"/>{statistic}'
-    same(
-        process("tasks", sequence('name="s"', old_call(content))),
-        process("tasks", group('name="s"', new_call(content))),
-    )
-
-
-@pytest.mark.parametrize("name", ["SchedulePoint", "EnforcedMigration"])
-def test_steps_without_a_counter_keep_it_as_text(same, name):
-    counter = '<counter prescaler="2" offset="1"/>'
-    notes = same(
-        process("tasks", sequence('name="s"', f'<calls t="{name}">{counter}</calls>')),
-        process(
-            "tasks",
-            group('name="s"', f'<items t="{name}">{text_property("counter", "prescaler=2 offset=1")}</items>'),
-        ),
-    )
-    assert of_kind(notes, NoteKind.KEPT) == [(f"{name} no longer has a counter", "prescaler=2 offset=1")]
-
-
 def stimuli(content):
     return f"<stimuliModel>{content}</stimuliModel>"
 
@@ -107,16 +76,6 @@ def scenario(clock, kind):
 
 
 # Snapshots of the development, damaged files, large files
-
-
-def test_what_is_new_already_is_left_alone(tmp_path):
-    new = "<swModel><runnables name='R'><callGraph><items t='Ticks'/>{}</callGraph>{}</runnables></swModel>"
-    clocks = stimuli(clock("c", "ClockFunction", 'curveType="sine"', '<period value="1" unit="s"/>'))
-    late = "{} t='LabelAccess'/>"
-    result, notes = migrated(written(tmp_path, "0.9.5", new.format("", late.format("<runnableItems")) + clocks), "0.9.5")
-    expected, _ = migrated(written(tmp_path, "0.9.5", new.format(late.format("<items"), "") + clocks), "0.9.5")
-    assert meaning(result) == meaning(expected)
-    assert not of_kind(notes, NoteKind.LOST)
 
 
 @pytest.mark.parametrize(

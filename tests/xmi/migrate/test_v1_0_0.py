@@ -18,14 +18,6 @@ MEASUREMENT = f"""<measurementModel><measurements t="TaskMeasurement" task="T+1?
   </measurements></measurementModel>"""
 
 
-def test_custom_properties_of_a_measurement_stay_with_what_was_measured(models):
-    own = PROPERTY.format("tool", "own")
-    found = models.migrate("0.9.9", "1.0.0", measured(own, MEASUREMENT))
-    assert found == models.read("1.0.0", measured(own + PROPERTY.format("tool 2", "X"), ""))
-    [lost] = [note for note in models.notes if note.kind == NoteKind.LOST]
-    assert lost.detail == "of 'T 1': 5 us, 7 us, TimeBoundaries lowerBound 1 us upperBound 9 us"
-
-
 def test_comments_on_a_measurement_stay_with_what_was_measured(models):
     content = measured("", MEASUREMENT.replace("<measurements ", "<!-- on the bench --><measurements "))
     roots = migrated(models.files("before", "0.9.9", content), "1.0.0")[0].roots

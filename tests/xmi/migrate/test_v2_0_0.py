@@ -28,10 +28,6 @@ def integer(key, number):
     return parameter(key, f't="IntegerObject" value="{number}"')
 
 
-def string(key, text):
-    return parameter(key, f't="StringObject" value="{text}"')
-
-
 def old_os(*algorithms):
     schedulers = [
         f'<taskSchedulers name="S{number}"><schedulingAlgorithm t="{algorithm}"/></taskSchedulers>'
@@ -74,14 +70,6 @@ def test_other_algorithms_are_definitions_of_the_same_name(models, algorithm):
     assert models.messages(NoteKind.LOST) == []
 
 
-def test_known_algorithms_have_parameters(models):
-    cycle = f"""<schedulerDefinitions name="StaticCyclic" {FLAGS}
-      processParameters="cycleOrder?type=SchedulingParameterDefinition"/>"""
-    order = '<schedulingParameterDefinitions name="cycleOrder" type="Integer" many="false" mandatory="true"/>'
-    after = new_os(OSEK + cycle + order + PRIORITY + GROUP, "StaticCyclic", "OSEK")
-    assert models.migrate("1.2.0", "2.0.0", old_os("StaticCyclic", "OSEK")) == models.read("2.0.0", after)
-
-
 @pytest.mark.parametrize("algorithm", ["PfairPD2", "PartlyPFairPD2", "EarlyReleaseFairPD2", "PartlyEarlyReleaseFairPD2"])
 @pytest.mark.parametrize(
     ("attribute", "content"), [('quantSizeNs="500"', ""), ("", '<parameterExtensions key="quantSizeNs" value="500"/>')]
@@ -95,28 +83,6 @@ def test_the_quantum_is_a_parameter_of_the_algorithm(models, algorithm, attribut
       <schedulerDefinitions name="{algorithm}" algorithmParameters="quantSize?type=SchedulingParameterDefinition"/>
       <schedulingParameterDefinitions name="quantSize" type="Time" many="false" mandatory="false"/></osModel>"""
     assert models.migrate("1.2.0", "2.0.0", before) == models.read("2.0.0", after)
-
-
-def test_algorithms_of_the_user_have_definitions_of_their_own(models):
-    scheduler = """<taskSchedulers name="{0}"><schedulingAlgorithm t="UserSpecificSchedulingAlgorithm">{1}
-      </schedulingAlgorithm></taskSchedulers>"""
-    extension = '<parameterExtensions key="{}" value="v"/>'
-    before = scheduler.format("A", extension.format("b c")) + scheduler.format("B", "")
-    before += scheduler.format("C", extension.format("B") + property_("k", "w"))
-    key = "extended%3A+{}?type=SchedulingParameterDefinition"
-    after = f"""<operatingSystems name="OS">
-      <taskSchedulers name="A" definition="UserSpecificSchedulingAlgorithm1?type=SchedulerDefinition">
-        {string("extended: b c", "v")}</taskSchedulers>
-      <taskSchedulers name="B" definition="UserSpecificSchedulingAlgorithm2?type=SchedulerDefinition"/>
-      <taskSchedulers name="C" definition="UserSpecificSchedulingAlgorithm3?type=SchedulerDefinition">
-        {property_("k", "w")}{string("extended: B", "v")}</taskSchedulers></operatingSystems>
-      <schedulerDefinitions name="UserSpecificSchedulingAlgorithm1" algorithmParameters="{key.format("b+c")}"/>
-      <schedulerDefinitions name="UserSpecificSchedulingAlgorithm2"/>
-      <schedulerDefinitions name="UserSpecificSchedulingAlgorithm3" algorithmParameters="{key.format("B")}"/>
-      <schedulingParameterDefinitions name="extended: B" type="String" many="false" mandatory="false"/>
-      <schedulingParameterDefinitions name="extended: b c" type="String" many="false" mandatory="false"/>"""
-    given = f'<osModel><operatingSystems name="OS">{before}</operatingSystems></osModel>'
-    assert models.migrate("1.2.0", "2.0.0", given) == models.read("2.0.0", f"<osModel>{after}</osModel>")
 
 
 def test_numbers_of_algorithms_of_the_user_are_new_and_in_order(models):
@@ -153,33 +119,6 @@ def test_a_priority_whose_definition_is_in_no_file_is_stated(models):
     assert models.migrate("1.2.0", "2.0.0", content) == models.read("2.0.0", content)
 
 
-def test_one_set_of_definitions_for_several_files(models):
-    mapping = allocated('<schedulingParameters priority="4"/><parameterExtensions key="k" value="v"/>')
-    key = '<key href="amlt:/#{}?type=SchedulingParameterDefinition"/>'
-    after = f"""<mappingModel><taskAllocation>
-      <task href="amlt:/#T+0?type=Task"/><scheduler href="amlt:/#S0?type=TaskScheduler"/>
-      <schedulingParameters>{key.format("priority")}<value t="IntegerObject" value="4"/></schedulingParameters>
-      <schedulingParameters>{key.format("extended%3A+k")}<value t="StringObject" value="v"/></schedulingParameters>
-      </taskAllocation></mappingModel>"""
-    extended = '<schedulingParameterDefinitions name="extended: k" type="String" many="false" mandatory="false"/>'
-    os = new_os(FPP + PRIORITY + extended, "FixedPriorityPreemptive")
-    found = models.migrate("1.2.0", "2.0.0", mapping, tasks(""), old_os("FixedPriorityPreemptive"))
-    assert found == models.read("2.0.0", after, tasks(""), os)
-
-
-def test_definitions_that_are_there_are_used(models):
-    present = new_os(FPP.replace("name=", 'description="mine" name=') + PRIORITY, "FixedPriorityPreemptive")
-    scheduler, end = '<taskSchedulers name="S1"{}</taskSchedulers>', "</operatingSystems>"
-    old, new = (
-        '><schedulingAlgorithm t="FixedPriorityPreemptive"/>',
-        ' definition="FixedPriorityPreemptive?type=SchedulerDefinition">',
-    )
-    before, after = (present.replace(end, scheduler.format(form) + end) for form in (old, new))
-    # A snapshot of 2.0.0, and of the version after it.
-    for version in ("2.0.0", "2.1.0"):
-        assert models.migrate(version, "3.0.0", before) == models.read("3.0.0", after)
-
-
 @pytest.mark.parametrize("version", ["1.2.0", "2.0.0"])
 def test_what_is_converted_stays(models, version):
     content = tasks("") + new_os(FPP + PRIORITY, "FixedPriorityPreemptive") + allocated(integer("priority", 0))
@@ -206,33 +145,6 @@ def test_task_groups_of_osek(models):
     after += allocated(integer("taskGroup", 2), integer("priority", 1) + integer("taskGroup", 0))
     assert models.migrate("1.2.0", "2.0.0", before) == models.read("2.0.0", after)
     assert len(models.messages(NoteKind.DEFAULTED)) == 1
-
-
-def test_without_any_task_group_none_is_invented(models):
-    before = tasks("") + old_os("OSEK") + allocated("")
-    assert models.migrate("1.2.0", "2.0.0", before) == models.read(
-        "2.0.0", tasks("") + new_os(OSEK + PRIORITY + GROUP, "OSEK") + allocated("")
-    )
-    assert models.messages(NoteKind.DEFAULTED) == []
-
-
-def test_task_groups_below_a_grouping(models):
-    text = """<osModel><operatingSystems name="OS"><taskSchedulers name="S0"{}<parentAssociation parent="P?type=TaskScheduler"/>
-      </taskSchedulers><taskSchedulers name="P"{}</taskSchedulers></operatingSystems>{}</osModel>"""
-    old = [f'><schedulingAlgorithm t="{algorithm}"/>' for algorithm in ("Grouping", "OSEK")]
-    new = [f' definition="{algorithm}?type=SchedulerDefinition">' for algorithm in ("Grouping", "OSEK")]
-    before = tasks(property_("osekTaskGroup", "2")) + text.format(*old, "") + allocated("")
-    definitions = '<schedulerDefinitions name="Grouping"/>' + OSEK + PRIORITY + GROUP
-    after = tasks("") + text.format(*new, definitions) + allocated(integer("taskGroup", 2))
-    assert models.migrate("1.2.0", "2.0.0", before) == models.read("2.0.0", after)
-
-
-def test_schedulers_in_a_circle_end(models):
-    scheduler = """<taskSchedulers name="S0"><schedulingAlgorithm t="Grouping"/>
-      <parentAssociation parent="S0?type=TaskScheduler"/></taskSchedulers>"""
-    os = f'<osModel><operatingSystems name="OS">{scheduler}</operatingSystems></osModel>'
-    models.migrate("1.2.0", "2.0.0", tasks(property_("osekTaskGroup", "1")) + os + allocated(""))
-    assert models.messages(NoteKind.LOST) == []
 
 
 def test_damaged_content_does_not_raise(models):

@@ -4,7 +4,6 @@ import pytest
 from migration import migrated
 
 from amalthea_uros.xmi.tree.node import all_below
-from amalthea_uros.xmi.tree.notes import NoteKind
 
 
 def software(content):
@@ -28,15 +27,6 @@ def test_comments_on_a_type_that_goes_away_stay_with_the_label(models):
         ("labels", "D", ["<!--5-->"]),
         ("dataType", "", ["<!--2-->"]),
     ]
-
-
-def test_a_second_type_and_an_unreadable_reference_do_not_raise(models):
-    before = f"""<labels name="L"><dataType t="TypeRef" typeDef="what?"/></labels>
-      <labels name="M">{ARRAY.format("dataType", 1) * 2}</labels><labels>{ARRAY.format("dataType", 2)}</labels>"""
-    text = "\n".join(models.migrate("2.2.0", "3.0.0", software(before)))
-    assert "labels  dataType='what?' name='L'" in text
-    assert "name='labels_type'" in text
-    assert models.messages(NoteKind.LOST) == ["second data type"]
 
 
 @pytest.mark.parametrize("version", ["2.2.0", "3.0.0", "3.1.0"])
