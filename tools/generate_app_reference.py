@@ -13,7 +13,7 @@ from typing import Any
 
 from templating import ROOT
 
-from amalthea_uros.spec.schema import json_schema
+from amalthea_uros.spec.description import json_schema
 
 HEAD = """# All keys of app.yaml
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from templating import ROOT
 
-from amalthea_uros.spec.schema import json_schema
+from amalthea_uros.spec.description import json_schema
 
 
 def main(target: Path) -> None:

@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from amalthea_uros.diagnostics import Finding, Location
 from amalthea_uros.source.messages import MessageType
-from amalthea_uros.source.program import Function
+from amalthea_uros.source.program import CodeFunction
 from amalthea_uros.units import Time
 
 
@@ -69,7 +69,7 @@ class CodeCallback:
     """
 
     name: str
-    function: Function | None
+    function: CodeFunction | None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -103,7 +103,7 @@ class Thread:
     """
 
     name: str
-    entry: Function | None
+    entry: CodeFunction | None
     place: Location
     stack: int | None = None
     priority: int | None = None

@@ -19,7 +19,7 @@ _CHANGES = ("assignment_expression", "update_expression")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Function:
+class CodeFunction:
     """A function, a method or a lambda.
 
     Attributes
@@ -60,13 +60,13 @@ class CodeProgram:
     files: list[tuple[SourceFile, Node]] = field(default_factory=list)
     macros: dict[str, set[str]] = field(default_factory=lambda: defaultdict(set))
     function_macros: dict[str, tuple[SourceFile, Node]] = field(default_factory=dict)
-    functions: dict[str, list[Function]] = field(default_factory=lambda: defaultdict(list))
+    functions: dict[str, list[CodeFunction]] = field(default_factory=lambda: defaultdict(list))
     members: dict[str, set[str]] = field(default_factory=lambda: defaultdict(set))
     statics: set[tuple[str, str]] = field(default_factory=set)
-    values: dict[str, tuple[Node, Function | SourceFile]] = field(default_factory=dict)
+    values: dict[str, tuple[Node, CodeFunction | SourceFile]] = field(default_factory=dict)
     changed: set[str] = field(default_factory=set)
 
-    def every_function(self) -> Iterator[Function]:
+    def every_function(self) -> Iterator[CodeFunction]:
         """All functions."""
         for group in self.functions.values():
             yield from group
@@ -131,7 +131,7 @@ def _note_function(program: CodeProgram, file: SourceFile, node: Node) -> None:
                     program.values[function.scope + text_of(name)] = value, function
 
 
-def function_of(name: str, file: SourceFile, declarator: Node | None, body: Node, owner: str) -> Function:
+def function_of(name: str, file: SourceFile, declarator: Node | None, body: Node, owner: str) -> CodeFunction:
     """A function with a declarator, which has its parameters, and a body."""
     listed = declarator.child_by_field_name("parameters") if declarator is not None else None
     parameters = tuple(
@@ -140,7 +140,7 @@ def function_of(name: str, file: SourceFile, declarator: Node | None, body: Node
         if each.type in ("parameter_declaration", "optional_parameter_declaration")
     )
     inner = {text_of(name) for each in descendants(body) if each.type == "declaration" for name, _ in declared(each)}
-    return Function(name, file, body, owner, parameters, frozenset({*inner, *parameters}))
+    return CodeFunction(name, file, body, owner, parameters, frozenset({*inner, *parameters}))
 
 
 def _note_variables(program: CodeProgram, file: SourceFile, node: Node) -> None:

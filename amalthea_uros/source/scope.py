@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, TypeAlias
 
 from amalthea_uros.source.files import SourceFile
-from amalthea_uros.source.program import CodeProgram, Function
+from amalthea_uros.source.program import CodeFunction, CodeProgram
 from amalthea_uros.source.syntax import parse_expression, text_of
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ class Expression:
     program: CodeProgram
     node: Node
     file: SourceFile
-    function: Function | None = None
+    function: CodeFunction | None = None
     bindings: Mapping[str, Binding] = field(default_factory=dict)
     depth: int = 0
 
@@ -130,8 +130,8 @@ class Expression:
         found = values.get(own.key)
         if found is not None and name.rpartition(".")[2].rpartition(">")[2] not in self.program.changed:
             node, place = found
-            function = place if isinstance(place, Function) else None
-            file = place.file if isinstance(place, Function) else place
+            function = place if isinstance(place, CodeFunction) else None
+            file = place.file if isinstance(place, CodeFunction) else place
             bindings = own.bindings if function is own.function else {}
             return Expression(self.program, node, file, function, bindings, own.depth + 1).resolved
         texts = self.program.macros.get(name, ())

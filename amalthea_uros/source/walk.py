@@ -10,7 +10,7 @@ from amalthea_uros._internal.limits import SOURCE_NODES
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.source.files import SourceFile
 from amalthea_uros.source.preprocessor import branches, is_conditional
-from amalthea_uros.source.program import CodeProgram, Function, declared, function_of
+from amalthea_uros.source.program import CodeFunction, CodeProgram, declared, function_of
 from amalthea_uros.source.scope import Binding, Expression, called
 from amalthea_uros.source.syntax import descendants, location_of, text_of
 
@@ -52,8 +52,8 @@ class FunctionCall:
     name: str
     arguments: tuple[Expression, ...]
     place: Location
-    root: Function | None
-    function: Function | None
+    root: CodeFunction | None
+    function: CodeFunction | None
     loops: tuple[Mark, ...]
     conditions: tuple[Mark, ...]
     uncertain: bool
@@ -65,11 +65,11 @@ class FunctionCall:
 
 
 @dataclass(frozen=True, slots=True)
-class _Context:
+class _WalkPosition:
     file: SourceFile
-    function: Function | None
+    function: CodeFunction | None
     bindings: Mapping[str, Binding]
-    stack: tuple[Function, ...] = ()
+    stack: tuple[CodeFunction, ...] = ()
     loops: tuple[Mark, ...] = ()
     conditions: tuple[Mark, ...] = ()
     uncertain: bool = False
@@ -91,7 +91,7 @@ class CodeWalk:
         self.calls: list[FunctionCall] = []
         self.seen: set[tuple[str, int]] = set()
         self.inactive: set[tuple[str, int, int]] = set()
-        self.lambdas: dict[str, Function] = {}
+        self.lambdas: dict[str, CodeFunction] = {}
         self.findings: list[Finding] = []
         self._left = SOURCE_NODES
         self._entries = _MAX_ENTRIES
@@ -100,22 +100,22 @@ class CodeWalk:
     def all(self) -> None:
         """Walk from code outside of functions, then from each function that no other one calls."""
         for file, root in self.program.files:
-            self._children(root, _Context(file, None, {}))
+            self._children(root, _WalkPosition(file, None, {}))
         for group in self.program.functions.values():
             group[:] = [function for function in group if not self._is_inactive(function)]
         for function in self.program.every_function():
             if function.name not in self._relevant.called and function in self._relevant.functions:
                 self.function(function)
 
-    def _is_inactive(self, function: Function) -> bool:
+    def _is_inactive(self, function: CodeFunction) -> bool:
         path, position = str(function.file.path), function.body.start_byte
         return any(path == other and start <= position < end for other, start, end in self.inactive)
 
-    def function(self, function: Function) -> None:
+    def function(self, function: CodeFunction) -> None:
         """Walk through a function."""
-        self._visit(function.body, _Context(function.file, function, {}, (function,)))
+        self._visit(function.body, _WalkPosition(function.file, function, {}, (function,)))
 
-    def calls_from(self, function: Function) -> list[FunctionCall]:
+    def calls_from(self, function: CodeFunction) -> list[FunctionCall]:
         """The calls on the paths that begin with a function."""
         found = [call for call in self.calls if call.root is function]
         if found or function not in self._relevant.functions | frozenset(self.lambdas.values()):
@@ -127,11 +127,11 @@ class CodeWalk:
         del self.calls[before:]
         return found
 
-    def _children(self, node: Node, context: _Context) -> None:
+    def _children(self, node: Node, context: _WalkPosition) -> None:
         for child in node.named_children:
             self._visit(child, context)
 
-    def _visit(self, node: Node, context: _Context) -> None:
+    def _visit(self, node: Node, context: _WalkPosition) -> None:
         self._left -= 1
         if self._left < 0 or context.depth > _MAX_DEPTH:
             self._stop(node, context)
@@ -152,14 +152,14 @@ class CodeWalk:
         else:
             self._children(node, context)
 
-    def _stop(self, node: Node, context: _Context) -> None:
+    def _stop(self, node: Node, context: _WalkPosition) -> None:
         reason = "there is too much code" if min(self._left, self._entries) < 0 else "the code is nested too deeply"
         if not any(finding.message.startswith(reason) for finding in self.findings):
             place = location_of(context.file, node)
             message = f"{reason}; the rest is not read"
             self.findings.append(Finding("IMP003", Severity.WARNING, message, place, "Give only the files of the application."))
 
-    def _conditional(self, node: Node, context: _Context) -> None:
+    def _conditional(self, node: Node, context: _WalkPosition) -> None:
         def value(condition: Node) -> int | None:
             return Expression(self.program, condition, context.file).number
 
@@ -177,7 +177,7 @@ class CodeWalk:
                     self.inactive.add((str(file.path), child.start_byte, child.end_byte))
             current = current.child_by_field_name("alternative")
 
-    def _loop(self, node: Node, context: _Context) -> None:
+    def _loop(self, node: Node, context: _WalkPosition) -> None:
         header = [node.child_by_field_name(name) for name in ("initializer", "condition", "update", "right")]
         for part in header:
             if part is not None:
@@ -193,7 +193,7 @@ class CodeWalk:
         else:
             self._visit(body, replace(context, loops=(*context.loops, _mark(node, context))))
 
-    def _iterations(self, node: Node, context: _Context) -> tuple[str, range] | None:
+    def _iterations(self, node: Node, context: _WalkPosition) -> tuple[str, range] | None:
         """The counter of a loop that counts up from one constant to another, and its values."""
         start, condition, update = (node.child_by_field_name(name) for name in ("initializer", "condition", "update"))
         if start is None or condition is None or update is None or condition.type != "binary_expression":
@@ -211,7 +211,7 @@ class CodeWalk:
         values = range(low, high + (text_of(operator) == "<="))
         return (name, values) if len(values) <= _MAX_ITERATIONS else None
 
-    def _choice(self, node: Node, context: _Context) -> None:
+    def _choice(self, node: Node, context: _WalkPosition) -> None:
         condition = node.child_by_field_name("condition")
         if condition is not None:
             self._visit(condition, context)
@@ -219,7 +219,7 @@ class CodeWalk:
             if condition is None or child.id != condition.id:
                 self._visit(child, replace(context, conditions=(*context.conditions, _mark(child, context))))
 
-    def _lambda(self, node: Node, context: _Context) -> None:
+    def _lambda(self, node: Node, context: _WalkPosition) -> None:
         """Code that is called later; what creates a callback of it finds it by its place."""
         body = node.child_by_field_name("body")
         if body is not None:
@@ -228,10 +228,10 @@ class CodeWalk:
             declarator = node.child_by_field_name("declarator")
             self.lambdas[text_of(node)] = function_of(name, context.file, declarator, body, owner)
 
-    def _expression(self, node: Node, context: _Context) -> Expression:
+    def _expression(self, node: Node, context: _WalkPosition) -> Expression:
         return Expression(self.program, node, context.file, context.function, context.bindings)
 
-    def _call(self, node: Node, context: _Context) -> None:
+    def _call(self, node: Node, context: _WalkPosition) -> None:
         self.seen.add((str(context.file.path), node.start_byte))
         name, arguments = called(node)
         for argument in arguments:
@@ -257,7 +257,7 @@ class CodeWalk:
             )
         )
 
-    def _callee(self, name: str, context: _Context) -> Function | None:
+    def _callee(self, name: str, context: _WalkPosition) -> CodeFunction | None:
         """The function of the sources that is called: in the same class, else the same file, else the only one."""
         short = name.rpartition("::")[2].rpartition(".")[2].rpartition(">")[2]
         found = self.program.functions.get(short, [])
@@ -271,7 +271,7 @@ class CodeWalk:
                 return close[0]
         return None
 
-    def _enter(self, callee: Function, arguments: tuple[Expression, ...], context: _Context) -> None:
+    def _enter(self, callee: CodeFunction, arguments: tuple[Expression, ...], context: _WalkPosition) -> None:
         self._entries -= 1
         if self._entries < 0:
             self._stop(callee.body, context)
@@ -292,14 +292,14 @@ class Relevance:
     called : names of functions that others call
     """
 
-    functions: frozenset[Function]
+    functions: frozenset[CodeFunction]
     called: frozenset[str]
 
 
 def relevant_functions(program: CodeProgram, names: frozenset[str]) -> Relevance:
     """The functions that lead to calls of micro-ROS, of delays and of the operating system."""
     calls = {function: frozenset(_called_names(function.body)) for function in program.every_function()}
-    callers: dict[str, set[Function]] = {}
+    callers: dict[str, set[CodeFunction]] = {}
     for function, inner in calls.items():
         for name in inner:
             if name in program.functions and name != function.name:
@@ -320,7 +320,7 @@ def _called_names(body: Node) -> Iterator[str]:
             yield called(node)[0].rpartition("::")[2].rpartition(".")[2].rpartition(">")[2]
 
 
-def _mark(node: Node, context: _Context) -> Mark:
+def _mark(node: Node, context: _WalkPosition) -> Mark:
     return str(context.file.path), node.start_byte
 
 

@@ -8,7 +8,7 @@ from pydantic import Field
 
 from amalthea_uros.spec.execution_time import ExecutionTimeSection
 from amalthea_uros.spec.os import OverheadSection
-from amalthea_uros.spec.section import Section
+from amalthea_uros.spec.section import DescriptionSection
 from amalthea_uros.spec.values import Count, Duration, Name, Offset, Priority, Rate, Size, described
 
 Reliability = Annotated[
@@ -34,7 +34,7 @@ _CONDITIONS = described(
 )
 
 
-class CallbackSection(Section):
+class CallbackSection(DescriptionSection):
     """Keys that all callbacks have."""
 
     name: Name
@@ -120,7 +120,7 @@ class Timer(CallbackSection):
     """Rate of the timer; the reciprocal of `period`."""
 
 
-class Publisher(Section):
+class Publisher(DescriptionSection):
     """A publisher that callbacks of the node send messages with."""
 
     topic: Name
@@ -175,7 +175,7 @@ class ActionClient(MessageCallback):
     """Size of a feedback message, without headers."""
 
 
-class ParameterServer(Section):
+class ParameterServer(DescriptionSection):
     """The parameter server of a node: six services, and a publisher for changes."""
 
     execution_time: ExecutionTimeSection
@@ -192,7 +192,7 @@ class ParameterServer(Section):
     """The executor that serves it; default: that of its node."""
 
 
-class Lifecycle(Section):
+class Lifecycle(DescriptionSection):
     """The services of a lifecycle node."""
 
     services: Annotated[int, Field(strict=True, ge=1, le=3)] = 3
@@ -207,7 +207,7 @@ class Lifecycle(Section):
     """The executor that serves them; default: that of its node."""
 
 
-class NodeSection(Section):
+class NodeSection(DescriptionSection):
     """A node."""
 
     name: Name
@@ -238,7 +238,7 @@ class NodeSection(Section):
     """Its lifecycle services."""
 
 
-class Application(Section):
+class Application(DescriptionSection):
     """The micro-ROS application."""
 
     nodes: list[NodeSection] = Field(default_factory=list)

@@ -10,13 +10,13 @@ from typing import Any
 from amalthea_uros._internal.limits import ADVICE, DESCRIPTION_VALUES
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
-from amalthea_uros.spec.nodes import MAX_DEPTH, MappingNode, Node, NodePlace, ScalarNode, SequenceNode, SourceText
+from amalthea_uros.spec.nodes import MAX_DEPTH, MappingNode, Node, NodePlace, ScalarNode, SequenceNode, YamlText
 
 #: What the content as a whole is called.
 WHOLE = "<content>"
 
 
-class KeyPaths(SourceText):
+class KeyPaths(YamlText):
     """The paths of all nodes, such as `application.nodes[0].name`: one for each "line"."""
 
     __slots__ = ()
@@ -26,7 +26,7 @@ class KeyPaths(SourceText):
         return Location(Path(self.lines[place.line]))
 
 
-def nodes_of(content: AbstractMapping[Any, Any]) -> tuple[Node, SourceText]:
+def nodes_of(content: AbstractMapping[Any, Any]) -> tuple[Node, YamlText]:
     """The nodes of some content, and where they are.
 
     Raises
@@ -38,7 +38,7 @@ def nodes_of(content: AbstractMapping[Any, Any]) -> tuple[Node, SourceText]:
 
 
 class _ContentConverter:
-    def __init__(self, source: SourceText) -> None:
+    def __init__(self, source: YamlText) -> None:
         self.paths = source.lines
 
     def node(self, value: object, path: str, depth: int) -> Node:

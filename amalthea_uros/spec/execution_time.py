@@ -6,11 +6,11 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from amalthea_uros.spec.section import Section, Shorthand
+from amalthea_uros.spec.section import DescriptionSection, Shorthand
 from amalthea_uros.spec.values import Count, Duration, Name, Number, described, problem
 
 
-class BucketSection(Section):
+class BucketSection(DescriptionSection):
     """Number of measured execution times between two values."""
 
     min: Duration

@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 
 from amalthea_uros.spec.execution_time import ExecutionTimeSection
 from amalthea_uros.spec.os import OverheadSection
-from amalthea_uros.spec.section import Section, Shorthand
+from amalthea_uros.spec.section import DescriptionSection, Shorthand
 from amalthea_uros.spec.values import Count, Duration, Name, Offset, Priority, Size, described, problem
 
 
@@ -65,7 +65,7 @@ class TriggerSection(Shorthand):
     """As soon as all callbacks of one of these sets are ready: what a trigger function of the application returns."""
 
 
-class LoopSection(Section):
+class LoopSection(DescriptionSection):
     """How the thread of an executor spins: exactly one of `spin_some`, `spin_period` and `spin`."""
 
     spin_some: Offset | None = None
@@ -102,7 +102,7 @@ _SEMANTICS = described(
 )
 
 
-class ExecutorSection(Section):
+class ExecutorSection(DescriptionSection):
     """The task or thread that serves the middleware and notifies or runs callbacks."""
 
     name: Name = "Executor_Task"

@@ -6,10 +6,8 @@ from typing import Annotated, Any, Literal, TypeAlias
 
 from pydantic import BeforeValidator, Field
 
-from amalthea_uros.spec.middleware import Middleware
-from amalthea_uros.spec.os import OsSection
-from amalthea_uros.spec.section import Section, Shorthand
-from amalthea_uros.spec.values import WHOLE_NUMBER, CountOrNone, Name, Rate, Size, described, unexpected
+from amalthea_uros.spec.section import DescriptionSection, Shorthand
+from amalthea_uros.spec.values import CountOrNone, Name, Rate, Size, described, unexpected
 
 MAX_CORES = 1024
 
@@ -54,7 +52,7 @@ _MEMORY_KINDS = described(
 )
 
 
-class LatenciesSection(Section):
+class LatenciesSection(DescriptionSection):
     """Core cycles of accesses to a memory from certain cores."""
 
     cores: list[Name] = Field(min_length=1)
@@ -65,7 +63,7 @@ class LatenciesSection(Section):
     """Core cycles per write access."""
 
 
-class MemorySection(Section):
+class MemorySection(DescriptionSection):
     """A memory."""
 
     name: Name
@@ -113,22 +111,3 @@ class HardwareSection(Shorthand):
     """Memory of all labels without a `memory`; default: the first SRAM."""
     ram_budget: Size | None = None
     """Memory that is left for micro-ROS: its pools, heap and stacks."""
-
-
-class Platform(Section):
-    """A controller that applications refer to by name."""
-
-    amuros: Annotated[Literal[1], WHOLE_NUMBER]
-    """Version of the format."""
-    platform: Name
-    """Name by which execution times refer to it."""
-    hardware: HardwareSection
-    """The hardware itself."""
-    os: OsSection = Field(default_factory=OsSection)
-    """The operating system that is usual on it; keys of the application override it."""
-    middleware: Middleware = Field(default_factory=Middleware)
-    """The generic micro-ROS model as ported to it; keys of the application override it, key by key."""
-    source: str | None = None
-    """Source of the figures."""
-    sources: dict[Name, str] = Field(default_factory=dict)
-    """Sources of single figures, by their keys."""

@@ -11,13 +11,13 @@ from typing import Any, TypeVar
 
 from amalthea_uros.spec.executors import ExecutorSection, LoopSection
 from amalthea_uros.spec.middleware import Middleware
-from amalthea_uros.spec.section import Section, Shorthand
+from amalthea_uros.spec.section import DescriptionSection, Shorthand
 from amalthea_uros.spec.transports import TransportSection
 
-S = TypeVar("S", bound=Section)
+S = TypeVar("S", bound=DescriptionSection)
 
 #: Keys of which a section has one: its executor or executors, the activation of an executor, the wire of a transport.
-_ALTERNATIVES: dict[type[Section], AbstractSet[str]] = {
+_ALTERNATIVES: dict[type[DescriptionSection], AbstractSet[str]] = {
     Middleware: {"executor", "executors"},
     ExecutorSection: {"loop", "period"},
     TransportSection: {"can", "can_fd", "serial", "udp", "tcp", "usb_cdc", "custom"},
@@ -55,11 +55,11 @@ def _merged(own: S, base: S) -> S:
     return found
 
 
-def _excluded(own: Section) -> AbstractSet[str]:
+def _excluded(own: DescriptionSection) -> AbstractSet[str]:
     alternatives = _ALTERNATIVES.get(type(own), frozenset())
     return alternatives if alternatives & own.model_fields_set else frozenset()
 
 
 def _has_parts(value: Any) -> bool:
     """Whether a value is completed, instead of being replaced."""
-    return isinstance(value, Section) and not isinstance(value, Shorthand | LoopSection)
+    return isinstance(value, DescriptionSection) and not isinstance(value, Shorthand | LoopSection)

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from amalthea_uros.spec.executors import ExecutorSection, MessageCost
-from amalthea_uros.spec.section import Section, Shorthand
+from amalthea_uros.spec.section import DescriptionSection, Shorthand
 from amalthea_uros.spec.transports import Agent, TransportSection
 from amalthea_uros.spec.values import Count, CountOrNone, Duration, Name, OffsetOrNumberZero, Priority, Size, described
 
@@ -27,7 +27,7 @@ class ResponseTime(Shorthand):
     """Maximum time."""
 
 
-class InitialisationSection(Section):
+class InitialisationSection(DescriptionSection):
     """Creation of the entities, one after the other."""
 
     response_time: ResponseTime | None = None
@@ -47,7 +47,7 @@ _CREATION_MODES = described(
 )
 
 
-class PoolSizes(Section):
+class PoolSizes(DescriptionSection):
     """Build options of the middleware, by their names: those of rmw_microxrcedds, of its XRCE-DDS client, and of zenoh-pico."""
 
     RMW_UXRCE_MAX_SESSIONS: Count | None = None
@@ -157,7 +157,7 @@ _POLICIES = described(
 )
 
 
-class Reliable(Section):
+class Reliable(DescriptionSection):
     """How reliable messages are sent."""
 
     waits: bool = True
@@ -166,7 +166,7 @@ class Reliable(Section):
     """Time after which it times out; default: that of the middleware, `RMW_UXRCE_PUBLISH_RELIABLE_TIMEOUT` for XRCE-DDS."""
 
 
-class MiddlewareTask(Section):
+class MiddlewareTask(DescriptionSection):
     """A task or thread of the middleware, beside the executors."""
 
     name: Name
@@ -181,7 +181,7 @@ class MiddlewareTask(Section):
     """Its stack."""
 
 
-class Middleware(Section):
+class Middleware(DescriptionSection):
     """The generic micro-ROS model of a platform."""
 
     profile: Name = "xrce-dds"

@@ -1,4 +1,4 @@
-"""The errors of pydantic as findings: what is wrong, where, and what to do."""
+"""The errors of pydantic as findings: what is wrong, where, and what to do; and what is left of a file without its mistakes."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from pydantic_core import ErrorDetails
 from amalthea_uros._internal.plural import counted
 from amalthea_uros._internal.similar import similar
 from amalthea_uros.diagnostics import Finding, Severity
-from amalthea_uros.spec.nodes import MappingNode, Node, NodePlace, ScalarNode, SequenceNode, SourceText
-from amalthea_uros.spec.section import Section
+from amalthea_uros.spec.nodes import MappingNode, Node, NodePlace, ScalarNode, SequenceNode, YamlText
+from amalthea_uros.spec.section import DescriptionSection
 from amalthea_uros.units import shortened
 
 _WHOLE_NUMBER = re.compile(r"-?\d{1,30}", re.ASCII)
@@ -82,7 +82,7 @@ class Mistake(NamedTuple):
         return str(self.details["loc"][-1]) if self.details["loc"] else ""
 
 
-def finding_of(mistake: Mistake, source: SourceText, kind: type[Section]) -> Finding:
+def finding_of(mistake: Mistake, source: YamlText, kind: type[DescriptionSection]) -> Finding:
     """The finding for an error in a section of some kind."""
     value = mistake.path[-1]
     match mistake.kind:
@@ -95,7 +95,7 @@ def finding_of(mistake: Mistake, source: SourceText, kind: type[Section]) -> Fin
     return Finding("YML012", Severity.ERROR, f"{_owner(mistake)}{message}", source.location(value.place), help_text)
 
 
-def intended_key(mistake: Mistake, kind: type[Section], similarity: float = _SIMILAR) -> str | None:
+def intended_key(mistake: Mistake, kind: type[DescriptionSection], similarity: float = _SIMILAR) -> str | None:
     """The key that an unknown key is probably a misspelling of."""
     known, key = _keys(mistake.details["loc"][:-1], kind), mistake.key.replace("-", "_")
     synonym = next((each for each in _SYNONYMS.get(key.lower(), ()) if each in known), None)
@@ -193,7 +193,7 @@ def _correction(details: ErrorDetails, node: Node) -> str:
     return ""
 
 
-def _advice(mistake: Mistake, kind: type[Section]) -> str:
+def _advice(mistake: Mistake, kind: type[DescriptionSection]) -> str:
     """What to do about an unknown key."""
     if _AFTER_COMMA.fullmatch(mistake.key):
         return "A comma separates keys; write decimals with a point, e.g. 1.5 ms."
@@ -204,7 +204,7 @@ def _advice(mistake: Mistake, kind: type[Section]) -> str:
     return f"Known keys: {', '.join(known)}." if known else ""
 
 
-def _keys(loc: tuple[int | str, ...], kind: type[Section]) -> list[str]:
+def _keys(loc: tuple[int | str, ...], kind: type[DescriptionSection]) -> list[str]:
     """The keys that the JSON schema allows at a place."""
     schema = _schema(kind)
     level = [schema]
@@ -215,7 +215,7 @@ def _keys(loc: tuple[int | str, ...], kind: type[Section]) -> list[str]:
 
 
 @cache
-def _schema(kind: type[Section]) -> dict[str, Any]:
+def _schema(kind: type[DescriptionSection]) -> dict[str, Any]:
     return kind.model_json_schema(by_alias=True)
 
 
@@ -237,3 +237,59 @@ def _inner(schema: dict[str, Any], part: int | str, whole: dict[str, Any]) -> It
             inner = variant.get("properties", {}).get(part)
             by_name = next(iter(variant.get("patternProperties", {}).values()), None)
             yield from filter(None, [inner or by_name])
+
+
+#: Similarity of words from which on one is taken for a misspelling of the other.
+CERTAIN = 0.8
+
+
+def repair(mistakes: Iterable[Mistake], kind: type[DescriptionSection]) -> set[NodePlace] | None:
+    """Correct misspelled keys and words in the nodes of a file, and remove those that are not understood.
+
+    Returns
+    -------
+    set : the places whose further findings may be consequences; None if a mistake leaves too little to examine, such as an unknown
+        list, which may define names.
+    """
+    touched: set[NodePlace] = set()
+    for mistake in mistakes:
+        holder = mistake.path[-2] if len(mistake.path) > 1 else None
+        if not isinstance(holder, MappingNode) or not _repair(mistake, holder, kind):
+            return None
+        touched.update(_places(holder))
+    return touched
+
+
+def _repair(mistake: Mistake, holder: MappingNode, kind: type[DescriptionSection]) -> bool:
+    """Repair a mistake in the mapping that it is in, unless that would be a guess."""
+    value = mistake.path[-1]
+    key = next((part for part in map(str, reversed(mistake.details["loc"])) if holder.items.get(part) is value), None)
+    if key is None:
+        return True  # It is also in the place of an alias, where it was repaired.
+    if mistake.kind == "extra_forbidden":
+        return _rename(holder, key, intended_key(mistake, kind, CERTAIN))
+    if mistake.kind == "literal_error":
+        word = intended_word(mistake, CERTAIN)
+        if word is None:
+            del holder.items[key]
+        else:
+            holder.items[key] = ScalarNode(value.place, word)
+        return True
+    return False
+
+
+def _rename(holder: MappingNode, key: str, intended: str | None) -> bool:
+    if intended is not None and intended not in holder.items:
+        holder.items[intended], holder.keys[intended] = holder.items[key], holder.keys[key]
+    elif not isinstance(holder.items[key], ScalarNode):
+        return False
+    del holder.items[key]
+    return True
+
+
+def _places(holder: MappingNode) -> Iterator[NodePlace]:
+    """The places of a mapping and of its plain values."""
+    yield holder.place
+    for item in holder.items.values():
+        if isinstance(item, ScalarNode):
+            yield item.place

@@ -74,7 +74,7 @@ Node: TypeAlias = ScalarNode | SequenceNode | MappingNode
 
 
 @dataclass(frozen=True, slots=True)
-class SourceText:
+class YamlText:
     """The text of a file, to show lines of it."""
 
     path: Path
@@ -86,14 +86,14 @@ class SourceText:
         return Location(self.path, place.line + 1, place.column + 1, text)
 
 
-def read_nodes(path: Path, text: str) -> tuple[Node, SourceText, list[Finding]]:
+def read_nodes(path: Path, text: str) -> tuple[Node, YamlText, list[Finding]]:
     """The content of a YAML document, and the errors in it that do not stop the parser.
 
     Raises
     ------
     ReadError : the text is not a YAML document, or exceeds a limit.
     """
-    source = SourceText(path, text.split("\n"))
+    source = YamlText(path, text.split("\n"))
     reader = _NodeReader(source)
     try:
         node = reader.document(text)
@@ -108,7 +108,7 @@ def read_nodes(path: Path, text: str) -> tuple[Node, SourceText, list[Finding]]:
     return node, source, reader.findings
 
 
-def _reason(error: yaml.MarkedYAMLError, source: SourceText) -> str:
+def _reason(error: yaml.MarkedYAMLError, source: YamlText) -> str:
     problem, context = error.problem or "", error.context or ""
     mark = error.problem_mark
     if "tab character that violates indentation" in problem:
@@ -120,7 +120,7 @@ def _reason(error: yaml.MarkedYAMLError, source: SourceText) -> str:
     return f"not valid YAML: {problem}{f' ({context})' if context else ''}"
 
 
-def _unreadable(source: SourceText, text: str, error: yaml.reader.ReaderError) -> Finding:
+def _unreadable(source: YamlText, text: str, error: yaml.reader.ReaderError) -> Finding:
     match = re.search(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x84\x86-\x9f\ud800-\udfff\ufffe\uffff]", text)
     if match is None:
         return Finding("YML001", Severity.ERROR, f"not valid YAML: {error.reason}", Location(source.path))
@@ -131,7 +131,7 @@ def _unreadable(source: SourceText, text: str, error: yaml.reader.ReaderError) -
 
 
 class _NodeReader:
-    def __init__(self, source: SourceText) -> None:
+    def __init__(self, source: YamlText) -> None:
         self.source = source
         self.findings: list[Finding] = []
         self.anchors: dict[str, Node] = {}

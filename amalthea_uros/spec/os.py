@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import Field, model_validator
 
 from amalthea_uros.spec.execution_time import ExecutionTimeSection
-from amalthea_uros.spec.section import Section, Shorthand
+from amalthea_uros.spec.section import DescriptionSection, Shorthand
 from amalthea_uros.spec.values import CountOrNone, Duration, Name, OffsetOrNumberZero, PriorityNumber, described, problem
 
 
@@ -37,7 +37,7 @@ class OverheadSection(Shorthand):
     @model_validator(mode="before")
     @classmethod
     def _of_plain_value(cls, value: Any) -> Any:
-        if isinstance(value, Section) or (isinstance(value, dict) and not cls._is_nested(value)):
+        if isinstance(value, DescriptionSection) or (isinstance(value, dict) and not cls._is_nested(value)):
             return value
         return {"activation": value, "termination": 0}
 
@@ -48,7 +48,7 @@ _LEVELS = described(
 )
 
 
-class OsOverhead(Section):
+class OsOverhead(DescriptionSection):
     """Overhead of all tasks and interrupt service routines that state no other one."""
 
     activation: OverheadTime | None = None
@@ -68,7 +68,7 @@ _DIRECTIONS = described(
 )
 
 
-class PriorityRange(Section):
+class PriorityRange(DescriptionSection):
     """The numbers that priorities of tasks can have."""
 
     lowest: PriorityNumber
@@ -83,7 +83,7 @@ class PriorityRange(Section):
         return self
 
 
-class SleepTicks(Section):
+class SleepTicks(DescriptionSection):
     """How exactly a task sleeps: the time is rounded up to ticks, and the sleep ends at a tick before or after that."""
 
     early: CountOrNone = 0
@@ -92,7 +92,7 @@ class SleepTicks(Section):
     """Number of ticks by which a sleep can be longer than the ticks it is rounded up to."""
 
 
-class OsSection(Section):
+class OsSection(DescriptionSection):
     """The operating system."""
 
     rtos: (

@@ -1,22 +1,126 @@
-"""Platforms and operating systems that descriptions refer to by name, and what they add to a description."""
+"""Platforms and operating systems as data, which descriptions refer to by name, and what they add to a description."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
+from typing import Annotated, Literal, NamedTuple
+
+from pydantic import Field
 
 from amalthea_uros._internal.resources import PLATFORMS, RTOSES, known_platforms, known_rtoses
-from amalthea_uros.diagnostics import Finding, Severity
+from amalthea_uros._internal.similar import similar
+from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.spec.description import Description
-from amalthea_uros.spec.hardware import HardwareSection, Platform
-from amalthea_uros.spec.known_files import KnownFiles
+from amalthea_uros.spec.hardware import HardwareSection
 from amalthea_uros.spec.merging import merged, merged_middleware
 from amalthea_uros.spec.middleware import Middleware
+from amalthea_uros.spec.mistakes import CERTAIN
 from amalthea_uros.spec.os import OsSection
 from amalthea_uros.spec.read import read_section
-from amalthea_uros.spec.rtos import Rtos
+from amalthea_uros.spec.section import DescriptionSection
+from amalthea_uros.spec.values import WHOLE_NUMBER, Name
+
+_SUFFIXES = (".yaml", ".yml")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class KnownFiles:
+    """Files of one kind that come with amuros.
+
+    Attributes
+    ----------
+    kind : what they describe, for messages
+    files : by name
+    advice : what to do about an unknown name, besides using a known one
+    """
+
+    kind: str
+    files: Mapping[str, Path]
+    advice: str
+
+    def find(self, name: str, folder: Path, location: Location | None) -> tuple[Path, tuple[Finding, ...]]:
+        """The file of a name, and what is wrong with the name if it is clear which one is meant.
+
+        Parameters
+        ----------
+        folder : that files of users are relative to
+        location : where the name is stated
+
+        Raises
+        ------
+        ReadError : there is no such file.
+        """
+        if name.endswith(_SUFFIXES):
+            path = folder / name
+            if path.is_file():
+                return path, ()
+            advice = "Give a path relative to the directory of this file."
+            raise ReadError([Finding("APP001", Severity.ERROR, f"{self.kind} file {str(path)!r} not found", location, advice)])
+        if name in self.files:
+            return self.files[name], ()
+        finding = self.unknown(name, location)
+        near = similar(name, self.files, cutoff=CERTAIN)
+        if not near:
+            raise ReadError([finding])
+        return self.files[near[0]], (finding,)
+
+    def unknown(self, name: str, location: Location | None) -> Finding:
+        """The finding about a name that none of the files has."""
+        near = similar(name, self.files)
+        others = f"Known {self.kind}s: {', '.join(self.files)}; {self.advice}"
+        advice = f"Did you mean {near[0]!r}?" if near else others
+        return Finding("APP001", Severity.ERROR, f"unknown {self.kind} {name!r}", location, advice)
+
+
+_PLATFORM_FILES = KnownFiles(
+    kind="platform",
+    files={name: PLATFORMS / f"{name}.yaml" for name in known_platforms()},
+    advice="use 'generic' with 'frequency' and 'cores', or a file, e.g. ./mine.yaml.",
+)
+_RTOS_FILES = KnownFiles(
+    kind="operating system",
+    files={name: RTOSES / f"{name}.yaml" for name in known_rtoses()},
+    advice="or a file that describes another one, e.g. ./my-rtos.yaml.",
+)
+
+
+class Platform(DescriptionSection):
+    """A controller that applications refer to by name."""
+
+    amuros: Annotated[Literal[1], WHOLE_NUMBER]
+    """Version of the format."""
+    platform: Name
+    """Name by which execution times refer to it."""
+    hardware: HardwareSection
+    """The hardware itself."""
+    os: OsSection = Field(default_factory=OsSection)
+    """The operating system that is usual on it; keys of the application override it."""
+    middleware: Middleware = Field(default_factory=Middleware)
+    """The generic micro-ROS model as ported to it; keys of the application override it, key by key."""
+    source: str | None = None
+    """Source of the figures."""
+    sources: dict[Name, str] = Field(default_factory=dict)
+    """Sources of single figures, by their keys."""
+
+
+class Rtos(DescriptionSection):
+    """An operating system that platforms and applications refer to by name."""
+
+    amuros: Annotated[Literal[1], WHOLE_NUMBER]
+    """Version of the format."""
+    rtos: Name
+    """Name by which `os.rtos` refers to it."""
+    title: Name
+    """Its full name."""
+    os: OsSection = Field(default_factory=OsSection)
+    """Its properties; keys of the platform and of the application override them."""
+    middleware: Middleware = Field(default_factory=Middleware)
+    """The generic micro-ROS model as ported to it; keys of the platform and of the application override it, key by key."""
+    sources: dict[Name, str] = Field(default_factory=dict)
+    """Sources of the figures, by their keys."""
 
 
 class CompleteDescription(NamedTuple):
@@ -89,9 +193,7 @@ def _platform_file(stated: HardwareSection, folder: Path, other: str | None, fin
     name = other or stated.platform
     if name is None:
         return None
-    advice = "use 'generic' with 'frequency' and 'cores', or a file, e.g. ./mine.yaml."
-    files = KnownFiles(kind="platform", folder=PLATFORMS, names=known_platforms(), advice=advice)
-    path, mistakes = files.find(name, folder, stated.location("platform"))
+    path, mistakes = _PLATFORM_FILES.find(name, folder, stated.location("platform"))
     findings += mistakes
     return path
 
@@ -121,9 +223,7 @@ def _rtos(stated: OsSection, folder: Path, findings: list[Finding]) -> Rtos:
     """The operating system that is stated; one without properties if none is."""
     if stated.rtos is None:
         return Rtos(amuros=1, rtos="none", title="none")
-    advice = "or a file that describes another one, e.g. ./my-rtos.yaml."
-    files = KnownFiles(kind="operating system", folder=RTOSES, names=known_rtoses(), advice=advice)
-    path, mistakes = files.find(stated.rtos, folder, stated.location("rtos"))
+    path, mistakes = _RTOS_FILES.find(stated.rtos, folder, stated.location("rtos"))
     findings += mistakes
     rtos = read_section(path, Rtos)
     if path.parent == RTOSES:

@@ -8,7 +8,7 @@ from pydantic import Field
 
 from amalthea_uros.spec.execution_time import ExecutionTimeSection
 from amalthea_uros.spec.os import OverheadSection
-from amalthea_uros.spec.section import Section, Shorthand
+from amalthea_uros.spec.section import DescriptionSection, Shorthand
 from amalthea_uros.spec.values import (
     WHOLE_NUMBER,
     Count,
@@ -35,7 +35,7 @@ class SporadicSection(Shorthand):
     """Maximum time between two activations; default: unknown."""
 
 
-class BurstSection(Section):
+class BurstSection(DescriptionSection):
     """Several activations at the start of each period."""
 
     period: Duration
@@ -48,7 +48,7 @@ class BurstSection(Section):
     """Start of the first burst."""
 
 
-class Times(Section):
+class Times(DescriptionSection):
     """A list of activations that repeats."""
 
     period: Duration
@@ -59,7 +59,7 @@ class Times(Section):
     """Start of the first period."""
 
 
-class Steps(Section):
+class Steps(DescriptionSection):
     """Execution time, accesses and triggers of a function or a process."""
 
     execution_time: ExecutionTimeSection | None = None

@@ -6,11 +6,11 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from amalthea_uros.spec.section import Section
+from amalthea_uros.spec.section import DescriptionSection
 from amalthea_uros.spec.values import WHOLE_NUMBER, Count, CountOrNone, Duration, Name, Offset, Priority, Size, SizeOrNothing
 
 
-class WaitingData(Section):
+class WaitingData(DescriptionSection):
     """How an executor waits for messages and timers."""
 
     messages_per_wait: Count | None = None
@@ -27,7 +27,7 @@ class WaitingData(Section):
     """Timeout of executors for which nobody set one."""
 
 
-class SendingData(Section):
+class SendingData(DescriptionSection):
     """How messages are sent."""
 
     waits: bool = True
@@ -44,7 +44,7 @@ class SendingData(Section):
     """Whether several threads may use the middleware at the same time also where it is not built for that with `multithread`."""
 
 
-class ThreadData(Section):
+class ThreadData(DescriptionSection):
     """A thread of the middleware, beside the executors."""
 
     name: Name
@@ -61,7 +61,7 @@ class ThreadData(Section):
     """Whether callbacks of messages run in it, instead of in an executor."""
 
 
-class ProfileData(Section):
+class ProfileData(DescriptionSection):
     """A profile of a middleware: all of its figures, or those that differ from another profile."""
 
     amuros: Annotated[Literal[1], WHOLE_NUMBER]

@@ -6,7 +6,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from amalthea_uros.spec.section import Section, Shorthand
+from amalthea_uros.spec.section import DescriptionSection, Shorthand
 from amalthea_uros.spec.values import Count, Duration, Name, described, problem
 
 Moment = Annotated[
@@ -54,7 +54,7 @@ class ChainJitter(Shorthand):
     """Maximum that is allowed."""
 
 
-class Chain(Section):
+class Chain(DescriptionSection):
     """A cause-effect chain: a `path`, a `sequence` of chains, or `parallel` paths."""
 
     name: Name
@@ -114,7 +114,7 @@ class Jitter(Shorthand):
     """Maximum that is allowed."""
 
 
-class RequirementSection(Section):
+class RequirementSection(DescriptionSection):
     """Limits that every job of a process must meet."""
 
     process: Name

@@ -9,13 +9,13 @@ from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, PydanticCustomError
 
 from amalthea_uros.diagnostics import Location
-from amalthea_uros.spec.nodes import MappingNode, Node, SequenceNode, SourceText
+from amalthea_uros.spec.nodes import MappingNode, Node, SequenceNode, YamlText
 
 #: How keys begin that are for other tools, or for anchors; they are ignored.
 EXTENSION = "x-"
 
 
-class Section(BaseModel):
+class DescriptionSection(BaseModel):
     """A mapping of the file."""
 
     # Only the sections that something is validated by are built, with those in them, when that happens first.
@@ -23,9 +23,9 @@ class Section(BaseModel):
         extra="forbid", frozen=True, use_attribute_docstrings=True, protected_namespaces=(), defer_build=True
     )
 
-    _where: tuple[MappingNode, SourceText] | None = PrivateAttr(None)
+    _where: tuple[MappingNode, YamlText] | None = PrivateAttr(None)
     #: The section that gives the keys that this one does not state; see `spec.merging`.
-    _base: Section | None = PrivateAttr(None)
+    _base: DescriptionSection | None = PrivateAttr(None)
 
     @model_validator(mode="before")
     @classmethod
@@ -62,7 +62,7 @@ class Section(BaseModel):
                 node = node.items[index]
         return source.location(node.place)
 
-    def move_to(self, other: Section, key: str) -> None:
+    def move_to(self, other: DescriptionSection, key: str) -> None:
         """Give the section and those in it the location of a key of another one, which names the file that they are from."""
         if other._where is not None:
             own, source = other._where
@@ -77,7 +77,7 @@ class Section(BaseModel):
         return self.states(key) and self._where is not None and key not in self._where[0].items
 
 
-class Shorthand(Section):
+class Shorthand(DescriptionSection):
     """A section that may be written as a plain value.
 
     Attributes
@@ -89,12 +89,12 @@ class Shorthand(Section):
 
     shorthand: ClassVar[tuple[str, ...]]
     plain_value: ClassVar[str]
-    nested: ClassVar[type[Section] | None] = None
+    nested: ClassVar[type[DescriptionSection] | None] = None
 
     @model_validator(mode="before")
     @classmethod
     def _of_plain_value(cls, value: Any) -> Any:
-        if isinstance(value, Section) or (isinstance(value, dict) and not cls._is_nested(value)):
+        if isinstance(value, DescriptionSection) or (isinstance(value, dict) and not cls._is_nested(value)):
             return value
         return dict.fromkeys(cls.shorthand, value)
 
@@ -116,17 +116,17 @@ class Shorthand(Section):
         return reference
 
 
-def attach_locations(value: Any, node: Node, source: SourceText) -> None:
+def attach_locations(value: Any, node: Node, source: YamlText) -> None:
     """Attach their locations to a section and everything in it."""
-    if isinstance(value, Section) and isinstance(node, MappingNode):
+    if isinstance(value, DescriptionSection) and isinstance(node, MappingNode):
         value._where = node, source
         # A section that is not given, or given as a shorthand, has the location of the outer one; in a shorthand also its keys.
         outer = node if isinstance(value, Shorthand) else MappingNode(node.place, {}, {})
         for name, field in type(value).model_fields.items():
             inner = node.items.get(field.alias or name, outer)
-            if inner is not outer or isinstance(getattr(value, name), Section):
+            if inner is not outer or isinstance(getattr(value, name), DescriptionSection):
                 attach_locations(getattr(value, name), inner, source)
-    elif isinstance(value, Section):
+    elif isinstance(value, DescriptionSection):
         attach_locations(value, MappingNode(node.place, {}, {}), source)
     elif isinstance(value, list | tuple) and isinstance(node, SequenceNode):
         for item, inner in zip(value, node.items, strict=True):

@@ -9,7 +9,7 @@ from pydantic import AfterValidator, Field, model_validator
 from amalthea_uros.spec.execution_time import ExecutionTimeSection
 from amalthea_uros.spec.executors import MessageCost
 from amalthea_uros.spec.os import OverheadSection
-from amalthea_uros.spec.section import Section, Shorthand
+from amalthea_uros.spec.section import DescriptionSection, Shorthand
 from amalthea_uros.spec.values import (
     BaudRate,
     BitRate,
@@ -66,7 +66,7 @@ class Interrupt(Shorthand):
     nested = ExecutionTimeSection
 
 
-class ForeignFrameSection(Section):
+class ForeignFrameSection(DescriptionSection):
     """A frame that others send on the bus."""
 
     name: Name
@@ -84,7 +84,7 @@ class ForeignFrameSection(Section):
 _FRAME_FORMATS = described(standard="Identifiers of 11 bits.", extended="Identifiers of 29 bits.")
 
 
-class Can(Section):
+class Can(DescriptionSection):
     """XRCE-DDS over CAN: frames of a header byte and up to 7 bytes of data."""
 
     bitrate: BitRate
@@ -101,7 +101,7 @@ class Can(Section):
     """A DBC file with the foreign frames, relative to this file; those with a cycle time are foreign traffic."""
 
 
-class CanFd(Section):
+class CanFd(DescriptionSection):
     """XRCE-DDS over CAN FD, in the official framing: a length byte and up to 63 bytes of one message per frame."""
 
     bitrate: BitRate
@@ -129,7 +129,7 @@ _MODES = described(
 DriverMode = Annotated[Literal["dma", "interrupt", "polling", "blocking"], _MODES]
 
 
-class Driver(Section):
+class Driver(DescriptionSection):
     """How the driver moves bytes between the middleware and the line."""
 
     write: DriverMode = "blocking"
@@ -146,7 +146,7 @@ class Driver(Section):
     """Size of its receive buffer; what arrives when it is full is lost."""
 
 
-class Serial(Section):
+class Serial(DescriptionSection):
     """XRCE-DDS in HDLC frames over a serial line."""
 
     baud_rate: BaudRate = 115200
@@ -159,7 +159,7 @@ class Serial(Section):
     """The interrupt for each received piece; if omitted, its cost is part of other execution times."""
 
 
-class UsbCdc(Section):
+class UsbCdc(DescriptionSection):
     """XRCE-DDS in HDLC frames over a virtual serial port of USB."""
 
     throughput: BitRate = 12_000_000
@@ -172,7 +172,7 @@ class UsbCdc(Section):
     """The interrupt for each received packet."""
 
 
-class NetworkSection(Section):
+class NetworkSection(DescriptionSection):
     """XRCE-DDS over a network."""
 
     bitrate: BitRate
@@ -187,7 +187,7 @@ class NetworkSection(Section):
     """The interrupt for each received packet."""
 
 
-class TransferTime(Section):
+class TransferTime(DescriptionSection):
     """A row of a table of transfer times."""
 
     size: Size
@@ -196,7 +196,7 @@ class TransferTime(Section):
     """Time that it takes."""
 
 
-class CustomTransport(Section):
+class CustomTransport(DescriptionSection):
     """A transport that is described by measured transfer times."""
 
     table: list[TransferTime] = Field(min_length=1)
@@ -209,7 +209,7 @@ class CustomTransport(Section):
     """The interrupt for each received message."""
 
 
-class Agent(Section):
+class Agent(DescriptionSection):
     """The agent: a box with stated latencies."""
 
     name: Name = "Agent"
@@ -228,7 +228,7 @@ def _not_too_long(bits: int) -> int:
     return bits
 
 
-class TransportSection(Section):
+class TransportSection(DescriptionSection):
     """The transport between the controller and the agent: exactly one wire."""
 
     can: Can | None = None

@@ -11,6 +11,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
+from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros.errors import ReadError
 from amalthea_uros.perf.activities import AccessKind, Call, LabelAccess, walk
 from amalthea_uros.perf.events import CustomEvent, Event, ProcessChange, ProcessEvent
 from amalthea_uros.perf.network import Direction, Network, Purpose
@@ -102,17 +104,9 @@ def _with_messages(element: ChainElement, callback: Callback) -> ChainElement:
     )
 
 
-class TopicError(Exception):
-    """It is not clear which message of a topic is meant.
-
-    Attributes
-    ----------
-    advice : what to do
-    """
-
-    def __init__(self, message: str, advice: str) -> None:
-        super().__init__(message)
-        self.advice = advice
+def topic_error(message: str, location: Location | None, advice: str) -> ReadError:
+    """The error of a path in which it is not clear which message of a topic is meant."""
+    return ReadError([Finding("CHN011", Severity.ERROR, message, location, advice)])
 
 
 class MessageOfTopic(NamedTuple):
@@ -169,36 +163,35 @@ class Topics:
     def __contains__(self, name: object) -> bool:
         return isinstance(name, str) and _plain(name) in self.names
 
-    def sent(self, topic: str, before: str) -> MessageOfTopic:
+    def sent(self, topic: str, before: str, location: Location | None) -> MessageOfTopic:
         """The message of a topic that a path goes along after a member.
 
         Raises
         ------
-        TopicError : no callback sends it, or several, and the member is none of them.
+        ReadError : no callback sends it, or several, and the member is none of them.
         """
-        return self._message(topic, self._one(topic, self.senders, before), Direction.TO_AGENT)
+        return self._message(topic, self._one(topic, self.senders, before, location), Direction.TO_AGENT)
 
-    def received(self, topic: str, after: Sequence[str]) -> MessageOfTopic:
+    def received(self, topic: str, after: Sequence[str], location: Location | None) -> MessageOfTopic:
         """The message of a topic that a path goes along before the rest of its members.
 
         Raises
         ------
-        TopicError : no callback receives it, or several, and the path does not go on with one of them.
+        ReadError : no callback receives it, or several, and the path does not go on with one of them.
         """
         named = next((name for name in after if name in self.receivers.get(_plain(topic), ())), "")
-        return self._message(topic, self._one(topic, self.receivers, named), Direction.TO_CONTROLLER)
+        return self._message(topic, self._one(topic, self.receivers, named, location), Direction.TO_CONTROLLER)
 
-    def _one(self, topic: str, callbacks: Mapping[str, Sequence[str]], named: str) -> str:
+    def _one(self, topic: str, callbacks: Mapping[str, Sequence[str]], named: str, location: Location | None) -> str:
         """The callback that is meant: the one of a name, or the only one."""
         candidates = callbacks.get(_plain(topic), ())
         verb, end = ("publishes", "begin") if callbacks is self.senders else ("receives", "end")
         if not candidates:
-            raise TopicError(f"no callback {verb} {topic!r}", f"Let the path {end} with {topic!r}, or remove it.")
+            raise topic_error(f"no callback {verb} {topic!r}", location, f"Let the path {end} with {topic!r}, or remove it.")
         if named not in candidates and len(candidates) > 1:
             names = ", ".join(map(repr, candidates))
-            raise TopicError(
-                f"more than one callback {verb} {topic!r}: {names}", "Add the one that is meant next to the topic."
-            )
+            message = f"more than one callback {verb} {topic!r}: {names}"
+            raise topic_error(message, location, "Add the one that is meant next to the topic.")
         return named if named in candidates else candidates[0]
 
     def _message(self, topic: str, callback: str, direction: Direction) -> MessageOfTopic:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from itertools import pairwise, product
 
 from amalthea_uros.diagnostics import Location
-from amalthea_uros.errors import UnknownError
+from amalthea_uros.errors import ReadError, UnknownError
 from amalthea_uros.perf import events as perf
 from amalthea_uros.perf.constraints import LatencyConstraint, LatencyKind
 from amalthea_uros.perf.software import Label
@@ -15,7 +15,7 @@ from amalthea_uros.spec.requirements import Chain, Moment
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.timing.dataflow.routes import is_linked
 from amalthea_uros.uros.application.notes import Notes
-from amalthea_uros.uros.chain_members import ChainElement, MessageOfTopic, TopicError, Topics
+from amalthea_uros.uros.chain_members import ChainElement, MessageOfTopic, Topics, topic_error
 
 _PROCESS_CHANGES: Mapping[Moment, perf.ProcessChange] = {
     "activation": perf.ProcessChange.ACTIVATE,
@@ -25,7 +25,7 @@ _PROCESS_CHANGES: Mapping[Moment, perf.ProcessChange] = {
 
 
 @dataclass(slots=True)
-class Chains:
+class ChainBuilder:
     """Builds event chains from the chains of the description, and their events.
 
     Attributes
@@ -120,8 +120,8 @@ class Chains:
         self._check_labels(path, place)
         try:
             found = [(index, event) for index in range(len(path)) for event in self._events_of(section, path, index, place)]
-        except TopicError as error:
-            self.notes.error("CHN011", str(error), section.location(), error.advice)
+        except ReadError as error:
+            self.notes.add_all(error.findings)
             return None
         names = self._connected(found, path, place)
         if names[0] == names[-1]:
@@ -145,7 +145,7 @@ class Chains:
         """The events of a member of a path."""
         name = path[index]
         if self._is_topic(name):
-            yield from self._topic_events(path, index, place)
+            yield from self._topic_events(section, path, index, place)
         elif index == 0:
             yield self._event_at(name, section.start)
         elif name not in self.elements:
@@ -156,33 +156,33 @@ class Chains:
             # An element that writes the next label of the path is represented by that write.
             yield self._event_at(name, "finish")
 
-    def _topic_events(self, path: Sequence[str], index: int, place: Callable[[int], Location | None]) -> Iterator[str]:
+    def _topic_events(
+        self, section: Chain, path: Sequence[str], index: int, place: Callable[[int], Location | None]
+    ) -> Iterator[str]:
         """The events of the messages of a topic, and of the callbacks that send and receive them if the path does not name them.
 
         Raises
         ------
-        TopicError : it is not clear which message is meant.
+        ReadError : it is not clear which message is meant.
         """
         topic, rest = path[index], path[index + 1 :]
         if index > 0:
-            sent = self.topics.sent(topic, path[index - 1])
+            sent = self.topics.sent(topic, path[index - 1], section.location())
             if sent.callback in path[: index - 1]:
-                raise TopicError(
-                    f"{path[index - 1]!r} does not publish {topic!r}", f"Add the topic to the path after {sent.callback!r}."
-                )
+                message = f"{path[index - 1]!r} does not publish {topic!r}"
+                raise topic_error(message, section.location(), f"Add the topic to the path after {sent.callback!r}.")
             if sent.callback != path[index - 1]:
                 yield self._event_at(sent.callback, "finish")
             yield self._message_event(sent, topic, place(index))
         if not rest:
             return
-        received = self.topics.received(topic, rest)
+        received = self.topics.received(topic, rest, section.location())
         yield self._message_event(received, topic, place(index))
         receiver, taken_by = self.elements[received.callback], self._taker(received.callback)
         takers = {element.process for element in (receiver, taken_by) if element is not None}
         if received.callback in rest[1:] and self._process(rest[0]) not in {*takers, *received.processes}:
-            raise TopicError(
-                f"{rest[0]!r} does not receive {topic!r}", f"Add the topic to the path before {received.callback!r}."
-            )
+            message = f"{rest[0]!r} does not receive {topic!r}"
+            raise topic_error(message, section.location(), f"Add the topic to the path before {received.callback!r}.")
         known = {receiver.process, *received.processes, self._process(rest[0])}
         if taken_by is not None and taken_by.process not in known:
             yield self._event_at(receiver.taken_by or "", "finish")

@@ -90,12 +90,12 @@ def check_meta(
     ----------
     waiting : what the storage for messages has to be for; None for what follows from the description alone
     """
-    comparison = _Comparison(application, profile, waiting)
+    comparison = _MetaComparison(application, profile, waiting)
     return tuple(islice(comparison.findings_of(meta), MAX_FINDINGS))
 
 
 @dataclass(slots=True)
-class _Comparison(Brief):
+class _MetaComparison(Brief):
     """Compares a file with what an application needs.
 
     Attributes

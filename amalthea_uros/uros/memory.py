@@ -92,7 +92,7 @@ def shared_stacks(system: System, sizes: Mapping[str, int | None]) -> StackUse:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Level:
+class _StackLevel:
     """A process with what decides who preempts it.
 
     Attributes
@@ -108,14 +108,14 @@ class _Level:
     is_cooperative: bool = False
     yields: bool = False
 
-    def is_preempted_by(self, other: _Level) -> bool:
+    def is_preempted_by(self, other: _StackLevel) -> bool:
         """Whether the other one can run on top of it."""
         if self.is_cooperative and other.is_cooperative and not self.yields:
             return False
         return other.rank > self.threshold
 
 
-def _levels(system: System) -> list[_Level]:
+def _levels(system: System) -> list[_StackLevel]:
     """The processes with a stack; messages on a wire have none."""
     messages = {each.name for each in system.network.transmissions}
     found = []
@@ -124,7 +124,7 @@ def _levels(system: System) -> list[_Level]:
         if isinstance(task, Task) and task.name not in messages:
             priority = effective_priority(allocation, system) or 0
             found.append(
-                _Level(
+                _StackLevel(
                     name=task.name,
                     rank=(False, priority),
                     threshold=(False, inf if task.preemption is Preemption.NON_PREEMPTIVE else priority),
@@ -134,14 +134,14 @@ def _levels(system: System) -> list[_Level]:
             )
     for routine in system.mapping.isrs:
         rank = (True, routine.priority or 0)
-        found.append(_Level(name=routine.isr, rank=rank, threshold=rank))
+        found.append(_StackLevel(name=routine.isr, rank=rank, threshold=rank))
     return found
 
 
-def _longest(levels: Sequence[_Level], sizes: Mapping[str, int | None]) -> tuple[str, ...]:
+def _longest(levels: Sequence[_StackLevel], sizes: Mapping[str, int | None]) -> tuple[str, ...]:
     """The chain of nested preemption that uses most, lowest first: by dynamic programming from the highest rank down."""
     best: dict[str, tuple[int, tuple[str, ...]]] = {}
-    done: list[_Level] = []
+    done: list[_StackLevel] = []
     for level in sorted(levels, key=lambda level: level.rank, reverse=True):
         above = max(
             (best[other.name] for other in done if level.is_preempted_by(other)), key=lambda each: each[0], default=(0, ())

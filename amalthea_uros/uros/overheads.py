@@ -17,24 +17,24 @@ from amalthea_uros.uros.assembly.planned import PlannedIsr, PlannedTask
 
 
 @dataclass(frozen=True, slots=True)
-class _Times:
+class _OverheadTimes:
     """What precedes and follows a job; None: nothing."""
 
     activation: OverheadTime | None
     termination: OverheadTime | None
 
-    def overridden(self, own: OverheadSection | None) -> _Times:
+    def overridden(self, own: OverheadSection | None) -> _OverheadTimes:
         """The same with the times that a process states itself."""
         if own is None:
             return self
-        return _Times(own.activation or self.activation, own.termination or self.termination)
+        return _OverheadTimes(own.activation or self.activation, own.termination or self.termination)
 
 
 def add_overheads(context: AssemblyContext) -> None:
     """Add the overhead of each process that has been planned."""
     stated = context.description.os.overhead
-    of_tasks = _Times(stated.activation, stated.termination)
-    of_isrs = _Times(stated.isr.activation, stated.isr.termination)
+    of_tasks = _OverheadTimes(stated.activation, stated.termination)
+    of_isrs = _OverheadTimes(stated.isr.activation, stated.isr.termination)
     for index, isr in enumerate(context.isrs):
         activities = _activities(isr, of_isrs.overridden(isr.overhead), context)
         context.isrs[index] = replace(isr, activities=activities)
@@ -48,7 +48,7 @@ def add_overheads(context: AssemblyContext) -> None:
         context.tasks[index] = replace(task, activities=_activities(task, times, context))
 
 
-def _activities(process: PlannedTask | PlannedIsr, times: _Times, context: AssemblyContext) -> tuple[Activity, ...]:
+def _activities(process: PlannedTask | PlannedIsr, times: _OverheadTimes, context: AssemblyContext) -> tuple[Activity, ...]:
     """The activities of a process with its overhead."""
     before = _calls(_activation_name(process.name), times.activation, process.core, process.origin, context)
     after = _calls(f"{process.name}_Termination", times.termination, process.core, process.origin, context)

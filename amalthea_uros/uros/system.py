@@ -15,7 +15,7 @@ from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.uros.application.callbacks import Callback
 from amalthea_uros.uros.assembly.context import AssemblyContext
 from amalthea_uros.uros.chain_members import Topics, chain_elements
-from amalthea_uros.uros.chains import Chains
+from amalthea_uros.uros.chains import ChainBuilder
 from amalthea_uros.uros.executors.activation import with_triggered_iterations
 from amalthea_uros.uros.executors.handles import deadlines
 from amalthea_uros.uros.labels import check_misspelled_labels, labels_of, placements
@@ -36,7 +36,7 @@ def assembled_system(context: AssemblyContext, callbacks: Sequence[Callback], ne
     waits = waits_outside(callbacks, system, context.profile)
     system = replace(system, network=replace(system.network, waits=tuple(waits)))
     check_shared_priorities(system, context.tasks, notes, context.priority_scale)
-    chains = Chains(elements, Topics.of(callbacks, system.network), Dataflow(system), notes)
+    chains = ChainBuilder(elements, Topics.of(callbacks, system.network), Dataflow(system), notes)
     limits = chains.add_all(description.chains)
     demanded = (*requirements(description.requirements, elements, notes), *deadlines(context.executors, callbacks))
     return replace(

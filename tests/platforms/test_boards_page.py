@@ -9,9 +9,8 @@ from amalthea_uros.spec.application import Application, NodeSection
 from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.executors import LoopSection
 from amalthea_uros.spec.hardware import HardwareSection
-from amalthea_uros.spec.platforms import complete
+from amalthea_uros.spec.platforms import Rtos, complete
 from amalthea_uros.spec.read import read_section
-from amalthea_uros.spec.rtos import Rtos
 from amalthea_uros.spec.transports import TransportSection
 from amalthea_uros.units import data_size_text, frequency_text, time_text
 

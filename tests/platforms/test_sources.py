@@ -3,9 +3,8 @@
 import pytest
 
 from amalthea_uros._internal.resources import PLATFORMS, RTOSES, known_platforms, known_rtoses
-from amalthea_uros.spec.hardware import Platform
+from amalthea_uros.spec.platforms import Platform, Rtos
 from amalthea_uros.spec.read import read_section
-from amalthea_uros.spec.rtos import Rtos
 
 #: A source for the whole file, or no figure that is about something real.
 WITHOUT_SOURCES = {"bodas-rc18-12-40", "generic", "single-core"}

@@ -13,8 +13,8 @@ from support import ROOT
 from amalthea_uros._internal.addresses import DOCUMENTATION
 from amalthea_uros._internal.files import overlaid
 from amalthea_uros.errors import ReadError
+from amalthea_uros.spec.description import json_schema
 from amalthea_uros.spec.read import read_description
-from amalthea_uros.spec.schema import json_schema
 
 SCHEMA = json_schema()
 VALIDATOR = jsonschema.Draft7Validator(SCHEMA)

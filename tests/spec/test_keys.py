@@ -7,7 +7,7 @@ from support import ROOT
 
 from amalthea_uros.spec import description as description  # with all its sections
 from amalthea_uros.spec import platforms as platforms
-from amalthea_uros.spec.section import Section
+from amalthea_uros.spec.section import DescriptionSection
 
 #: The version of the format, for which there is only one value, and where figures come from, for readers.
 WITHOUT_EFFECT = {"amuros", "sources"}
@@ -15,7 +15,7 @@ WITHOUT_EFFECT = {"amuros", "sources"}
 
 def test_every_key_is_read_somewhere():
     read = {name for room in ("spec", "uros") for name in names_read_in(ROOT / "amalthea_uros" / room)}
-    assert {key for section in sections(Section) for key in section.model_fields} - read == WITHOUT_EFFECT
+    assert {key for section in sections(DescriptionSection) for key in section.model_fields} - read == WITHOUT_EFFECT
 
 
 def sections(base):

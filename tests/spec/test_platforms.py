@@ -7,8 +7,8 @@ from amalthea_uros import build
 from amalthea_uros._internal.resources import PLATFORMS, known_platforms
 from amalthea_uros.errors import ReadError
 from amalthea_uros.spec.description import Description
-from amalthea_uros.spec.hardware import HardwareSection, Platform
-from amalthea_uros.spec.platforms import complete
+from amalthea_uros.spec.hardware import HardwareSection
+from amalthea_uros.spec.platforms import Platform, complete
 from amalthea_uros.spec.read import read_section
 
 

@@ -30,7 +30,7 @@ from amalthea_uros.measure.markers import (
     refuse_overlap,
 )
 from amalthea_uros.measure.series import MeasuredKind
-from amalthea_uros.spec.nodes import MappingNode, Node, NodePlace, ScalarNode, SourceText, read_nodes
+from amalthea_uros.spec.nodes import MappingNode, Node, NodePlace, ScalarNode, YamlText, read_nodes
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.units import Time, parse_duration, parse_time
 
@@ -84,7 +84,7 @@ def counter_of(text: str, signals: Signals) -> MarkerCounter:
 
 @dataclass(slots=True)
 class _MarkerFileReader:
-    source: SourceText
+    source: YamlText
     signals: Signals
     findings: list[Finding]
     _nodes: dict[str, Node] = field(default_factory=dict)

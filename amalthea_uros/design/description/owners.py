@@ -10,7 +10,7 @@ from amalthea_uros.design.description.text_edits import Path
 from amalthea_uros.spec.application import CallbackSection, MessageCallback, Timer
 from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.executors import ExecutorSection
-from amalthea_uros.spec.section import Section
+from amalthea_uros.spec.section import DescriptionSection
 from amalthea_uros.uros.application.callbacks import body_name
 from amalthea_uros.uros.assembly.executor_runnables import spin_name
 
@@ -40,7 +40,7 @@ class Owner:
     name: str
     kind: OwnerKind
     path: Path
-    section: Section
+    section: DescriptionSection
 
 
 def owners(description: Description) -> Iterator[Owner]:

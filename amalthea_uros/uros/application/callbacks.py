@@ -14,6 +14,7 @@ from amalthea_uros.diagnostics import Location
 from amalthea_uros.perf.software import Channel
 from amalthea_uros.spec.application import (
     Application,
+    CallbackSection,
     Lifecycle,
     MessageCallback,
     NodeSection,
@@ -21,7 +22,6 @@ from amalthea_uros.spec.application import (
     Subscription,
     Timer,
 )
-from amalthea_uros.spec.application import CallbackSection as Section
 from amalthea_uros.spec.executors import ExecutorSection
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.units import SECOND, Frequency, Time
@@ -59,7 +59,7 @@ class Callback:
     buffer : the label in which the executor leaves the message; None without one
     """
 
-    section: Section
+    section: CallbackSection
     kind: CallbackKind
     node: NodeSection
     interval: Time | None
@@ -113,7 +113,7 @@ def callbacks_of(application: Application, middleware: Middleware, notes: Notes)
     return tuple(found)
 
 
-def sections_of(node: NodeSection) -> Iterator[tuple[CallbackKind, Section]]:
+def sections_of(node: NodeSection) -> Iterator[tuple[CallbackKind, CallbackSection]]:
     """The sections of all callbacks of a node."""
     for kind, sections in (
         (CallbackKind.SUBSCRIPTION, node.subscriptions),
@@ -131,7 +131,7 @@ def sections_of(node: NodeSection) -> Iterator[tuple[CallbackKind, Section]]:
         yield CallbackKind.LIFECYCLE, _of_middleware(f"{node.name}_Lifecycle", node.lifecycle)
 
 
-def _of_middleware(name: str, section: ParameterServer | Lifecycle) -> Section:
+def _of_middleware(name: str, section: ParameterServer | Lifecycle) -> CallbackSection:
     """The callback that answers requests to the middleware itself, with the locations of its section."""
     shared = {key: getattr(section, key) for key in section.model_fields_set & MessageCallback.model_fields.keys()}
     found = MessageCallback.model_construct(name=name, **shared)
@@ -139,7 +139,9 @@ def _of_middleware(name: str, section: ParameterServer | Lifecycle) -> Section:
     return found
 
 
-def _callback(kind: CallbackKind, section: Section, node: NodeSection, serving: Serving, notes: Notes) -> Callback | None:
+def _callback(
+    kind: CallbackKind, section: CallbackSection, node: NodeSection, serving: Serving, notes: Notes
+) -> Callback | None:
     executor, in_executor = serving.place(section, node, is_of_middleware=kind in _OF_MIDDLEWARE)
     needs_interval = not _may_be_unknown(section, kind) or executor.loop is None
     interval = _interval(section, needs_interval, notes)
@@ -164,7 +166,7 @@ def _callback(kind: CallbackKind, section: Section, node: NodeSection, serving: 
 _OF_MIDDLEWARE = (CallbackKind.PARAMETERS, CallbackKind.LIFECYCLE)
 
 
-def _may_be_unknown(section: Section, kind: CallbackKind) -> bool:
+def _may_be_unknown(section: CallbackSection, kind: CallbackKind) -> bool:
     """Whether a callback can do without an interval: nothing else of known rate follows from it."""
     if kind is CallbackKind.GUARD_CONDITION:
         return not section.publishes and not section.requests
@@ -176,7 +178,7 @@ def interval_of_rate(rate: Frequency) -> Time:
     return int(SECOND / rate)
 
 
-def _interval(section: Section, needed: bool, notes: Notes) -> Time | None:
+def _interval(section: CallbackSection, needed: bool, notes: Notes) -> Time | None:
     key = "period" if isinstance(section, Timer) else "interval"
     given: Time | None = getattr(section, key, None)
     rate: Frequency | None = getattr(section, "rate", None)

@@ -25,22 +25,24 @@ class Notes:
         self._known: set[Finding] = set()
         self._suggestions = Suggestions()
 
-    def _add(self, finding: Finding) -> None:
-        if finding not in self._known:
-            self._known.add(finding)
-            self.findings.append(finding)
+    def add_all(self, findings: Iterable[Finding]) -> None:
+        """Add findings that are not known yet."""
+        for finding in findings:
+            if finding not in self._known:
+                self._known.add(finding)
+                self.findings.append(finding)
 
     def error(self, rule: str, message: str, location: Location | None, help_text: str = "") -> None:
         """Add a finding that prevents a model."""
-        self._add(Finding(rule, Severity.ERROR, message, location, help_text))
+        self.add_all([Finding(rule, Severity.ERROR, message, location, help_text)])
 
     def warning(self, rule: str, message: str, location: Location | None, help_text: str = "") -> None:
         """Add a finding that is probably a mistake."""
-        self._add(Finding(rule, Severity.WARNING, message, location, help_text))
+        self.add_all([Finding(rule, Severity.WARNING, message, location, help_text)])
 
     def info(self, rule: str, message: str, location: Location | None, help_text: str = "") -> None:
         """Add a finding that needs no action."""
-        self._add(Finding(rule, Severity.INFO, message, location, help_text))
+        self.add_all([Finding(rule, Severity.INFO, message, location, help_text)])
 
     def undefined(self, kind: str, name: str, defined: Iterable[str], location: Location | None, *, owner: str = "") -> None:
         """Add an error about a name that is not defined.

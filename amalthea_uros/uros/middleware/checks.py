@@ -7,8 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from amalthea_uros.spec.application import Application, MessageCallback, NodeSection, Subscription
-from amalthea_uros.spec.application import CallbackSection as Section
+from amalthea_uros.spec.application import Application, CallbackSection, MessageCallback, NodeSection, Subscription
 from amalthea_uros.spec.executors import ExecutorSection
 from amalthea_uros.units import Time, time_text
 from amalthea_uros.uros.application.callbacks import Callback
@@ -198,7 +197,7 @@ def _timeout(executor: ExecutorSection, default: Time) -> Time:
 _RELIABLE, _BEST_EFFORT = 10, 5
 
 
-def depth_of(section: Section) -> int | None:
+def depth_of(section: CallbackSection) -> int | None:
     """The depth of the history of a callback's messages; None if it has none."""
     if not isinstance(section, MessageCallback):
         return None
@@ -211,7 +210,7 @@ def kept_messages(application: Application) -> int:
     return sum(count * (depth_of(section) or 0) for node in application.nodes for section, count in _receivers(node))
 
 
-def _receivers(node: NodeSection) -> Iterator[tuple[Section, int]]:
+def _receivers(node: NodeSection) -> Iterator[tuple[CallbackSection, int]]:
     """The callbacks with messages of a node, with the entities that receive them."""
     yield from ((section, 1) for section in (*node.subscriptions, *node.services, *node.clients))
     yield from ((section, ACTION_SERVICES) for section in node.action_servers)

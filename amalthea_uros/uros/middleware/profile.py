@@ -22,7 +22,7 @@ from amalthea_uros.uros.middleware.options import Option, OptionRow
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Part(Brief):
+class MessagePart(Brief):
     """A message of the middleware on the wire: a whole one, or a fragment of one that is too long.
 
     Attributes
@@ -190,7 +190,7 @@ class Profile(ABC):
         """What is known of its build options, by name."""
 
     @abstractmethod
-    def parts(self, kind: MessageKind, content: int, *, reliable: bool) -> Sequence[Part]:
+    def parts(self, kind: MessageKind, content: int, *, reliable: bool) -> Sequence[MessagePart]:
         """What is sent for a message: one part, or fragments; one that cannot be sent is a single part, longer than allowed."""
 
     @abstractmethod

@@ -13,7 +13,7 @@ from amalthea_uros.spec.transports import Driver
 from amalthea_uros.units import Time
 from amalthea_uros.uros.application.callbacks import Callback, CallbackKind, body_name
 from amalthea_uros.uros.application.messages import Message, MessageKind
-from amalthea_uros.uros.middleware.profile import Part, Profile
+from amalthea_uros.uros.middleware.profile import MessagePart, Profile
 from amalthea_uros.uros.transports.framing import least_frame, longest_frame, reads
 from amalthea_uros.uros.transports.line import Line, describes_wire, time_on
 
@@ -24,7 +24,7 @@ class WireMessage:
 
     message: Message
     callback: Callback
-    parts: tuple[Part, ...]
+    parts: tuple[MessagePart, ...]
 
     @property
     def name(self) -> str:

@@ -19,7 +19,7 @@ def rows() -> Mapping[str, OptionRow]:
 
 
 @dataclass(frozen=True, slots=True)
-class Build:
+class XrceBuild:
     """The build options of a description.
 
     Attributes

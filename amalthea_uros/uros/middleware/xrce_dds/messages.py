@@ -15,8 +15,8 @@ from amalthea_uros.perf.named import Brief
 from amalthea_uros.spec.application import Application, NodeSection
 from amalthea_uros.units import DataSize
 from amalthea_uros.uros.application.messages import MessageKind
-from amalthea_uros.uros.middleware.profile import Part, Profile, whole_bytes
-from amalthea_uros.uros.middleware.xrce_dds.build import Build
+from amalthea_uros.uros.middleware.profile import MessagePart, Profile, whole_bytes
+from amalthea_uros.uros.middleware.xrce_dds.build import XrceBuild
 
 #: What some messages have before their content, beside the identifier of the entity.
 _EXTRA = {
@@ -29,7 +29,7 @@ _SENT = (MessageKind.PUBLICATION, MessageKind.REQUEST_OUT, MessageKind.RESPONSE_
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Content(Brief):
+class MessageContent(Brief):
     """A message, with the bytes of its content."""
 
     kind: MessageKind
@@ -42,10 +42,10 @@ class Content(Brief):
         return self.kind not in _SENT
 
 
-def contents_of(application: Application) -> list[Content]:
+def contents_of(application: Application) -> list[MessageContent]:
     """All messages of an application; those of parameters and lifecycles have no stated length."""
     return [
-        Content(kind=kind, length=whole_bytes(length), reliable=reliability == "reliable")
+        MessageContent(kind=kind, length=whole_bytes(length), reliable=reliability == "reliable")
         for node in application.nodes
         for kind, length, reliability in _messages(node)
     ]
@@ -77,19 +77,19 @@ class MessageLayout:
     """The lengths of messages in bytes, by the figures of a profile and the build options of a description."""
 
     profile: Profile
-    build: Build
+    build: XrceBuild
 
-    def parts(self, kind: MessageKind, content: int, *, reliable: bool) -> Sequence[Part]:
+    def parts(self, kind: MessageKind, content: int, *, reliable: bool) -> Sequence[MessagePart]:
         """What is sent for a message; one that cannot be sent is a single part, which is longer than the MTU allows."""
         acknowledgement = self.profile.size("acknowledgement") if reliable else None
         before, body = self.headers, self.payload(kind, content)
         is_whole = before + body <= self.capacity(reliable=True)
         if not reliable or is_whole or body > self.profile.size("longest_payload"):
-            return (Part(length=before + body, acknowledgement=acknowledgement),)
+            return (MessagePart(length=before + body, acknowledgement=acknowledgement),)
         most = max(1, self.fragment)
         full, rest = divmod(self.profile.size("submessage_header") + body, most)
         lengths = [*repeat(most, full), *([rest] if rest else [])]
-        return tuple(Part(length=before + length, acknowledgement=acknowledgement) for length in lengths)
+        return tuple(MessagePart(length=before + length, acknowledgement=acknowledgement) for length in lengths)
 
     def largest_content(self, kind: MessageKind, *, reliable: bool, waits: bool) -> int:
         """The longest content of a message; 0 if not even an empty one can be sent."""
@@ -99,12 +99,12 @@ class MessageLayout:
         alignment = self._alignment(kind)
         return max(0, payload // alignment * alignment - self._fixed(kind))
 
-    def least_mtu(self, contents: Iterable[Content]) -> int:
+    def least_mtu(self, contents: Iterable[MessageContent]) -> int:
         """The smallest MTU for all messages: whole ones if they are best effort; a fragment needs room for more than its headers."""
         smallest = self.profile.size("buffer_header") + self.headers + 1
         return max((smallest if each.reliable else self._whole(each) for each in contents), default=0)
 
-    def fragments(self, content: Content) -> int | None:
+    def fragments(self, content: MessageContent) -> int | None:
         """The buffers that a reliable message needs; None if no number of them is enough."""
         whole = self._whole(content)
         if whole <= self.capacity(reliable=True):
@@ -130,7 +130,7 @@ class MessageLayout:
         alignment = self._alignment(kind)
         return -(-(self._fixed(kind) + content) // alignment) * alignment
 
-    def _whole(self, content: Content) -> int:
+    def _whole(self, content: MessageContent) -> int:
         return self.headers + self.payload(content.kind, content.length)
 
     def _longest_fragmented(self, kind: MessageKind, waits: bool) -> int:

@@ -20,8 +20,8 @@ from amalthea_uros.units import MILLISECOND, Time
 from amalthea_uros.uros.application.entities import Entities, entities_of
 from amalthea_uros.uros.application.messages import MessageKind
 from amalthea_uros.uros.middleware.options import Option, OptionRow
-from amalthea_uros.uros.middleware.profile import Heartbeat, MemoryUse, Part, Profile, Sending
-from amalthea_uros.uros.middleware.xrce_dds.build import Build, rows
+from amalthea_uros.uros.middleware.profile import Heartbeat, MemoryUse, MessagePart, Profile, Sending
+from amalthea_uros.uros.middleware.xrce_dds.build import XrceBuild, rows
 from amalthea_uros.uros.middleware.xrce_dds.messages import MessageLayout, contents_of
 
 #: Bytes of a slot for a received message, besides its buffer.
@@ -44,9 +44,9 @@ class XrceDds(Profile):
     """Micro XRCE-DDS, or a middleware of the kind with other figures."""
 
     @property
-    def build(self) -> Build:
+    def build(self) -> XrceBuild:
         """The values of its build options."""
-        return Build(self.middleware, self.data.options)
+        return XrceBuild(self.middleware, self.data.options)
 
     @property
     def layout(self) -> MessageLayout:
@@ -92,7 +92,7 @@ class XrceDds(Profile):
         """What is known of its build options."""
         return rows()
 
-    def parts(self, kind: MessageKind, content: int, *, reliable: bool) -> Sequence[Part]:
+    def parts(self, kind: MessageKind, content: int, *, reliable: bool) -> Sequence[MessagePart]:
         """What is sent for a message."""
         return self.layout.parts(kind, content, reliable=reliable)
 

@@ -15,7 +15,7 @@ from amalthea_uros.spec.application import Application
 from amalthea_uros.units import MILLISECOND, DataSize, Time
 from amalthea_uros.uros.application.messages import MessageKind
 from amalthea_uros.uros.middleware.options import Option, OptionRow, option_rows
-from amalthea_uros.uros.middleware.profile import Heartbeat, MemoryUse, Part, Profile, Sending, whole_bytes
+from amalthea_uros.uros.middleware.profile import Heartbeat, MemoryUse, MessagePart, Profile, Sending, whole_bytes
 
 #: In each lease (`Z_TRANSPORT_LEASE_EXPIRE_FACTOR` in CMakeLists.txt of eclipse-zenoh/zenoh-pico).
 _KEEP_ALIVES = 3
@@ -70,15 +70,15 @@ class ZenohPico(Profile):
         """What is known of its build options."""
         return option_rows(__name__.rpartition(".")[0])
 
-    def parts(self, kind: MessageKind, content: int, *, reliable: bool) -> Sequence[Part]:
+    def parts(self, kind: MessageKind, content: int, *, reliable: bool) -> Sequence[MessagePart]:
         """What is sent for a message, without the length that precedes it on TCP."""
         frame = sum(map(self.size, _FRAME))
         message = self._overhead(kind, reliable=reliable) + self._length_of_length(content) + content
         if content > self._value("FRAG_MAX_SIZE"):
-            return (Part(length=frame + message),)
+            return (MessagePart(length=frame + message),)
         piece = max(1, self._value("BATCH_UNICAST_SIZE") - frame)
         full, rest = divmod(message, piece)
-        return tuple(Part(length=frame + length) for length in (*repeat(piece, full), *([rest] if rest else [])))
+        return tuple(MessagePart(length=frame + length) for length in (*repeat(piece, full), *([rest] if rest else [])))
 
     def times_out_after(self, kind: MessageKind, content: int, *, reliable: bool) -> Time | None:
         """Time after which a sender stops waiting for an acknowledgement, if it does at all."""
