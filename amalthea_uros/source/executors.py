@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 
-from amalthea_uros.source.delays import SLEEPS, sleep_time
 from amalthea_uros.source.entities import callback_of
 from amalthea_uros.source.facts import (
     CodeCallback,
@@ -17,6 +16,7 @@ from amalthea_uros.source.facts import (
     Spin,
     SpinKind,
 )
+from amalthea_uros.source.ports import SLEEPS, sleep_time
 from amalthea_uros.source.walk import CodeWalk, FunctionCall
 from amalthea_uros.units import Time
 

@@ -7,16 +7,13 @@ from collections.abc import Iterable
 from fractions import Fraction
 
 from amalthea_uros.diagnostics import Finding, Severity
-from amalthea_uros.source.delays import SLEEPS
 from amalthea_uros.source.entities import CREATIONS, entity_of
 from amalthea_uros.source.executors import ACTIONS, SPINS, note_spins
 from amalthea_uros.source.facts import CodeCallback, CodeFacts, CodeOption, Thread
 from amalthea_uros.source.files import SourceFile, Sources
-from amalthea_uros.source.flaws import flaws
-from amalthea_uros.source.not_understood import not_understood
+from amalthea_uros.source.flaws import flaws, not_understood
+from amalthea_uros.source.ports import FORMS, SETTERS, SLEEPS, thread_of, transport_of
 from amalthea_uros.source.program import CodeProgram, read_program
-from amalthea_uros.source.threads import FORMS, thread_of
-from amalthea_uros.source.transports import SETTERS, transport_of
 from amalthea_uros.source.walk import CodeWalk, FunctionCall
 
 _NAMES = frozenset({*SLEEPS, *FORMS, *SETTERS, "Serial.begin"})

@@ -1,8 +1,11 @@
-"""Syntax trees of C and C++, by tree-sitter, which is optional."""
+"""Syntax trees of C and C++, by tree-sitter, which is optional, and what the preprocessor leaves of them.
+
+Branches that are certainly not compiled are skipped, of all others both are read.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from functools import cache
 from importlib import import_module
 from typing import TYPE_CHECKING
@@ -73,3 +76,76 @@ def descendants(node: Node) -> Iterator[Node]:
         current = waiting.pop()
         yield current
         waiting.extend(reversed(current.named_children))
+
+
+if TYPE_CHECKING:
+    from tree_sitter import Node
+
+_IFS = ("preproc_if", "preproc_ifdef", "preproc_elif", "preproc_elifdef")
+_ELSES = ("preproc_elif", "preproc_elifdef", "preproc_else")
+
+Evaluate = Callable[["Node"], int | None]
+
+
+def is_conditional(node: Node) -> bool:
+    """Whether a node is an `#if` or what follows one."""
+    return node.type in _IFS or node.type == "preproc_else"
+
+
+def branches(node: Node, defined: Mapping[str, object], evaluate: Evaluate) -> Iterator[tuple[Node, bool]]:
+    """What may be compiled of a conditional node, and whether that depends on something unknown.
+
+    Parameters
+    ----------
+    defined : macros that the sources define
+    evaluate : the value of an expression, None if it is unknown
+    """
+    truth = True if node.type == "preproc_else" else _truth(node, defined, evaluate)
+    alternative = node.child_by_field_name("alternative")
+    head = {child.id for name in ("name", "condition") for child in node.children_by_field_name(name)}
+    if truth is not False:
+        for child in node.named_children:
+            if child.id not in head and child.type not in _ELSES:
+                yield child, truth is None
+    if truth is not True and alternative is not None:
+        for child, unknown in branches(alternative, defined, evaluate):
+            yield child, unknown or truth is None
+
+
+def _truth(node: Node, defined: Mapping[str, object], evaluate: Evaluate) -> bool | None:
+    name = node.child_by_field_name("name")
+    if name is not None:
+        # What the sources do not define, the build may.
+        known = True if text_of(name) in defined else None
+        if node.children[0].type not in ("#ifndef", "#elifndef"):
+            return known
+        return True if _defines(node, text_of(name)) else None if known is None else False
+    condition = node.child_by_field_name("condition")
+    return None if condition is None else _holds(condition, defined, evaluate)
+
+
+def _defines(node: Node, name: str) -> bool:
+    """Whether a macro is defined under the condition that it is not: a guard against reading a header twice, or a default."""
+    return any(
+        child.type == "preproc_def" and (own := child.child_by_field_name("name")) is not None and text_of(own) == name
+        for child in node.named_children
+    )
+
+
+def _holds(node: Node, defined: Mapping[str, object], evaluate: Evaluate) -> bool | None:
+    if node.type == "preproc_defined":
+        names = [text_of(child) for child in node.named_children]
+        return True if names and names[0] in defined else None
+    if node.type == "parenthesized_expression" and node.named_child_count == 1:
+        return _holds(node.named_children[0], defined, evaluate)
+    if node.type == "unary_expression" and text_of(node).startswith("!"):
+        inner = _holds(node.named_children[0], defined, evaluate)
+        return None if inner is None else not inner
+    if node.type == "binary_expression" and text_of(node.children[1]) in ("&&", "||"):
+        both = [_holds(child, defined, evaluate) for child in node.named_children]
+        decisive = text_of(node.children[1]) == "||"
+        if decisive in both:
+            return decisive
+        return None if None in both else not decisive
+    value = evaluate(node)
+    return None if value is None else value != 0

@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING, TypeAlias
 from amalthea_uros._internal.limits import SOURCE_NODES
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.source.files import SourceFile
-from amalthea_uros.source.preprocessor import branches, is_conditional
 from amalthea_uros.source.program import CodeFunction, CodeProgram, declared, function_of
 from amalthea_uros.source.scope import Binding, Expression, called
-from amalthea_uros.source.syntax import descendants, location_of, text_of
+from amalthea_uros.source.syntax import branches, descendants, is_conditional, location_of, text_of
 
 if TYPE_CHECKING:
     from tree_sitter import Node

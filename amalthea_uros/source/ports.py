@@ -1,0 +1,244 @@
+"""What functions of operating systems and of ports to boards do: they let a thread sleep, start threads, and set the transport."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from fractions import Fraction
+from typing import NamedTuple
+
+from amalthea_uros.source.entities import callback_of
+from amalthea_uros.source.facts import CodeTransport, Thread
+from amalthea_uros.source.program import CodeProgram
+from amalthea_uros.source.scope import Expression, called
+from amalthea_uros.source.syntax import descendants, text_of
+from amalthea_uros.source.walk import CodeWalk, FunctionCall
+from amalthea_uros.units import Time
+
+#: In picoseconds.
+MICROSECOND, MILLISECOND, SECOND = 10**6, 10**9, 10**12
+
+#: Function -> unit of its only argument.
+_UNITS = {
+    **dict.fromkeys(("usleep", "delayMicroseconds", "sleep_us", "k_usleep", "esp_rom_delay_us"), MICROSECOND),
+    **dict.fromkeys(("delay", "HAL_Delay", "sleep_ms", "k_msleep"), MILLISECOND),
+    "sleep": SECOND,
+}
+#: Those whose argument is a number of ticks, or is made of a time by a macro.
+_TICKS = ("vTaskDelay", "osDelay")
+#: Those whose duration depends on when they are called.
+_UNTIL = (
+    "vTaskDelayUntil",
+    "xTaskDelayUntil",
+    "osDelayUntil",
+    "k_sleep",
+    "sleep_for",
+    "this_thread::sleep_for",
+    "nanosleep",
+    "sleep_until",
+)
+
+SLEEPS = frozenset({*_UNITS, *_TICKS, *_UNTIL})
+
+#: Macros and constructors of durations -> unit of their argument.
+_DURATIONS = {
+    **dict.fromkeys(("K_MSEC", "pdMS_TO_TICKS", "milliseconds", "K_TIMEOUT_MS"), MILLISECOND),
+    **dict.fromkeys(("K_USEC", "microseconds"), MICROSECOND),
+    **dict.fromkeys(("K_SECONDS", "seconds"), SECOND),
+}
+#: What milliseconds are divided by to make ticks of them.
+_TICK_LENGTHS = ("portTICK_PERIOD_MS", "portTICK_RATE_MS")
+
+
+def sleep_time(call: FunctionCall, tick_rate: Fraction | None) -> Time | None:
+    """How long a call sleeps, None if it is not constant.
+
+    Parameters
+    ----------
+    tick_rate : ticks per second; None if unknown: then a number of ticks is not a time
+    """
+    given = call.argument(0)
+    if given is None:
+        return None
+    if call.name in _UNITS:
+        number = given.number
+        return None if number is None or number < 0 else Time(number * _UNITS[call.name])
+    if call.name in _TICKS:
+        return _whole_ticks(given, tick_rate)
+    return _duration(given)
+
+
+def _duration(given: Expression) -> Time | None:
+    """The time that a macro or constructor such as `K_MSEC(10)` makes."""
+    own = given.resolved
+    if own.node.type != "call_expression":
+        return None
+    name, arguments = called(own.node)
+    unit = _DURATIONS.get(name.rpartition("::")[2])
+    if unit is None or len(arguments) != 1:
+        return None
+    number = own.at(arguments[0]).number
+    return None if number is None or number < 0 else Time(number * unit)
+
+
+def _whole_ticks(given: Expression, tick_rate: Fraction | None) -> Time | None:
+    """A delay in ticks; a time is cut to whole ticks, so a short one does not sleep at all."""
+    wanted = _duration(given) or _divided(given)
+    if wanted is not None:
+        if tick_rate is None:
+            return wanted
+        return Time(int((wanted * tick_rate) // SECOND * SECOND / tick_rate))
+    ticks = given.number
+    return None if ticks is None or ticks < 0 or tick_rate is None else Time(int(ticks * SECOND / tick_rate))
+
+
+def _divided(given: Expression) -> Time | None:
+    node = given.resolved.node
+    left, right = node.child_by_field_name("left"), node.child_by_field_name("right")
+    if node.type != "binary_expression" or left is None or right is None:
+        return None
+    if given.at(right).text not in _TICK_LENGTHS:
+        return None
+    number = given.at(left).number
+    return None if number is None or number < 0 else Time(number * MILLISECOND)
+
+
+#: Of a stack of FreeRTOS that is counted in words.
+_WORD = 4
+#: CMSIS-RTOS2, ARM-software/CMSIS_5 CMSIS/RTOS2/Include/cmsis_os2.h.
+_CMSIS_PRIORITIES = {
+    "osPriorityIdle": 1,
+    "osPriorityLow": 8,
+    "osPriorityBelowNormal": 16,
+    "osPriorityNormal": 24,
+    "osPriorityAboveNormal": 32,
+    "osPriorityHigh": 40,
+    "osPriorityRealtime": 48,
+}
+
+
+class _ThreadForm(NamedTuple):
+    """Positions of the arguments of a function that creates a thread; None: it has none."""
+
+    entry: int
+    name: int | None = None
+    stack: int | None = None
+    priority: int | None = None
+    core: int | None = None
+    attributes: int | None = None
+    rtos: str = ""
+
+
+FORMS: Mapping[str, _ThreadForm] = {
+    "xTaskCreate": _ThreadForm(0, 1, 2, 4, rtos="freertos"),
+    "xTaskCreateStatic": _ThreadForm(0, 1, 2, 4, rtos="freertos"),
+    "xTaskCreatePinnedToCore": _ThreadForm(0, 1, 2, 4, 6, rtos="freertos"),
+    "osThreadNew": _ThreadForm(0, attributes=2, rtos="freertos"),
+    "K_THREAD_DEFINE": _ThreadForm(2, 0, 1, 6, rtos="zephyr"),
+    "k_thread_create": _ThreadForm(3, 0, 2, 7, rtos="zephyr"),
+    "pthread_create": _ThreadForm(2, 0),
+}
+
+
+def thread_of(call: FunctionCall, walk: CodeWalk, in_words: bool) -> Thread | None:
+    """The thread that a call creates.
+
+    Parameters
+    ----------
+    in_words : whether stacks of `xTaskCreate` are counted in words, as FreeRTOS does, and ESP-IDF does not
+    """
+    form = FORMS[call.name]
+    entry = call.argument(form.entry)
+    callback = callback_of(entry, walk) if entry is not None else None
+    if callback is None:
+        return None
+    attributes = _attributes(call.argument(form.attributes)) if form.attributes is not None else {}
+    name, stack, priority, core = (
+        attributes.get(key) or (call.argument(index) if index is not None else None)
+        for key, index in (("name", form.name), ("stack_size", form.stack), ("priority", form.priority), ("core", form.core))
+    )
+    factor = _WORD if in_words and call.name in ("xTaskCreate", "xTaskCreateStatic") else 1
+    size = stack.number if stack is not None else None
+    return Thread(
+        name=(name.string or (name.name if form.rtos != "freertos" else None) if name is not None else None) or callback.name,
+        entry=callback.function,
+        place=call.place,
+        stack=size * factor if size is not None and size > 0 else None,
+        priority=_priority(priority),
+        core=core.number if core is not None else None,
+    )
+
+
+def _attributes(given: Expression | None) -> dict[str, Expression]:
+    """The members of the structure that describes a thread of CMSIS-RTOS2."""
+    found: dict[str, Expression] = {}
+    if given is not None:
+        own = given.resolved
+        for pair in descendants(own.node):
+            designator, value = pair.child_by_field_name("designator"), pair.child_by_field_name("value")
+            if pair.type == "initializer_pair" and designator is not None and value is not None:
+                found[text_of(designator).lstrip(".")] = own.at(value)
+    return found
+
+
+def _priority(given: Expression | None) -> int | None:
+    if given is None:
+        return None
+    if given.resolved.name in _CMSIS_PRIORITIES:
+        return _CMSIS_PRIORITIES[given.resolved.name]
+    number = given.number
+    return number if number is not None and number >= 0 else None
+
+
+#: Functions that set a network; the bit rate of the link is not in the code.
+_UDP = ("set_microros_wifi_transports", "set_microros_native_ethernet_transports", "rmw_uros_options_set_udp_address")
+_SERIAL = ("set_microros_transports", "set_microros_serial_transports")
+SETTERS = frozenset({*_UDP, *_SERIAL, "rmw_uros_set_custom_transport"})
+#: The rate at which `set_microros_transports` of micro_ros_arduino opens the line: src/default_transport.cpp.
+_ARDUINO = 115200
+
+
+def transport_of(calls: Iterable[FunctionCall], program: CodeProgram) -> CodeTransport | None:
+    """The transport that the first call of a function for it sets; None if there is none."""
+    every = list(calls)
+    call = next((each for each in every if each.name in SETTERS), None)
+    if call is None:
+        return None
+    if call.name in _UDP:
+        return CodeTransport(
+            key="udp", values=(("bitrate", None),), note="bit rate of the link of the controller", place=call.place
+        )
+    rate = _baud_rate(every, program)
+    if call.name in _SERIAL:
+        rate = rate or (_ARDUINO if call.name == "set_microros_transports" else None)
+        return _serial(rate, call)
+    framed = call.argument(0)
+    names = " ".join(argument.text for argument in call.arguments).lower()
+    is_framed = framed is not None and framed.resolved.text in ("true", "1")
+    if is_framed or any(word in names for word in ("serial", "uart", "usb", "cdc")):
+        is_usb = "usb" in names or "cdc" in names
+        return CodeTransport(key="usb_cdc", values=(), note="full speed", place=call.place) if is_usb else _serial(rate, call)
+    if "udp" in names:
+        return CodeTransport(
+            key="udp", values=(("bitrate", None),), note="bit rate of the link of the controller", place=call.place
+        )
+    return CodeTransport(key=None, values=(), note="custom transport", place=call.place)
+
+
+def _serial(rate: int | None, call: FunctionCall) -> CodeTransport:
+    value = str(rate) if rate is not None else None
+    return CodeTransport(
+        key="serial", values=(("baud_rate", value),), note="symbols per second, as the agent has", place=call.place
+    )
+
+
+def _baud_rate(calls: Iterable[FunctionCall], program: CodeProgram) -> int | None:
+    """The rate that the code sets anywhere, if it sets only one."""
+    begun = (each.argument(0) for each in calls if each.name.endswith("Serial.begin"))
+    rates = {given.number for given in begun if given is not None}
+    for file, root in program.files:
+        for node in descendants(root):
+            name = node.child_by_field_name("designator") or node.child_by_field_name("left")
+            value = node.child_by_field_name("value") or node.child_by_field_name("right")
+            if name is not None and value is not None and text_of(name).endswith((".baud_rate", ".BaudRate")):
+                rates.add(Expression(program, value, file).number)
+    return next(iter(rates)) if len(rates) == 1 else None
