@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 
@@ -12,42 +12,44 @@ from amalthea_uros.perf.distributions import Uniform
 from amalthea_uros.perf.software import IsrCategory, Preemption, Runnable
 from amalthea_uros.spec import processes as spec
 from amalthea_uros.units import Time, time_text
-from amalthea_uros.uros.application.notes import Notes, first_defined
+from amalthea_uros.uros.application.notes import first_defined
 from amalthea_uros.uros.assembly.context import AssemblyContext
-from amalthea_uros.uros.assembly.demand import DemandConverter
-from amalthea_uros.uros.assembly.planned import PlannedIsr, PlannedTask, StimulusRegistry, activity_sequence, trigger_name
+from amalthea_uros.uros.assembly.planned import PlannedIsr, PlannedTask, activity_sequence, trigger_name
+
+#: Keys of processes that state an activation.
+_ACTIVATIONS = ("period", "sporadic", "burst", "times", "once")
+
+
+def add_background_tasks(context: AssemblyContext) -> None:
+    """Add the tasks and interrupt service routines of the description."""
+    description = context.description
+    background = BackgroundTasks(context)
+    triggers = triggering_processes((*description.tasks, *description.isrs))
+    context.tasks += [background.task(task, triggers.get(task.name, ())) for task in description.tasks]
+    context.isrs += map(background.isr, description.isrs)
+    for name in sorted(context.runnables.keys() & background.runnables.keys()):
+        message = f"runnable {name!r} has the name of a runnable of the middleware"
+        context.notes.error("APP002", message, background.runnables[name].origin, "Rename it.")
+    context.runnables |= background.runnables
 
 
 @dataclass(slots=True)
 class BackgroundTasks:
-    """Creates planned tasks and ISRs from their sections, with their runnables and stimuli.
+    """Creates planned tasks and ISRs from their sections, with their runnables and stimuli."""
 
-    Attributes
-    ----------
-    tasks : all tasks of the description by name, for triggers
-    """
-
-    converter: DemandConverter
-    notes: Notes
-    registry: StimulusRegistry
-    tasks: Mapping[str, spec.TaskSection]
+    context: AssemblyContext
     runnables: dict[str, Runnable] = field(default_factory=dict)
     _sections: dict[str, spec.Steps] = field(default_factory=dict)
 
-    def task(self, section: spec.TaskSection, core: str, triggered_by: Iterable[spec.ProcessSection]) -> PlannedTask:
-        """A task.
-
-        Parameters
-        ----------
-        triggered_by : the processes that trigger it
-        """
-        origins = list(triggered_by)
+    def task(self, section: spec.TaskSection, triggered_by: Sequence[spec.ProcessSection]) -> PlannedTask:
+        """A task, with the processes that trigger it."""
+        core = self.context.core(section.core, section.location("core"))
         return PlannedTask(
             name=section.name,
             core=core,
-            stimuli=self.stimuli(section, bool(origins)),
+            stimuli=self.stimuli(section, bool(triggered_by)),
             activities=self.activities(section, core),
-            period=min_interarrival(section) or min(filter(None, map(min_interarrival, origins)), default=None),
+            period=min_interarrival(section) or min(filter(None, map(min_interarrival, triggered_by)), default=None),
             priority=section.priority,
             deadline=section.deadline,
             overhead=section.overhead,
@@ -56,8 +58,9 @@ class BackgroundTasks:
             origin=section.location(),
         )
 
-    def isr(self, section: spec.IsrSection, core: str) -> PlannedIsr:
+    def isr(self, section: spec.IsrSection) -> PlannedIsr:
         """An interrupt service routine."""
+        core = self.context.core(section.core, section.location("core"))
         return PlannedIsr(
             name=section.name,
             core=core,
@@ -71,102 +74,67 @@ class BackgroundTasks:
 
     def stimuli(self, section: spec.ProcessSection, is_triggered: bool) -> tuple[str, ...]:
         """The names of the stimuli that activate a process."""
-        kinds = [kind for kind in _ACTIVATIONS if getattr(section, kind) is not None]
-        self._check_activation(section, kinds, is_triggered)
-        found = [_ACTIVATIONS[kinds[0]](self, section)] if kinds else []
+        self._check_activation(section, is_triggered)
+        registry, found = self.context.stimuli, []
+        if section.period is not None and section.jitter is None:
+            found.append(registry.periodic(section.period, section.offset, section.location()))
+        elif (stimulus := self.stimulus(section)) is not None:
+            found.append(registry.add(stimulus))
         if is_triggered:
-            found.append(self.registry.add(perf.InterProcess(name=trigger_name(section.name), origin=section.location())))
+            found.append(registry.add(perf.InterProcess(name=trigger_name(section.name), origin=section.location())))
         return tuple(found)
 
-    def _check_activation(self, section: spec.ProcessSection, kinds: list[str], is_triggered: bool) -> None:
+    def _check_activation(self, section: spec.ProcessSection, is_triggered: bool) -> None:
+        notes, kinds = self.context.notes, [kind for kind in _ACTIVATIONS if getattr(section, kind) is not None]
         if len(kinds) > 1:
             message = f"{section.name!r} has more than one activation: {' and '.join(map(repr, kinds))}"
-            self.notes.error("APP003", message, section.location(kinds[1]), "Remove all but one.")
+            notes.error("APP003", message, section.location(kinds[1]), "Remove all but one.")
         if not kinds and not is_triggered:
             trigger = ", or list it under 'triggers' of another process" if isinstance(section, spec.TaskSection) else ""
             advice = f"Set one of {', '.join(_ACTIVATIONS)}{trigger}; e.g. 'period: 10 ms'."
-            self.notes.error("APP003", f"{section.name!r} has no activation", section.location(), advice)
+            notes.error("APP003", f"{section.name!r} has no activation", section.location(), advice)
         for key in ("offset", "jitter"):
             if section.states(key) and section.period is None:
                 message = f"{key!r} of {section.name!r} has no effect without 'period'"
-                self.notes.error("APP003", message, section.location(key), f"Set 'period', or remove {key!r}.")
+                notes.error("APP003", message, section.location(key), f"Set 'period', or remove {key!r}.")
 
-    def periodic(self, section: spec.ProcessSection) -> str:
-        """The stimulus of `period`."""
-        assert section.period is not None
-        if section.jitter is None:
-            return self.registry.periodic(section.period, section.offset, section.location())
-        return self.registry.add(
-            perf.Periodic(
-                name=_stimulus_name(section),
-                period=section.period,
-                offset=section.offset,
-                jitter=Uniform(lower=0, upper=section.jitter),
-                origin=section.location(),
-            )
-        )
-
-    def sporadic(self, section: spec.ProcessSection) -> str:
-        """The stimulus of `sporadic`."""
-        assert section.sporadic is not None
-        lower, upper = section.sporadic.min, section.sporadic.max or section.sporadic.min
-        if upper < lower:
-            message = f"'min' ({time_text(lower)}) is greater than 'max' ({time_text(upper)})"
-            self.notes.error("APP003", message, section.location("sporadic"), "Exchange the values.")
-        distance = Uniform(lower=lower, upper=upper)
-        return self.registry.add(
-            perf.RelativePeriodic(
-                name=_stimulus_name(section),
-                distance=distance,
-                has_maximum=section.sporadic.max is not None,
-                origin=section.location(),
-            )
-        )
-
-    def burst(self, section: spec.ProcessSection) -> str:
-        """The stimulus of `burst`."""
-        burst = section.burst
-        assert burst is not None
-        length = burst.distance * burst.count
-        if length > burst.period:
-            message = (
-                f"the burst of {section.name!r} ({time_text(length)}) is longer than its period ({time_text(burst.period)})"
-            )
-            advice = "Increase 'period', or reduce 'count' or 'distance'."
-            self.notes.error("APP003", message, section.location("burst"), advice)
-        return self.registry.add(
-            perf.Burst(
-                name=_stimulus_name(section),
+    def stimulus(self, section: spec.ProcessSection) -> perf.Stimulus | None:
+        """The stimulus of the first activation that a process states; None if it states none."""
+        name, origin = f"activation_of_{section.name}", section.location()
+        if section.period is not None:
+            late = Uniform(lower=0, upper=section.jitter or 0)
+            return perf.Periodic(name=name, period=section.period, offset=section.offset, jitter=late, origin=origin)
+        if (sporadic := section.sporadic) is not None:
+            lower, upper = sporadic.min, sporadic.max or sporadic.min
+            if upper < lower:
+                message = f"'min' ({time_text(lower)}) is greater than 'max' ({time_text(upper)})"
+                self.context.notes.error("APP003", message, section.location("sporadic"), "Exchange the values.")
+            distance = Uniform(lower=lower, upper=upper)
+            return perf.RelativePeriodic(name=name, distance=distance, has_maximum=sporadic.max is not None, origin=origin)
+        if (burst := section.burst) is not None:
+            length = burst.distance * burst.count
+            if length > burst.period:
+                message = (
+                    f"the burst of {section.name!r} ({time_text(length)}) is longer than its period ({time_text(burst.period)})"
+                )
+                advice = "Increase 'period', or reduce 'count' or 'distance'."
+                self.context.notes.error("APP003", message, section.location("burst"), advice)
+            return perf.Burst(
+                name=name,
                 period=burst.period,
                 length=length,
                 distance=burst.distance,
                 count=burst.count,
                 offset=burst.offset,
-                origin=section.location(),
+                origin=origin,
             )
-        )
-
-    def times(self, section: spec.ProcessSection) -> str:
-        """The stimulus of `times`."""
-        times = section.times
-        assert times is not None
-        if max(times.at) >= times.period or sorted(set(times.at)) != times.at:
-            message = f"the times of {section.name!r} must be strictly increasing and less than the period"
-            advice = f"Sort the times, and remove duplicates and times from {time_text(times.period)} on."
-            self.notes.error("APP003", message, section.location("times"), advice)
-        return self.registry.add(
-            perf.Synthetic(
-                name=_stimulus_name(section),
-                period=times.period,
-                times=tuple(times.at),
-                offset=times.offset,
-                origin=section.location(),
-            )
-        )
-
-    def once(self, section: spec.ProcessSection) -> str:
-        """The stimulus of `once`."""
-        return self.registry.add(perf.Single(name=_stimulus_name(section), time=section.once or 0, origin=section.location()))
+        if (times := section.times) is not None:
+            if max(times.at) >= times.period or sorted(set(times.at)) != times.at:
+                message = f"the times of {section.name!r} must be strictly increasing and less than the period"
+                advice = f"Sort the times, and remove duplicates and times from {time_text(times.period)} on."
+                self.context.notes.error("APP003", message, section.location("times"), advice)
+            return perf.Synthetic(name=name, period=times.period, times=tuple(times.at), offset=times.offset, origin=origin)
+        return None if section.once is None else perf.Single(name=name, time=section.once, origin=origin)
 
     def activities(self, section: spec.ProcessSection, core: str) -> tuple[Activity, ...]:
         """The activities of a process: calls of its runnables."""
@@ -175,13 +143,13 @@ class BackgroundTasks:
             if keys:
                 message = f"{section.name!r} has 'runnables', so {keys[0]!r} must be set for one of them"
                 advice = f"Move {keys[0]!r} to a runnable."
-                self.notes.error("APP003", message, section.location(keys[0]), advice)
+                self.context.notes.error("APP003", message, section.location(keys[0]), advice)
             return tuple(self._call(runnable, core) for runnable in section.runnables)
         if not keys and section.overhead is not None:
             return ()
         if not keys:
             advice = "Set 'execution_time' or 'runnables'; or 'overhead', for an empty process."
-            self.notes.error("APP003", f"{section.name!r} does nothing", section.location(), advice)
+            self.context.notes.error("APP003", f"{section.name!r} does nothing", section.location(), advice)
         name = f"{section.name}_Runnable"
         self._add(name, section, core)
         return (Call(runnable=name),)
@@ -197,15 +165,18 @@ class BackgroundTasks:
         if first is not section:
             if any(getattr(first, key) != getattr(section, key) for key in spec.Steps.model_fields):
                 message = f"runnable {name!r} is defined twice with different contents{first_defined(first.location())}"
-                self.notes.error("APP002", message, section.location("name"), "Make both definitions equal, or rename one.")
+                self.context.notes.error(
+                    "APP002", message, section.location("name"), "Make both definitions equal, or rename one."
+                )
             return
+        tasks = [task.name for task in self.context.description.tasks]
         for index, task in enumerate(section.triggers):
-            if task not in self.tasks:
-                self.notes.undefined("task", task, self.tasks, section.location("triggers", index))
+            if task not in tasks:
+                self.context.notes.undefined("task", task, tasks, section.location("triggers", index))
         self.runnables[name] = Runnable(
             name=name,
             activities=activity_sequence(
-                self.converter.execute([section.execution_time], core, section.location("execution_time")),
+                self.context.converter.execute([section.execution_time], core, section.location("execution_time")),
                 reads=section.reads,
                 writes=section.writes,
                 triggers=section.triggers,
@@ -213,38 +184,6 @@ class BackgroundTasks:
             ),
             origin=section.location(),
         )
-
-
-#: Kind of activation, by the key of a process -> creates its stimulus.
-_ACTIVATIONS: Mapping[str, Callable[[BackgroundTasks, spec.ProcessSection], str]] = {
-    "period": BackgroundTasks.periodic,
-    "sporadic": BackgroundTasks.sporadic,
-    "burst": BackgroundTasks.burst,
-    "times": BackgroundTasks.times,
-    "once": BackgroundTasks.once,
-}
-
-
-def _stimulus_name(section: spec.ProcessSection) -> str:
-    return f"activation_of_{section.name}"
-
-
-def add_background_tasks(context: AssemblyContext) -> None:
-    """Add the tasks and interrupt service routines of the description."""
-    description = context.description
-    background = BackgroundTasks(
-        context.converter, context.notes, context.stimuli, {task.name: task for task in description.tasks}
-    )
-    triggers = triggering_processes((*description.tasks, *description.isrs))
-    for task in description.tasks:
-        core = context.core(task.core, task.location("core"))
-        context.tasks.append(background.task(task, core, triggers.get(task.name, ())))
-    for isr in description.isrs:
-        context.isrs.append(background.isr(isr, context.core(isr.core, isr.location("core"))))
-    for name in sorted(context.runnables.keys() & background.runnables.keys()):
-        message = f"runnable {name!r} has the name of a runnable of the middleware"
-        context.notes.error("APP002", message, background.runnables[name].origin, "Rename it.")
-    context.runnables |= background.runnables
 
 
 def min_interarrival(section: spec.ProcessSection) -> Time | None:

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from amalthea_uros.perf.activities import Call
 from amalthea_uros.perf.network import Direction
 from amalthea_uros.perf.software import Runnable
-from amalthea_uros.perf.stimuli import InterProcess
+from amalthea_uros.perf.stimuli import Counter, InterProcess
 from amalthea_uros.spec.executors import ExecutorSection
 from amalthea_uros.units import Time
 from amalthea_uros.uros.application.callbacks import Callback, body_name, registration_order
@@ -101,38 +101,22 @@ def _add_periodic(
     core = context.core(executor.core, executor.location("core"))
     bodies = {callback.name: _body(context, callback, core) for callback in callbacks}
     phases = ExecutorPhases.of(executor, chosen.period, callbacks)
-    calls = _executor_calls(context, executor, outside, inside, bodies, phases, core)
+    runnables = ExecutorRunnables(executor=executor, context=context, core=core)
+    calls = [
+        PlannedCall(runnable=runnables.spin((*outside, *inside))),
+        *own_task_calls(outside, runnables, phases),
+        *in_executor_calls(inside, bodies, runnables, phases),
+    ]
     _add_executor(context, executor, calls, chosen.period, core)
     periods = {choice.task: choice.period for choice in choices}
     for callback in outside:
         if callback.name in periods:
             _add_own_task(context, callback, periods[callback.name], bodies[callback.name])
-    _check_phases(context, callbacks, phases)
-    return (chosen, *choices)
-
-
-def _check_phases(context: AssemblyContext, callbacks: Sequence[Callback], phases: ExecutorPhases) -> None:
-    calls = [call for task in context.tasks for call in task.activities if isinstance(call, Call)]
-    counted = {call.counter.source for call in calls if call.counter is not None}
+    calls_of_tasks = [call for task in context.tasks for call in task.activities if isinstance(call, Call)]
+    counted = {call.counter.source for call in calls_of_tasks if call.counter is not None}
     for callback in callbacks:
-        phases.check(callback, callback.name in counted, context.notes)
-
-
-def _executor_calls(
-    context: AssemblyContext,
-    executor: ExecutorSection,
-    outside: Sequence[Callback],
-    inside: Sequence[Callback],
-    bodies: dict[str, Runnable],
-    phases: ExecutorPhases,
-    core: str,
-) -> list[PlannedCall]:
-    runnables = ExecutorRunnables(executor=executor, context=context, core=core)
-    return [
-        PlannedCall(runnable=runnables.spin((*outside, *inside))),
-        *own_task_calls(outside, runnables, phases),
-        *in_executor_calls(inside, bodies, runnables, phases),
-    ]
+        phases.check(callback, callback.name in counted, notes)
+    return (chosen, *choices)
 
 
 def _add_executor(
@@ -188,40 +172,40 @@ def _body(context: AssemblyContext, callback: Callback, executor_core: str) -> R
 
 
 def _add_own_task(context: AssemblyContext, callback: Callback, period: Time, body: Runnable) -> None:
-    """Add the task of a callback."""
-    section = callback.section
+    """Add the task of a callback that a period activates."""
+    stimulus = context.stimuli.periodic(period, callback.section.offset, callback.origin)
     counter = own_task_counter(callback, period) if callback.runs_when_due else None
-    context.runnables[body.name] = body
-    context.tasks.append(
-        PlannedTask(
-            name=callback.name,
-            core=_core(context, callback, context.controller.first_core),
-            stimuli=(context.stimuli.periodic(period, section.offset, callback.origin),),
-            activities=(Call(runnable=body.name, counter=counter),),
-            period=period,
-            priority=section.priority,
-            deadline=section.deadline,
-            overhead=section.overhead,
-            origin=callback.origin,
-        )
-    )
+    _add_task(context, callback, body, stimulus, period, counter)
 
 
 def _add_triggered_task(context: AssemblyContext, callback: Callback, body: Runnable) -> None:
     """Add the task of a callback that its executor activates when it has taken the message."""
-    section = callback.section
     for key in ("runs_when", "offset"):
-        if section.states(key):
+        if callback.section.states(key):
             message = f"{key!r} of {callback.name!r} has no effect: its executor activates its task when it is due"
-            context.notes.error("APP003", message, section.location(key), f"Remove {key!r}, or set 'task_period'.")
+            advice = f"Remove {key!r}, or set 'task_period'."
+            context.notes.error("APP003", message, callback.section.location(key), advice)
+    stimulus = context.stimuli.add(InterProcess(name=trigger_name(callback.name), origin=callback.origin))
+    _add_task(context, callback, body, stimulus, None if callback.interval is None else callback.min_interval)
+
+
+def _add_task(
+    context: AssemblyContext,
+    callback: Callback,
+    body: Runnable,
+    stimulus: str,
+    period: Time | None,
+    counter: Counter | None = None,
+) -> None:
+    section = callback.section
     context.runnables[body.name] = body
     context.tasks.append(
         PlannedTask(
             name=callback.name,
             core=_core(context, callback, context.controller.first_core),
-            stimuli=(context.stimuli.add(InterProcess(name=trigger_name(callback.name), origin=callback.origin)),),
-            activities=(Call(runnable=body.name),),
-            period=None if callback.interval is None else callback.min_interval,
+            stimuli=(stimulus,),
+            activities=(Call(runnable=body.name, counter=counter),),
+            period=period,
             priority=section.priority,
             deadline=section.deadline,
             overhead=section.overhead,

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, replace
 from fractions import Fraction
+from typing import Any
 
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.perf.activities import Demand, Execute
 from amalthea_uros.perf.distributions import (
     Beta,
     Boundaries,
-    Bounds,
     Bucket,
     Constant,
     Distribution,
@@ -55,49 +55,27 @@ def times_of(execution_time: ExecutionTimeSection) -> Distribution[int]:
     return Constant(lower) if lower == upper else Boundaries(lower=lower, upper=upper, sampling=Sampling.UNIFORM)
 
 
+#: Values of distributions that are times, with how they are rounded.
+_ROUNDED: Mapping[str, Callable[[Fraction], float]] = {
+    "value": up,
+    "lower": down,
+    "upper": up,
+    "average": float,
+    "mean": float,
+    "deviation": float,
+}
+
+
 def in_ticks(times: Distribution[int], frequency: Frequency) -> Distribution[int]:
     """A distribution of times as one of ticks: lower bounds are rounded down, upper bounds and constants up."""
+    if isinstance(times, Histogram):
+        return Histogram(tuple(replace(bucket, **_ticks_of(bucket, frequency)) for bucket in times.buckets))
+    return replace(times, **_ticks_of(times, frequency))
 
-    def exact(time: float) -> Fraction:
-        return ticks_of_time(1, frequency) * Fraction(time)
 
-    def lower_bound(time: Time) -> int:
-        return down(exact(time))
-
-    def upper_bound(time: Time) -> int:
-        return up(exact(time))
-
-    def mean(time: float) -> float:
-        return float(exact(time))
-
-    match times:
-        case Constant(value):
-            return Constant(upper_bound(value))
-        case Histogram(buckets):
-            return Histogram(
-                tuple(
-                    Bucket(lower=lower_bound(b.lower), upper=upper_bound(b.upper), occurrences=b.occurrences) for b in buckets
-                )
-            )
-        case Uniform(lower=lower, upper=upper):
-            return Uniform(lower=lower_bound(lower), upper=upper_bound(upper))
-        case Bounds(lower=lower, upper=upper):
-            return Bounds(lower=lower_bound(lower), upper=upper_bound(upper))
-        case Boundaries(lower=lower, upper=upper, sampling=sampling):
-            return Boundaries(lower=lower_bound(lower), upper=upper_bound(upper), sampling=sampling)
-        case Statistics(lower=lower, average=average, upper=upper):
-            return Statistics(lower=lower_bound(lower), average=mean(average), upper=upper_bound(upper))
-        case Weibull(lower=lower, average=average, upper=upper, exceeding=exceeding):
-            return Weibull(lower=lower_bound(lower), average=mean(average), upper=upper_bound(upper), exceeding=exceeding)
-        case Beta(alpha=alpha, beta=beta, lower=lower, upper=upper):
-            return Beta(alpha=alpha, beta=beta, lower=lower_bound(lower), upper=upper_bound(upper))
-        case Gauss(mean=average, deviation=deviation, lower=low, upper=high):
-            return Gauss(
-                mean=mean(average),
-                deviation=mean(deviation),
-                lower=None if low is None else lower_bound(low),
-                upper=None if high is None else upper_bound(high),
-            )
+def _ticks_of(times: Distribution[int] | Bucket[int], frequency: Frequency) -> dict[str, Any]:
+    stated = {name: value for name in _ROUNDED if (value := getattr(times, name, None)) is not None}
+    return {name: _ROUNDED[name](ticks_of_time(1, frequency) * Fraction(value)) for name, value in stated.items()}
 
 
 @dataclass(frozen=True, slots=True)
