@@ -66,13 +66,13 @@ if TYPE_CHECKING:
     from amalthea_uros.compare.results import Comparison as Comparison
     from amalthea_uros.compare.results import ComparisonRow as ComparisonRow
     from amalthea_uros.compare.results import MeasuredLimit as MeasuredLimit
-    from amalthea_uros.design.campaign.run import Outcome as Outcome
-    from amalthea_uros.design.campaign.run import Run as Run
+    from amalthea_uros.design.campaign.run import CampaignRun as CampaignRun
+    from amalthea_uros.design.campaign.run import RunOutcome as RunOutcome
     from amalthea_uros.design.campaign.tables import write_table as write_table
     from amalthea_uros.design.changes.change import Change as Change
+    from amalthea_uros.design.changes.change import Sweep as Sweep
     from amalthea_uros.design.changes.change import parse_change as parse_change
-    from amalthea_uros.design.changes.sweep import Sweep as Sweep
-    from amalthea_uros.design.changes.sweep import parse_sweep as parse_sweep
+    from amalthea_uros.design.changes.change import parse_sweep as parse_sweep
     from amalthea_uros.design.improvements import Improvement as Improvement
     from amalthea_uros.design.improvements import Improvements as Improvements
     from amalthea_uros.design.optimize.problem import Conclusion as Conclusion
@@ -181,8 +181,7 @@ _NAMES = {
     "compare.results": ("Comparison", "ComparisonRow", "MeasuredLimit"),
     "design.campaign.run": ("Outcome", "Run"),
     "design.campaign.tables": ("write_table",),
-    "design.changes.change": ("Change", "parse_change"),
-    "design.changes.sweep": ("Sweep", "parse_sweep"),
+    "design.changes.change": ("Change", "Sweep", "parse_change", "parse_sweep"),
     "design.improvements": ("Improvement", "Improvements"),
     "design.optimize.problem": ("Conclusion", "SearchResult"),
     "design.proposals": ("DesignProposal",),

@@ -11,7 +11,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import amalthea_uros as amuros
-from amalthea_uros.design.optimize.enumeration import designs_with
+from amalthea_uros.design.optimize.space import designs_with
 from amalthea_uros.services.optimize import plan_optimization
 
 SAMPLES = Path(__file__).parents[1] / "samples"

@@ -29,12 +29,12 @@ from amalthea_uros.analyze.priorities.assignment import ProposalOutcome, propose
 from amalthea_uros.analyze.priorities.orders import with_priorities  # noqa: E402
 from amalthea_uros.analyze.results.analysis import Analysis  # noqa: E402
 from amalthea_uros.analyze.system import analyze_system  # noqa: E402
+from amalthea_uros.design.optimize.annealing import solve_by_annealing  # noqa: E402
+from amalthea_uros.design.optimize.mapping import solve_mapping  # noqa: E402
+from amalthea_uros.design.optimize.offsets import solve_offsets  # noqa: E402
+from amalthea_uros.design.optimize.priorities import solve_priorities  # noqa: E402
 from amalthea_uros.design.optimize.problem import Conclusion, Goal, SearchResult  # noqa: E402
-from amalthea_uros.design.optimize.solvers.annealing import solve_by_annealing  # noqa: E402
-from amalthea_uros.design.optimize.solvers.mapping import solve_mapping  # noqa: E402
-from amalthea_uros.design.optimize.solvers.offsets import solve_offsets  # noqa: E402
-from amalthea_uros.design.optimize.solvers.priorities import solve_priorities  # noqa: E402
-from amalthea_uros.design.optimize.space import Choice, Kind, Space  # noqa: E402
+from amalthea_uros.design.optimize.space import Choice, DecisionKind, Space  # noqa: E402
 from amalthea_uros.services.optimize import plan_optimization  # noqa: E402
 from amalthea_uros.timing.basics.settings import Settings  # noqa: E402
 from amalthea_uros.units import MICROSECOND as US  # noqa: E402
@@ -136,7 +136,7 @@ def challenge(path: Path) -> None:
     moved = ("Task_10ms", "Task_1ms", "Task_5ms")
     options = [each.scheduler for each in system.mapping.tasks]
     choices = tuple(
-        Choice(object=task, key="scheduler", kind=Kind.CORE, options=(now, *sorted(set(options) - {now})))
+        Choice(object=task, key="scheduler", kind=DecisionKind.CORE, options=(now, *sorted(set(options) - {now})))
         for task, now in zip(tasks, options, strict=True)
         if task in moved
     )

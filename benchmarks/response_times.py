@@ -22,7 +22,7 @@ from amalthea_uros.perf.distributions import Statistics
 from amalthea_uros.perf.hardware import Clock, Core, Hardware, Structure
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
-from amalthea_uros.timing.event_models import PeriodicEvents
+from amalthea_uros.timing.event_models.models import PeriodicEvents
 
 PERIODS = (1, 2, 5, 10, 20, 50, 100, 200, 1000)
 MILLISECOND = 10**9

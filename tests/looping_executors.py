@@ -13,12 +13,12 @@ from amalthea_uros.perf.executors import (
     Executor,
     Handle,
     HandleKind,
-    Loop,
     LoopKind,
     Publication,
+    ThreadLoop,
     TriggerCondition,
     TriggerKind,
-    Waiting,
+    WaitBehaviour,
 )
 from amalthea_uros.perf.software import Runnable
 from amalthea_uros.perf.stimuli import Periodic, RelativePeriodic, Stimuli
@@ -26,9 +26,9 @@ from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
 
 #: `delay(100); rclc_executor_spin_some(&executor, RCL_MS_TO_NS(100))`, the loop of the Arduino examples.
-ARDUINO = Loop(kind=LoopKind.SLEEPING, timeout=100 * MS, sleep=100 * MS)
+ARDUINO = ThreadLoop(kind=LoopKind.SLEEPING, timeout=100 * MS, sleep=100 * MS)
 #: `rclc_executor_spin`, whose timeout is 1 s by default.
-SPIN = Loop(kind=LoopKind.CONTINUOUS, timeout=1000 * MS)
+SPIN = ThreadLoop(kind=LoopKind.CONTINUOUS, timeout=1000 * MS)
 
 
 def message(name, interval, cost=0, **parts):
@@ -56,7 +56,7 @@ def waiting_publication(topic="odom", timeout=1000 * MS, **parts):
 def looping(*handles, loop=ARDUINO, spin=0, others=(), priority=5, name="Executor", trigger=None, waiting=None, **parts):
     """A system with one executor and other processes on the same core; handles in the order of the executor."""
     executor, process, runnables, stimulus = _parts(name, handles, loop, spin, priority)
-    executor = replace(executor, trigger=trigger or TriggerCondition(), waiting=waiting or Waiting(), **parts)
+    executor = replace(executor, trigger=trigger or TriggerCondition(), waiting=waiting or WaitBehaviour(), **parts)
     found = system(process, *others, runnables=runnables)
     return replace(found, executors=(executor,), stimuli=Stimuli(stimuli=(*found.stimuli.stimuli, stimulus)))
 
@@ -98,7 +98,7 @@ __all__ = [
     "US",
     "Proc",
     "TriggerKind",
-    "Waiting",
+    "WaitBehaviour",
     "combined",
     "evaluate",
     "guard",

@@ -14,7 +14,7 @@ from amalthea_uros.executors.semantics.loops import timing_context
 from amalthea_uros.perf.activities import Call, Chance, ProbabilitySwitch
 from amalthea_uros.perf.distributions import Constant
 from amalthea_uros.perf.events import LabelChange, LabelEvent, ProcessChange, ProcessEvent, RunnableChange, RunnableEvent
-from amalthea_uros.perf.executors import Executor, Handle, HandleKind, Loop, LoopKind, Publication, Waiting
+from amalthea_uros.perf.executors import Executor, Handle, HandleKind, LoopKind, Publication, ThreadLoop, WaitBehaviour
 from amalthea_uros.perf.network import Direction, Network, Purpose, Span, Transmission, Wire, WireKind
 from amalthea_uros.perf.os import Policy, Scheduler
 from amalthea_uros.perf.software import Label, Preemption, Runnable
@@ -26,7 +26,7 @@ from amalthea_uros.units import MILLISECOND as MS
 CMD, ODOM, ACK = 5816, 1997, 1737
 SLEEP = 10 * MS
 AGENT = Span(least=MS, most=2 * MS)
-LOOP = Loop(kind=LoopKind.SLEEPING, timeout=100 * MS, sleep=SLEEP)
+LOOP = ThreadLoop(kind=LoopKind.SLEEPING, timeout=100 * MS, sleep=SLEEP)
 
 _EVENTS = (
     ProcessEvent(name="cmd_published", process="cmd_in", change=ProcessChange.ACTIVATE),
@@ -95,7 +95,7 @@ def board(*chains, agent=AGENT, publication=None, handles=(), wire=None, **handl
         spin="Spin",
         loop=LOOP,
         handles=tuple(each for each, _ in every),
-        waiting=Waiting(slots=None),
+        waiting=WaitBehaviour(slots=None),
     )
     stimuli = (
         RelativePeriodic(name="round", distance=Constant(SLEEP + 100 * US), has_maximum=False),

@@ -16,12 +16,12 @@ from amalthea_uros.perf.distributions import Boundaries, Constant
 from amalthea_uros.perf.executors import (
     Executor,
     HandleKind,
-    Loop,
     LoopKind,
     Publication,
+    ThreadLoop,
     TriggerCondition,
     TriggerKind,
-    Waiting,
+    WaitBehaviour,
 )
 from amalthea_uros.perf.network import Span
 from amalthea_uros.perf.software import Runnable
@@ -90,18 +90,18 @@ def _loop(random, with_sleep=False):
     sleep = random.choice((1, 5, 10, 50)) * MS
     match kind:
         case "sleep":
-            return Loop(kind=LoopKind.SLEEPING, timeout=timeout, sleep=sleep)
+            return ThreadLoop(kind=LoopKind.SLEEPING, timeout=timeout, sleep=sleep)
         case "early":
             tick = random.choice((1, 5, 10)) * MS
             ticks = -(-sleep // tick)
             exact = random.random() < 0.3
             sleep, early = (ticks + exact) * tick, tick
-            return Loop(kind=LoopKind.SLEEPING, timeout=timeout, sleep=sleep, sleep_early=early, pace=ticks * tick)
+            return ThreadLoop(kind=LoopKind.SLEEPING, timeout=timeout, sleep=sleep, sleep_early=early, pace=ticks * tick)
         case "bare":
-            return Loop(kind=LoopKind.SLEEPING, timeout=timeout)
+            return ThreadLoop(kind=LoopKind.SLEEPING, timeout=timeout)
         case "period":
-            return Loop(kind=LoopKind.PERIODIC, period=random.choice((2, 5, 20, 25)) * MS, timeout=max(timeout, MS))
-    return Loop(kind=LoopKind.CONTINUOUS, timeout=random.choice((1, 20, 100, 1000)) * MS)
+            return ThreadLoop(kind=LoopKind.PERIODIC, period=random.choice((2, 5, 20, 25)) * MS, timeout=max(timeout, MS))
+    return ThreadLoop(kind=LoopKind.CONTINUOUS, timeout=random.choice((1, 20, 100, 1000)) * MS)
 
 
 def _handles(random, prefix, varying, sending, delays, shape):
@@ -173,7 +173,7 @@ def application(random: Random, executors=None) -> Application:
     shape = random.choice(
         (("message",), ("timer",), ("message", "message", "timer"), ("message", "timer", "guard"), ("timer", "guard"))
     )
-    waiting = Waiting(slots=random.choice((1, 2, 4, None)))
+    waiting = WaitBehaviour(slots=random.choice((1, 2, 4, None)))
     if random.random() < 0.2:
         waiting = replace(
             waiting,

@@ -28,6 +28,17 @@ def bottom_up(starts: Iterable[T], parts: Callable[[T], Iterable[T]]) -> list[T]
     return found
 
 
+def reached(starts: Iterable[T], following: Callable[[T], Iterable[T]]) -> list[T]:
+    """Everything that is reached, the starts included, each once; what is nearest first."""
+    seen = dict.fromkeys(starts)
+    found = list(seen)
+    for item in found:
+        new = dict.fromkeys(each for each in following(item) if each not in seen)
+        seen |= new
+        found += new
+    return found
+
+
 def circles(items: Iterable[T], parts: Callable[[T], Iterable[T]]) -> list[set[T]]:
     """The items that are parts of themselves, together with those that they are parts of themselves through.
 

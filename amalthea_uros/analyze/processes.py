@@ -20,7 +20,7 @@ from amalthea_uros.timing.activation.releases import ASSUMPTION
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.timing.basics.time_base import max_time, min_time
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.event_models import EventModel, can_be_dense
+from amalthea_uros.timing.event_models.models import EventModel, can_be_dense
 from amalthea_uros.timing.jobs.executed import states_mean
 from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.timing.scheduling.scheduled import EqualPriority, preemption

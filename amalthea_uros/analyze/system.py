@@ -25,7 +25,7 @@ from amalthea_uros.executors.results import ExecutorResult
 from amalthea_uros.executors.semantics.loops import timing_context
 from amalthea_uros.judge.summary import summarize
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.activation.phases import (
+from amalthea_uros.timing.activation.releases import (
     ExternalInput,
     phase_assumptions,
     unknown_phases,

@@ -26,11 +26,11 @@ from amalthea_uros.cli.output import (
 from amalthea_uros.cli.parsed import Parsed
 from amalthea_uros.cli.settings_options import settings_options
 from amalthea_uros.cli.workers_options import workers_options
-from amalthea_uros.design.changes import sweep as sweeping
-from amalthea_uros.design.optimize import limits as limiting
+from amalthea_uros.design.changes.change import SWEEP_EXAMPLE, Sweep, parse_sweep
+from amalthea_uros.design.optimize.choices import DEFAULT, Vary
 from amalthea_uros.design.optimize.goals import GOALS
-from amalthea_uros.design.optimize.recorder import INTERRUPTED as ENDED_BY_USER
-from amalthea_uros.design.space.choices import DEFAULT, Vary
+from amalthea_uros.design.optimize.judged import INTERRUPTED as ENDED_BY_USER
+from amalthea_uros.design.optimize.quantities import LIMIT_EXAMPLE, LIMIT_FORM, Limit, parse_limit
 from amalthea_uros.report.optimized import closing_line, is_met
 from amalthea_uros.services.optimize import MOST_DESIGNS, MOST_PROPOSALS, Optimization, optimize
 from amalthea_uros.services.optimized_model import write_proposal
@@ -50,8 +50,8 @@ def _vary(text: str) -> tuple[Vary, ...]:
     "--limit",
     "limits",
     multiple=True,
-    type=Parsed(limiting.FORM, limiting.parse_limit),
-    help=f"What must hold beside the limits of the model, e.g. '{limiting.EXAMPLE}'; may be repeated.",
+    type=Parsed(LIMIT_FORM, parse_limit),
+    help=f"What must hold beside the limits of the model, e.g. '{LIMIT_EXAMPLE}'; may be repeated.",
 )
 @click.option(
     "--goal",
@@ -73,8 +73,8 @@ def _vary(text: str) -> tuple[Vary, ...]:
     "--offer",
     "offers",
     multiple=True,
-    type=Parsed("OBJECT.KEY=VALUES", sweeping.parse_sweep),
-    help=f"Values that a property may have, a range or a list, e.g. {sweeping.EXAMPLE}; may be repeated.",
+    type=Parsed("OBJECT.KEY=VALUES", parse_sweep),
+    help=f"Values that a property may have, a range or a list, e.g. {SWEEP_EXAMPLE}; may be repeated.",
 )
 @click.option(
     "--keep", multiple=True, metavar="OBJECT[.KEY]", help="What must not change, e.g. a supplier's task; may be repeated."
@@ -111,10 +111,10 @@ def _vary(text: str) -> tuple[Vary, ...]:
 @output_option(Optimization)
 def command(
     paths: tuple[Path, ...],
-    limits: tuple[limiting.Limit, ...],
+    limits: tuple[Limit, ...],
     goals: tuple[str, ...],
     vary: tuple[Vary, ...],
-    offers: tuple[sweeping.Sweep, ...],
+    offers: tuple[Sweep, ...],
     keep: tuple[str, ...],
     settings: Settings,
     pareto: Path | None,

@@ -28,10 +28,9 @@ from amalthea_uros.cli.parsed import Parsed
 from amalthea_uros.cli.pictures import Pictures
 from amalthea_uros.cli.settings_options import AssignmentType, set_option, settings_options
 from amalthea_uros.cli.workers_options import workers_options
-from amalthea_uros.design.campaign.run import Outcome, count_runs
+from amalthea_uros.design.campaign.run import RunOutcome, count_runs
 from amalthea_uros.design.campaign.tables import table_format, write_table
-from amalthea_uros.design.changes import sweep as sweeping
-from amalthea_uros.design.changes.change import Change
+from amalthea_uros.design.changes.change import SWEEP_EXAMPLE, Change, Sweep, parse_sweep
 from amalthea_uros.services.simulate import CampaignResult, SimulationResult, plan_simulation, simulate_campaign, simulate_plan
 from amalthea_uros.simulate.options import Options, SimulationMode
 from amalthea_uros.timing.basics.settings import Settings
@@ -122,8 +121,8 @@ def _labels(text: str) -> tuple[str, ...]:
     "--sweep",
     "sweeps",
     multiple=True,
-    type=Parsed("OBJECT.KEY=VALUES", sweeping.parse_sweep),
-    help=f"Simulate with each of several values, a range or a list, e.g. {sweeping.EXAMPLE}; if repeated, with all combinations.",
+    type=Parsed("OBJECT.KEY=VALUES", parse_sweep),
+    help=f"Simulate with each of several values, a range or a list, e.g. {SWEEP_EXAMPLE}; if repeated, with all combinations.",
 )
 @click.option(
     "--runs",
@@ -153,7 +152,7 @@ def command(
     timelines: tuple[tuple[str, Path], ...],
     histograms: tuple[tuple[str, Path], ...],
     window: tuple[Time, Time] | None,
-    sweeps: tuple[sweeping.Sweep, ...],
+    sweeps: tuple[Sweep, ...],
     runs: int,
     workers: int | None,
     cluster: str | None,
@@ -230,7 +229,7 @@ def _campaign(
     paths: Sequence[Path],
     options: Options,
     changes: Sequence[Change],
-    sweeps: Sequence[sweeping.Sweep],
+    sweeps: Sequence[Sweep],
     runs: int,
     with_bus: bool,
     workers: int | None,
@@ -240,7 +239,7 @@ def _campaign(
     is_hidden = not sys.stderr.isatty()
     with click.progressbar(length=count_runs(sweeps, runs), label="Simulating", file=sys.stderr, hidden=is_hidden) as bar:
 
-        def advance(_outcome: Outcome) -> None:
+        def advance(_outcome: RunOutcome) -> None:
             bar.update(1)
 
         return simulate_campaign(

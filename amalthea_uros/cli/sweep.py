@@ -26,11 +26,10 @@ from amalthea_uros.cli.output import (
 from amalthea_uros.cli.parsed import Parsed
 from amalthea_uros.cli.settings_options import AssignmentType, analysis_options, set_option
 from amalthea_uros.cli.workers_options import workers_options
-from amalthea_uros.design.campaign.run import Outcome
-from amalthea_uros.design.campaign.sweep_plan import plan_sweep
+from amalthea_uros.design.campaign.run import RunOutcome
+from amalthea_uros.design.campaign.sweeps import plan_sweep
 from amalthea_uros.design.campaign.tables import table_format, write_table
-from amalthea_uros.design.changes import sweep as sweeping
-from amalthea_uros.design.changes.change import Change
+from amalthea_uros.design.changes.change import SWEEP_EXAMPLE, Change, Sweep, parse_sweep
 from amalthea_uros.services.sweep import SweepResult, sweep_files
 from amalthea_uros.timing.basics.settings import Settings
 
@@ -42,8 +41,8 @@ from amalthea_uros.timing.basics.settings import Settings
     "sweeps",
     multiple=True,
     required=True,
-    type=Parsed("OBJECT.KEY=VALUES", sweeping.parse_sweep),
-    help=f"Analyze with each of several values, a range or a list, e.g. {sweeping.EXAMPLE}; if repeated, with all combinations.",
+    type=Parsed("OBJECT.KEY=VALUES", parse_sweep),
+    help=f"Analyze with each of several values, a range or a list, e.g. {SWEEP_EXAMPLE}; if repeated, with all combinations.",
 )
 @click.option("--sample", type=click.IntRange(min=1), metavar="N", help="Analyze only so many combinations, chosen at random.")
 @click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Seed of the random choice.")
@@ -75,7 +74,7 @@ from amalthea_uros.timing.basics.settings import Settings
 @output_option(SweepResult)
 def command(
     paths: tuple[Path, ...],
-    sweeps: tuple[sweeping.Sweep, ...],
+    sweeps: tuple[Sweep, ...],
     sample: int | None,
     seed: int,
     changes: tuple[Change, ...],
@@ -106,7 +105,7 @@ def command(
     is_hidden = not sys.stderr.isatty()
     with click.progressbar(length=len(plan.runs), label="Analyzing", file=sys.stderr, hidden=is_hidden) as bar:
 
-        def advance(_outcome: Outcome) -> None:
+        def advance(_outcome: RunOutcome) -> None:
             bar.update(1)
 
         result = sweep_files(

@@ -14,7 +14,7 @@ from amalthea_uros.compare.results import (
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.measure.series import Measurement
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.activation.phases import unstated_phases
+from amalthea_uros.timing.activation.releases import unstated_phases
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import Time, time_text
 

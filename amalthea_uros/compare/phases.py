@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.activation.phases import (
+from amalthea_uros.timing.activation.releases import (
     phase_combinations,
     phase_count,
     unstated_phases,

@@ -19,7 +19,7 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.results import Simulation
 from amalthea_uros.simulate.runs.run import simulate_system
-from amalthea_uros.timing.activation.phases import with_first_arrivals
+from amalthea_uros.timing.activation.releases import with_first_arrivals
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.trace.sinks import TraceSink
 from amalthea_uros.trace.table import Entity, EventTable

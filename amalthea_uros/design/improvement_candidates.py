@@ -15,7 +15,7 @@ from amalthea_uros.design.changes.key import Configuration
 from amalthea_uros.perf.activities import Communication
 from amalthea_uros.perf.stimuli import Periodic
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.activation.phases import unknown_phases
+from amalthea_uros.timing.activation.releases import unknown_phases
 from amalthea_uros.units import Time, frequency_text, time_text
 
 #: Where no periods are offered, also these parts of a period: the harmonic ones next to it.

@@ -16,7 +16,7 @@ from amalthea_uros.design.changes.apply import Difference, apply, describe
 from amalthea_uros.design.changes.key import Configuration
 from amalthea_uros.design.improvement_candidates import Candidate, candidates
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.timing.activation.phases import counters, nominal_period
+from amalthea_uros.timing.activation.releases import counters, nominal_period
 from amalthea_uros.timing.response import Claim
 from amalthea_uros.units import Time, time_text
 

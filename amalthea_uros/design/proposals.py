@@ -13,13 +13,12 @@ from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.design.changes.apply import Difference
 from amalthea_uros.design.changes.change import Change
 from amalthea_uros.design.changes.key import Configuration
+from amalthea_uros.design.optimize.choices import Wishes, design_space
 from amalthea_uros.design.optimize.evaluation import DesignEvaluator
-from amalthea_uros.design.optimize.goals import Scale, goals_of, latency_limits, named_by
-from amalthea_uros.design.optimize.limits import Limit, check_limit, parse_limit
+from amalthea_uros.design.optimize.goals import GoalScale, goals_of, latency_limits, named_by
 from amalthea_uros.design.optimize.lower_bounds import sampled_chains
-from amalthea_uros.design.optimize.problem import Evaluation, Feasibility, Problem
-from amalthea_uros.design.optimize.quantities import FROM_ARRIVAL, Figures, Range, takers
-from amalthea_uros.design.space.choices import Wishes, design_space
+from amalthea_uros.design.optimize.problem import DesignEvaluation, Feasibility, Problem
+from amalthea_uros.design.optimize.quantities import FROM_ARRIVAL, Figures, Limit, Range, check_limit, parse_limit, takers
 from amalthea_uros.perf.system import System
 from amalthea_uros.uros.assemble import Assembly
 
@@ -54,7 +53,7 @@ class DesignProposal(Shown):
     limits : the limits beside those of the model
     """
 
-    evaluation: Evaluation
+    evaluation: DesignEvaluation
     differences: tuple[Difference, ...]
     changes: tuple[Change, ...]
     value_changes: tuple[Change, ...]
@@ -127,7 +126,7 @@ def plan_search(
         limits=stated if may_be_later else (*stated, *_not_later(before, figures)),
         chains=sampled_chains(before),
         goals=goals_of(goals, present.system),
-        scale=Scale(figures=figures, latencies=latency_limits(before, stated, figures)),
+        scale=GoalScale(figures=figures, latencies=latency_limits(before, stated, figures)),
     )
     problem = Problem(
         present=present,
@@ -149,7 +148,7 @@ def _not_later(before: Analysis, figures: Figures) -> Iterator[Limit]:
             yield Limit(object=chain.name, quantity=FROM_ARRIVAL, maximum=found.upper, reason="not later than now")
 
 
-def proved_proposal(evaluation: Evaluation, evaluator: DesignEvaluator, before: Analysis) -> DesignProposal:
+def proved_proposal(evaluation: DesignEvaluation, evaluator: DesignEvaluator, before: Analysis) -> DesignProposal:
     """A proposal, proved by a full analysis of its own."""
     designs = evaluator.designs
     stated, values = designs.divided(evaluation.candidate)

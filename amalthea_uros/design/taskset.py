@@ -83,14 +83,20 @@ def taskset(
         raise TypeError(f"expected the names of chains with their tasks, e.g. {{'a-b': ['A', 'B']}}, not {chains!r}")
     flows = _flows(made, chains or {})
     cores = tuple(dict.fromkeys(each.core for each in made))
+    schedulers = tuple(
+        Scheduler(name=_scheduler_name(core), policy=_POLICIES[policy], cores=(core,), executing_core=core) for core in cores
+    )
     return System(
         hardware=_hardware(cores),
         os=Os(
-            systems=(OperatingSystem(name="OS", schedulers=tuple(_scheduler(core, _POLICIES[policy]) for core in cores)),),
+            systems=(OperatingSystem(name="OS", schedulers=schedulers),),
             semaphores=_resources(made),
         ),
         stimuli=Stimuli(stimuli=tuple(map(_stimulus, made))),
-        software=Software(tasks=tuple(_task(each, flows) for each in made), labels=tuple(map(_label, flows))),
+        software=Software(
+            tasks=tuple(_task(each, flows) for each in made),
+            labels=tuple(Label(name=_label_name(flow), size=32) for flow in flows),
+        ),
         mapping=SystemMapping(tasks=tuple(_allocation(each, policy) for each in made)),
         events=_events(chains or {}),
     )
@@ -186,10 +192,6 @@ def _hardware(cores: Sequence[str]) -> Hardware:
     return Hardware(clocks=(_CLOCK,), structures=(Structure(name="ECU", kind=StructureKind.ECU, cores=made),))
 
 
-def _scheduler(core: str, policy: Policy) -> Scheduler:
-    return Scheduler(name=_scheduler_name(core), policy=policy, cores=(core,), executing_core=core)
-
-
 def _resources(tasks: Sequence[TaskParameters]) -> tuple[Semaphore, ...]:
     """The resources of the critical sections; a ceiling protects those of one core only."""
     cores: dict[str, str] = {}
@@ -238,10 +240,6 @@ def _flows(tasks: Sequence[TaskParameters], chains: Mapping[str, Sequence[str]])
 
 def _label_name(flow: tuple[str, str]) -> str:
     return "_to_".join(flow)
-
-
-def _label(flow: tuple[str, str]) -> Label:
-    return Label(name=_label_name(flow), size=32)
 
 
 def _task(each: TaskParameters, flows: Iterable[tuple[str, str]]) -> Task:

@@ -4,363 +4,174 @@ All classes are frozen dataclasses that refer to each other by name; `System` ho
 picoseconds, frequencies hertz, data sizes bits (see `units`); execution demand is counted in ticks of the executing core's clock.
 """
 
-from amalthea_uros.perf.activities import (
-    AccessKind,
-    Activity,
-    Call,
-    Case,
-    Chance,
-    ClearEvent,
-    Communication,
-    Count,
-    Demand,
-    Execute,
-    ExecutionNeed,
-    Group,
-    Incomplete,
-    LabelAccess,
-    Loop,
-    Migrate,
-    ModeAccess,
-    ModeOperation,
-    ProbabilitySwitch,
-    Protection,
-    RaiseEvent,
-    Receive,
-    ReceiveOperation,
-    SchedulePoint,
-    SemaphoreAccess,
-    SemaphoreOperation,
-    Send,
-    SetEvent,
-    Switch,
-    Terminate,
-    Trigger,
-    WaitEvent,
-    Waiting,
-)
-from amalthea_uros.perf.conditions import (
-    ChannelFillIs,
-    Comparison,
-    Condition,
-    ModeAssignment,
-    ModeLabelsAre,
-    ModeValueIs,
-    Relation,
-    Undecided,
-)
-from amalthea_uros.perf.constraints import (
-    Bound,
-    ChainEnd,
-    ChainSynchronization,
-    Constraint,
-    Constraints,
-    CountLimit,
-    CountMetric,
-    DataAgeConstraint,
-    DelayConstraint,
-    EventSynchronization,
-    FrequencyLimit,
-    FrequencyMetric,
-    JitterLimit,
-    LatencyConstraint,
-    LatencyKind,
-    Limit,
-    LoadLimit,
-    LoadMetric,
-    Matching,
-    OrderConstraint,
-    Ordering,
-    RatioLimit,
-    RatioMetric,
-    RepetitionConstraint,
-    Requirement,
-    RequirementSeverity,
-    TimeLimit,
-    TimeMetric,
-)
-from amalthea_uros.perf.distributions import (
-    Beta,
-    Boundaries,
-    Bucket,
-    Constant,
-    Distribution,
-    Gauss,
-    Histogram,
-    Sampling,
-    Statistics,
-    Uniform,
-    Weibull,
-)
-from amalthea_uros.perf.events import (
-    ChainItem,
-    ChainReference,
-    ChannelChange,
-    ChannelEvent,
-    CustomEvent,
-    Event,
-    EventChain,
-    Events,
-    EventSet,
-    LabelChange,
-    LabelEvent,
-    ModeChange,
-    ModeLabelEvent,
-    Parallel,
-    ProcessChange,
-    ProcessEvent,
-    RunnableChange,
-    RunnableEvent,
-    Segment,
-    SemaphoreChange,
-    SemaphoreEvent,
-    Sequence,
-    StimulusEvent,
-)
-from amalthea_uros.perf.hardware import (
-    Access,
-    Arbitration,
-    Cache,
-    Clock,
-    Connection,
-    Core,
-    CoreKind,
-    CoreType,
-    Feature,
-    Hardware,
-    Interconnect,
-    Latency,
-    Memory,
-    MemoryKind,
-    Structure,
-    StructureKind,
-)
-from amalthea_uros.perf.mapping import IsrAllocation, Mapping, Placement, TaskAllocation
-from amalthea_uros.perf.named import Named
-from amalthea_uros.perf.os import (
-    Duration,
-    InterruptController,
-    IsrOverhead,
-    OperatingSystem,
-    Os,
-    Overhead,
-    Parameter,
-    ParameterValue,
-    Parent,
-    Policy,
-    Scheduler,
-    Semaphore,
-    SemaphoreKind,
-    Service,
-)
-from amalthea_uros.perf.software import (
-    Channel,
-    Isr,
-    IsrCategory,
-    Label,
-    Mode,
-    ModeLabel,
-    OsEvent,
-    Preemption,
-    Process,
-    Runnable,
-    Software,
-    Task,
-)
-from amalthea_uros.perf.stimuli import (
-    AbstractStimulus,
-    ArrivalCurve,
-    ArrivalCurvePoint,
-    Burst,
-    ClockFunction,
-    ClockStep,
-    ClockSteps,
-    Counter,
-    Curve,
-    Custom,
-    EventTriggered,
-    InterProcess,
-    Periodic,
-    RelativePeriodic,
-    Scenario,
-    Single,
-    Stimuli,
-    Stimulus,
-    Synthetic,
-    VariableRate,
-)
-from amalthea_uros.perf.system import System
-
-__all__ = [
-    "AbstractStimulus",
-    "Access",
-    "AccessKind",
-    "Activity",
-    "Arbitration",
-    "ArrivalCurve",
-    "ArrivalCurvePoint",
-    "Beta",
-    "Bound",
-    "Boundaries",
-    "Bucket",
-    "Burst",
-    "Cache",
-    "Call",
-    "Case",
-    "ChainEnd",
-    "ChainItem",
-    "ChainReference",
-    "ChainSynchronization",
-    "Chance",
-    "Channel",
-    "ChannelChange",
-    "ChannelEvent",
-    "ChannelFillIs",
-    "ClearEvent",
-    "Clock",
-    "ClockFunction",
-    "ClockStep",
-    "ClockSteps",
-    "Communication",
-    "Comparison",
-    "Condition",
-    "Connection",
-    "Constant",
-    "Constraint",
-    "Constraints",
-    "Core",
-    "CoreKind",
-    "CoreType",
-    "Count",
-    "CountLimit",
-    "CountMetric",
-    "Counter",
-    "Curve",
-    "Custom",
-    "CustomEvent",
-    "DataAgeConstraint",
-    "DelayConstraint",
-    "Demand",
-    "Distribution",
-    "Duration",
-    "Event",
-    "EventChain",
-    "EventSet",
-    "EventSynchronization",
-    "EventTriggered",
-    "Events",
-    "Execute",
-    "ExecutionNeed",
-    "Feature",
-    "FrequencyLimit",
-    "FrequencyMetric",
-    "Gauss",
-    "Group",
-    "Hardware",
-    "Histogram",
-    "Incomplete",
-    "InterProcess",
-    "Interconnect",
-    "InterruptController",
-    "Isr",
-    "IsrAllocation",
-    "IsrCategory",
-    "IsrOverhead",
-    "JitterLimit",
-    "Label",
-    "LabelAccess",
-    "LabelChange",
-    "LabelEvent",
-    "Latency",
-    "LatencyConstraint",
-    "LatencyKind",
-    "Limit",
-    "LoadLimit",
-    "LoadMetric",
-    "Loop",
-    "Mapping",
-    "Matching",
-    "Memory",
-    "MemoryKind",
-    "Migrate",
-    "Mode",
-    "ModeAccess",
-    "ModeAssignment",
-    "ModeChange",
-    "ModeLabel",
-    "ModeLabelEvent",
-    "ModeLabelsAre",
-    "ModeOperation",
-    "ModeValueIs",
-    "Named",
-    "OperatingSystem",
-    "OrderConstraint",
-    "Ordering",
-    "Os",
-    "OsEvent",
-    "Overhead",
-    "Parallel",
-    "Parameter",
-    "ParameterValue",
-    "Parent",
-    "Periodic",
-    "Placement",
-    "Policy",
-    "Preemption",
-    "ProbabilitySwitch",
-    "Process",
-    "ProcessChange",
-    "ProcessEvent",
-    "Protection",
-    "RaiseEvent",
-    "RatioLimit",
-    "RatioMetric",
-    "Receive",
-    "ReceiveOperation",
-    "Relation",
-    "RelativePeriodic",
-    "RepetitionConstraint",
-    "Requirement",
-    "RequirementSeverity",
-    "Runnable",
-    "RunnableChange",
-    "RunnableEvent",
-    "Sampling",
-    "Scenario",
-    "SchedulePoint",
-    "Scheduler",
-    "Segment",
-    "Semaphore",
-    "SemaphoreAccess",
-    "SemaphoreChange",
-    "SemaphoreEvent",
-    "SemaphoreKind",
-    "SemaphoreOperation",
-    "Send",
-    "Sequence",
-    "Service",
-    "SetEvent",
-    "Single",
-    "Software",
-    "Statistics",
-    "Stimuli",
-    "Stimulus",
-    "StimulusEvent",
-    "Structure",
-    "StructureKind",
-    "Switch",
-    "Synthetic",
-    "System",
-    "Task",
-    "TaskAllocation",
-    "Terminate",
-    "TimeLimit",
-    "TimeMetric",
-    "Trigger",
-    "Undecided",
-    "Uniform",
-    "VariableRate",
-    "WaitEvent",
-    "Waiting",
-    "Weibull",
-]
+from amalthea_uros.perf.activities import AccessKind as AccessKind
+from amalthea_uros.perf.activities import Activity as Activity
+from amalthea_uros.perf.activities import Call as Call
+from amalthea_uros.perf.activities import Case as Case
+from amalthea_uros.perf.activities import Chance as Chance
+from amalthea_uros.perf.activities import ClearEvent as ClearEvent
+from amalthea_uros.perf.activities import Communication as Communication
+from amalthea_uros.perf.activities import Count as Count
+from amalthea_uros.perf.activities import Demand as Demand
+from amalthea_uros.perf.activities import Execute as Execute
+from amalthea_uros.perf.activities import ExecutionNeed as ExecutionNeed
+from amalthea_uros.perf.activities import Group as Group
+from amalthea_uros.perf.activities import Incomplete as Incomplete
+from amalthea_uros.perf.activities import LabelAccess as LabelAccess
+from amalthea_uros.perf.activities import Loop as Loop
+from amalthea_uros.perf.activities import Migrate as Migrate
+from amalthea_uros.perf.activities import ModeAccess as ModeAccess
+from amalthea_uros.perf.activities import ModeOperation as ModeOperation
+from amalthea_uros.perf.activities import ProbabilitySwitch as ProbabilitySwitch
+from amalthea_uros.perf.activities import Protection as Protection
+from amalthea_uros.perf.activities import RaiseEvent as RaiseEvent
+from amalthea_uros.perf.activities import Receive as Receive
+from amalthea_uros.perf.activities import ReceiveOperation as ReceiveOperation
+from amalthea_uros.perf.activities import SchedulePoint as SchedulePoint
+from amalthea_uros.perf.activities import SemaphoreAccess as SemaphoreAccess
+from amalthea_uros.perf.activities import SemaphoreOperation as SemaphoreOperation
+from amalthea_uros.perf.activities import Send as Send
+from amalthea_uros.perf.activities import SetEvent as SetEvent
+from amalthea_uros.perf.activities import Switch as Switch
+from amalthea_uros.perf.activities import Terminate as Terminate
+from amalthea_uros.perf.activities import Trigger as Trigger
+from amalthea_uros.perf.activities import WaitEvent as WaitEvent
+from amalthea_uros.perf.activities import Waiting as Waiting
+from amalthea_uros.perf.conditions import ChannelFillIs as ChannelFillIs
+from amalthea_uros.perf.conditions import Comparison as Comparison
+from amalthea_uros.perf.conditions import Condition as Condition
+from amalthea_uros.perf.conditions import ModeAssignment as ModeAssignment
+from amalthea_uros.perf.conditions import ModeLabelsAre as ModeLabelsAre
+from amalthea_uros.perf.conditions import ModeValueIs as ModeValueIs
+from amalthea_uros.perf.conditions import Relation as Relation
+from amalthea_uros.perf.conditions import Undecided as Undecided
+from amalthea_uros.perf.constraints import Bound as Bound
+from amalthea_uros.perf.constraints import ChainEnd as ChainEnd
+from amalthea_uros.perf.constraints import ChainSynchronization as ChainSynchronization
+from amalthea_uros.perf.constraints import Constraint as Constraint
+from amalthea_uros.perf.constraints import Constraints as Constraints
+from amalthea_uros.perf.constraints import CountLimit as CountLimit
+from amalthea_uros.perf.constraints import CountMetric as CountMetric
+from amalthea_uros.perf.constraints import DataAgeConstraint as DataAgeConstraint
+from amalthea_uros.perf.constraints import DelayConstraint as DelayConstraint
+from amalthea_uros.perf.constraints import EventSynchronization as EventSynchronization
+from amalthea_uros.perf.constraints import FrequencyLimit as FrequencyLimit
+from amalthea_uros.perf.constraints import FrequencyMetric as FrequencyMetric
+from amalthea_uros.perf.constraints import JitterLimit as JitterLimit
+from amalthea_uros.perf.constraints import LatencyConstraint as LatencyConstraint
+from amalthea_uros.perf.constraints import LatencyKind as LatencyKind
+from amalthea_uros.perf.constraints import Limit as Limit
+from amalthea_uros.perf.constraints import LoadLimit as LoadLimit
+from amalthea_uros.perf.constraints import LoadMetric as LoadMetric
+from amalthea_uros.perf.constraints import Matching as Matching
+from amalthea_uros.perf.constraints import OrderConstraint as OrderConstraint
+from amalthea_uros.perf.constraints import Ordering as Ordering
+from amalthea_uros.perf.constraints import RatioLimit as RatioLimit
+from amalthea_uros.perf.constraints import RatioMetric as RatioMetric
+from amalthea_uros.perf.constraints import RepetitionConstraint as RepetitionConstraint
+from amalthea_uros.perf.constraints import Requirement as Requirement
+from amalthea_uros.perf.constraints import RequirementSeverity as RequirementSeverity
+from amalthea_uros.perf.constraints import TimeLimit as TimeLimit
+from amalthea_uros.perf.constraints import TimeMetric as TimeMetric
+from amalthea_uros.perf.distributions import Beta as Beta
+from amalthea_uros.perf.distributions import Boundaries as Boundaries
+from amalthea_uros.perf.distributions import Bucket as Bucket
+from amalthea_uros.perf.distributions import Constant as Constant
+from amalthea_uros.perf.distributions import Distribution as Distribution
+from amalthea_uros.perf.distributions import Gauss as Gauss
+from amalthea_uros.perf.distributions import Histogram as Histogram
+from amalthea_uros.perf.distributions import Sampling as Sampling
+from amalthea_uros.perf.distributions import Statistics as Statistics
+from amalthea_uros.perf.distributions import Uniform as Uniform
+from amalthea_uros.perf.distributions import Weibull as Weibull
+from amalthea_uros.perf.events import ChainItem as ChainItem
+from amalthea_uros.perf.events import ChainReference as ChainReference
+from amalthea_uros.perf.events import ChannelChange as ChannelChange
+from amalthea_uros.perf.events import ChannelEvent as ChannelEvent
+from amalthea_uros.perf.events import CustomEvent as CustomEvent
+from amalthea_uros.perf.events import Event as Event
+from amalthea_uros.perf.events import EventChain as EventChain
+from amalthea_uros.perf.events import Events as Events
+from amalthea_uros.perf.events import EventSet as EventSet
+from amalthea_uros.perf.events import LabelChange as LabelChange
+from amalthea_uros.perf.events import LabelEvent as LabelEvent
+from amalthea_uros.perf.events import ModeChange as ModeChange
+from amalthea_uros.perf.events import ModeLabelEvent as ModeLabelEvent
+from amalthea_uros.perf.events import Parallel as Parallel
+from amalthea_uros.perf.events import ProcessChange as ProcessChange
+from amalthea_uros.perf.events import ProcessEvent as ProcessEvent
+from amalthea_uros.perf.events import RunnableChange as RunnableChange
+from amalthea_uros.perf.events import RunnableEvent as RunnableEvent
+from amalthea_uros.perf.events import Segment as Segment
+from amalthea_uros.perf.events import SemaphoreChange as SemaphoreChange
+from amalthea_uros.perf.events import SemaphoreEvent as SemaphoreEvent
+from amalthea_uros.perf.events import Sequence as Sequence
+from amalthea_uros.perf.events import StimulusEvent as StimulusEvent
+from amalthea_uros.perf.hardware import Access as Access
+from amalthea_uros.perf.hardware import Arbitration as Arbitration
+from amalthea_uros.perf.hardware import Cache as Cache
+from amalthea_uros.perf.hardware import Clock as Clock
+from amalthea_uros.perf.hardware import Connection as Connection
+from amalthea_uros.perf.hardware import Core as Core
+from amalthea_uros.perf.hardware import CoreKind as CoreKind
+from amalthea_uros.perf.hardware import CoreType as CoreType
+from amalthea_uros.perf.hardware import Feature as Feature
+from amalthea_uros.perf.hardware import Hardware as Hardware
+from amalthea_uros.perf.hardware import Interconnect as Interconnect
+from amalthea_uros.perf.hardware import Latency as Latency
+from amalthea_uros.perf.hardware import Memory as Memory
+from amalthea_uros.perf.hardware import MemoryKind as MemoryKind
+from amalthea_uros.perf.hardware import Structure as Structure
+from amalthea_uros.perf.hardware import StructureKind as StructureKind
+from amalthea_uros.perf.mapping import IsrAllocation as IsrAllocation
+from amalthea_uros.perf.mapping import Mapping as Mapping
+from amalthea_uros.perf.mapping import Placement as Placement
+from amalthea_uros.perf.mapping import TaskAllocation as TaskAllocation
+from amalthea_uros.perf.named import Named as Named
+from amalthea_uros.perf.os import Duration as Duration
+from amalthea_uros.perf.os import InterruptController as InterruptController
+from amalthea_uros.perf.os import IsrOverhead as IsrOverhead
+from amalthea_uros.perf.os import OperatingSystem as OperatingSystem
+from amalthea_uros.perf.os import Os as Os
+from amalthea_uros.perf.os import Overhead as Overhead
+from amalthea_uros.perf.os import Parameter as Parameter
+from amalthea_uros.perf.os import ParameterValue as ParameterValue
+from amalthea_uros.perf.os import Parent as Parent
+from amalthea_uros.perf.os import Policy as Policy
+from amalthea_uros.perf.os import Scheduler as Scheduler
+from amalthea_uros.perf.os import Semaphore as Semaphore
+from amalthea_uros.perf.os import SemaphoreKind as SemaphoreKind
+from amalthea_uros.perf.os import Service as Service
+from amalthea_uros.perf.software import Channel as Channel
+from amalthea_uros.perf.software import Isr as Isr
+from amalthea_uros.perf.software import IsrCategory as IsrCategory
+from amalthea_uros.perf.software import Label as Label
+from amalthea_uros.perf.software import Mode as Mode
+from amalthea_uros.perf.software import ModeLabel as ModeLabel
+from amalthea_uros.perf.software import OsEvent as OsEvent
+from amalthea_uros.perf.software import Preemption as Preemption
+from amalthea_uros.perf.software import Process as Process
+from amalthea_uros.perf.software import Runnable as Runnable
+from amalthea_uros.perf.software import Software as Software
+from amalthea_uros.perf.software import Task as Task
+from amalthea_uros.perf.stimuli import AbstractStimulus as AbstractStimulus
+from amalthea_uros.perf.stimuli import ArrivalCurve as ArrivalCurve
+from amalthea_uros.perf.stimuli import ArrivalCurvePoint as ArrivalCurvePoint
+from amalthea_uros.perf.stimuli import Burst as Burst
+from amalthea_uros.perf.stimuli import ClockFunction as ClockFunction
+from amalthea_uros.perf.stimuli import ClockStep as ClockStep
+from amalthea_uros.perf.stimuli import ClockSteps as ClockSteps
+from amalthea_uros.perf.stimuli import Counter as Counter
+from amalthea_uros.perf.stimuli import Curve as Curve
+from amalthea_uros.perf.stimuli import Custom as Custom
+from amalthea_uros.perf.stimuli import EventTriggered as EventTriggered
+from amalthea_uros.perf.stimuli import InterProcess as InterProcess
+from amalthea_uros.perf.stimuli import Periodic as Periodic
+from amalthea_uros.perf.stimuli import RelativePeriodic as RelativePeriodic
+from amalthea_uros.perf.stimuli import Scenario as Scenario
+from amalthea_uros.perf.stimuli import Single as Single
+from amalthea_uros.perf.stimuli import Stimuli as Stimuli
+from amalthea_uros.perf.stimuli import Stimulus as Stimulus
+from amalthea_uros.perf.stimuli import Synthetic as Synthetic
+from amalthea_uros.perf.stimuli import VariableRate as VariableRate
+from amalthea_uros.perf.system import System as System

@@ -402,6 +402,11 @@ def walk(activities: tuple[Activity, ...]) -> Iterator[Activity]:
                 yield from walk(inner)
 
 
+def called_runnables(activities: tuple[Activity, ...]) -> Iterator[str]:
+    """The runnables that activities call, also inside groups, branches and loops."""
+    return (activity.runnable for activity in walk(activities) if isinstance(activity, Call))
+
+
 def inner_activities(activity: Activity) -> tuple[tuple[Activity, ...], ...]:
     """The lists of activities in a group, in branches and in a loop."""
     match activity:

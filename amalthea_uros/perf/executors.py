@@ -25,7 +25,7 @@ class LoopKind(StrEnum):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Loop(Brief):
+class ThreadLoop(Brief):
     """The loop of a thread.
 
     Attributes
@@ -139,7 +139,7 @@ class TriggerCondition(Brief):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Waiting(Brief):
+class WaitBehaviour(Brief):
     """How the middleware waits for an executor.
 
     Attributes
@@ -177,9 +177,9 @@ class Executor(Named):
 
     task: str
     spin: str
-    loop: Loop
+    loop: ThreadLoop
     handles: tuple[Handle, ...] = ()
     trigger: TriggerCondition = field(default_factory=TriggerCondition)
     takes_first: bool = False
-    waiting: Waiting = field(default_factory=Waiting)
+    waiting: WaitBehaviour = field(default_factory=WaitBehaviour)
     session: str | None = None

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.perf.activities import Activity, LabelAccess, walk
+from amalthea_uros.perf.activities import Activity, LabelAccess, transformed, walk
 from amalthea_uros.perf.constraints import Constraints
 from amalthea_uros.perf.events import Event, EventChain, Events
 from amalthea_uros.perf.executors import Executor
@@ -19,6 +19,7 @@ from amalthea_uros.perf.network import Network, Transmission
 from amalthea_uros.perf.os import InterruptController, Os, Scheduler
 from amalthea_uros.perf.software import Channel, Label, Process, Runnable, Software
 from amalthea_uros.perf.stimuli import Stimuli, Stimulus
+from amalthea_uros.units import Frequency
 
 N = TypeVar("N", bound=Named)
 
@@ -51,10 +52,23 @@ class System:
         )
         return f"<System: {', '.join(counted(len(items), noun) for noun, items in parts if items) or 'empty'}>"
 
+    def with_activities(self, change: Callable[[Activity], Activity]) -> System:
+        """The system with all activities of processes and runnables changed that contain no others."""
+        software = self.software
+        items: dict[str, Any] = {kind: getattr(software, kind) for kind in ("tasks", "isrs", "runnables")}
+        for kind, found in items.items():
+            items[kind] = tuple(replace(each, activities=transformed(each.activities, change)) for each in found)
+        return replace(self, software=replace(software, **items))
+
     @cached_property
     def clocks(self) -> Mapping[str, Clock]:
         """The clocks of the hardware."""
         return _by_name(self.hardware.clocks)
+
+    def frequency_of(self, clock: str | None) -> Frequency | None:
+        """The frequency of a clock; None if it is unknown, and what a frequency that is not positive stands for is unknown, too."""
+        found = self.clocks.get(clock or "")
+        return found.frequency if found is not None and found.frequency is not None and found.frequency > 0 else None
 
     @cached_property
     def cores(self) -> Mapping[str, Core]:

@@ -6,9 +6,8 @@ from collections.abc import Iterator
 
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.design.optimize.goals import CHANGES
-from amalthea_uros.design.optimize.limits import Limit
 from amalthea_uros.design.optimize.problem import Conclusion, Feasibility, Goal
-from amalthea_uros.design.optimize.quantities import Dimension, dimension
+from amalthea_uros.design.optimize.quantities import AmountKind, Limit, dimension
 from amalthea_uros.design.optimize.space import Choice, Space
 from amalthea_uros.report.wording.cells import load_text
 from amalthea_uros.services.optimize import Optimization
@@ -46,7 +45,7 @@ def _choice(choice: Choice) -> str:
 
 def limit_text(limit: Limit) -> str:
     """A limit, and what it is for."""
-    maximum = load_text(limit.maximum) if dimension(limit.quantity) is Dimension.SHARE else time_text(limit.maximum)  # type: ignore[arg-type]
+    maximum = load_text(limit.maximum) if dimension(limit.quantity) is AmountKind.SHARE else time_text(limit.maximum)  # type: ignore[arg-type]
     return f"{limit.target} {'<' if limit.is_below else '<='} {maximum}" + (f" ({limit.reason})" if limit.reason else "")
 
 

@@ -8,7 +8,7 @@ from fractions import Fraction
 import numpy as np
 
 from amalthea_uros.compare.results import Agreement, Comparison, ComparisonRow, PredictionClaim, Statistic, is_bound
-from amalthea_uros.design.campaign.analysis_job import SCHEDULABLE
+from amalthea_uros.design.campaign.sweeps import SCHEDULABLE
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.judge.verdict import Verdict

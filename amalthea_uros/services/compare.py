@@ -42,7 +42,7 @@ from amalthea_uros.services.names import require_settings
 from amalthea_uros.services.simulate import time_of
 from amalthea_uros.services.subject import Subject, open_subject, paths_of, reusable
 from amalthea_uros.services.what_if import Changes, as_changes
-from amalthea_uros.timing.activation.phases import with_first_arrivals
+from amalthea_uros.timing.activation.releases import with_first_arrivals
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.timing.demand.overheads import processes_with_overhead
 from amalthea_uros.timing.stated_distributions import Basis, StatedDistributions

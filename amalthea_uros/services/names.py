@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from amalthea_uros.names import require
 from amalthea_uros.perf.system import System
 from amalthea_uros.simulate.options import ALL_LABELS
-from amalthea_uros.timing.activation.phases import sources
+from amalthea_uros.timing.activation.releases import sources
 from amalthea_uros.timing.basics.settings import Settings
 
 

@@ -9,16 +9,16 @@ from time import monotonic
 
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.results.analysis import Analysis
+from amalthea_uros.design.changes.change import Sweep, parse_sweep
 from amalthea_uros.design.changes.key import Configuration
-from amalthea_uros.design.changes.sweep import Sweep, parse_sweep
-from amalthea_uros.design.optimize.limits import Limit
+from amalthea_uros.design.optimize.choices import DEFAULT, Vary, Wishes
+from amalthea_uros.design.optimize.judged import Effort
 from amalthea_uros.design.optimize.parallel_evaluation import evaluator_on
-from amalthea_uros.design.optimize.problem import Evaluation, Goal, SearchResult
-from amalthea_uros.design.optimize.recorder import Effort
+from amalthea_uros.design.optimize.problem import DesignEvaluation, Goal, SearchResult
+from amalthea_uros.design.optimize.quantities import Limit
 from amalthea_uros.design.optimize.search import search
 from amalthea_uros.design.optimize.space import Space
 from amalthea_uros.design.proposals import DesignProposal, SearchPlan, plan_search, proved_proposal
-from amalthea_uros.design.space.choices import DEFAULT, Vary, Wishes
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.findings.suppression import unsuppressed
@@ -53,7 +53,7 @@ class Optimization(Shown):
     limits: tuple[Limit, ...]
     goals: tuple[Goal, ...]
     before: Analysis
-    present: Evaluation
+    present: DesignEvaluation
     proposals: tuple[DesignProposal, ...]
     search: SearchResult
     findings: tuple[Finding, ...] = ()

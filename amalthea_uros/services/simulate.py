@@ -11,12 +11,10 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from amalthea_uros._internal.paths import StrPath
 from amalthea_uros._internal.shown import Shown
-from amalthea_uros.design.campaign.run import Outcome, Record, Run, plan_runs
-from amalthea_uros.design.campaign.sending import system_bytes, system_from
+from amalthea_uros.design.campaign.run import CampaignRun, Record, RunOutcome, plan_runs, system_bytes, system_from
 from amalthea_uros.design.changes.apply import Difference, apply
-from amalthea_uros.design.changes.change import Change, parse_change
+from amalthea_uros.design.changes.change import Change, Sweep, parse_change
 from amalthea_uros.design.changes.key import Configuration
-from amalthea_uros.design.changes.sweep import Sweep
 from amalthea_uros.design.changes.timing_changes import described
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
@@ -112,7 +110,7 @@ class CampaignResult(Brief, Shown):
 
     paths: tuple[Path, ...]
     options: Options
-    outcomes: tuple[Outcome, ...]
+    outcomes: tuple[RunOutcome, ...]
     planned: int
     findings: tuple[Finding, ...]
     differences: tuple[Difference, ...] = ()
@@ -133,22 +131,22 @@ class CampaignResult(Brief, Shown):
         return len(self.outcomes) == self.planned
 
     @property
-    def failed(self) -> tuple[Outcome, ...]:
+    def failed(self) -> tuple[RunOutcome, ...]:
         """The runs that could not be executed."""
         return tuple(outcome for outcome in self.outcomes if outcome.error)
 
     @property
-    def incomplete(self) -> tuple[Outcome, ...]:
+    def incomplete(self) -> tuple[RunOutcome, ...]:
         """The runs in which not everything was simulated."""
         return tuple(outcome for outcome in self.outcomes if outcome.record.get(_ERRORS))
 
     @property
-    def missed(self) -> tuple[Outcome, ...]:
+    def missed(self) -> tuple[RunOutcome, ...]:
         """The runs in which a limit was observed as missed, or an activation was lost."""
         return tuple(outcome for outcome in self.outcomes if judged_in(outcome.record, MISSED))
 
     @property
-    def not_observed(self) -> tuple[Outcome, ...]:
+    def not_observed(self) -> tuple[RunOutcome, ...]:
         """The runs in which a limit was neither observed as kept nor as missed."""
         return tuple(outcome for outcome in self.outcomes if judged_in(outcome.record, NOT_OBSERVED))
 
@@ -171,7 +169,7 @@ class SimulationJob:
     options: Options
     changes: tuple[Change, ...] = ()
 
-    def __call__(self, run: Run) -> Record:
+    def __call__(self, run: CampaignRun) -> Record:
         """The observations of a run as a row of a table."""
         changed = apply(self.system, self.options.settings, (*self.changes, *run.changes))
         return _simulated(changed.system, replace(self.options, settings=changed.settings, seed=run.seed)).record()
@@ -324,7 +322,7 @@ def simulate_campaign(
     with_bus: bool = False,
     workers: int | None = None,
     cluster: str | None = None,
-    on_outcome: Callable[[Outcome], None] | None = None,
+    on_outcome: Callable[[RunOutcome], None] | None = None,
 ) -> CampaignResult:
     """Simulate each variant of some files, several times with different seeds.
 

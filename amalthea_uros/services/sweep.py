@@ -7,15 +7,13 @@ from dataclasses import dataclass, replace
 
 from amalthea_uros._internal.paths import StrPath
 from amalthea_uros._internal.shown import Shown
-from amalthea_uros.design.campaign.analysis_job import SCHEDULABLE, AnalysisJob
 from amalthea_uros.design.campaign.campaign import finished_runs
 from amalthea_uros.design.campaign.executors import executor_for
-from amalthea_uros.design.campaign.run import Outcome, Record
-from amalthea_uros.design.campaign.sweep_plan import SweepPlan, Sweeps, as_sweeps, plan_sweep
+from amalthea_uros.design.campaign.run import Record, RunOutcome
+from amalthea_uros.design.campaign.sweeps import SCHEDULABLE, AnalysisJob, SweepPlan, Sweeps, as_sweeps, plan_sweep
 from amalthea_uros.design.changes.apply import Difference, apply
-from amalthea_uros.design.changes.change import Change
+from amalthea_uros.design.changes.change import Change, Sweep
 from amalthea_uros.design.changes.key import Configuration
-from amalthea_uros.design.changes.sweep import Sweep
 from amalthea_uros.design.changes.timing_changes import described
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.findings.suppression import unsuppressed
@@ -42,7 +40,7 @@ class SweepResult(Shown):
     """
 
     plan: SweepPlan
-    outcomes: tuple[Outcome, ...]
+    outcomes: tuple[RunOutcome, ...]
     differences: tuple[Difference, ...] = ()
     findings: tuple[Finding, ...] = ()
     source: str = ""
@@ -57,16 +55,16 @@ class SweepResult(Shown):
         return [{name: value for name, value in outcome.row().items() if name != "seed"} for outcome in self.outcomes]
 
     @property
-    def schedulable(self) -> tuple[Outcome, ...]:
+    def schedulable(self) -> tuple[RunOutcome, ...]:
         """The variants in which everything is met for certain."""
         return self.with_verdict(Schedulable.YES)
 
-    def with_verdict(self, verdict: Schedulable) -> tuple[Outcome, ...]:
+    def with_verdict(self, verdict: Schedulable) -> tuple[RunOutcome, ...]:
         """The variants with a verdict on the whole system."""
         return tuple(outcome for outcome in self.outcomes if outcome.record.get(SCHEDULABLE) == verdict)
 
     @property
-    def failed(self) -> tuple[Outcome, ...]:
+    def failed(self) -> tuple[RunOutcome, ...]:
         """The variants that could not be analysed."""
         return tuple(outcome for outcome in self.outcomes if outcome.error)
 
@@ -113,7 +111,7 @@ def sweep(
     with_growth: bool = False,
     workers: int | None = 1,
     cluster: str | None = None,
-    on_outcome: Callable[[Outcome], None] | None = None,
+    on_outcome: Callable[[RunOutcome], None] | None = None,
 ) -> SweepResult:
     """Analyze each variant of whatever describes a system.
 
@@ -160,7 +158,7 @@ def sweep_files(
     with_bus: bool = False,
     workers: int | None = None,
     cluster: str | None = None,
-    on_outcome: Callable[[Outcome], None] | None = None,
+    on_outcome: Callable[[RunOutcome], None] | None = None,
 ) -> SweepResult:
     """Analyze each variant of an `app.yaml` or of AMALTHEA models; parameters and errors as for `sweep`.
 
@@ -192,7 +190,7 @@ def sweep_opened(
     with_growth: bool = False,
     workers: int | None = None,
     cluster: str | None = None,
-    on_outcome: Callable[[Outcome], None] | None = None,
+    on_outcome: Callable[[RunOutcome], None] | None = None,
 ) -> SweepResult:
     """Analyze each variant of what was opened; parameters and errors as for `sweep`."""
     present = Configuration(opened.system, settings)

@@ -12,9 +12,7 @@ from amalthea_uros.perf.os import Policy, Scheduler
 from amalthea_uros.perf.stimuli import EventTriggered, InterProcess
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.activation.activations import Activations, TriggeredTogether, triggered_together
-from amalthea_uros.timing.activation.phases import arrival_assumptions, with_bounded_arrivals
-from amalthea_uros.timing.activation.releases import response_time_limits
-from amalthea_uros.timing.awaited import why_suspended
+from amalthea_uros.timing.activation.releases import arrival_assumptions, response_time_limits, with_bounded_arrivals
 from amalthea_uros.timing.basics.notes import AnalysisNotes
 from amalthea_uros.timing.basics.settings import MemoryModel, Settings
 from amalthea_uros.timing.basics.time_base import MAX_INPUT
@@ -25,14 +23,12 @@ from amalthea_uros.timing.demand.model import DemandModel
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.demand.overheads import ASSUMPTION as OVERHEAD_ASSUMPTION
 from amalthea_uros.timing.demand.overheads import has_overhead_of_tasks
-from amalthea_uros.timing.event_models import EventModel
-from amalthea_uros.timing.jobs.executed import states_execution_time
-from amalthea_uros.timing.jobs.server_calls import with_direct_calls
+from amalthea_uros.timing.event_models.models import EventModel
+from amalthea_uros.timing.jobs.executed import states_execution_time, with_direct_calls
 from amalthea_uros.timing.scheduling.allocation import allocated_cores, effective_priority
-from amalthea_uros.timing.scheduling.ranks import Scheduling
+from amalthea_uros.timing.scheduling.ranks import SchedulingOrder
 from amalthea_uros.timing.scheduling.scheduled import ScheduledProcess, Server
-from amalthea_uros.timing.successors import with_successors
-from amalthea_uros.timing.touching import Touching
+from amalthea_uros.timing.touching import Touching, why_suspended, with_successors
 
 T = TypeVar("T")
 
@@ -235,7 +231,7 @@ class TimingContext:
 
     def _schedule(self) -> None:
         """Find core, rank and deadline of each process."""
-        scheduling = Scheduling(self.system, self.notes, response_time_limits(self.system), self.servers)
+        scheduling = SchedulingOrder(self.system, self.notes, response_time_limits(self.system), self.servers)
         for allocation in self.system.mapping.tasks:
             try:
                 scheduled = scheduling.task(allocation)
@@ -259,7 +255,7 @@ class TimingContext:
             try:
                 # Its scheduler decides about it, whatever its jobs do.
                 if (scheduler := self.deciding(name, scheduled.core)) is not None:
-                    self.decisions[name] = model.of_decision(scheduler, scheduled.core)
+                    self.decisions[name] = model.of_decision(scheduler.overhead, scheduled.core)
                 if name in self.unknown_demands:
                     raise UnknownError(self.unknown_demands[name])
                 if reason := why_suspended(name, self.system, self.dataflow):

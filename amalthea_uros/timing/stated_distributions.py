@@ -10,10 +10,10 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+from amalthea_uros._internal.graphs import reached
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.perf.activities import (
     Activity,
-    Call,
     Count,
     Execute,
     ExecutionNeed,
@@ -28,12 +28,11 @@ from amalthea_uros.perf.activities import (
     Switch,
     Trigger,
     WaitEvent,
+    called_runnables,
     walk,
 )
 from amalthea_uros.perf.distributions import Boundaries, Distribution, Statistics, Uniform, highest, lowest
 from amalthea_uros.perf.hardware import Latency
-from amalthea_uros.perf.network import Span
-from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import (
     ArrivalCurve,
     Counter,
@@ -137,12 +136,7 @@ class StatedDistributions:
 
     def _of_all(self, processes: Iterable[str]) -> Basis:
         """The basis of what depends on jobs and all that influences them."""
-        found, waiting = set[str](), list(processes)
-        while waiting:
-            name = waiting.pop()
-            if name not in found:
-                found.add(name)
-                waiting += self._influencing(name)
+        found = set(reached(processes, self._influencing))
         ordered = [name for name in self.system.processes if name in found]
         varying = [each for name in ordered for each in (*self._own(name), *self._activations(name))]
         return _basis((*varying, *self._common), has_mean=False)
@@ -221,21 +215,20 @@ class StatedDistributions:
     @cached_property
     def _bodies(self) -> Mapping[str, Mapping[str, tuple[Activity, ...]]]:
         """The activities of each process and of the runnables that it calls, by their names; its own with its name."""
-        return {name: self._of_process(process) for name, process in self.system.processes.items()}
-
-    def _of_process(self, process: Process) -> dict[str, tuple[Activity, ...]]:
-        return {process.name: process.activities, **self._reached(process.activities, set())}
+        return {
+            name: {name: process.activities, **self._reached(process.activities, ())}
+            for name, process in self.system.processes.items()
+        }
 
     def _reached(self, activities: tuple[Activity, ...], known: Collection[str]) -> dict[str, tuple[Activity, ...]]:
         """The bodies of the runnables that activities call, directly or not, and of known ones."""
-        found = {name: self.system.runnables[name].activities for name in known}
-        waiting = [activities]
-        while waiting:
-            for each in walk(waiting.pop()):
-                if isinstance(each, Call) and each.runnable not in found and each.runnable in self.system.runnables:
-                    found[each.runnable] = self.system.runnables[each.runnable].activities
-                    waiting.append(found[each.runnable])
-        return found
+        runnables = self.system.runnables
+
+        def called(body: tuple[Activity, ...]) -> Iterator[str]:
+            return (each for each in called_runnables(body) if each in runnables)
+
+        names = reached((*known, *called(activities)), lambda name: called(runnables[name].activities))
+        return {name: runnables[name].activities for name in names}
 
     def _own(self, process: str) -> tuple[Open, ...]:
         """What varies in the jobs of a process."""
@@ -243,7 +236,7 @@ class StatedDistributions:
             return (Open(what=f"the iterations of {process!r}"),)
         transmission = self.system.transmissions.get(process)
         spans = () if transmission is None else (transmission.link, transmission.driver, transmission.agent)
-        varying = tuple(Open(what=f"the times of {process!r} on its way") for span in spans if _varies(span))
+        varying = tuple(Open(what=f"the times of {process!r} on its way") for span in spans if span.least != span.most)
         return (*varying, *self._varying(self._bodies[process].values(), process))
 
     def _varying(self, bodies: Iterable[tuple[Activity, ...]], owner: str) -> tuple[Open, ...]:
@@ -324,10 +317,6 @@ def _is_conditional(activity: Activity, is_in_runnable: bool) -> bool:
     """Whether what an activity does depends on modes, or on how often other processes execute it."""
     counter = getattr(activity, "counter", None)
     return isinstance(activity, Switch | Loop) or (counter is not None and is_in_runnable)
-
-
-def _varies(span: Span) -> bool:
-    return span.least != span.most
 
 
 def _of_distances(distribution: Distribution[int] | None, what: str) -> Iterator[Open]:

@@ -1,7 +1,11 @@
-"""What a process can touch of which something is unknown: cores, other processes, and data.
+"""What a process can touch of which something is unknown: cores, other processes, and data; and what makes its times unknown.
 
 A process that cannot be analysed, or not be simulated, makes everything unknown that it can touch. These are its ways to do so, one
 function each; analyses, simulation and chains ask them instead of deciding each for itself where an unknown process has an effect.
+
+A callback in a task of its own, or one that a periodic executor calls, is suspended while it publishes a reliable message, like any
+other (micro-ROS/rmw_microxrcedds, src/rmw_publish.c). Its job does not end meanwhile, and afterwards it delays others later than its
+activation says, so that neither its response time nor those of processes of lower priority are known.
 """
 
 from __future__ import annotations
@@ -10,16 +14,68 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
+from amalthea_uros._internal.graphs import reached
 from amalthea_uros.errors import UnknownError
-from amalthea_uros.perf.activities import Incomplete, Migrate
+from amalthea_uros.perf.activities import Call, Incomplete, Migrate, Trigger
 from amalthea_uros.perf.conditions import read_by
+from amalthea_uros.perf.network import Transmission, Wait
 from amalthea_uros.perf.software import Isr
+from amalthea_uros.perf.stimuli import InterProcess
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.blocking.critical_sections import LockUsage, protection_of
 from amalthea_uros.timing.dataflow.links import Dataflow, DirectLink, LinkKind, reads, writes
 from amalthea_uros.timing.jobs.executed import executed
 from amalthea_uros.timing.scheduling.allocation import allocated_cores, scheduler_cores
 from amalthea_uros.timing.scheduling.scheduled import ScheduledProcess
+from amalthea_uros.units import time_text
+
+
+def with_successors(processes: Iterable[str], system: System, dataflow: Dataflow) -> frozenset[str]:
+    """Some processes, and those that they trigger, directly or by others."""
+
+    def triggered(name: str) -> Iterator[str]:
+        stimuli = _triggered(name, system, dataflow)
+        return (other.name for other in system.processes.values() if not stimuli.isdisjoint(other.stimuli))
+
+    return frozenset(reached((name for name in processes if name in system.processes), triggered))
+
+
+def _triggered(name: str, system: System, dataflow: Dataflow) -> frozenset[str]:
+    """The stimuli that the jobs of a process trigger."""
+    try:
+        positions = dataflow.events.positions(name)
+    except UnknownError:
+        return frozenset(stimulus.name for stimulus in system.stimuli.stimuli if isinstance(stimulus, InterProcess))
+    return frozenset(position.activity.stimulus for position in positions if isinstance(position.activity, Trigger))
+
+
+_WAYS_OUT = "give the executor its loop, or state 'reliable: {waits: false}' if the port does not wait"
+
+
+def awaited(process: str, system: System, dataflow: Dataflow) -> Iterator[Transmission | Wait]:
+    """The messages whose acknowledgements the jobs of a process wait for."""
+    sent = [each for each in system.network.transmissions if each.waits]
+    if sent:
+        fired = {firing.stimulus for firing in dataflow.firings(process)}
+        yield from (each for each in sent if not fired.isdisjoint(system.processes[each.name].stimuli))
+    if system.network.waits:
+        activities = executed(system.processes[process].activities, system)
+        called = {activity.runnable for activity in activities if isinstance(activity, Call)}
+        yield from (each for each in system.network.waits if each.runnable in called)
+
+
+def why_suspended(process: str, system: System, dataflow: Dataflow) -> str:
+    """Why the jobs of a process take longer than they execute; "" if they do not, or if the analysis of executors bounds it."""
+    if process in system.executor_of_task:
+        return ""
+    for message in awaited(process, system, dataflow):
+        most = f" up to {time_text(message.timeout)}" if isinstance(message, Wait) and message.timeout is not None else ""
+        return (
+            f"it waits{most} for the acknowledgement of {message.topic!r}, for which the analysis has no bound outside an executor "
+            f"with a loop; {_WAYS_OUT}"
+        )
+    return ""
+
 
 #: What the bridge calls a migration without a target.
 _INCOMPLETE_MIGRATION = "an incomplete EnforcedMigration"

@@ -27,8 +27,7 @@ from amalthea_uros.perf.os import (
 )
 from amalthea_uros.perf.system import System
 from amalthea_uros.spec.os import OsSection
-from amalthea_uros.timing.scheduling.allocation import allocated_cores
-from amalthea_uros.timing.scheduling.shared_priorities import sharing_a_priority
+from amalthea_uros.timing.scheduling.allocation import allocated_cores, sharing_a_priority
 from amalthea_uros.units import time_text
 from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.assembly.context import AssemblyContext

@@ -14,7 +14,7 @@ from amalthea_uros.timing.basics.notes import AnalysisNotes
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.timing.demand.model import DemandModel
 from amalthea_uros.timing.scheduling.allocation import allocated_cores, controller_of_core
-from amalthea_uros.timing.successors import with_successors
+from amalthea_uros.timing.touching import with_successors
 
 
 @dataclass

@@ -26,7 +26,7 @@ from amalthea_uros.perf.software import Isr, Preemption, Task
 from amalthea_uros.perf.stimuli import InterProcess, Periodic
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
-from amalthea_uros.timing.event_models import PeriodicEvents
+from amalthea_uros.timing.event_models.models import PeriodicEvents
 from amalthea_uros.units import MICROSECOND as US
 
 ROWS = st.lists(st.tuples(st.integers(4, 14), st.integers(0, 8), st.integers(1, 4), st.integers(2, 16)), min_size=1, max_size=4)

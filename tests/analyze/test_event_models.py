@@ -15,7 +15,7 @@ from amalthea_uros.perf import stimuli as perf
 from amalthea_uros.perf.distributions import Constant, Uniform
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
-from amalthea_uros.timing.event_models import (
+from amalthea_uros.timing.event_models.models import (
     AggregatedEventModel,
     Delayed,
     Downsampled,

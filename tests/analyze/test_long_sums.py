@@ -7,7 +7,7 @@ from amalthea_uros.analyze.response_times import priority_levels
 from amalthea_uros.analyze.response_times.busy_window import Interference
 from amalthea_uros.analyze.response_times.task import AnalysedTask
 from amalthea_uros.timing.demand.multiframe import DemandFrame, MultiframeDemand
-from amalthea_uros.timing.event_models import EventPattern, PeriodicEvents
+from amalthea_uros.timing.event_models.models import EventPattern, PeriodicEvents
 
 LONGEST = 2**54
 

@@ -14,7 +14,7 @@ from amalthea_uros.analyze.response_times.core_schedule import CoreSchedule
 from amalthea_uros.analyze.response_times.schedule import PeriodicTask
 from amalthea_uros.analyze.response_times.task import AnalysedTask
 from amalthea_uros.timing.demand.multiframe import DemandFrame, MultiframeDemand
-from amalthea_uros.timing.event_models import PeriodicEvents
+from amalthea_uros.timing.event_models.models import PeriodicEvents
 
 
 def vectors(name, accept=lambda case: True):

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from amalthea_uros.analyze.response_times import priority_levels
 from amalthea_uros.analyze.response_times.task import AnalysedTask, Budget
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
-from amalthea_uros.timing.event_models import PeriodicEvents
+from amalthea_uros.timing.event_models.models import PeriodicEvents
 from amalthea_uros.timing.scheduling.scheduled import EqualPriority
 
 

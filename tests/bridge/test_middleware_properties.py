@@ -13,7 +13,7 @@ from amalthea_uros.bridge.json_text import from_text, to_text
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.errors import UnknownError, WriteError
 from amalthea_uros.metamodel import classes as am
-from amalthea_uros.perf.executors import Executor, Handle, HandleKind, Loop, LoopKind, TriggerCondition, TriggerKind
+from amalthea_uros.perf.executors import Executor, Handle, HandleKind, LoopKind, ThreadLoop, TriggerCondition, TriggerKind
 from amalthea_uros.perf.hardware import Core, Hardware, Structure
 from amalthea_uros.perf.network import Direction, Network, Purpose, Span, Transmission, Wire, WireKind
 from amalthea_uros.perf.software import Runnable, Software, Task
@@ -26,7 +26,7 @@ EXECUTOR = Executor(
     name="Main loop",
     task="Main",
     spin="Spin",
-    loop=Loop(kind=LoopKind.SLEEPING, timeout=10**11, sleep=10**10),
+    loop=ThreadLoop(kind=LoopKind.SLEEPING, timeout=10**11, sleep=10**10),
     handles=(
         Handle(name='A "quoted"\tname', kind=HandleKind.SUBSCRIPTION, runnable="On_A", take="Take", interval=None, always=True),
         Handle(name="ü", kind=HandleKind.TIMER, runnable="On_A", interval=2**60 + 1, phase=0),

@@ -11,9 +11,8 @@ from amalthea_uros.analyze.results.chains import LatencyQuantity
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.design.changes.apply import apply
 from amalthea_uros.design.changes.key import Configuration
-from amalthea_uros.design.optimize.candidate import Candidate
-from amalthea_uros.design.optimize.problem import Evaluation, Feasibility, Goal, Problem, SearchResult
-from amalthea_uros.design.optimize.space import Choice, Kind, PriorityOrder, Space
+from amalthea_uros.design.optimize.problem import DesignEvaluation, Feasibility, Goal, Problem, SearchResult
+from amalthea_uros.design.optimize.space import Candidate, Choice, DecisionKind, PriorityOrder, Space
 from amalthea_uros.perf.activities import Communication
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.settings import Settings
@@ -33,20 +32,20 @@ def problem_of(system: System, space: Space, measure: Measure | None = None, set
     def configure(design: Candidate) -> Configuration:
         return apply(*configuration, design)
 
-    def evaluate(designs: Sequence[Candidate]) -> list[Evaluation]:
+    def evaluate(designs: Sequence[Candidate]) -> list[DesignEvaluation]:
         return [judged(design, analyze_system(*configure(design)), measure) for design in designs]
 
     goal = Goal(name="value" if measure else "changes")
     return Problem(present=configuration, space=space, goals=(goal,), configure=configure, evaluate=evaluate)
 
 
-def judged(design: Candidate, analysis: Analysis, measure: Measure | None) -> Evaluation:
+def judged(design: Candidate, analysis: Analysis, measure: Measure | None) -> DesignEvaluation:
     """What the analysis says of a design."""
     summary = analysis.summary
     feasible = Feasibility.NO if summary.missed else Feasibility.UNKNOWN if summary.unknown else Feasibility.YES
     value = measure(analysis) if measure else len(design)
     late = {each.name: max(0, -each.margin) for each in analysis.processes if each.margin is not None and each.margin < 0}
-    return Evaluation(
+    return DesignEvaluation(
         candidate=design,
         feasible=feasible,
         violations=late,
@@ -83,7 +82,9 @@ def offsets(tasks):
     """All offsets of all tasks but the first."""
     return Space(
         choices=tuple(
-            Choice(object=task["name"], key="offset", kind=Kind.OFFSET, options=tuple(f"{n} us" for n in range(task["T"])))
+            Choice(
+                object=task["name"], key="offset", kind=DecisionKind.OFFSET, options=tuple(f"{n} us" for n in range(task["T"]))
+            )
             for task in tasks
         )
     )
@@ -103,7 +104,7 @@ def offset_problem(case: dict) -> Problem:
 def mapping_problem(tasks: Sequence[dict], cores: Sequence[str], goal: str = "load", **more) -> Problem:
     """Tasks that may be on any core, all on the first one at present, with deadline-monotonic priorities."""
     order = [task["name"] for task in sorted(tasks, key=lambda task: task["D"])]
-    choices = tuple(Choice(object=task["name"], key="core", kind=Kind.CORE, options=tuple(cores)) for task in tasks)
+    choices = tuple(Choice(object=task["name"], key="core", kind=DecisionKind.CORE, options=tuple(cores)) for task in tasks)
     measure = (lambda analysis: max(core.worst for core in analysis.processors)) if goal == "load" else None
     problem = problem_of(system_of(tasks, order, cores=cores, **more), Space(choices=choices), measure)
     return replace(problem, goals=(Goal(name=goal),))

@@ -20,10 +20,9 @@ from support import ROOT
 from amalthea_uros.design.campaign import executors
 from amalthea_uros.design.campaign.campaign import run_campaign
 from amalthea_uros.design.campaign.executors import cluster, processes, serial
-from amalthea_uros.design.campaign.run import Outcome, Run, plan_runs
+from amalthea_uros.design.campaign.run import CampaignRun, RunOutcome, plan_runs
 from amalthea_uros.design.campaign.tables import table_format, write_table
-from amalthea_uros.design.changes.change import Change
-from amalthea_uros.design.changes.sweep import parse_sweep
+from amalthea_uros.design.changes.change import Change, parse_sweep
 from amalthea_uros.errors import InvalidArgumentError, WriteError
 from amalthea_uros.services.inputs import open_system
 from amalthea_uros.services.simulate import SimulationJob
@@ -38,7 +37,7 @@ def runs(count):
 def test_each_variant_is_run_with_the_same_seeds():
     found = plan_runs([parse_sweep("A.x=1ms,2ms")], 2, 7)
     first, second = (Change("A", "x", "1ms"),), (Change("A", "x", "2ms"),)
-    assert found == (Run(1, 7, first), Run(2, 8, first), Run(3, 7, second), Run(4, 8, second))
+    assert found == (CampaignRun(1, 7, first), CampaignRun(2, 8, first), CampaignRun(3, 7, second), CampaignRun(4, 8, second))
 
 
 @pytest.mark.parametrize(("repetitions", "message"), [(0, "expected at least 1"), (1_000_001, "has 1,000,001 runs; at most")])
@@ -49,7 +48,7 @@ def test_the_number_of_runs_is_limited(repetitions, message):
 
 def test_the_columns_of_a_run_have_numbers_in_internal_units():
     changes = [Change("T", "period", "2 ms"), Change("T", "priority", "3"), Change("C", "frequency", "1.5 MHz")]
-    run = Run(4, 9, (*changes, Change("T", "execution_time", "1us..2us")))
+    run = CampaignRun(4, 9, (*changes, Change("T", "execution_time", "1us..2us")))
     assert run.columns() == {
         "run": 4,
         "seed": 9,
@@ -119,7 +118,7 @@ class Pool:
             raise self.error
         self.open.append(future)
         if not self.breaks:
-            future.set_result([Outcome(run, dict(self.job(run))) for run in runs])
+            future.set_result([RunOutcome(run, dict(self.job(run))) for run in runs])
         return future
 
     def shutdown(self, **_options):
@@ -218,9 +217,9 @@ def test_the_job_of_a_simulation_can_be_sent_without_the_model_that_it_comes_fro
 
 
 ROWS = [
-    Outcome(Run(1, 5), {"a": 1, "b": 0.5, "c": 'x, "y"'}).row(),
-    Outcome(Run(2, 6), {"a": 2**70, "b": None, "d": "é"}).row(),
-    Outcome(Run(3, 7), {}, "failed").row(),
+    RunOutcome(CampaignRun(1, 5), {"a": 1, "b": 0.5, "c": 'x, "y"'}).row(),
+    RunOutcome(CampaignRun(2, 6), {"a": 2**70, "b": None, "d": "é"}).row(),
+    RunOutcome(CampaignRun(3, 7), {}, "failed").row(),
 ]
 COLUMNS = ["run", "seed", "a", "b", "c", "d", "error"]
 TABLE = [

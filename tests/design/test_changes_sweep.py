@@ -6,8 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from amalthea_uros.design.changes.change import Change
-from amalthea_uros.design.changes.sweep import MAX_VARIANTS, Sweep, parse_sweep, variants
+from amalthea_uros.design.changes.change import MAX_VARIANTS, Change, Sweep, parse_sweep, variants
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.units import TIME, parse, parse_frequency, parse_time
 

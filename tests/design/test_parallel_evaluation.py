@@ -9,8 +9,8 @@ import pytest
 from support import ROOT
 
 from amalthea_uros.design.campaign import executors
-from amalthea_uros.design.optimize.enumeration import designs_with
 from amalthea_uros.design.optimize.parallel_evaluation import EvaluationJob, evaluated_by
+from amalthea_uros.design.optimize.space import designs_with
 from amalthea_uros.report.formats.json import content
 from amalthea_uros.services.optimize import optimize, plan_optimization
 
@@ -32,9 +32,9 @@ def test_processes_judge_as_this_one_does(sample):
     plan = plan_optimization(ROOT / "samples" / sample, limits=[LIMIT])
     designs = list(designs_with(plan.problem.space, 1))[:8]
     with evaluated_by(plan.evaluator, executors.processes(2)) as evaluate:
-        assert list(evaluate(designs)) == plan.evaluator(designs)
+        assert list(evaluate(designs)) == list(plan.evaluator(designs))
         # Other designs, by the same workers.
-        assert list(evaluate(designs[:3])) == plan.evaluator(designs[:3])
+        assert list(evaluate(designs[:3])) == list(plan.evaluator(designs[:3]))
 
 
 def test_what_is_sent_has_no_model_in_it():
@@ -50,7 +50,7 @@ def test_a_dask_cluster_judges_as_this_process_does():
         distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=False, dashboard_address=None) as cluster,
         evaluated_by(plan.evaluator, executors.cluster(cluster.scheduler_address)) as evaluate,
     ):
-        assert list(evaluate(designs)) == plan.evaluator(designs)
+        assert list(evaluate(designs)) == list(plan.evaluator(designs))
 
 
 # A whole search
@@ -92,7 +92,7 @@ def test_designs_of_a_killed_process_are_judged_again():
             yield executors.Workers(workers.count, workers.ahead, submit)
 
     with evaluated_by(plan.evaluator, fragile) as evaluate:
-        assert list(evaluate(designs)) == plan.evaluator(designs)
+        assert list(evaluate(designs)) == list(plan.evaluator(designs))
 
 
 def test_most_searches_need_no_other_process(monkeypatch):

@@ -9,12 +9,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from amalthea_uros import analyze_system, optimize, simulate
-from amalthea_uros.design.optimize.enumeration import count_with, designs_with, most_changes
+from amalthea_uros.design.optimize.choices import Wishes
+from amalthea_uros.design.optimize.judged import Effort
 from amalthea_uros.design.optimize.problem import Conclusion
-from amalthea_uros.design.optimize.recorder import Effort
 from amalthea_uros.design.optimize.search import search
-from amalthea_uros.design.optimize.space import Choice, Kind, PriorityOrder, Space
-from amalthea_uros.design.space.choices import Wishes
+from amalthea_uros.design.optimize.space import (
+    Choice,
+    DecisionKind,
+    PriorityOrder,
+    Space,
+    count_with,
+    designs_with,
+    most_changes,
+)
 from amalthea_uros.services.optimize import plan_optimization
 from amalthea_uros.units import MILLISECOND as MS
 
@@ -51,15 +58,15 @@ def test_what_judges_designs_can_be_sent_to_other_processes():
     plan = plan_optimization(system, Wishes())
     designs = [*designs_with(plan.problem.space, 0), *designs_with(plan.problem.space, 2)]
     sent = pickle.loads(pickle.dumps(plan.evaluator))
-    assert sent(designs) == plan.evaluator(designs)
+    assert list(sent(designs)) == list(plan.evaluator(designs))
     assert plan.evaluator.judged((), analyze_system(system)) == plan.evaluator.evaluate(())
 
 
 def test_designs_are_counted_as_they_are_listed():
     space = Space(
         choices=(
-            Choice(object="A", key="period", kind=Kind.PERIOD, options=("1ms", "2ms", "4ms")),
-            Choice(object="B", key="offset", kind=Kind.OFFSET, options=("0s", "1ms")),
+            Choice(object="A", key="period", kind=DecisionKind.PERIOD, options=("1ms", "2ms", "4ms")),
+            Choice(object="B", key="offset", kind=DecisionKind.OFFSET, options=("0s", "1ms")),
         ),
         orders=(PriorityOrder(scheduler="S", tasks=("A", "B", "C"), numbers=(3, 2, 1)),),
     )

@@ -9,12 +9,12 @@ from design_search import cores_of, mapping_problem
 from design_systems import DESIGN
 
 from amalthea_uros import optimize
+from amalthea_uros.design.optimize import mapping
+from amalthea_uros.design.optimize.integer_program import solve_program
+from amalthea_uros.design.optimize.mapping import BranchAndBound, solve_mapping
+from amalthea_uros.design.optimize.partition import Partition
 from amalthea_uros.design.optimize.problem import Conclusion, Feasibility, Problem
-from amalthea_uros.design.optimize.solvers import mapping
-from amalthea_uros.design.optimize.solvers.integer_program import solve_program
-from amalthea_uros.design.optimize.solvers.mapping import BranchAndBound, solve_mapping
-from amalthea_uros.design.optimize.solvers.partition import Partition
-from amalthea_uros.design.optimize.space import Choice, Kind, Space
+from amalthea_uros.design.optimize.space import Choice, DecisionKind, Space
 from amalthea_uros.perf.os import Policy
 
 CASES = DESIGN.get("mapping_problems", ())
@@ -85,7 +85,7 @@ def test_the_load_counts_what_stays():
 def test_no_loads_are_rounded():
     # 0.2 + 0.4 + 0.3 + 0.1 is more than 1 in floats, but fits.
     tasks = [{"name": name, "C": cost, "T": 10, "D": 10} for name, cost in zip("ABCD", (2, 4, 3, 1), strict=True)]
-    choices = tuple(Choice(object=name, key="core", kind=Kind.CORE, options=("one", "two")) for name in "AD")
+    choices = tuple(Choice(object=name, key="core", kind=DecisionKind.CORE, options=("one", "two")) for name in "AD")
     blocked = {"name": "E", "C": 10, "T": 10, "D": 10}
     problem = mapping_problem([*tasks, blocked], ["one", "two"], core_of={"E": "two"})
     found = solve_mapping(replace(problem, space=Space(choices=choices)))

@@ -8,12 +8,12 @@ import pytest
 from design_search import offset_problem, offsets, problem_of
 from design_systems import DESIGN, system_of
 
-from amalthea_uros.design.changes.sweep import parse_sweep
-from amalthea_uros.design.optimize.exhaustive import try_all
+from amalthea_uros.design.changes.change import parse_sweep
+from amalthea_uros.design.optimize.choices import Wishes
+from amalthea_uros.design.optimize.offsets import offset_classes, solve_offsets
 from amalthea_uros.design.optimize.problem import Conclusion, Goal
-from amalthea_uros.design.optimize.solvers.offsets import offset_classes, solve_offsets
-from amalthea_uros.design.optimize.space import Choice, Kind, Space
-from amalthea_uros.design.space.choices import Wishes
+from amalthea_uros.design.optimize.search import try_all
+from amalthea_uros.design.optimize.space import Choice, DecisionKind, Space
 from amalthea_uros.services.optimize import plan_optimization
 from amalthea_uros.units import MICROSECOND as US
 
@@ -76,7 +76,7 @@ def test_jitter_leaves_nothing_to_shift():
 
 def test_other_choices_are_left_to_others():
     tasks = [{"name": "A", "C": 1, "T": 4, "O": 0}]
-    period = Choice(object="A", key="period", kind=Kind.PERIOD, options=("4 us", "5 us"))
+    period = Choice(object="A", key="period", kind=DecisionKind.PERIOD, options=("4 us", "5 us"))
     space = Space(choices=(*offsets(tasks).choices, period))
     assert solve_offsets(problem_of(system_of(tasks), space)) is None
     assert solve_offsets(problem_of(system_of(tasks), Space())) is None

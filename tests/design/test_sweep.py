@@ -5,7 +5,7 @@ from command import amuros as run_amuros
 from support import ROOT
 
 import amalthea_uros as amuros
-from amalthea_uros.design.changes.sweep import parse_sweep, sampled, variants
+from amalthea_uros.design.changes.change import parse_sweep, sampled, variants
 from amalthea_uros.errors import InvalidArgumentError
 
 YAML = ROOT / "samples" / "bodas-test-advanced.yaml"

@@ -6,11 +6,11 @@ from fractions import Fraction
 import pytest
 from design_systems import system_of
 
-from amalthea_uros.design.changes.sweep import parse_sweep
-from amalthea_uros.design.optimize.exhaustive import try_all
+from amalthea_uros.design.changes.change import parse_sweep
+from amalthea_uros.design.optimize.choices import Vary, Wishes
+from amalthea_uros.design.optimize.mapping import solve_mapping
 from amalthea_uros.design.optimize.problem import Conclusion
-from amalthea_uros.design.optimize.solvers.mapping import solve_mapping
-from amalthea_uros.design.space.choices import Vary, Wishes
+from amalthea_uros.design.optimize.search import try_all
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.services.optimize import optimize, plan_optimization
 

@@ -13,10 +13,10 @@ from played_executors import Spans, play
 from random_executors import violations
 
 from amalthea_uros.executors.bounds.backlog import Arriving, max_backlog
-from amalthea_uros.perf.executors import Loop, LoopKind, TriggerCondition, TriggerKind
+from amalthea_uros.perf.executors import LoopKind, ThreadLoop, TriggerCondition, TriggerKind
 from amalthea_uros.perf.network import Span
 from amalthea_uros.perf.software import Preemption
-from amalthea_uros.timing.event_models import SporadicEvents
+from amalthea_uros.timing.event_models.models import SporadicEvents
 
 # The receive backlog.
 
@@ -76,7 +76,7 @@ def test_each_assumption_about_the_backlog_is_needed(arrivals, change):
 
 # Cycles and response times.
 
-LOOP = Loop(kind=LoopKind.SLEEPING, timeout=10 * MS, sleep=5 * MS)
+LOOP = ThreadLoop(kind=LoopKind.SLEEPING, timeout=10 * MS, sleep=5 * MS)
 SEEDS = range(20)
 
 
@@ -167,7 +167,7 @@ def test_a_timer_that_does_not_end_a_wait_is_late(monkeypatch):
                 yield first
                 yield from steps
 
-    analysed = base(loop=Loop(kind=LoopKind.CONTINUOUS, timeout=1000 * MS))
+    analysed = base(loop=ThreadLoop(kind=LoopKind.CONTINUOUS, timeout=1000 * MS))
     assert not exceeded(analysed)
     monkeypatch.setattr(played_executors, "Played", Deaf)
     assert exceeded(analysed)

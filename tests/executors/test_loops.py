@@ -10,7 +10,7 @@ from looping_executors import (
     US,
     Proc,
     TriggerKind,
-    Waiting,
+    WaitBehaviour,
     combined,
     evaluate,
     guard,
@@ -24,7 +24,7 @@ from looping_executors import (
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.judge.verdict import Failure, Verdict
 from amalthea_uros.perf.constraints import Bound, Constraints, Requirement, TimeLimit, TimeMetric
-from amalthea_uros.perf.executors import HandleKind, Loop, LoopKind, Publication
+from amalthea_uros.perf.executors import HandleKind, LoopKind, Publication, ThreadLoop
 from amalthea_uros.perf.network import Span
 
 
@@ -110,7 +110,7 @@ def test_a_timer_is_late_by_the_sleep_and_the_round():
 @pytest.mark.parametrize(("timeout", "loop"), [(1000, 1000), (5, 6)])
 def test_a_wait_of_spin_period_uses_the_timeout_and_not_the_period(timeout, loop):
     # Without rclc_executor_set_timeout the timeout is 1 s; with 5 ms the period of 20 ms and the cut of the sleep count.
-    period = Loop(kind=LoopKind.PERIODIC, timeout=timeout * MS, period=20 * MS)
+    period = ThreadLoop(kind=LoopKind.PERIODIC, timeout=timeout * MS, period=20 * MS)
     model = looping(message("a", 100_000), loop=period)
     assert evaluate(model).loop.most == (timeout + 21) * MS
     assert ("EXE020" in rules(model)) is (timeout > 20)
@@ -122,7 +122,10 @@ def test_a_guard_condition_is_seen_when_something_else_ends_the_wait():
     assert found.handles["g"].response.worst == (3 + 1 + 1000 + 3 + 1) * MS
     woken = evaluate(
         looping(
-            guard("g", 5_000_000, 1000), message("a", 2_000_000), loop=SPIN, waiting=Waiting(guard_conditions_end_wait=True)
+            guard("g", 5_000_000, 1000),
+            message("a", 2_000_000),
+            loop=SPIN,
+            waiting=WaitBehaviour(guard_conditions_end_wait=True),
         )
     )
     assert woken.handles["g"].response.worst == 2 * MS
@@ -152,7 +155,7 @@ def test_stored_messages_wait_for_the_next_end_of_a_wait():
     found = evaluate(looping(publishing, message("b", 9_000_000), loop=SPIN))
     alone = 10 + 1000 + 10
     assert found.handles["b"].response.worst == (alone + 10 + 1000) * MS
-    zenoh = Waiting(
+    zenoh = WaitBehaviour(
         messages_per_wait=None, stored_data_ends_wait=True, guard_conditions_end_wait=True, slots=None, resolution=0
     )
     assert (
@@ -165,7 +168,7 @@ def test_messages_are_dropped_when_the_slots_are_used():
     publishing = timer("t", 5_000_000, publications=(waiting_publication(),))
     model = looping(publishing, message("a", 2_000_000, depth=10, reliable=True), loop=replace(SPIN, timeout=100 * MS))
     assert evaluate(model).handles["a"].lost is None
-    few = replace(model, executors=(replace(model.executors[0], waiting=Waiting(slots=1)),))
+    few = replace(model, executors=(replace(model.executors[0], waiting=WaitBehaviour(slots=1)),))
     lost = evaluate(few).handles["a"].lost
     assert lost.is_of_pool
     assert "up to 2 messages for all handles of" in lost.sequence
@@ -176,7 +179,7 @@ def test_messages_are_dropped_when_the_slots_are_used():
 
 def test_the_slots_that_are_needed_do_not_depend_on_those_that_there_are():
     def needed(*handles, slots=8, **parts):
-        return evaluate(looping(*handles, waiting=Waiting(slots=slots), **parts)).slots_needed
+        return evaluate(looping(*handles, waiting=WaitBehaviour(slots=slots), **parts)).slots_needed
 
     # Each wait takes one message, and its round calls it.
     assert needed(message("a", 500_000, depth=10), message("b", 500_000, depth=10)) == 1
@@ -325,7 +328,7 @@ def test_several_handles_of_a_callback_are_one_callback():
 def test_rounds_that_wait_for_acknowledgements_can_follow_each_other(sleep, is_known):
     # Without a sleep, what became due in the second of the publication is executed at once afterwards.
     publishing = timer("t", 500_000, 1000, publications=(waiting_publication(),))
-    loop = Loop(kind=LoopKind.SLEEPING, timeout=100 * MS, sleep=sleep * MS)
+    loop = ThreadLoop(kind=LoopKind.SLEEPING, timeout=100 * MS, sleep=sleep * MS)
     low = Proc("low", (ticks(1000),), period=100_000, priority=1)
     found = analyze_system(looping(publishing, message("a", 500_000), loop=loop, others=(low,)))
     assert (found.processes["low"].response is not None) is is_known

@@ -9,7 +9,7 @@ from looping_executors import MS, US, evaluate, guard, looping, message, timer
 from played_executors import Spans, play
 from random_executors import application, violations
 
-from amalthea_uros.perf.executors import Loop, LoopKind
+from amalthea_uros.perf.executors import LoopKind, ThreadLoop
 
 #: Applications, each of which is played with several draws of execution times, phases and arrivals.
 APPLICATIONS, PLAYS = (6000, 3) if IS_THOROUGH else (150, 2)
@@ -38,7 +38,7 @@ def seen(system, costs):
 def test_the_player_keeps_the_grid_of_a_timer_and_loses_the_periods_that_passed():
     # Rounds begin every 25 ms. The timer is due at 0, 10, 20 ...; calls at 0, 25 (for 10), 50 (for 30), 75 (for 60): nobody is called
     # for 20; 40 and 50; 70.
-    system = looping(timer("t", 10_000, phase=0), loop=Loop(kind=LoopKind.SLEEPING, timeout=0, sleep=25 * MS))
+    system = looping(timer("t", 10_000, phase=0), loop=ThreadLoop(kind=LoopKind.SLEEPING, timeout=0, sleep=25 * MS))
     (found,) = seen(system, [0])
     assert found.lateness[:4] == [0, 15 * MS, 20 * MS, 15 * MS]
     assert found.lost[:3] == [1, 2, 1]
@@ -49,7 +49,7 @@ def test_the_player_takes_one_message_per_round():
     system = looping(
         message("a", 100_000, phase=0),
         message("b", 100_000, phase=0),
-        loop=Loop(kind=LoopKind.SLEEPING, timeout=MS, sleep=10 * MS),
+        loop=ThreadLoop(kind=LoopKind.SLEEPING, timeout=MS, sleep=10 * MS),
     )
     first, second = seen(system, [1000, 500])
     assert (first.responses[0], second.responses[0]) == (1 * MS, 11 * MS + 500 * US)
@@ -60,7 +60,7 @@ def test_the_player_wakes_a_millisecond_early_for_a_timer():
     system = looping(
         timer("t", 100_000, phase=2500 * US),
         message("a", 10_000_000, phase=9000 * MS),
-        loop=Loop(kind=LoopKind.SLEEPING, timeout=100 * MS, sleep=10 * MS),
+        loop=ThreadLoop(kind=LoopKind.SLEEPING, timeout=100 * MS, sleep=10 * MS),
     )
     assert seen(system, [0, 0])[0].lateness[0] == 9500 * US
 
@@ -73,7 +73,7 @@ def test_a_wait_can_be_followed_by_preemption_in_each_cycle():
 
 def test_triggers_of_a_guard_condition_come_closer_by_their_jitter():
     # Every 50 ms, up to 30 ms late: 20 ms apart. Rounds begin every 25 ms.
-    loop = Loop(kind=LoopKind.SLEEPING, timeout=0, sleep=25 * MS)
+    loop = ThreadLoop(kind=LoopKind.SLEEPING, timeout=0, sleep=25 * MS)
     lost = evaluate(looping(guard("g", 50_000, jitter=30 * MS), loop=loop)).handles["g"].lost
     assert lost is not None
     assert lost.most == 1
@@ -104,11 +104,11 @@ def test_executors_share_the_slots_of_their_process():
 @pytest.mark.parametrize(
     ("loop", "is_certain"),
     [
-        (Loop(kind=LoopKind.SLEEPING, timeout=0, sleep=51 * MS), True),
-        (Loop(kind=LoopKind.SLEEPING, timeout=0, sleep=60 * MS, sleep_early=10 * MS), False),
-        (Loop(kind=LoopKind.SLEEPING, timeout=0, sleep=60 * MS, sleep_early=10 * MS, pace=60 * MS), True),
-        (Loop(kind=LoopKind.PERIODIC, timeout=0, period=51 * MS), True),
-        (Loop(kind=LoopKind.PERIODIC, timeout=0, period=49 * MS), False),
+        (ThreadLoop(kind=LoopKind.SLEEPING, timeout=0, sleep=51 * MS), True),
+        (ThreadLoop(kind=LoopKind.SLEEPING, timeout=0, sleep=60 * MS, sleep_early=10 * MS), False),
+        (ThreadLoop(kind=LoopKind.SLEEPING, timeout=0, sleep=60 * MS, sleep_early=10 * MS, pace=60 * MS), True),
+        (ThreadLoop(kind=LoopKind.PERIODIC, timeout=0, period=51 * MS), True),
+        (ThreadLoop(kind=LoopKind.PERIODIC, timeout=0, period=49 * MS), False),
     ],
 )
 def test_a_timer_that_expires_more_often_than_rounds_begin_loses_periods_for_certain(loop, is_certain):

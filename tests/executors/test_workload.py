@@ -5,15 +5,15 @@ from itertools import product
 import pytest
 
 from amalthea_uros.executors.semantics.loops import lost_periods, next_expiration, workload
-from amalthea_uros.perf.executors import Executor, Loop, LoopKind
-from amalthea_uros.timing.event_models import PeriodicEvents
+from amalthea_uros.perf.executors import Executor, LoopKind, ThreadLoop
+from amalthea_uros.timing.event_models.models import PeriodicEvents
 
 LONGEST = 3
 
 
 @pytest.mark.parametrize("sleep", [1, 2, 5])
 def test_no_rounds_demand_more_than_those_of_the_longest(sleep):
-    executor = Executor(name="e", task="t", spin="s", loop=Loop(kind=LoopKind.SLEEPING, timeout=0, sleep=sleep))
+    executor = Executor(name="e", task="t", spin="s", loop=ThreadLoop(kind=LoopKind.SLEEPING, timeout=0, sleep=sleep))
     model = workload(executor, PeriodicEvents(1), LONGEST)
     for lengths in product(range(LONGEST + 1), repeat=5):
         begin, demand = 0, 0
@@ -25,7 +25,7 @@ def test_no_rounds_demand_more_than_those_of_the_longest(sleep):
 
 
 def test_without_a_sleep_it_is_what_begins_rounds():
-    executor = Executor(name="e", task="t", spin="s", loop=Loop(kind=LoopKind.CONTINUOUS, timeout=5))
+    executor = Executor(name="e", task="t", spin="s", loop=ThreadLoop(kind=LoopKind.CONTINUOUS, timeout=5))
     assert workload(executor, PeriodicEvents(7), LONGEST) == PeriodicEvents(7)
 
 

@@ -12,7 +12,7 @@ import pytest
 from support import ROOT
 
 from amalthea_uros import describe
-from amalthea_uros.design.changes.sweep import parse_sweep
+from amalthea_uros.design.changes.change import parse_sweep
 from amalthea_uros.services.simulate import simulate, simulate_campaign
 from amalthea_uros.simulate.kernel import machine_code
 from amalthea_uros.simulate.options import Options

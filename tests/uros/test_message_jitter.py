@@ -11,7 +11,7 @@ from amalthea_uros.bridge.extract import extract
 from amalthea_uros.errors import ReadError
 from amalthea_uros.perf.stimuli import Arrivals
 from amalthea_uros.services.simulate import simulate
-from amalthea_uros.timing.activation.phases import counters
+from amalthea_uros.timing.activation.releases import counters
 from amalthea_uros.units import MILLISECOND as MS
 
 SAMPLE = (ROOT / "samples" / "bodas-test-advanced.yaml").read_text()

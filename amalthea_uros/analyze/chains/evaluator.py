@@ -16,7 +16,7 @@ from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.results.chains import ChainResult, LatencyQuantity, LatencyValue
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.events import EventChain
-from amalthea_uros.timing.activation.phases import ExternalInput, unknown_phases
+from amalthea_uros.timing.activation.releases import ExternalInput, unknown_phases
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.dataflow.chains import Unfolded, combined, empty_sets, sequences, unfold
 from amalthea_uros.timing.dataflow.events import UnraisedError

@@ -25,9 +25,9 @@ from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.results import ExecutorResult, HandleResult, Hop, HopKind, TimePart
 from amalthea_uros.perf.events import Event, ProcessChange, ProcessEvent
 from amalthea_uros.perf.executors import HandleKind
-from amalthea_uros.timing.awaited import awaited
 from amalthea_uros.timing.dataflow.links import UNTIMED
 from amalthea_uros.timing.dataflow.routes import routes
+from amalthea_uros.timing.touching import awaited
 from amalthea_uros.units import Time
 
 

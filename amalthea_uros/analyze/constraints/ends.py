@@ -13,7 +13,7 @@ from amalthea_uros.perf.constraints import (
     RepetitionConstraint,
 )
 from amalthea_uros.timing.basics.quantities import jitter_of
-from amalthea_uros.timing.event_models import EventModel, PeriodicEvents, can_be_dense, is_strictly_periodic
+from amalthea_uros.timing.event_models.models import EventModel, PeriodicEvents, can_be_dense, is_strictly_periodic
 from amalthea_uros.timing.response import Claim
 from amalthea_uros.units import Time, time_text
 

@@ -20,8 +20,7 @@ from amalthea_uros.analyze.results.explanations import CauseKind, ChainExplanati
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.constraints import LatencyConstraint
 from amalthea_uros.perf.events import EventChain
-from amalthea_uros.timing.activation.phases import unknown_phases
-from amalthea_uros.timing.activation.releases import known_releases
+from amalthea_uros.timing.activation.releases import known_releases, unknown_phases
 from amalthea_uros.timing.dataflow.routes import Route, route_text
 from amalthea_uros.timing.dataflow.stages import Stage
 from amalthea_uros.timing.jobs.counters import ALWAYS

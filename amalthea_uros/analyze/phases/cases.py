@@ -24,8 +24,14 @@ from amalthea_uros.perf.activities import Call, Trigger, walk
 from amalthea_uros.perf.constraints import LatencyConstraint
 from amalthea_uros.perf.events import EventChain
 from amalthea_uros.perf.stimuli import Counter, EventTriggered, InterProcess, Periodic
-from amalthea_uros.timing.activation.phases import ExternalInput, own_counters, phase_combinations, phase_count, with_phases
-from amalthea_uros.timing.activation.releases import known_releases
+from amalthea_uros.timing.activation.releases import (
+    ExternalInput,
+    known_releases,
+    own_counters,
+    phase_combinations,
+    phase_count,
+    with_phases,
+)
 from amalthea_uros.timing.jobs.counters import first_effect
 from amalthea_uros.units import Time
 

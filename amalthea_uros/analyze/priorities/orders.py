@@ -23,7 +23,7 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.timing.activation.releases import known_releases
 from amalthea_uros.timing.blocking.critical_sections import LockUsage
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.event_models import EventModel
+from amalthea_uros.timing.event_models.models import EventModel
 from amalthea_uros.timing.response import Claim
 from amalthea_uros.timing.scheduling.scheduled import EqualPriority, ScheduledProcess, is_preemptive
 from amalthea_uros.units import Time, percent_text, time_text

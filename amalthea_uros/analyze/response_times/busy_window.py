@@ -16,7 +16,7 @@ import numpy as np
 from amalthea_uros.analyze.response_times.kernel import MAX_STEPS, demand_in, least_fixed_point
 from amalthea_uros.analyze.response_times.task import FULL, AnalysedTask, Supply
 from amalthea_uros.timing.basics.time_base import LIMIT
-from amalthea_uros.timing.event_models import PeriodicEvents, is_strictly_periodic
+from amalthea_uros.timing.event_models.models import PeriodicEvents, is_strictly_periodic
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:

@@ -17,7 +17,7 @@ from amalthea_uros.perf.software import Preemption
 from amalthea_uros.timing.basics.time_base import Ticks, to_ticks
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
-from amalthea_uros.timing.event_models import EventModel, PeriodicEvents, rescaled
+from amalthea_uros.timing.event_models.models import EventModel, PeriodicEvents, rescaled
 from amalthea_uros.timing.jobs.executed import ends_with_execution
 from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.timing.scheduling.scheduled import EqualPriority, Rank, ScheduledProcess, Server, preemption

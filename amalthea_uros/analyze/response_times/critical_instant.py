@@ -23,7 +23,7 @@ from amalthea_uros.analyze.response_times.task import AnalysedTask
 from amalthea_uros.perf.distributions import highest
 from amalthea_uros.perf.software import Preemption
 from amalthea_uros.perf.stimuli import Periodic, RelativePeriodic
-from amalthea_uros.timing.event_models import SporadicEvents
+from amalthea_uros.timing.event_models.models import SporadicEvents
 from amalthea_uros.timing.scheduling.scheduled import EqualPriority, ScheduledProcess, is_preemptive, preemption
 from amalthea_uros.units import Time
 

@@ -26,7 +26,7 @@ from amalthea_uros.analyze.response_times.kernel import greatest_fixed_point
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.response_times.task import AnalysedTask, Supply
 from amalthea_uros.timing.basics.time_base import LIMIT
-from amalthea_uros.timing.event_models import PeriodicEvents
+from amalthea_uros.timing.event_models.models import PeriodicEvents
 from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.timing.scheduling.scheduled import ScheduledProcess
 from amalthea_uros.units import Time, percent_text

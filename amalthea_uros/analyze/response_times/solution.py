@@ -12,7 +12,7 @@ from amalthea_uros.perf.software import Task
 from amalthea_uros.perf.stimuli import EventTriggered, InterProcess
 from amalthea_uros.timing.basics.time_base import min_time
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.event_models import EventModel
+from amalthea_uros.timing.event_models.models import EventModel
 from amalthea_uros.timing.response import Response
 from amalthea_uros.timing.scheduling.scheduled import Rank, ScheduledProcess
 from amalthea_uros.units import Time

@@ -11,7 +11,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, ClassVar
 
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
-from amalthea_uros.timing.event_models import EventModel, rescaled
+from amalthea_uros.timing.event_models.models import EventModel, rescaled
 from amalthea_uros.timing.scheduling.scheduled import EqualPriority, ScheduledProcess
 from amalthea_uros.units import Time
 

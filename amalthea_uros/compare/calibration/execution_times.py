@@ -13,10 +13,9 @@ from amalthea_uros.compare.calibration.samples import Measured, Samples, samples
 from amalthea_uros.compare.calibration.stated_overheads import stated_overhead
 from amalthea_uros.compare.calibration.values import CalibratedValue, Outcome, calibrated
 from amalthea_uros.compare.calibration.wording import percentage
+from amalthea_uros.design.description.owners import StatedTime
 from amalthea_uros.design.description.places import Assignment, Places
-from amalthea_uros.design.description.stated_times import StatedTime
-from amalthea_uros.design.description.text_edits import Path
-from amalthea_uros.design.description.yaml_values import Value
+from amalthea_uros.design.description.text_edits import Path, Value
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.measure.series import MeasuredKind
 from amalthea_uros.perf.distributions import highest, lowest

@@ -9,14 +9,14 @@ from contextlib import closing, suppress
 from itertools import islice
 
 from amalthea_uros.design.campaign.executors import Executor, Workers, serial
-from amalthea_uros.design.campaign.run import Job, Outcome, Run
+from amalthea_uros.design.campaign.run import CampaignRun, Job, RunOutcome
 
 #: Runs are sent in chunks only if there are more than so many for each worker: an interruption loses the chunks that are not finished.
 _SINGLE_RUNS = 256
 _LARGEST_CHUNK = 16
 
 
-def run_campaign(job: Job, runs: Sequence[Run], executor: Executor = serial) -> Generator[Outcome]:
+def run_campaign(job: Job, runs: Sequence[CampaignRun], executor: Executor = serial) -> Generator[RunOutcome]:
     """Execute the runs; each outcome as soon as it is there, so not in the order of the runs.
 
     A run that fails has an outcome, too. To stop early, close the iterator: runs that are not finished are given up.
@@ -25,15 +25,15 @@ def run_campaign(job: Job, runs: Sequence[Run], executor: Executor = serial) -> 
         yield from execute(workers, runs)
 
 
-def execute(workers: Workers, runs: Sequence[Run]) -> Generator[Outcome]:
+def execute(workers: Workers, runs: Sequence[CampaignRun]) -> Generator[RunOutcome]:
     """Have workers execute runs; as `run_campaign`.
 
     What a worker had to do when it died is executed again, one run after the other, so that nothing else is lost if one of them is the
     cause; a run fails with which a worker dies twice.
     """
     chunks = _chunks(runs, workers.count)
-    again: deque[Run] = deque()
-    pending: dict[Future[list[Outcome]], Sequence[Run]] = {}
+    again: deque[CampaignRun] = deque()
+    pending: dict[Future[list[RunOutcome]], Sequence[CampaignRun]] = {}
     while True:
         if not again:
             for chunk in islice(chunks, workers.ahead - len(pending)):
@@ -53,24 +53,24 @@ def execute(workers: Workers, runs: Sequence[Run]) -> Generator[Outcome]:
                 yield from found
 
 
-def _last_try(workers: Workers, run: Run) -> list[Outcome]:
+def _last_try(workers: Workers, run: CampaignRun) -> list[RunOutcome]:
     """The outcome of a run, also if a worker dies again."""
     try:
         return workers.submit([run]).result()
     except Exception as error:
-        return [Outcome(run, {}, f"the worker failed twice: {type(error).__name__}: {error}")]
+        return [RunOutcome(run, {}, f"the worker failed twice: {type(error).__name__}: {error}")]
 
 
 def finished_runs(
-    job: Job, runs: Sequence[Run], executor: Executor, on_outcome: Callable[[Outcome], None] | None = None
-) -> tuple[Outcome, ...]:
+    job: Job, runs: Sequence[CampaignRun], executor: Executor, on_outcome: Callable[[RunOutcome], None] | None = None
+) -> tuple[RunOutcome, ...]:
     """Execute the runs; their outcomes in the order of the runs. Ctrl-C ends it early, with the runs that are finished.
 
     Parameters
     ----------
     on_outcome : called after each run
     """
-    outcomes: list[Outcome] = []
+    outcomes: list[RunOutcome] = []
     with suppress(KeyboardInterrupt), closing(run_campaign(job, runs, executor)) as finished:
         for outcome in finished:
             outcomes.append(outcome)
@@ -79,6 +79,6 @@ def finished_runs(
     return tuple(sorted(outcomes, key=lambda outcome: outcome.run.number))
 
 
-def _chunks(runs: Sequence[Run], workers: int) -> Iterator[Sequence[Run]]:
+def _chunks(runs: Sequence[CampaignRun], workers: int) -> Iterator[Sequence[CampaignRun]]:
     size = 1 if workers == 1 else max(1, min(_LARGEST_CHUNK, len(runs) // (workers * _SINGLE_RUNS)))
     return (runs[start : start + size] for start in range(0, len(runs), size))

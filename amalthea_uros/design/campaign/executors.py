@@ -18,7 +18,7 @@ from typing import Any, TypeAlias
 
 from amalthea_uros._internal.failures import failure
 from amalthea_uros._version import __version__
-from amalthea_uros.design.campaign.run import Job, Outcome, Run
+from amalthea_uros.design.campaign.run import CampaignRun, Job, RunOutcome
 from amalthea_uros.errors import AmurosError, InvalidArgumentError
 
 
@@ -34,7 +34,7 @@ class Workers:
 
     count: int
     ahead: int
-    submit: Callable[[Sequence[Run]], Future[list[Outcome]]]
+    submit: Callable[[Sequence[CampaignRun]], Future[list[RunOutcome]]]
 
 
 #: Provides workers for a job, and releases them in the end, also when somebody interrupts.
@@ -64,8 +64,8 @@ def _available_cores() -> int:
 def serial(job: Job) -> Iterator[Workers]:
     """Run everything in this process, one run after the other."""
 
-    def submit(runs: Sequence[Run]) -> Future[list[Outcome]]:
-        future: Future[list[Outcome]] = Future()
+    def submit(runs: Sequence[CampaignRun]) -> Future[list[RunOutcome]]:
+        future: Future[list[RunOutcome]] = Future()
         future.set_result(_execute(job, runs))
         return future
 
@@ -108,7 +108,7 @@ class _Pool:
             self._count, get_context("spawn"), initializer=_install, initargs=(self._job, _LOGGER.isEnabledFor(logging.INFO))
         )
 
-    def submit(self, runs: Sequence[Run]) -> Future[list[Outcome]]:
+    def submit(self, runs: Sequence[CampaignRun]) -> Future[list[RunOutcome]]:
         """Have some runs executed."""
         with _blocked_interrupts():
             try:
@@ -161,7 +161,7 @@ def _install(job: bytes, is_verbose: bool) -> None:
     _installed.append(pickle.loads(job))
 
 
-def _execute_installed(runs: Sequence[Run]) -> list[Outcome]:
+def _execute_installed(runs: Sequence[CampaignRun]) -> list[RunOutcome]:
     return _execute(_installed[0], runs)
 
 
@@ -232,19 +232,19 @@ def _received(job: bytes) -> Job:
     return found
 
 
-def _execute_shared(job: bytes, runs: Sequence[Run]) -> list[Outcome]:
+def _execute_shared(job: bytes, runs: Sequence[CampaignRun]) -> list[RunOutcome]:
     return _execute(_received(job), runs)
 
 
-def _execute(job: Job, runs: Sequence[Run]) -> list[Outcome]:
+def _execute(job: Job, runs: Sequence[CampaignRun]) -> list[RunOutcome]:
     return [_outcome(job, run) for run in runs]
 
 
-def _outcome(job: Job, run: Run) -> Outcome:
+def _outcome(job: Job, run: CampaignRun) -> RunOutcome:
     """What comes out of a run; that one fails does not concern the others."""
     try:
-        return Outcome(run, dict(job(run)))
+        return RunOutcome(run, dict(job(run)))
     except (AmurosError, ValueError) as error:
-        return Outcome(run, {}, str(error))
+        return RunOutcome(run, {}, str(error))
     except Exception as error:
-        return Outcome(run, {}, failure(error))
+        return RunOutcome(run, {}, failure(error))

@@ -1,15 +1,18 @@
-"""The runs of a campaign, and what comes out of them."""
+"""The runs of a campaign, what comes out of them, and systems as bytes to be sent to other processes."""
 
 from __future__ import annotations
 
+import pickle
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import partial
+from io import BytesIO
 from typing import Any, TypeAlias
 
-from amalthea_uros.design.changes.change import Change
-from amalthea_uros.design.changes.sweep import Sweep, count_variants, variants
+from amalthea_uros.design.changes.change import Change, Sweep, count_variants, variants
 from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.perf.system import System
 from amalthea_uros.units import parse_frequency, parse_time
 
 Value: TypeAlias = int | float | str | None
@@ -21,7 +24,7 @@ MAX_RUNS = 1_000_000
 
 
 @dataclass(frozen=True, slots=True)
-class Run:
+class CampaignRun:
     """One run; its result depends on nothing else.
 
     Attributes
@@ -39,11 +42,11 @@ class Run:
 
 
 #: What is done in each run; it must be possible to send it, and what it gives, to another process.
-Job: TypeAlias = Callable[[Run], Mapping[str, Any]]
+Job: TypeAlias = Callable[[CampaignRun], Mapping[str, Any]]
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
+class RunOutcome:
     """What came out of a run.
 
     Attributes
@@ -52,7 +55,7 @@ class Outcome:
     error : why it failed, "" if it did not
     """
 
-    run: Run
+    run: CampaignRun
     record: Mapping[str, Any]
     error: str = ""
 
@@ -61,7 +64,7 @@ class Outcome:
         return {**self.run.columns(), **self.record, **({"error": self.error} if self.error else {})}
 
 
-def plan_runs(sweeps: Sequence[Sweep], repetitions: int, seed: int) -> tuple[Run, ...]:
+def plan_runs(sweeps: Sequence[Sweep], repetitions: int, seed: int) -> tuple[CampaignRun, ...]:
     """The runs of all variants; the repetitions of each have the seeds from `seed` on.
 
     Raises
@@ -70,7 +73,7 @@ def plan_runs(sweeps: Sequence[Sweep], repetitions: int, seed: int) -> tuple[Run
     """
     count_runs(sweeps, repetitions)
     pairs = ((changes, seed + repetition) for changes in variants(sweeps) for repetition in range(repetitions))
-    return tuple(Run(number, each, changes) for number, (changes, each) in enumerate(pairs, start=1))
+    return tuple(CampaignRun(number, each, changes) for number, (changes, each) in enumerate(pairs, start=1))
 
 
 def count_runs(sweeps: Sequence[Sweep], repetitions: int) -> int:
@@ -96,3 +99,31 @@ def _column(change: Change) -> tuple[str, Value]:
             continue
         return change.target + suffix, int(number) if number.denominator == 1 else float(number)
     return change.target, change.value
+
+
+def system_bytes(system: System) -> bytes:
+    """A system without the way back to the objects and files that it was extracted from; those stay here."""
+    return compact_bytes(replace(system))  # a replaced system has no tables of names yet
+
+
+def compact_bytes(value: object) -> bytes:
+    """Something with systems, without their way back to objects and files."""
+    stream = BytesIO()
+    _Pickler(stream, pickle.HIGHEST_PROTOCOL).dump(value)
+    return stream.getvalue()
+
+
+def system_from(data: bytes) -> System:
+    """The system of some bytes."""
+    system: System = pickle.loads(data)
+    return system
+
+
+class _Pickler(pickle.Pickler):
+    def reducer_override(self, obj: Any) -> Any:
+        """Leave out what finds the place of an activity in a file: it holds the whole AMALTHEA model."""
+        return (_nowhere, ()) if isinstance(obj, partial) else NotImplemented
+
+
+def _nowhere() -> None:
+    """The place of an activity that was sent."""

@@ -12,7 +12,7 @@ from amalthea_uros.design.changes.key import CLOCKS
 from amalthea_uros.errors import InvalidArgumentError, WriteError
 from amalthea_uros.perf.hardware import Clock, Structure
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.activation.phases import with_stated_phases
+from amalthea_uros.timing.activation.releases import with_stated_phases
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import Frequency
 

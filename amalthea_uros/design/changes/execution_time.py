@@ -6,8 +6,7 @@ import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
-from amalthea_uros.design.changes.key import ISRS, RUNNABLES, TASKS, UNSET, Configuration, Key, Place
-from amalthea_uros.design.changes.values import duration
+from amalthea_uros.design.changes.key import ISRS, RUNNABLES, TASKS, UNSET, Collection, Configuration, Key, duration
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.names import listed
 from amalthea_uros.perf.activities import Activity, Call, Demand, Execute, ExecutionNeed, transformed, walk
@@ -15,7 +14,7 @@ from amalthea_uros.perf.distributions import Boundaries, Constant, Distribution,
 from amalthea_uros.perf.software import Task
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.jobs.executed import executed
-from amalthea_uros.timing.scheduling.allocation import allocated_cores, frequency_of
+from amalthea_uros.timing.scheduling.allocation import allocated_cores
 from amalthea_uros.units import Frequency, down, ticks_of_time, up
 
 _TICKS = re.compile(r"(\d{1,18})\s*ticks?", re.ASCII)
@@ -115,7 +114,7 @@ def _set_process(configuration: Configuration, name: str, time: ExecutionTime) -
     runnables = [
         name
         for name, runnable in system.runnables.items()
-        if name in called and not runnable.is_overhead and _demands(_body(name, system))
+        if name in called and not runnable.is_overhead and _demands(walk(runnable.activities))
     ]
     match _demands(walk(process.activities)), runnables:
         case [], [runnable] if _callers(runnable, system) == [name]:
@@ -128,11 +127,7 @@ def _set_process(configuration: Configuration, name: str, time: ExecutionTime) -
     raise InvalidArgumentError(f"{name!r} has no single execution time of its own; change those of its runnables: {choices}")
 
 
-def _body(runnable: str, system: System) -> Iterable[Activity]:
-    return walk(system.runnables[runnable].activities)
-
-
-def _with_demand(configuration: Configuration, place: Place, name: str, ticks: Distribution[int]) -> Configuration:
+def _with_demand(configuration: Configuration, place: Collection, name: str, ticks: Distribution[int]) -> Configuration:
     """The configuration in which the only demand of a process or runnable is another one."""
     activities = place.find(configuration.system, name).activities
     if (count := len(_demands(walk(activities)))) != 1:
@@ -155,7 +150,7 @@ def _frequency(name: str, processes: Iterable[str], configuration: Configuration
     system, settings = configuration
     cores_of = allocated_cores(system)
     cores = {core for process in processes for core in cores_of.get(process, ()) if core in system.cores}
-    frequencies = {settings.frequencies.get(core) or frequency_of(system.cores[core].clock, system) for core in cores}
+    frequencies = {settings.frequencies.get(core) or system.frequency_of(system.cores[core].clock) for core in cores}
     frequency = frequencies.pop() if len(frequencies) == 1 else None
     if frequency is None:
         reason = "on cores with different frequencies" if frequencies else "on a core of unknown frequency"

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
+from enum import StrEnum
 from typing import Any, Generic, NamedTuple, TypeVar
 
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.settings import Settings
+from amalthea_uros.units import Frequency, Time, parse_frequency, parse_time
 
 V = TypeVar("V")
 
@@ -40,7 +42,7 @@ class Key(Generic[V]):
 
 
 @dataclass(frozen=True, slots=True)
-class Kind:
+class ChangeableKind:
     """Objects of a kind.
 
     Attributes
@@ -54,7 +56,7 @@ class Kind:
     keys: Mapping[str, Key[Any]]
 
 
-class Place(NamedTuple):
+class Collection(NamedTuple):
     """Where the objects of a kind are in a system.
 
     Attributes
@@ -91,19 +93,19 @@ class Place(NamedTuple):
         return replace(system, **parts)
 
 
-TASKS = Place("software", "tasks")
-ISRS = Place("software", "isrs")
-RUNNABLES = Place("software", "runnables")
-MODE_LABELS = Place("software", "mode_labels")
-STIMULI = Place("stimuli", "stimuli")
-CLOCKS = Place("hardware", "clocks")
-OPERATING_SYSTEMS = Place("os", "systems")
-TASK_ALLOCATIONS = Place("mapping", "tasks", "task")
-ISR_ALLOCATIONS = Place("mapping", "isrs", "isr")
-PLACEMENTS = Place("mapping", "placements", "element")
+TASKS = Collection("software", "tasks")
+ISRS = Collection("software", "isrs")
+RUNNABLES = Collection("software", "runnables")
+MODE_LABELS = Collection("software", "mode_labels")
+STIMULI = Collection("stimuli", "stimuli")
+CLOCKS = Collection("hardware", "clocks")
+OPERATING_SYSTEMS = Collection("os", "systems")
+TASK_ALLOCATIONS = Collection("mapping", "tasks", "task")
+ISR_ALLOCATIONS = Collection("mapping", "isrs", "isr")
+PLACEMENTS = Collection("mapping", "placements", "element")
 
 
-def field_key(place: Place, field: str, parse: Callable[[str], V], text: Callable[[V], str] = str) -> Key[V]:
+def field_key(place: Collection, field: str, parse: Callable[[str], V], text: Callable[[V], str] = str) -> Key[V]:
     """The key for a field of the objects at a place."""
 
     def show(configuration: Configuration, name: str) -> str:
@@ -117,3 +119,58 @@ def field_key(place: Place, field: str, parse: Callable[[str], V], text: Callabl
         return configuration._replace(system=place.with_fields(configuration.system, name, **fields))
 
     return Key(parse, show, with_value)
+
+
+E = TypeVar("E", bound=StrEnum)
+
+
+def duration(text: str) -> Time:
+    """A time of at least 0."""
+    time = parse_time(text)
+    if time < 0:
+        raise ValueError(f"{text!r} is negative; expected at least 0 s")
+    return time
+
+
+def positive_duration(text: str) -> Time:
+    """A time greater than 0."""
+    time = parse_time(text)
+    if time <= 0:
+        raise ValueError(f"{text!r} is not greater than 0 s")
+    return time
+
+
+def positive_frequency(text: str) -> Frequency:
+    """A frequency greater than 0."""
+    frequency = parse_frequency(text)
+    if frequency <= 0:
+        raise ValueError(f"{text!r} is not greater than 0 Hz")
+    return frequency
+
+
+def whole_number(text: str) -> int:
+    """A whole number."""
+    try:
+        return int(text)
+    except ValueError:
+        raise ValueError(f"{text!r} is not a whole number such as 2") from None
+
+
+def positive_number(text: str) -> int:
+    """A whole number of at least 1."""
+    number = whole_number(text)
+    if number < 1:
+        raise ValueError(f"{text!r} is less than 1")
+    return number
+
+
+def one_of(members: Iterable[E]) -> Callable[[str], E]:
+    """One of some words."""
+    choices = {str(member): member for member in members}
+
+    def choose(text: str) -> E:
+        if text not in choices:
+            raise ValueError(f"{text!r} is not one of {', '.join(choices)}")
+        return choices[text]
+
+    return choose

@@ -7,30 +7,86 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
-from amalthea_uros.design.changes import allocation, execution_time, label, message, scheduler, stimulus
+from amalthea_uros.design.changes import activation, execution_time, scheduling
 from amalthea_uros.design.changes.key import (
     CLOCKS,
     ISR_ALLOCATIONS,
     MODE_LABELS,
+    PLACEMENTS,
     TASK_ALLOCATIONS,
     TASKS,
     UNSET,
+    ChangeableKind,
     Configuration,
     Key,
-    Kind,
+    duration,
     field_key,
+    one_of,
+    positive_frequency,
+    positive_number,
+    whole_number,
 )
-from amalthea_uros.design.changes.values import duration, one_of, positive_frequency, positive_number, whole_number
 from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.names import require
+from amalthea_uros.perf.activities import Activity, Communication, LabelAccess
+from amalthea_uros.perf.mapping import Placement
 from amalthea_uros.perf.software import Preemption
-from amalthea_uros.timing.activation.phases import sources
-from amalthea_uros.timing.scheduling.allocation import frequency_of
+from amalthea_uros.timing.activation.releases import sources
 from amalthea_uros.units import Frequency, frequency_text, time_text
+
+
+def _show_memory(configuration: Configuration, label: str) -> str:
+    return configuration.system.memory_of.get(label, UNSET)
+
+
+def _set_memory(configuration: Configuration, label: str, memory: str) -> Configuration:
+    """Move a label to another memory, where its address is not known."""
+    system = configuration.system
+    require("memory", [memory], system.memories)
+    if label not in system.memory_of:
+        changed = PLACEMENTS.with_item(system, Placement(element=label, memory=memory))
+    elif system.memory_of[label] == memory:
+        changed = system
+    else:
+        changed = PLACEMENTS.with_fields(system, label, memory=memory, address=0)
+    return configuration._replace(system=changed)
+
+
+def _show_communication(configuration: Configuration, label: str) -> str:
+    """How the accesses communicate; what is not stated counts as implicit, unless the settings say otherwise."""
+    accesses = configuration.system.label_accesses.get(label, ())
+    return ", ".join(dict.fromkeys(str(each.communication or Communication.IMPLICIT) for each in accesses)) or UNSET
+
+
+def _set_communication(configuration: Configuration, label: str, communication: Communication) -> Configuration:
+    """Change all accesses to a label."""
+    system = configuration.system
+    if label not in system.label_accesses:
+        raise InvalidArgumentError(f"nothing reads or writes the label {label!r}")
+    if configuration.settings.communication is not None:
+        raise InvalidArgumentError(
+            f"all communication is set to {configuration.settings.communication}, so that of {label!r} has no effect; "
+            "leave the option --communication out"
+        )
+
+    def changed(activity: Activity) -> Activity:
+        if isinstance(activity, LabelAccess) and activity.label == label:
+            return replace(activity, communication=communication)
+        return activity
+
+    return configuration._replace(system=system.with_activities(changed))
+
+
+_MEMORY_KEY = Key(str, _show_memory, _set_memory)
+_LABEL_KEYS: dict[str, Key[Any]] = {
+    "memory": _MEMORY_KEY,
+    "communication": Key(one_of(Communication), _show_communication, _set_communication),
+}
 
 
 def _show_core_frequency(configuration: Configuration, core: str) -> str:
     system, settings = configuration
-    frequency = settings.frequencies.get(core) or frequency_of(system.cores[core].clock, system)
+    frequency = settings.frequencies.get(core) or system.frequency_of(system.cores[core].clock)
     return UNSET if frequency is None else frequency_text(frequency)
 
 
@@ -61,39 +117,39 @@ def _is_number(text: str) -> bool:
 
 
 _TASK_KEYS: Mapping[str, Key[Any]] = {
-    **stimulus.PROCESS_KEYS,
+    **activation.PROCESS_KEYS,
     "execution_time": execution_time.PROCESS_KEY,
     "priority": field_key(TASK_ALLOCATIONS, "priority", whole_number),
     "deadline": field_key(TASK_ALLOCATIONS, "deadline", duration, time_text),
-    **allocation.TASK_KEYS,
+    **scheduling.TASK_KEYS,
     "preemption": field_key(TASKS, "preemption", one_of(Preemption)),
     "activation_limit": field_key(TASKS, "activation_limit", positive_number),
 }
 _ISR_KEYS: Mapping[str, Key[Any]] = {
-    **stimulus.PROCESS_KEYS,
+    **activation.PROCESS_KEYS,
     "execution_time": execution_time.PROCESS_KEY,
     "priority": field_key(ISR_ALLOCATIONS, "priority", whole_number),
-    **allocation.ISR_KEYS,
+    **scheduling.ISR_KEYS,
 }
 _MODE_KEY = Key(str, field_key(MODE_LABELS, "initial", str).show, _set_mode)
 
 #: Where objects of different kinds have the same name, the first kind counts for which the change is possible.
 KINDS = (
-    Kind("task", lambda system: [task.name for task in system.software.tasks], _TASK_KEYS),
-    Kind("ISR", lambda system: [isr.name for isr in system.software.isrs], _ISR_KEYS),
-    Kind("runnable", lambda system: system.runnables, {"execution_time": execution_time.RUNNABLE_KEY}),
-    Kind(
+    ChangeableKind("task", lambda system: [task.name for task in system.software.tasks], _TASK_KEYS),
+    ChangeableKind("ISR", lambda system: [isr.name for isr in system.software.isrs], _ISR_KEYS),
+    ChangeableKind("runnable", lambda system: system.runnables, {"execution_time": execution_time.RUNNABLE_KEY}),
+    ChangeableKind(
         "core", lambda system: system.cores, {"frequency": Key(positive_frequency, _show_core_frequency, _set_core_frequency)}
     ),
-    Kind(
+    ChangeableKind(
         "clock", lambda system: system.clocks, {"frequency": field_key(CLOCKS, "frequency", positive_frequency, frequency_text)}
     ),
-    Kind("scheduler", lambda system: system.schedulers, scheduler.SCHEDULER_KEYS),
-    Kind("stimulus", lambda system: system.stimuli_by_name, stimulus.STIMULUS_KEYS),
-    Kind("mode label", lambda system: [each.name for each in system.software.mode_labels], {"mode": _MODE_KEY}),
-    Kind("message", sources, message.MESSAGE_KEYS),
-    Kind("label", lambda system: system.labels, label.LABEL_KEYS),
-    Kind("channel", lambda system: system.channels, {"memory": label.MEMORY_KEY}),
+    ChangeableKind("scheduler", lambda system: system.schedulers, scheduling.SCHEDULER_KEYS),
+    ChangeableKind("stimulus", lambda system: system.stimuli_by_name, activation.STIMULUS_KEYS),
+    ChangeableKind("mode label", lambda system: [each.name for each in system.software.mode_labels], {"mode": _MODE_KEY}),
+    ChangeableKind("message", sources, activation.MESSAGE_KEYS),
+    ChangeableKind("label", lambda system: system.labels, _LABEL_KEYS),
+    ChangeableKind("channel", lambda system: system.channels, {"memory": _MEMORY_KEY}),
 )
 
 #: Execution times are converted to ticks at the frequency of a core, so those that decide about it are changed before the others.

@@ -8,7 +8,7 @@ from enum import StrEnum
 
 from amalthea_uros.design.changes.apply import Difference, apply, describe
 from amalthea_uros.design.changes.change import Change
-from amalthea_uros.design.changes.key import UNSET, Configuration, Kind
+from amalthea_uros.design.changes.key import UNSET, ChangeableKind, Configuration
 from amalthea_uros.design.changes.kinds import KINDS
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.settings import Settings
@@ -71,7 +71,7 @@ def _changes(old: Configuration, new: Configuration) -> Iterator[TimingChange]:
     return _without_repetition(found, old.system, new.system)
 
 
-def _of_kind(kind: Kind, old: Configuration, new: Configuration) -> Iterator[TimingChange]:
+def _of_kind(kind: ChangeableKind, old: Configuration, new: Configuration) -> Iterator[TimingChange]:
     before, after = (dict.fromkeys(kind.objects(side.system)) for side in (old, new))
     for name in (*after, *(name for name in before if name not in after)):
         is_old, is_new = name in before, name in after
@@ -88,7 +88,7 @@ def _of_kind(kind: Kind, old: Configuration, new: Configuration) -> Iterator[Tim
             yield TimingChange(kind=kind.name, object=name, happening=happening, differences=differences)
 
 
-def _differences(kind: Kind, name: str, old: Configuration | None, new: Configuration | None) -> Iterator[Difference]:
+def _differences(kind: ChangeableKind, name: str, old: Configuration | None, new: Configuration | None) -> Iterator[Difference]:
     for key, found in kind.keys.items():
         before, after = (UNSET if side is None else found.show(side, name) for side in (old, new))
         if before != after:

@@ -6,11 +6,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import StrEnum
 
-from amalthea_uros.design.description.text_edits import Path
+from amalthea_uros.design.description.text_edits import Path, Value
 from amalthea_uros.spec.application import CallbackSection, MessageCallback, Timer
 from amalthea_uros.spec.description import Description
+from amalthea_uros.spec.execution_time import ExecutionTimeSection
 from amalthea_uros.spec.executors import ExecutorSection
 from amalthea_uros.spec.section import DescriptionSection
+from amalthea_uros.units import Time, time_text
 from amalthea_uros.uros.application.callbacks import body_name
 from amalthea_uros.uros.assembly.executor_runnables import spin_name
 
@@ -84,3 +86,30 @@ def callbacks(description: Description) -> Iterator[tuple[Path, CallbackSection]
         for kind in _CALLBACKS:
             for number, callback in enumerate(getattr(node, kind)):
                 yield ("application", "nodes", index, kind, number), callback
+
+
+@dataclass(frozen=True, slots=True)
+class StatedTime:
+    """The place of an execution time.
+
+    Attributes
+    ----------
+    target : the object and the keys, such as "Executor_Task.execution_time.base"
+    value : as it is; None if nothing is stated
+    elsewhere : what is part of the execution time, but stated elsewhere, such as the time of publishing
+    """
+
+    target: str
+    path: Path
+    value: ExecutionTimeSection | None
+    elsewhere: Time = 0
+
+    def bounds(self, lower: Time, upper: Time) -> Value:
+        """What is written for a range of whole execution times; ValueError if other parts alone take longer."""
+        lower, upper = self._own(lower), self._own(upper)
+        return time_text(lower) if lower == upper else {"min": time_text(lower), "max": time_text(upper)}
+
+    def _own(self, time: Time) -> Time:
+        if time <= self.elsewhere:
+            raise ValueError(f"{time_text(time)} is not longer than the {time_text(self.elsewhere)} of its other parts")
+        return time - self.elsewhere

@@ -7,10 +7,8 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 
 from amalthea_uros.design.changes.change import Change
-from amalthea_uros.design.description.owners import Owner, OwnerKind, executors, owners
-from amalthea_uros.design.description.stated_times import StatedTime
-from amalthea_uros.design.description.text_edits import Path
-from amalthea_uros.design.description.yaml_values import Value
+from amalthea_uros.design.description.owners import Owner, OwnerKind, StatedTime, executors, owners
+from amalthea_uros.design.description.text_edits import Path, Value
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.names import require
 from amalthea_uros.spec.application import CallbackSection, MessageCallback, Timer

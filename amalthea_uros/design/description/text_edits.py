@@ -1,27 +1,55 @@
-"""Single values of a YAML text, replaced or added at their places.
-
-The text is not generated again: a change touches the characters of the value, and nothing else. A new key becomes a line of its own in
-a block, and goes to the line of its neighbours in flow style.
-"""
+"""Values as YAML in flow style, which is valid wherever a value can be."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import re
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
 from amalthea_uros.design.description.text_nodes import (
     AnyNode,
-    Document,
     Entry,
     TextAlias,
     TextMapping,
     TextScalar,
     TextSequence,
+    YamlDocument,
     read_document,
 )
-from amalthea_uros.design.description.yaml_values import Value, rendered
 from amalthea_uros.errors import InvalidArgumentError
+
+#: What can be written: text as it is read again, numbers, lists and mappings.
+Value: TypeAlias = "str | int | Sequence[Value] | Mapping[str, Value]"
+
+#: Text that means itself without quotes, in blocks and in flow style.
+_PLAIN = re.compile(r"(?:[A-Za-z_/.]|\d+(?:\.\d+)? ?[A-Za-z])[\w./ -]*(?<! )", re.ASCII)
+_WORDS = ("null", "true", "false", "~")
+
+
+def rendered(value: Value, quote: str = "") -> str:
+    """The YAML text of a value.
+
+    Parameters
+    ----------
+    quote : that the text had before; it is kept
+    """
+    if isinstance(value, int):
+        return str(value)
+    if isinstance(value, str):
+        return _text(value, quote)
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{_text(key, '')}: {rendered(item)}" for key, item in value.items()) + "}"
+    return "[" + ", ".join(rendered(item) for item in value) + "]"
+
+
+def _text(text: str, quote: str) -> str:
+    if quote == '"' and text.isprintable() and not {'"', "\\"} & set(text):
+        return f'"{text}"'
+    if quote == "'" or not _PLAIN.fullmatch(text) or text.lower() in _WORDS:
+        return "'" + text.replace("'", "''") + "'"
+    return text
+
 
 #: Keys of mappings and indices of lists, from the root to a value.
 Path: TypeAlias = tuple[str | int, ...]
@@ -115,7 +143,7 @@ def value_text(text: str, path: Path) -> str | None:
     return text[node.start : node.end].strip() if is_there else None
 
 
-def _found(document: Document, path: Path) -> tuple[Entry | AnyNode, bool]:
+def _found(document: YamlDocument, path: Path) -> tuple[Entry | AnyNode, bool]:
     """The place of a value, and whether it is there: otherwise it is the place of what it would be in."""
     place: Entry | AnyNode = document.root
     for key in path:
@@ -139,7 +167,7 @@ class _Patcher:
     """Finds out which characters a change touches."""
 
     text: str
-    document: Document
+    document: YamlDocument
 
     def patches(self, path: Path, value: Value, instead_of: str | None) -> Iterator[_Patch]:
         """The patches that give a value to a path."""

@@ -84,7 +84,7 @@ AnyNode: TypeAlias = TextScalar | TextAlias | TextSequence | TextMapping
 
 
 @dataclass(slots=True)
-class Document:
+class YamlDocument:
     """A document: its root, and the nodes with anchors by the order of their occurrence.
 
     Attributes
@@ -140,12 +140,12 @@ class Document:
 
 
 @lru_cache(maxsize=2)
-def read_document(text: str) -> Document:
+def read_document(text: str) -> YamlDocument:
     """The only document of a valid text; the places of many values are looked up in the same one."""
     loader = _Loader(text)
     try:
         events = iter(loader.get_event, None)
-        document = Document(TextScalar(start=0, end=0, value="", quote=""), [], [])
+        document = YamlDocument(TextScalar(start=0, end=0, value="", quote=""), [], [])
         for event in events:
             if isinstance(event, yaml.DocumentStartEvent):
                 document.root = _node(next(events), events, document)
@@ -155,7 +155,7 @@ def read_document(text: str) -> Document:
         loader.dispose()
 
 
-def _node(event: _Event, events: Iterator[_Event], document: Document) -> AnyNode:
+def _node(event: _Event, events: Iterator[_Event], document: YamlDocument) -> AnyNode:
     start, end = event.start_mark.index, event.end_mark.index
     if isinstance(event, yaml.AliasEvent):
         alias = TextAlias(start=start, end=end, name=str(event.anchor))
@@ -181,7 +181,7 @@ def _node(event: _Event, events: Iterator[_Event], document: Document) -> AnyNod
     return node
 
 
-def _mapping(event: _Event, events: Iterator[_Event], document: Document) -> TextMapping:
+def _mapping(event: _Event, events: Iterator[_Event], document: YamlDocument) -> TextMapping:
     start, end = event.start_mark.index, event.end_mark.index
     node = TextMapping(start=start, end=end, anchor=event.anchor, is_flow=bool(event.flow_style))
     for key in events:

@@ -6,19 +6,18 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
 from amalthea_uros.design.changes.apply import Difference, apply, describe
-from amalthea_uros.design.changes.change import Change
+from amalthea_uros.design.changes.change import Change, compact
 from amalthea_uros.design.changes.key import Configuration
-from amalthea_uros.design.optimize.candidate import Candidate
 from amalthea_uros.design.optimize.rules import Rule, period_of
-from amalthea_uros.design.optimize.space import PriorityOrder
+from amalthea_uros.design.optimize.space import Candidate, PriorityOrder
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.activation.phases import counters, first_time, nominal_period
+from amalthea_uros.timing.activation.releases import counters, first_time, nominal_period
 from amalthea_uros.units import Time, time_text
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Structure:
+class RebuiltStructure:
     """A system that is built otherwise, for example with a callback in a task of its own.
 
     Attributes
@@ -50,7 +49,7 @@ class Designs:
     rules: tuple[Rule, ...] = ()
     rate_monotonic: tuple[PriorityOrder, ...] = ()
     stated: Mapping[str, str] = field(default_factory=dict)
-    structures: Mapping[Candidate, Structure | str] = field(default_factory=dict)
+    structures: Mapping[Candidate, RebuiltStructure | str] = field(default_factory=dict)
 
     def divided(self, candidate: Candidate) -> tuple[Candidate, Candidate]:
         """What of a design is changed in the description, and what in the system that is built of it."""
@@ -70,7 +69,7 @@ class Designs:
     def described_changes(self, own: Candidate) -> tuple[Change, ...]:
         """All that a description states otherwise."""
         found = self.structures[own] if own else ()
-        return found.changes if isinstance(found, Structure) else ()
+        return found.changes if isinstance(found, RebuiltStructure) else ()
 
     def changes(self, candidate: Candidate) -> tuple[Change, ...]:
         """All changes that make the system of a design: those of the candidate, and what follows from them."""
@@ -113,9 +112,9 @@ class Designs:
         old, new = _messages(self.present.system), _messages(changed)
         for source, (interval, first) in old.items():
             if new[source][0] != interval and interval is not None:
-                yield Change(source, "arrival_period", _text(interval))
+                yield Change(source, "arrival_period", compact(time_text(interval)))
                 if first is not None and source not in self.present.settings.phases:
-                    yield Change(source, "phase", _text(first))
+                    yield Change(source, "phase", compact(time_text(first)))
 
 
 def _messages(system: System) -> dict[str, tuple[Time | None, Time | None]]:
@@ -126,7 +125,3 @@ def _messages(system: System) -> dict[str, tuple[Time | None, Time | None]]:
             first = first_time(process, counter, system) if counter.is_phase_known and counter.arrivals is None else None
             found[counter.source] = nominal_period(system.processes[process], counter, system), first
     return found
-
-
-def _text(time: Time) -> str:
-    return time_text(time).replace(" ", "")

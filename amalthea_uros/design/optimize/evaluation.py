@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
 from amalthea_uros.analyze.results.analysis import Analysis, Judged
 from amalthea_uros.analyze.results.chains import LatencyQuantity
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.design.optimize.candidate import Candidate
 from amalthea_uros.design.optimize.designs import Designs
-from amalthea_uros.design.optimize.goals import Scale, constraints_of, value_of
-from amalthea_uros.design.optimize.limits import Limit
+from amalthea_uros.design.optimize.goals import GoalScale, constraints_of, value_of
 from amalthea_uros.design.optimize.lower_bounds import SampledChain
-from amalthea_uros.design.optimize.problem import Evaluation, Feasibility, Goal
-from amalthea_uros.design.optimize.quantities import FROM_ARRIVAL, Figures, Range, takers
+from amalthea_uros.design.optimize.problem import DesignEvaluation, Feasibility, Goal
+from amalthea_uros.design.optimize.quantities import FROM_ARRIVAL, Figures, Limit, Range, takers
+from amalthea_uros.design.optimize.space import Candidate
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.perf.system import System
@@ -42,30 +41,26 @@ class DesignEvaluator:
     limits: tuple[Limit, ...]
     chains: Mapping[str, SampledChain] = field(default_factory=dict)
     goals: tuple[Goal, ...]
-    scale: Scale
+    scale: GoalScale
 
-    def __call__(self, candidates: Sequence[Candidate]) -> list[Evaluation]:
-        """Judge designs."""
-        return list(self.each(candidates))
-
-    def each(self, candidates: Iterable[Candidate]) -> Iterator[Evaluation]:
+    def __call__(self, candidates: Iterable[Candidate]) -> Iterator[DesignEvaluation]:
         """Judge designs one after the other; only those that are asked for."""
         return map(self.evaluate, candidates)
 
-    def evaluate(self, candidate: Candidate) -> Evaluation:
+    def evaluate(self, candidate: Candidate) -> DesignEvaluation:
         """Judge a design."""
         try:
             configuration = self.designs.configure(candidate)
         except InvalidArgumentError as error:
-            return Evaluation(candidate=candidate, feasible=Feasibility.NO, reason=str(error))
+            return DesignEvaluation(candidate=candidate, feasible=Feasibility.NO, reason=str(error))
         if rule := self.designs.broken_rule(candidate, configuration.system):
-            return Evaluation(candidate=candidate, feasible=Feasibility.NO, broken_rule=rule)
+            return DesignEvaluation(candidate=candidate, feasible=Feasibility.NO, broken_rule=rule)
         if not self._is_rebuilt(candidate) and (exceeded := dict(self._exceeded(configuration.system))):
-            return Evaluation(candidate=candidate, feasible=Feasibility.NO, violations=exceeded, is_excluded=True)
+            return DesignEvaluation(candidate=candidate, feasible=Feasibility.NO, violations=exceeded, is_excluded=True)
         try:
             analysis = analyze_system(*configuration)
         except InvalidArgumentError as error:
-            return Evaluation(candidate=candidate, feasible=Feasibility.NO, reason=str(error))
+            return DesignEvaluation(candidate=candidate, feasible=Feasibility.NO, reason=str(error))
         return self.judged(candidate, analysis)
 
     def _exceeded(self, system: System) -> Iterator[tuple[str, int]]:
@@ -77,11 +72,11 @@ class DesignEvaluator:
                 if bound is not None and bound > limit.maximum:
                     yield limit.target, int(bound - limit.maximum)
 
-    def judged(self, candidate: Candidate, analysis: Analysis) -> Evaluation:
+    def judged(self, candidate: Candidate, analysis: Analysis) -> DesignEvaluation:
         """The evaluation of a design by its analysis."""
         scale = replace(self.scale, figures=self.figures(candidate, analysis))
         ranges = {limit: limit.range(analysis, scale.figures) for limit in self.limits}
-        return Evaluation(
+        return DesignEvaluation(
             candidate=candidate,
             feasible=feasibility(analysis, ranges),
             violations=dict(_violations(analysis, ranges)),

@@ -9,10 +9,9 @@ from fractions import Fraction
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import LatencyQuantity
 from amalthea_uros.design.changes.change import split_target
-from amalthea_uros.design.optimize.candidate import Candidate
-from amalthea_uros.design.optimize.limits import Limit
 from amalthea_uros.design.optimize.problem import Goal
-from amalthea_uros.design.optimize.quantities import Dimension, Figures, check_quantity, dimension
+from amalthea_uros.design.optimize.quantities import AmountKind, Figures, Limit, check_quantity, dimension
+from amalthea_uros.design.optimize.space import Candidate
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.constraints import LatencyConstraint, LatencyKind
 from amalthea_uros.perf.system import System
@@ -27,7 +26,7 @@ CHANGES = "changes"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Scale:
+class GoalScale:
     """What goals are computed with.
 
     Attributes
@@ -39,7 +38,7 @@ class Scale:
     latencies: tuple[Limit, ...]
 
 
-def _latency(analysis: Analysis, scale: Scale) -> Fraction | None:
+def _latency(analysis: Analysis, scale: GoalScale) -> Fraction | None:
     """The largest latency of a chain relative to its limit, or to its present value."""
     return _largest(
         None
@@ -49,12 +48,12 @@ def _latency(analysis: Analysis, scale: Scale) -> Fraction | None:
     )
 
 
-def _load(analysis: Analysis, _scale: Scale) -> Fraction | None:
+def _load(analysis: Analysis, _scale: GoalScale) -> Fraction | None:
     """The largest worst-case load of a core."""
     return _largest(core.worst for core in analysis.processors)
 
 
-def _balance(analysis: Analysis, _scale: Scale) -> Fraction | None:
+def _balance(analysis: Analysis, _scale: GoalScale) -> Fraction | None:
     """The difference of the largest and the smallest load of the cores that can execute something."""
     used = {core for cores in allocated_cores(analysis.solution.context.system).values() for core in cores}
     loads = [core.worst for core in analysis.processors if core.name in used]
@@ -62,23 +61,18 @@ def _balance(analysis: Analysis, _scale: Scale) -> Fraction | None:
     return max(known) - min(known) if known and len(known) == len(loads) else None
 
 
-def _jitter(analysis: Analysis, _scale: Scale) -> Fraction | None:
+def _jitter(analysis: Analysis, _scale: GoalScale) -> Fraction | None:
     """The largest difference of the response times of a task."""
     metrics = [process.metrics.get(JobMetric.RESPONSE_TIME) for process in analysis.processes]
     return _largest(None if metric is None or metric.jitter is None else Fraction(metric.jitter) for metric in metrics)
 
 
-@dataclass(frozen=True, slots=True)
-class _Named:
-    unit: str
-    value: Callable[[Analysis, Scale], Fraction | None]
-
-
-_NAMED: Mapping[str, _Named] = {
-    "latency": _Named("", _latency),
-    "load": _Named("", _load),
-    "balance": _Named("", _balance),
-    "jitter": _Named("ps", _jitter),
+#: The unit and the value of each.
+_NAMED: Mapping[str, tuple[str, Callable[[Analysis, GoalScale], Fraction | None]]] = {
+    "latency": ("", _latency),
+    "load": ("", _load),
+    "balance": ("", _balance),
+    "jitter": ("ps", _jitter),
 }
 #: The goals that have names.
 GOALS = (*_NAMED, CHANGES)
@@ -102,14 +96,14 @@ def _goal(name: str, system: System) -> Goal:
     if name == CHANGES:
         return _CHANGES
     if name in _NAMED:
-        return Goal(name=name, unit=_NAMED[name].unit)
+        return Goal(name=name, unit=_NAMED[name][0])
     if "." not in name:
         raise InvalidArgumentError(
             f"unknown goal {name!r}; expected one of {', '.join(GOALS)}, or OBJECT.QUANTITY, e.g. {EXAMPLE}"
         )
     obj, quantity = split_target(name, name, FORM, EXAMPLE)
     check_quantity(system, obj, quantity, name)
-    return Goal(name=name, unit="ps" if dimension(quantity) is Dimension.TIME else "")
+    return Goal(name=name, unit="ps" if dimension(quantity) is AmountKind.TIME else "")
 
 
 def named_by(goals: Iterable[Goal]) -> frozenset[tuple[str, str]]:
@@ -117,12 +111,12 @@ def named_by(goals: Iterable[Goal]) -> frozenset[tuple[str, str]]:
     return frozenset(split_target(goal.name, goal.name, FORM, EXAMPLE) for goal in goals if goal.name not in GOALS)
 
 
-def value_of(goal: Goal, analysis: Analysis, candidate: Candidate, scale: Scale) -> Fraction | None:
+def value_of(goal: Goal, analysis: Analysis, candidate: Candidate, scale: GoalScale) -> Fraction | None:
     """The value of a goal in a design; None if it is unknown."""
     if goal.name == CHANGES:
         return Fraction(len(candidate))
     if goal.name in _NAMED:
-        return _NAMED[goal.name].value(analysis, scale)
+        return _NAMED[goal.name][1](analysis, scale)
     obj, quantity = split_target(goal.name, goal.name, FORM, EXAMPLE)
     upper = scale.figures.range(analysis, obj, quantity).upper
     return None if upper is None else Fraction(upper)

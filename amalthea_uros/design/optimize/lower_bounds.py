@@ -9,15 +9,13 @@ exceed the deadline.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.results.analysis import Analysis
-from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.activation.phases import counters, nominal_period
-from amalthea_uros.timing.activation.releases import known_releases, response_time_limits
+from amalthea_uros.timing.activation.releases import counters, known_releases, nominal_period, response_time_limits
 from amalthea_uros.timing.dataflow.stages import Stage
 from amalthea_uros.units import Time
 
@@ -75,9 +73,6 @@ def sampled_chains(analysis: Analysis) -> Mapping[str, SampledChain]:
 def _sampled(stages: list[Stage], analysis: Analysis, name: str) -> SampledChain | None:
     if not stages or len(analysis.chains[name].routes) != 1 or stages[0].is_triggered or stages[0].counter is None:
         return None
-    others = dict.fromkeys(stage.process.name for stage in _sampling(stages[1:], stages[0].process))
-    return SampledChain(first=stages[0].process.name, source=stages[0].counter.source, others=tuple(others))
-
-
-def _sampling(stages: list[Stage], first: Process) -> Iterator[Stage]:
-    return (stage for stage in stages if not stage.is_triggered and stage.process is not first)
+    first = stages[0].process
+    others = dict.fromkeys(each.process.name for each in stages[1:] if not each.is_triggered and each.process is not first)
+    return SampledChain(first=first.name, source=stages[0].counter.source, others=tuple(others))

@@ -9,12 +9,11 @@ from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, replace
 
 from amalthea_uros.design.campaign.campaign import execute
-from amalthea_uros.design.campaign.executors import Executor, Workers, executor_for, serial
-from amalthea_uros.design.campaign.run import Outcome, Run
-from amalthea_uros.design.campaign.sending import compact_bytes
-from amalthea_uros.design.optimize.candidate import Candidate
+from amalthea_uros.design.campaign.executors import Executor, executor_for, serial
+from amalthea_uros.design.campaign.run import CampaignRun, RunOutcome, compact_bytes
 from amalthea_uros.design.optimize.evaluation import DesignEvaluator
-from amalthea_uros.design.optimize.problem import Evaluation, Evaluator, Feasibility
+from amalthea_uros.design.optimize.problem import DesignEvaluation, Evaluator, Feasibility
+from amalthea_uros.design.optimize.space import Candidate
 
 #: So many designs are judged about as fast as processes start.
 ALONE = 32
@@ -28,7 +27,7 @@ class EvaluationJob:
 
     evaluator: DesignEvaluator
 
-    def __call__(self, run: Run) -> Mapping[str, Evaluation]:
+    def __call__(self, run: CampaignRun) -> Mapping[str, DesignEvaluation]:
         """The evaluation."""
         return {_EVALUATION: self.evaluator.evaluate(run.changes)}
 
@@ -44,9 +43,23 @@ def _received_job(evaluator: bytes) -> EvaluationJob:
 
 @contextmanager
 def evaluated_by(evaluator: DesignEvaluator, executor: Executor) -> Iterator[Evaluator]:
-    """An evaluator that has its designs judged by an executor, which works until the end of the context."""
+    """An evaluator that has its designs judged by an executor, which works until the end of the context.
+
+    The evaluations are in the order of the designs, each as soon as those before it are there.
+    """
     with executor(EvaluationJob(evaluator)) as workers:
-        yield _Evaluator(workers)
+
+        def judge(candidates: Sequence[Candidate]) -> Iterator[DesignEvaluation]:
+            runs = [CampaignRun(number, 0, candidate) for number, candidate in enumerate(candidates)]
+            early: dict[int, DesignEvaluation] = {}
+            number = 0
+            for outcome in execute(workers, runs):
+                early[outcome.run.number] = _evaluation(outcome)
+                while number in early:
+                    yield early.pop(number)
+                    number += 1
+
+        yield judge
 
 
 @contextmanager
@@ -59,61 +72,29 @@ def evaluator_on(evaluator: DesignEvaluator, workers: int | None, cluster: str |
         this process, because most searches are over before others have started
     cluster : address of a Dask scheduler, on whose workers designs are judged instead
     """
-    with ExitStack() as stack:
-        yield _LateStart(
-            evaluator, stack, executor_for(sys.maxsize, workers, cluster), ALONE if workers is None and cluster is None else 0
-        ).judge
-
-
-@dataclass(slots=True)
-class _LateStart:
-    """Judges the first designs itself, and has the others judged by an executor, which is started when it is needed.
-
-    Attributes
-    ----------
-    alone : how many designs it judges itself
-    """
-
-    evaluator: DesignEvaluator
-    stack: ExitStack
-    executor: Executor
-    alone: int
+    executor = executor_for(sys.maxsize, workers, cluster)
+    if executor is serial:
+        yield evaluator
+        return
+    alone = ALONE if workers is None and cluster is None else 0
     others: Evaluator | None = None
+    with ExitStack() as stack:
 
-    def judge(self, candidates: Sequence[Candidate]) -> Iterator[Evaluation]:
-        """Judge designs."""
-        if self.executor is serial:
-            yield from self.evaluator.each(candidates)
-            return
-        own, rest = candidates[: self.alone], candidates[self.alone :]
-        self.alone -= len(own)
-        yield from self.evaluator.each(own)
-        if rest:
-            if self.others is None:
-                self.others = self.stack.enter_context(evaluated_by(self.evaluator, self.executor))
-            yield from self.others(rest)
+        def judge(candidates: Sequence[Candidate]) -> Iterator[DesignEvaluation]:
+            nonlocal alone, others
+            own, rest = candidates[:alone], candidates[alone:]
+            alone -= len(own)
+            yield from evaluator(own)
+            if rest:
+                others = others or stack.enter_context(evaluated_by(evaluator, executor))
+                yield from others(rest)
 
-
-@dataclass(frozen=True, slots=True)
-class _Evaluator:
-    """Judges designs in parallel, and puts the evaluations into their order, each as soon as those before it are there."""
-
-    workers: Workers
-
-    def __call__(self, candidates: Sequence[Candidate]) -> Iterator[Evaluation]:
-        runs = [Run(number, 0, candidate) for number, candidate in enumerate(candidates)]
-        early: dict[int, Evaluation] = {}
-        number = 0
-        for outcome in execute(self.workers, runs):
-            early[outcome.run.number] = _evaluation(outcome)
-            while number in early:
-                yield early.pop(number)
-                number += 1
+        yield judge
 
 
-def _evaluation(outcome: Outcome) -> Evaluation:
+def _evaluation(outcome: RunOutcome) -> DesignEvaluation:
     """The evaluation; of a design of which nobody could finish the analysis, nothing is known."""
     if not outcome.error:
-        found: Evaluation = outcome.record[_EVALUATION]
+        found: DesignEvaluation = outcome.record[_EVALUATION]
         return found
-    return Evaluation(candidate=outcome.run.changes, feasible=Feasibility.UNKNOWN, reason=outcome.error)
+    return DesignEvaluation(candidate=outcome.run.changes, feasible=Feasibility.UNKNOWN, reason=outcome.error)

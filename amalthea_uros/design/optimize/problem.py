@@ -9,8 +9,7 @@ from fractions import Fraction
 from typing import TypeAlias
 
 from amalthea_uros.design.changes.key import Configuration
-from amalthea_uros.design.optimize.candidate import Candidate
-from amalthea_uros.design.optimize.space import Space
+from amalthea_uros.design.optimize.space import Candidate, Space
 
 
 class Feasibility(StrEnum):
@@ -22,7 +21,7 @@ class Feasibility(StrEnum):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Evaluation:
+class DesignEvaluation:
     """What the full analysis says of a design; small enough to be sent between computers.
 
     Attributes
@@ -53,7 +52,7 @@ class Evaluation:
 
 #: Judges designs, several at a time so that they can be judged in parallel; the results have the order of the candidates, and those of
 #: the first ones can be there before the last ones are judged.
-Evaluator: TypeAlias = Callable[[Sequence[Candidate]], Iterable[Evaluation]]
+Evaluator: TypeAlias = Callable[[Sequence[Candidate]], Iterable[DesignEvaluation]]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -123,8 +122,8 @@ class SearchResult:
     ended : why the search ended early, such as "time limit"; "" if it did not
     """
 
-    best: tuple[Evaluation, ...]
-    front: tuple[Evaluation, ...]
+    best: tuple[DesignEvaluation, ...]
+    front: tuple[DesignEvaluation, ...]
     conclusion: Conclusion
     tried: int
     excluded: int = 0

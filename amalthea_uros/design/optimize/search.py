@@ -2,19 +2,54 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import replace
 
-from amalthea_uros.design.optimize.conclusion import concluded
-from amalthea_uros.design.optimize.enumeration import count_with
-from amalthea_uros.design.optimize.exhaustive import try_all
+from amalthea_uros._internal.plural import counted
+from amalthea_uros.design.optimize.annealing import solve_by_annealing
 from amalthea_uros.design.optimize.goals import CHANGES
-from amalthea_uros.design.optimize.problem import Conclusion, Problem, SearchResult
-from amalthea_uros.design.optimize.recorder import INTERRUPTED, Effort, EndedError, Recorder
-from amalthea_uros.design.optimize.solvers.annealing import solve_by_annealing
-from amalthea_uros.design.optimize.solvers.mapping import solve_mapping
-from amalthea_uros.design.optimize.solvers.offsets import solve_offsets
-from amalthea_uros.design.optimize.solvers.priorities import solve_priorities
+from amalthea_uros.design.optimize.judged import INTERRUPTED, Effort, EndedError, Judged, Recorder, concluded
+from amalthea_uros.design.optimize.mapping import solve_mapping
+from amalthea_uros.design.optimize.offsets import solve_offsets
+from amalthea_uros.design.optimize.priorities import solve_priorities
+from amalthea_uros.design.optimize.problem import Conclusion, DesignEvaluation, Feasibility, Problem, SearchResult
+from amalthea_uros.design.optimize.space import count_with, designs_with, most_changes
+
+#: So many designs are named at a time; enough for the workers of a cluster.
+AT_A_TIME = 512
+
+
+def try_all(problem: Problem, is_complete: bool = False, most: int | None = None) -> SearchResult:
+    """Try all designs with no change, with one, with two and so on, until some meet all limits.
+
+    If the number of changes is not what counts most, or if all are wanted, designs with more changes are tried as well.
+
+    Parameters
+    ----------
+    is_complete : whether all are wanted
+    most : of the changed values, if not all designs are tried; without a design that meets all limits, nothing is proved then
+    """
+    judged = Judged(problem)
+    found = judged.found.values()
+    stops_early = problem.goals[0].name == CHANGES and not is_complete
+    levels = most_changes(problem.space)
+    level = 0
+    for level in range(1 + (levels if most is None else min(most, levels))):
+        judged.judge(designs_with(problem.space, level), AT_A_TIME)
+        if stops_early and any(each.feasible is Feasibility.YES for each in found):
+            return judged.concluded(_proof(found, level, is_everything=level == levels))
+    return judged.concluded(_proof(found, level, is_everything=True) if level == levels else "")
+
+
+def _proof(found: Collection[DesignEvaluation], level: int, is_everything: bool) -> str:
+    """What was tried, in numbers that can be checked."""
+    broken, excluded = sum(bool(each.broken_rule) for each in found), sum(each.is_excluded for each in found)
+    parts = [f"{len(found) - broken - excluded} judged by the analysis"]
+    parts += [f"{excluded} excluded by lower bounds"] if excluded else []
+    parts += [f"{broken} not allowed"] if broken else []
+    most = "" if is_everything else f" with at most {counted(level, 'changed value')}"
+    return f"all {counted(len(found), 'design')}{most}: {', '.join(parts)}"
+
 
 #: Each proves something about problems of its kind, and refuses others.
 EXACT: tuple[Callable[[Problem], SearchResult | None], ...] = (solve_priorities, solve_mapping, solve_offsets)

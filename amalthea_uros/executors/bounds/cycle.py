@@ -28,13 +28,6 @@ from amalthea_uros.executors.bounds.backlog import acknowledged, backlog_age, ha
 from amalthea_uros.executors.bounds.solved_system import SolvedSystem, ThreadProcessor
 from amalthea_uros.executors.semantics.demand import IterationDemand
 from amalthea_uros.executors.semantics.loops import SLEEP_RESOLUTION, longest_wait, min_pace, sleep_of
-from amalthea_uros.executors.semantics.protocol import (
-    ProtocolWrites,
-    acknowledgements,
-    heartbeats,
-    session_wait,
-    writing_in_wait,
-)
 from amalthea_uros.executors.semantics.readiness import (
     can_defer,
     has_backlog,
@@ -45,7 +38,18 @@ from amalthea_uros.executors.semantics.readiness import (
     sharing,
     takes_one_message,
 )
-from amalthea_uros.executors.semantics.suspension import NONE, Suspension, in_sequence, longest_of, suspension_of
+from amalthea_uros.executors.semantics.suspension import (
+    NONE,
+    ProtocolWrites,
+    Suspension,
+    acknowledgements,
+    heartbeats,
+    in_sequence,
+    longest_of,
+    session_wait,
+    suspension_of,
+    writing_in_wait,
+)
 from amalthea_uros.perf.executors import Executor, Handle, LoopKind
 from amalthea_uros.perf.network import Span
 from amalthea_uros.units import Time

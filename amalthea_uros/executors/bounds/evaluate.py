@@ -1,4 +1,13 @@
-"""The results for all executors that spin in loops."""
+"""The results for all executors that spin in loops: the response times of their callbacks, by the kind of handle.
+
+Let L be the longest cycle without a wait, W the longest wait, and E the time from when it is fixed what is ready to the end of a
+callback.
+
+- A timer: once it is due, waits end at once. In the worst case what is ready was fixed just before, so that it is called after one
+  cycle: L + E. That a wait can end up to 1 ms before the timer is due, without a call, is no longer than that.
+- A guard condition: a trigger does not end the wait, so that it is seen after one cycle and the wait: L + W + E.
+- A message: after n cycles, see `queue`: n L + E, or n (L + W) + E if messages can be stored before the iteration that takes them.
+"""
 
 from __future__ import annotations
 
@@ -6,17 +15,172 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from amalthea_uros._internal.by_name import Results
+from amalthea_uros._internal.plural import counted
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.bounds.cycle import Cycle
-from amalthea_uros.executors.bounds.handles import SOURCE, handle_result
-from amalthea_uros.executors.bounds.losses import slots_of_pool, stored_messages, with_lost_messages
+from amalthea_uros.executors.bounds.losses import (
+    loss_of_timer,
+    loss_of_triggers,
+    slots_of_pool,
+    stored_messages,
+    with_lost_messages,
+)
+from amalthea_uros.executors.bounds.queue import Delay, certain_overload, delay_of
 from amalthea_uros.executors.bounds.solved_system import METHOD, SolvedSystem
-from amalthea_uros.executors.results import ExecutorResult, HandleResult
-from amalthea_uros.executors.semantics.readiness import sharing
-from amalthea_uros.perf.executors import Executor
+from amalthea_uros.executors.results import ExecutorResult, HandleResult, TimePart
+from amalthea_uros.executors.semantics.loops import why_not_woken
+from amalthea_uros.executors.semantics.readiness import is_message, sharing, starts_alone
+from amalthea_uros.perf.executors import Executor, Handle, HandleKind, LoopKind
 from amalthea_uros.perf.network import Span
 from amalthea_uros.timing.response import Claim, Response
-from amalthea_uros.units import Time
+from amalthea_uros.units import Time, time_text
+
+SOURCE = "proof in docs/proofs/executor-cycle.md; ros2/rclc executor.c; micro-ROS/rmw_microxrcedds rmw_wait.c"
+
+
+def handle_result(handle: Handle, cycle: Cycle, extra_jitter: Mapping[str, Time | None]) -> HandleResult:
+    """The response time of a handle, and the lateness of a timer; losses of messages are found for all handles together."""
+    # Each cycle before that which serves the handle can wait nevertheless.
+    waited_for = why_not_woken(handle, cycle.executor, cycle.has_backlog)
+    wait = cycle.wait if waited_for else 0
+    length = cycle.longest_with(wait)
+    delay = _delay(handle, cycle, length, extra_jitter)
+    start, end = cycle.until_start(handle), cycle.until_end(handle)
+    worst = None
+    if delay.cycles is not None and length is not None and end is not None:
+        worst = delay.cycles * length - delay.earlier + end
+    lateness = None
+    if handle.kind is HandleKind.TIMER:
+        is_bounded = delay.cycles is not None and cycle.longest is not None and start is not None
+        lateness = Span(most=(cycle.longest or 0) + (start or 0) if is_bounded else None)
+    lost = None
+    if lateness is not None:
+        lost = loss_of_timer(handle, cycle, lateness)
+    elif handle.kind is HandleKind.GUARD_CONDITION:
+        lost = loss_of_triggers(handle, cycle, length, extra_jitter)
+    return HandleResult(
+        name=handle.name,
+        kind=handle.kind,
+        runnable=handle.runnable,
+        interval=handle.interval,
+        response=Response(
+            worst=worst,
+            best=cycle.demand.of_handle(handle).lower // cycle.time_base + cycle.suspension(handle).least,
+            method=METHOD,
+            source=SOURCE,
+            claim=Claim.BOUND,
+            reason="" if worst is not None else delay.reason or _unbounded(handle, cycle),
+            is_overload=delay.is_overload,
+        ),
+        lateness=lateness,
+        lost=lost,
+        terms=() if worst is None else _terms(handle, cycle, delay, wait, waited_for, worst),
+    )
+
+
+def _unbounded(handle: Handle, cycle: Cycle) -> str:
+    """Why a response time is not bounded, although it is known after how many cycles the handle is served."""
+    own = cycle.suspension(handle)
+    return own.why if own.most is None and own.why else cycle.unbounded
+
+
+def _delay(handle: Handle, cycle: Cycle, length: Time | None, extra_jitter: Mapping[str, Time | None]) -> Delay:
+    if not starts_alone(handle, cycle.executor):
+        kind = cycle.executor.trigger.kind
+        return Delay(cycles=None, reason=f"the trigger condition {kind.value!r} keeps it back until others are ready, too")
+    if not is_message(handle):
+        return Delay(cycles=1)
+    if length is None:
+        return certain_overload(cycle) or Delay(cycles=None, reason=_unbounded(handle, cycle))
+    return delay_of(handle, cycle, length, extra_jitter)
+
+
+def _terms(handle: Handle, cycle: Cycle, delay: Delay, wait: Time, waited_for: str, worst: Time) -> tuple[TimePart, ...]:
+    """The parts of the worst response time of a handle, in the order of time.
+
+    Parameters
+    ----------
+    delay : before the iteration that serves it
+    wait : what each cycle waits
+    waited_for : why it does
+    """
+    found = [
+        *_of_cycle(cycle),
+        TimePart(name="wait", least=0, most=wait, why=waited_for),
+        _before(cycle, delay, wait),
+        *_of_iteration(handle, cycle),
+    ]
+    stated = [term for term in found if term.most]
+    rest = worst - sum(term.most or 0 for term in stated)
+    if rest:
+        stated.insert(
+            -1, TimePart(name="preemption", least=0, most=rest, why="processes of higher priority, blocking, and rounding")
+        )
+    return tuple(stated)
+
+
+def _of_cycle(cycle: Cycle) -> list[TimePart]:
+    """The cycle that is running when the handle is released."""
+    demand = _time(cycle.whole.demand, cycle)
+    found = [TimePart(name="rest of the running iteration", least=0, most=demand, why="what is ready was fixed just before")]
+    loop = cycle.executor.loop
+    if loop.kind is LoopKind.PERIODIC:
+        why = f"the next iteration begins when the period of {time_text(loop.period or 0)} has passed"
+        return [*found, TimePart(name="sleep", least=0, most=max(0, (cycle.longest or 0) - demand), why=why)]
+    suspension = cycle.whole.suspension
+    return [
+        *found,
+        TimePart(name="publications of the running iteration", least=0, most=suspension.most or 0, why=suspension.why),
+        TimePart(name="sleep", least=0, most=cycle.sleep, why="the loop sleeps after each iteration"),
+        TimePart(name="acknowledgements", least=0, most=cycle.writing.most or 0, why=cycle.writing.why),
+        TimePart(
+            name="session",
+            least=0,
+            most=cycle.session_wait or 0,
+            why="other executors of the session wait for input and keep it",
+        ),
+    ]
+
+
+def _before(cycle: Cycle, delay: Delay, wait: Time) -> TimePart:
+    """The further cycles, one for each message before it."""
+    count, length = (delay.cycles or 1) - 1, cycle.longest_with(wait) or 0
+    why = f"{counted(count, 'message')}, each of which takes an iteration of at most {time_text(length)}"
+    if delay.earlier:
+        why += f", less {time_text(delay.earlier)} by which it arrives later"
+    return TimePart(name="messages before it", least=0, most=count * length - delay.earlier, why=why)
+
+
+def _of_iteration(handle: Handle, cycle: Cycle) -> list[TimePart]:
+    """The iteration that serves a handle, up to the end of its callback, which comes last."""
+    costs, before, own = cycle.demand, cycle.before(handle), cycle.suspension(handle)
+    spin, take, callback = costs.spin.upper, costs.takes[handle.name].upper, costs.callbacks[handle.name]
+    others = before.demand - spin - take
+    names = [each.name for each in cycle.executor.handles[: cycle.executor.handles.index(handle)]]
+    return [
+        TimePart(
+            name="overhead of the executor", least=0, most=_time(spin, cycle), why="fill the wait set and check all handles"
+        ),
+        TimePart(
+            name="callbacks before it",
+            least=0,
+            most=_time(others, cycle),
+            why=f"in the order of the executor: {', '.join(names)}",
+        ),
+        TimePart(name="publications before it", least=0, most=before.suspension.most or 0, why=before.suspension.why),
+        TimePart(
+            name="take",
+            least=costs.takes[handle.name].lower // cycle.time_base,
+            most=_time(take, cycle),
+            why="read its message",
+        ),
+        TimePart(name="publish", least=own.least, most=own.most or 0, why=own.why),
+        TimePart(name="its execution", least=callback.lower // cycle.time_base, most=_time(callback.upper, cycle)),
+    ]
+
+
+def _time(demand: Time, cycle: Cycle) -> Time:
+    return demand // cycle.time_base
 
 
 def evaluate_executors(

@@ -7,9 +7,8 @@ from fractions import Fraction
 
 from amalthea_uros.executors.bounds.solved_system import SolvedSystem
 from amalthea_uros.executors.results import ExecutorResult, HandleResult
-from amalthea_uros.executors.semantics.arrivals import certain_rate
 from amalthea_uros.executors.semantics.loops import busy_polls, longest_wait, min_pace, sleep_of
-from amalthea_uros.executors.semantics.readiness import can_defer, has_backlog, messages, shares_session, timers
+from amalthea_uros.executors.semantics.readiness import can_defer, certain_rate, has_backlog, messages, shares_session, timers
 from amalthea_uros.executors.semantics.suspension import SESSION_ASSUMPTION
 from amalthea_uros.perf.executors import Executor, HandleKind, LoopKind
 from amalthea_uros.timing.basics.notes import AnalysisNotes

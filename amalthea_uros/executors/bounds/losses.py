@@ -14,10 +14,10 @@ from amalthea_uros._internal.plural import counted
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.bounds.cycle import Cycle
 from amalthea_uros.executors.results import HandleResult, Loss
-from amalthea_uros.executors.semantics.arrivals import arrivals
 from amalthea_uros.executors.semantics.loops import lost_periods, next_expiration
 from amalthea_uros.executors.semantics.readiness import (
     LIFESPAN,
+    arrivals,
     can_defer,
     can_exceed_depth,
     is_message,

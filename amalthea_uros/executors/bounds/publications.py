@@ -32,7 +32,7 @@ from amalthea_uros.executors.bounds.cycle import Cycle
 from amalthea_uros.executors.bounds.solved_system import SolvedSystem
 from amalthea_uros.executors.bounds.transmissions import agent_hop, received, sent, wire_hop
 from amalthea_uros.executors.results import Hop
-from amalthea_uros.executors.semantics.protocol import acknowledgements, heartbeats
+from amalthea_uros.executors.semantics.suspension import acknowledgements, heartbeats
 from amalthea_uros.perf.executors import Executor, Publication
 from amalthea_uros.perf.network import Span, Transmission
 from amalthea_uros.units import Time

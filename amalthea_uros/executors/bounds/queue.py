@@ -27,12 +27,10 @@ from fractions import Fraction
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.bounds.backlog import protocol_overhead
 from amalthea_uros.executors.bounds.cycle import Cycle
-from amalthea_uros.executors.semantics.arrivals import arrivals, certain_rate
-from amalthea_uros.executors.semantics.protocol import acknowledgements, parts
-from amalthea_uros.executors.semantics.readiness import messages, sharing
+from amalthea_uros.executors.semantics.readiness import arrivals, certain_rate, messages, sharing
+from amalthea_uros.executors.semantics.suspension import acknowledgements, parts
 from amalthea_uros.perf.executors import Handle
-from amalthea_uros.timing.event_models import EventModel, aggregated
-from amalthea_uros.timing.event_models.derived import Multiplied
+from amalthea_uros.timing.event_models.models import EventModel, Multiplied, aggregated
 from amalthea_uros.units import SECOND, Time
 
 #: A busy period with more messages is considered unbounded: iterations are then hardly faster than messages.

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Protocol
 
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.event_models import EventModel
+from amalthea_uros.timing.event_models.models import EventModel
 from amalthea_uros.timing.response import Response
 from amalthea_uros.units import Time
 

@@ -31,7 +31,7 @@ from amalthea_uros.perf.executors import Executor, Handle, HandleKind, LoopKind
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.event_models import EventModel, SporadicEvents
+from amalthea_uros.timing.event_models.models import EventModel, SporadicEvents
 from amalthea_uros.units import MILLISECOND, Interval, Time
 
 #: `rclc_sleep_ms` sleeps whole milliseconds.

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import Any
 
-from amalthea_uros.design.optimize.problem import Evaluation, Goal
-from amalthea_uros.design.optimize.quantities import Amount, Dimension, Range, dimension
+from amalthea_uros.design.optimize.problem import DesignEvaluation, Goal
+from amalthea_uros.design.optimize.quantities import Amount, AmountKind, Range, dimension
 from amalthea_uros.design.proposals import DesignProposal, LimitRow
 from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.report import optimized
@@ -63,7 +63,7 @@ def _proposals(result: Optimization) -> list[dict[str, Any]]:
     ]
 
 
-def _objective(goals: tuple[Goal, ...], evaluation: Evaluation) -> dict[str, Any]:
+def _objective(goals: tuple[Goal, ...], evaluation: DesignEvaluation) -> dict[str, Any]:
     return dict(_goal_value(goal, value) for goal, value in zip(goals, evaluation.values, strict=True))
 
 
@@ -84,7 +84,7 @@ def _values(row: LimitRow) -> dict[str, Any]:
 
 
 def _unit(row: LimitRow) -> str:
-    return "_ps" if dimension(row.limit.quantity) is Dimension.TIME else ""
+    return "_ps" if dimension(row.limit.quantity) is AmountKind.TIME else ""
 
 
 def _upper(found: Range, unit: str) -> float | int | None:

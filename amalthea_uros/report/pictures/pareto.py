@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.design.optimize.problem import Evaluation, Goal
+from amalthea_uros.design.optimize.problem import DesignEvaluation, Goal
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.report.pictures.axes import nice_steps
 from amalthea_uros.report.pictures.svg import (
@@ -98,15 +98,15 @@ def _goals(result: Optimization) -> tuple[int, int]:
     return order[0], order[1]
 
 
-def _value(design: Evaluation, index: int) -> Fraction:
+def _value(design: DesignEvaluation, index: int) -> Fraction:
     value = design.values[index]
     assert value is not None
     return value
 
 
-def _front(designs: Sequence[Evaluation], across: int, up: int) -> list[Evaluation]:
+def _front(designs: Sequence[DesignEvaluation], across: int, up: int) -> list[DesignEvaluation]:
     """The designs on the front of two goals, from left to right."""
-    found: list[Evaluation] = []
+    found: list[DesignEvaluation] = []
     for each in sorted(designs, key=lambda design: (_value(design, across), _value(design, up))):
         if not found or _value(each, up) < _value(found[-1], up):
             found.append(each)
@@ -161,7 +161,7 @@ def _steps(points: Sequence[tuple[float, float]]) -> Markup:
 
 
 def _dot(
-    design: Evaluation, result: Optimization, goals: tuple[int, int], axes: tuple[_Axis, _Axis], is_on_front: bool
+    design: DesignEvaluation, result: Optimization, goals: tuple[int, int], axes: tuple[_Axis, _Axis], is_on_front: bool
 ) -> Markup:
     x, y = (axis.place(_value(design, goal)) for axis, goal in zip(axes, goals, strict=True))
     look: dict[str, str] = {"class_": "c0"} if is_on_front else {"class_": "t0 empty"}
@@ -179,7 +179,7 @@ def _present(result: Optimization, goals: tuple[int, int], axes: tuple[_Axis, _A
     return element("g", tooltip(about), element("path", class_="alert", d=cross))
 
 
-def _about(design: Evaluation, goals: tuple[int, int], axes: tuple[_Axis, _Axis]) -> str:
+def _about(design: DesignEvaluation, goals: tuple[int, int], axes: tuple[_Axis, _Axis]) -> str:
     values = (f"{axis.goal.name} {axis.text(_value(design, goal))}" for axis, goal in zip(axes, goals, strict=True))
     return f"{', '.join(map(str, design.candidate)) or 'no change'}: {', '.join(values)}"
 

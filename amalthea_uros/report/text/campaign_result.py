@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterator
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.design.campaign.run import Outcome
+from amalthea_uros.design.campaign.run import RunOutcome
 from amalthea_uros.report.writers.terminal import Terminal
 from amalthea_uros.services.simulate import KEPT, MISSED, NOT_OBSERVED, CampaignResult, judged_in
 from amalthea_uros.units import time_text
@@ -31,12 +31,12 @@ def write_closing(result: CampaignResult, terminal: Terminal) -> None:
     terminal.line(closing_line(result))
 
 
-def _values(outcome: Outcome, targets: list[str]) -> Iterator[str]:
+def _values(outcome: RunOutcome, targets: list[str]) -> Iterator[str]:
     values = {change.target: change.value for change in outcome.run.changes}
     return (values.get(target, "") for target in targets)
 
 
-def _observed(outcome: Outcome) -> str:
+def _observed(outcome: RunOutcome) -> str:
     if outcome.error:
         return f"failed: {outcome.error}"
     lost = outcome.record.get("lost_activations")

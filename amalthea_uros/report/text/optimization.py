@@ -11,7 +11,7 @@ from amalthea_uros.analyze.impact import Impact, ImpactRow, ResultPart
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.processes import RequirementResult
 from amalthea_uros.design.optimize.problem import Feasibility
-from amalthea_uros.design.optimize.quantities import Amount, Dimension, Range, dimension
+from amalthea_uros.design.optimize.quantities import Amount, AmountKind, Range, dimension
 from amalthea_uros.design.proposals import DesignProposal, LimitRow
 from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.report.optimized import closing_line, count_text, goal_text, limit_text, space_lines
@@ -160,7 +160,7 @@ def _upper(found: Range, quantity: str) -> str:
 
 
 def _amount(value: Amount, quantity: str) -> str:
-    if dimension(quantity) is Dimension.SHARE:
+    if dimension(quantity) is AmountKind.SHARE:
         return load_text(Fraction(value), Rounding.UP)
     return _time(int(value), Rounding.UP)
 

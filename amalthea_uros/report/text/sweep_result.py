@@ -6,8 +6,8 @@ from collections.abc import Iterator, Sequence
 from fractions import Fraction
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.design.campaign.analysis_job import GROWTH, SCHEDULABLE
-from amalthea_uros.design.campaign.run import Outcome, Value
+from amalthea_uros.design.campaign.run import RunOutcome, Value
+from amalthea_uros.design.campaign.sweeps import GROWTH, SCHEDULABLE
 from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.report.writers.terminal import Terminal
 from amalthea_uros.services.sweep import SweepResult
@@ -69,13 +69,13 @@ def _heading(column: str) -> str:
     return f"{name} {quantity.replace('_', ' ')}".strip()
 
 
-def _row(outcome: Outcome, columns: Sequence[str]) -> tuple[str, ...]:
+def _row(outcome: RunOutcome, columns: Sequence[str]) -> tuple[str, ...]:
     values = (change.value for change in outcome.run.changes)
     verdict = f"failed: {outcome.error}" if outcome.error else str(outcome.record.get(SCHEDULABLE, ""))
     return (*values, *_cells(outcome, columns), verdict)
 
 
-def _cells(outcome: Outcome, columns: Sequence[str]) -> Iterator[str]:
+def _cells(outcome: RunOutcome, columns: Sequence[str]) -> Iterator[str]:
     for name in columns:
         value = outcome.record.get(name)
         yield "" if outcome.error else _text(name, value)

@@ -60,9 +60,7 @@ from amalthea_uros.simulate.options import SimulationMode
 from amalthea_uros.simulate.program.image import JumpLabel, JumpTable
 from amalthea_uros.timing.basics.settings import MemoryModel
 from amalthea_uros.timing.blocking.critical_sections import spinlocks_of, waits_actively
-from amalthea_uros.timing.jobs.counts import count_of
-from amalthea_uros.timing.jobs.executed import MAX_CALL_DEPTH
-from amalthea_uros.timing.jobs.server_calls import obstacle
+from amalthea_uros.timing.jobs.executed import MAX_CALL_DEPTH, count_of, obstacle
 from amalthea_uros.trace.table import EntityKind, EventKind
 
 if TYPE_CHECKING:

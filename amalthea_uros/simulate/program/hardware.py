@@ -9,7 +9,7 @@ from amalthea_uros.perf.os import Policy
 from amalthea_uros.simulate.kernel import layout
 from amalthea_uros.simulate.program.resources import Resources
 from amalthea_uros.simulate.program.scheduling import Dispatching
-from amalthea_uros.timing.scheduling.ranks import standard_policy
+from amalthea_uros.timing.scheduling.allocation import standard_policy
 from amalthea_uros.trace.table import EntityKind
 
 #: Places for what a sporadic server gets back.

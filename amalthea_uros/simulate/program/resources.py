@@ -20,11 +20,11 @@ from amalthea_uros.simulate.program.watches import Watches
 from amalthea_uros.simulate.sampling.streams import ValueStream, choices, durations, permutations, values
 from amalthea_uros.simulate.sampling.variates import sampling_assumption
 from amalthea_uros.simulate.sampling.words import RandomSource
-from amalthea_uros.timing.activation.phases import arriving
+from amalthea_uros.timing.activation.releases import arriving
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.demand.multiframe import DemandFrame
 from amalthea_uros.timing.jobs.counters import first_effect
-from amalthea_uros.timing.jobs.server_calls import servers
+from amalthea_uros.timing.jobs.executed import servers
 from amalthea_uros.trace.table import Entity, EntityKind
 from amalthea_uros.units import Time
 

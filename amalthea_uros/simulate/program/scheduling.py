@@ -11,8 +11,8 @@ from amalthea_uros.perf.os import SERVERS, Policy
 from amalthea_uros.perf.software import Preemption
 from amalthea_uros.timing.activation.releases import response_time_limits
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.scheduling.allocation import allocated_cores
-from amalthea_uros.timing.scheduling.ranks import Scheduling, standard_policy
+from amalthea_uros.timing.scheduling.allocation import allocated_cores, standard_policy
+from amalthea_uros.timing.scheduling.ranks import SchedulingOrder
 from amalthea_uros.timing.scheduling.scheduled import EqualPriority, Rank, ScheduledProcess, Server, preemption
 
 
@@ -83,7 +83,7 @@ class Dispatching:
     def _on_several_cores(self, allocation: TaskAllocation) -> Dispatched:
         """A task under global scheduling."""
         system = self.context.system
-        scheduling = Scheduling(system, self.context.notes, response_time_limits(system), self.servers)
+        scheduling = SchedulingOrder(system, self.context.notes, response_time_limits(system), self.servers)
         scheduled = scheduling.on_any_core(allocation)
         allowed = allocated_cores(system).get(allocation.task, frozenset())
         cores = tuple(name for name in system.cores if name in allowed)

@@ -12,7 +12,7 @@ from amalthea_uros.simulate.program.build import build_program
 from amalthea_uros.simulate.results import Simulation
 from amalthea_uros.simulate.runs.evaluation import RunEvaluation
 from amalthea_uros.simulate.runs.execution import SimulationRun
-from amalthea_uros.timing.activation.phases import with_first_arrivals
+from amalthea_uros.timing.activation.releases import with_first_arrivals
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.trace.sinks import TraceSink
 from amalthea_uros.trace.table import Entity

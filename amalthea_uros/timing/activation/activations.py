@@ -10,6 +10,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import chain, groupby
+from operator import attrgetter
 from typing import NamedTuple, TypeAlias
 
 from amalthea_uros.errors import UnknownError
@@ -21,7 +22,7 @@ from amalthea_uros.perf.stimuli import Counter, EventTriggered, InterProcess, St
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.timing.demand.job_paths import most_in_a_job
-from amalthea_uros.timing.event_models import Delayed, Downsampled, EventModel, Multiplied, aggregated, thinned
+from amalthea_uros.timing.event_models.models import Delayed, Downsampled, EventModel, Multiplied, aggregated, thinned
 from amalthea_uros.timing.event_models.stimuli import event_model_of
 from amalthea_uros.timing.jobs.counters import CounterFlaws, is_always
 from amalthea_uros.timing.jobs.positions import ActivityPosition
@@ -84,7 +85,6 @@ class Activations:
     _triggers: dict[str, list[TriggeringActivity]] = field(default_factory=dict)
     _effects: dict[str, list[TriggeredStimulus]] | None = None
     _triggering: dict[str, dict[str, None]] = field(default_factory=dict)
-    _activated: dict[str, list[str]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.flaws = CounterFlaws(self.system)
@@ -162,7 +162,8 @@ class Activations:
             raise UnknownError(f"no process triggers {name!r}")
         if flaw := self.flaws.of_stimulus(name):
             raise UnknownError(flaw)
-        by_process = groupby(sorted(causes, key=_process_name), key=_process_name)
+        process_of = attrgetter("position.process.name")
+        by_process = groupby(sorted(causes, key=process_of), key=process_of)
         caused = (self._caused_by_process(list(group), output, above) for _, group in by_process)
         return _counted(aggregated(tuple(chain.from_iterable(caused))), stimulus.counter)
 
@@ -230,11 +231,7 @@ class Activations:
 
     def activated(self, stimulus: str) -> Sequence[str]:
         """The processes that a stimulus activates."""
-        if not self._activated:
-            for process in self.system.processes.values():
-                for name in process.stimuli:
-                    self._activated.setdefault(name, []).append(process.name)
-        return self._activated.get(stimulus, ())
+        return self.dataflow.activated.get(stimulus, ())
 
     def external_rate(self, process: Process) -> Fraction:
         """Maximum number of activations per picosecond that no process triggers, in the long run.
@@ -263,10 +260,6 @@ class Activations:
             raise UnknownError(f"the maximum number of times that a job of {cause.process.name!r} triggers it is unknown")
         found = _counted(output(cause.process, lambda: self._of_process(cause.process, output, above)), cause.position.counter)
         return _counted(found if times == 1 else Multiplied(found, times), cause.counter)
-
-
-def _process_name(cause: TriggeringActivity) -> str:
-    return cause.process.name
 
 
 def _share(counter: Counter | None) -> Fraction:

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from fractions import Fraction
 
+from amalthea_uros._internal.graphs import reached
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import Activity
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.activation.activations import Activations, TriggeredStimulus
+from amalthea_uros.timing.activation.activations import Activations
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.timing.demand.job_paths import NOTHING, JobDemand, JobPaths, total
 from amalthea_uros.timing.demand.model import DemandModel
@@ -58,19 +59,10 @@ class CoreLoad:
         ----------
         rates : activations per picosecond of each process that no process triggers
         """
-        per_time = total(self.of_job(name).every(rates[name]) for name in self._causing() if rates.get(name))
+        # The processes that count, and those that trigger them, others in between included.
+        causing = reached(self.demands, self.activations.triggering)
+        per_time = total(self.of_job(name).every(rates[name]) for name in causing if rates.get(name))
         return per_time.every(Fraction(1, self.demand_model.time_base(self.core)))
-
-    def _causing(self) -> Iterable[str]:
-        """The processes that count, and those that trigger them, others in between included."""
-        found = dict.fromkeys(self.demands)
-        pending = list(found)
-        while pending:
-            for name in self.activations.triggering(pending.pop()):
-                if name not in found:
-                    found[name] = None
-                    pending.append(name)
-        return found
 
     def of_job(self, process: str) -> JobDemand:
         """The demand of a job of a process, with all that it triggers."""
@@ -84,7 +76,8 @@ class CoreLoad:
         own = NOTHING if demand is None else JobDemand.of(demand)
         triggered: dict[int, JobDemand] = {}
         for effect in self.activations.effects(process):
-            caused = self._caused(effect)
+            activated = self.activations.activated(effect.stimulus)
+            caused = total(map(self.of_job, activated)).every(effect.share)
             if caused != NOTHING:
                 triggered[effect.position.number] = triggered.get(effect.position.number, NOTHING) + caused
         if not triggered:
@@ -100,9 +93,6 @@ class CoreLoad:
         paths = JobPaths(positions, triggered, of_activities, self.demand_model.settings.modes)
         # Overheads of the operating system and copies of labels are not in the activities.
         return paths.demand() + own + of_activities(*model.activities).every(-1)
-
-    def _caused(self, effect: TriggeredStimulus) -> JobDemand:
-        return total(map(self.of_job, self.activations.activated(effect.stimulus))).every(effect.share)
 
 
 def loads(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from amalthea_uros._internal.graphs import circles
 from amalthea_uros.perf.activities import Group, SemaphoreAccess, SemaphoreOperation, Waiting
 from amalthea_uros.perf.os import SemaphoreKind
 from amalthea_uros.perf.software import Process
@@ -102,7 +103,8 @@ class Locks:
         """The processes that can wait for an unknown time, and why."""
         open_semaphores = self.open_semaphores
         held_at_start = {semaphore.name for semaphore in self.system.os.semaphores if semaphore.initial_users > 0}
-        circular = set(_in_circles(self.requests)) & open_semaphores
+        in_circles = circles(self.requests, lambda name: self.requests.get(name, ()))
+        circular = open_semaphores.intersection(set[str]().union(*in_circles))
         for name, uses in self.protection.items():
             for semaphore in sorted(uses.semaphores & held_at_start):
                 yield name, f"the semaphore {semaphore!r} is already held when the system starts"
@@ -114,17 +116,3 @@ class Locks:
                         name,
                         f"it waits actively for the semaphore {semaphore!r}, so that a holder of lower priority never runs",
                     )
-
-
-def _in_circles(requests: Mapping[str, set[str]]) -> Iterator[str]:
-    """The semaphores that somebody can request while holding them, directly or by others."""
-    for start in requests:
-        reached: set[str] = set()
-        pending = list(requests[start])
-        while pending:
-            name = pending.pop()
-            if name not in reached:
-                reached.add(name)
-                pending += requests.get(name, ())
-        if start in reached:
-            yield start

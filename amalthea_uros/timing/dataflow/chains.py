@@ -206,7 +206,7 @@ def combined(unfolded: Unfolded, value: Mapping[tuple[str, ...], int | None], be
         if isinstance(part, Fork):
             rest = unfolded[index + 1 :]
             values = [combined((*branch, *rest), value, before) for branch in part.branches]
-            return sorted(values, key=_endless_last)[part.needed - 1]
+            return sorted(values, key=lambda each: (each is None, each or 0))[part.needed - 1]
         before = (*before, part)
     return value[before]
 
@@ -218,10 +218,6 @@ def forks(unfolded: Unfolded) -> Iterator[Fork]:
             yield part
             for branch in part.branches:
                 yield from forks(branch)
-
-
-def _endless_last(value: int | None) -> tuple[bool, int]:
-    return (value is None, value or 0)
 
 
 def steps(chain: EventChain, system: System) -> Iterator[tuple[EventChain | Segment, tuple[str, ...], tuple[str, ...]]]:

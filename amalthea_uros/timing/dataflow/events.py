@@ -181,10 +181,13 @@ class EventLocator:
                 when = _PROCESS_PHASES.get(event.change) if event.change else None
                 if when is None:
                     raise UnknownError(_no_single_time(event))
-                return [EventOccurrence(process, when) for process in self._processes(event.process)]
+                if event.process is None:
+                    raise UnknownError("an event has no process")
+                process = self.system.processes.get(event.process)
+                return [] if process is None else [EventOccurrence(process, when)]
             case StimulusEvent():
-                activated = [p for p in self.system.processes.values() if event.stimulus in p.stimuli]
-                return [EventOccurrence(process, JobPhase.ACTIVATION) for process in activated]
+                activated = (each for each in self.system.processes.values() if event.stimulus in each.stimuli)
+                return [EventOccurrence(each, JobPhase.ACTIVATION) for each in activated]
             case RunnableEvent():
                 if event.change not in (RunnableChange.START, RunnableChange.TERMINATE):
                     raise UnknownError(_no_single_time(event))
@@ -193,11 +196,6 @@ class EventLocator:
             case CustomEvent() | LabelEvent() | ModeLabelEvent() | ChannelEvent() | SemaphoreEvent():
                 return [EventOccurrence(p.process, JobPhase.AFTER, p) for p in self.raising(event)]
         raise UnknownError(f"the kind of the event {event.name!r} cannot be analysed")
-
-    def _processes(self, name: str | None) -> list[Process]:
-        if name is None:
-            raise UnknownError("an event has no process")
-        return [self.system.processes[name]] if name in self.system.processes else []
 
 
 _PROCESS_PHASES = {

@@ -5,9 +5,11 @@ Chains, paths and rules all use these links.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterable, Iterator
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
+from functools import cached_property
+from itertools import chain
 from typing import NamedTuple
 
 from amalthea_uros.perf.activities import (
@@ -27,12 +29,12 @@ from amalthea_uros.perf.activities import (
     WaitEvent,
 )
 from amalthea_uros.perf.conditions import read_by
-from amalthea_uros.perf.events import Event, RunnableChange, RunnableEvent
+from amalthea_uros.perf.events import RunnableChange, RunnableEvent
 from amalthea_uros.perf.stimuli import EventTriggered
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.dataflow.events import EventLocator, EventOccurrence, JobPhase
+from amalthea_uros.timing.jobs.executed import with_direct_calls
 from amalthea_uros.timing.jobs.positions import ActivityPosition
-from amalthea_uros.timing.jobs.server_calls import with_direct_calls
 
 #: The names of the objects that an activity accesses in one way; empty for most activities.
 NamesOf = Callable[[ActivityPosition], tuple[str, ...]]
@@ -94,7 +96,7 @@ class DirectLink(NamedTuple):
     target: str
 
 
-@dataclass(slots=True)
+@dataclass
 class Dataflow:
     """The positions of activities in jobs, and the links between jobs; results are cached.
 
@@ -107,8 +109,6 @@ class Dataflow:
     communication: Communication | None = None
     events: EventLocator = field(init=False)
     _named: dict[tuple[str, NamesOf], _Accesses] = field(default_factory=dict)
-    _fired: dict[str, list[Firing]] | None = None
-    _fired_at: dict[str, list[ActivityPosition]] | None = None
 
     def __post_init__(self) -> None:
         self.system = with_direct_calls(self.system)
@@ -139,7 +139,7 @@ class Dataflow:
         return tuple(
             Link(LinkKind.TRIGGER, (firing.stimulus,), firing.position, is_before=firing.is_before)
             for firing in self.firings(first)
-            if firing.stimulus in self._stimuli(then)
+            if firing.stimulus in self.system.processes[then].stimuli
         )
 
     def data(self, first: EventOccurrence, then: EventOccurrence) -> tuple[Link, ...]:
@@ -155,7 +155,12 @@ class Dataflow:
 
     def _between_accesses(self, first: EventOccurrence, then: EventOccurrence) -> tuple[Link, ...]:
         """The data if both events are accesses to the same: so it is stated that they are meant."""
-        if first.position is None or then.position is None or _has_inner(first.position) or _has_inner(then.position):
+        if (
+            first.position is None
+            or then.position is None
+            or isinstance(first.position.activity, Call)
+            or isinstance(then.position.activity, Call)
+        ):
             return ()
         return self._shared(first, _grouped([first.position], writes), then, _grouped([then.position], reads))
 
@@ -199,8 +204,7 @@ class Dataflow:
 
     def direct(self) -> Iterator[DirectLink]:
         """All links between different processes."""
-        ways = ((LinkKind.DATA, writes, reads), *_SYNCHRONISATION)
-        for kind, source, target in ways:
+        for kind, source, target in ((LinkKind.DATA, writes, reads), *_SYNCHRONISATION):
             consumers: dict[str, list[str]] = {}
             for process in self.system.processes:
                 for name in self.by_name(process, target):
@@ -211,14 +215,19 @@ class Dataflow:
                     yield from (
                         DirectLink(found, process, name, other) for other in consumers.get(name, ()) if other != process
                     )
-        activated: dict[str, list[str]] = {}
-        for process in self.system.processes:
-            for stimulus in self._stimuli(process):
-                activated.setdefault(stimulus, []).append(process)
         for process in self.system.processes:
             for stimulus in (firing.stimulus for firing in self.firings(process)):
-                others = (other for other in activated.get(stimulus, ()) if other != process)
+                others = (other for other in self.activated.get(stimulus, ()) if other != process)
                 yield from (DirectLink(LinkKind.TRIGGER, process, stimulus, other) for other in others)
+
+    @cached_property
+    def activated(self) -> Mapping[str, list[str]]:
+        """The processes that each stimulus activates."""
+        found: dict[str, list[str]] = {}
+        for process in self.system.processes.values():
+            for stimulus in process.stimuli:
+                found.setdefault(stimulus, []).append(process.name)
+        return found
 
     def by_name(self, process: str, names_of: NamesOf) -> _Accesses:
         """The accesses of a process, by the names of the data."""
@@ -229,40 +238,32 @@ class Dataflow:
 
     def fired_at(self, stimulus: str) -> list[ActivityPosition]:
         """The positions at which processes fire a stimulus."""
-        if self._fired_at is None:
-            found: dict[str, list[ActivityPosition]] = {}
-            for process in self.system.processes:
-                for firing in self.firings(process):
-                    found.setdefault(firing.stimulus, []).append(firing.position)
-            self._fired_at = found
         return self._fired_at.get(stimulus, [])
 
-    def _stimuli(self, process: str) -> tuple[str, ...]:
-        return self.system.processes[process].stimuli
+    @cached_property
+    def _fired_at(self) -> dict[str, list[ActivityPosition]]:
+        found: dict[str, list[ActivityPosition]] = {}
+        for firing in chain.from_iterable(map(self.firings, self.system.processes)):
+            found.setdefault(firing.stimulus, []).append(firing.position)
+        return found
 
     def firings(self, process: str) -> list[Firing]:
         """The stimuli that a process fires, in order, by triggers and by the events that it raises."""
-        if self._fired is None:
-            self._fired = self._find_firings()
         return self._fired[process]
 
-    def _find_firings(self) -> dict[str, list[Firing]]:
-        """What each process fires, in order."""
+    @cached_property
+    def _fired(self) -> dict[str, list[Firing]]:
         found: dict[str, list[Firing]] = {name: [] for name in self.system.processes}
         for position in self.events.all_positions():
             if isinstance(position.activity, Trigger):
                 found[position.process.name].append(Firing(position.activity.stimulus, position))
-        for stimulus, event in self._reactions():
-            is_before = _is_start(event)
+        events, stimuli = self.system.events_by_name, self.system.stimuli.stimuli
+        reacting = [(each.name, name) for each in stimuli if isinstance(each, EventTriggered) for name in each.events]
+        for stimulus, event in ((stimulus, events[name]) for stimulus, name in reacting if name in events):
+            is_before = isinstance(event, RunnableEvent) and event.change is not RunnableChange.TERMINATE
             for position in self.events.raising(event):
                 found[position.process.name].append(Firing(stimulus, position, is_before))
         return {name: sorted(own, key=lambda firing: firing.position.number) for name, own in found.items()}
-
-    def _reactions(self) -> list[tuple[str, Event]]:
-        """The stimuli that react to events."""
-        events = self.system.events_by_name
-        stimuli = (s for s in self.system.stimuli.stimuli if isinstance(s, EventTriggered))
-        return [(stimulus.name, events[name]) for stimulus in stimuli for name in stimulus.events if name in events]
 
     def _synchronisation(self, first: EventOccurrence, then: EventOccurrence) -> tuple[Link, ...]:
         """The synchronisation of two processes by OS events, or by calls of server runnables and their results."""
@@ -282,7 +283,7 @@ class Dataflow:
         position = occurrence.position
         if position is None:
             return {}
-        if not _has_inner(position) and names_of(position):
+        if not isinstance(position.activity, Call) and names_of(position):
             return _grouped([position], names_of)
         runnable = position.activity.runnable if isinstance(position.activity, Call) else position.runnable
         return _grouped(
@@ -294,10 +295,6 @@ class Dataflow:
             ),
             names_of,
         )
-
-
-def _has_inner(position: ActivityPosition) -> bool:
-    return isinstance(position.activity, Call)
 
 
 def communication_of(position: ActivityPosition | None, communication: Communication | None) -> Communication:
@@ -381,10 +378,6 @@ _SYNCHRONISATION: tuple[tuple[LinkKind, NamesOf, NamesOf], ...] = (
     (LinkKind.SERVER_CALL, _requests, _serves),
     (LinkKind.SERVER_CALL, _serves, _requests),
 )
-
-
-def _is_start(event: Event) -> bool:
-    return isinstance(event, RunnableEvent) and event.change is not RunnableChange.TERMINATE
 
 
 def _grouped(within: Iterable[ActivityPosition], names_of: NamesOf) -> _Accesses:

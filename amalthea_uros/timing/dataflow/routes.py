@@ -8,6 +8,7 @@ effect from one event to the next, each of them is on a route of its own, becaus
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from itertools import pairwise, product
 from math import prod
@@ -158,16 +159,9 @@ def crosses(chain: EventChain, dataflow: Dataflow) -> bool:
         names = {name for path in sequences(unfolded) for name in path}
     except UnknownError:
         return False  # the analysis of chains reports it
-    return any(
-        process in system.transmissions or process in system.executor_of_task
-        for name in names & system.events_by_name.keys()
-        for process in _processes(system.events_by_name[name], dataflow)
-    )
-
-
-def _processes(event: Event, dataflow: Dataflow) -> set[str]:
-    """The processes in which an event can occur."""
-    try:
-        return {occurrence.process.name for occurrence in dataflow.events.of(event)}
-    except UnknownError:
-        return set()
+    crossing = system.transmissions.keys() | system.executor_of_task.keys()
+    for name in names & system.events_by_name.keys():
+        with suppress(UnknownError):
+            if any(each.process.name in crossing for each in dataflow.events.of(system.events_by_name[name])):
+                return True
+    return False

@@ -16,11 +16,11 @@ from types import MappingProxyType
 
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import Activity, Call, Loop, ProbabilitySwitch, Switch, inner_activities
+from amalthea_uros.perf.conditions import holds
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.jobs.counters import ALWAYS
-from amalthea_uros.timing.jobs.counts import bounds_of, count_of
-from amalthea_uros.timing.jobs.modes import holds
+from amalthea_uros.timing.jobs.executed import bounds_of, count_of
 from amalthea_uros.timing.jobs.positions import ActivityPosition
 
 
@@ -125,7 +125,8 @@ class JobPaths:
                 within = here + self._sum(inside, position.counter)
                 return _called(within, position, position.activity, reached, self.modes)
             case ProbabilitySwitch() as switch:
-                return here + _by_chance(switch, self._branches(switch, inside, reached))
+                weights = [Fraction(branch.weight) for branch in switch.branches]
+                return here + _one_of(self._branches(switch, inside, reached), weights, is_chance=True)
             case Switch() as switch:
                 return here + self._by_mode(switch, self._branches(switch, inside, reached))
             case Loop(condition=condition):
@@ -197,10 +198,6 @@ def _repeated(found: JobDemand, call: Call) -> JobDemand:
     least, most = bounds_of(call.times)
     # Without a maximum, the demand of the process is unknown.
     return found.times(least, average, least if most is None else most, least if most is None else most)
-
-
-def _by_chance(switch: ProbabilitySwitch, found: Sequence[JobDemand]) -> JobDemand:
-    return _one_of(found, [Fraction(branch.weight) for branch in switch.branches], is_chance=True)
 
 
 def _one_of(found: Sequence[JobDemand], weights: Sequence[Fraction], *, is_chance: bool) -> JobDemand:

@@ -23,7 +23,6 @@ from amalthea_uros.timing.basics.notes import AnalysisNotes
 from amalthea_uros.timing.basics.time_base import Ticks
 from amalthea_uros.timing.demand.means import mean
 from amalthea_uros.timing.demand.multiframe import DemandFrame
-from amalthea_uros.timing.scheduling.allocation import frequency_of
 from amalthea_uros.units import SECOND, Frequency, time_of_ticks
 
 #: (minimum, mean, maximum), in picoseconds.
@@ -119,7 +118,7 @@ class MemoryAccess:
         return total
 
     def _clock(self, name: str | None) -> Frequency | None:
-        return frequency_of(name, self.system)
+        return self.system.frequency_of(name)
 
 
 def _latency(latency: Latency, kind: AccessKind, frequency: Frequency | None, size: int | None, where: str) -> Times:

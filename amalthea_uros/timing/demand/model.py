@@ -38,10 +38,10 @@ from amalthea_uros.perf.activities import (
     Switch,
     Terminate,
     WaitEvent,
-    walk,
+    called_runnables,
 )
+from amalthea_uros.perf.conditions import holds
 from amalthea_uros.perf.distributions import Distribution, highest, lowest
-from amalthea_uros.perf.os import Scheduler
 from amalthea_uros.perf.software import Isr, Process, Runnable
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.perf.system import System
@@ -62,12 +62,8 @@ from amalthea_uros.timing.demand.multiframe import (
 )
 from amalthea_uros.timing.demand.overheads import Overheads
 from amalthea_uros.timing.jobs.counters import CallSites, CounterFlaws, first_effect, is_always
-from amalthea_uros.timing.jobs.counts import count_of, is_average
-from amalthea_uros.timing.jobs.executed import MAX_CALL_DEPTH
-from amalthea_uros.timing.jobs.modes import holds
+from amalthea_uros.timing.jobs.executed import MAX_CALL_DEPTH, count_of, is_average, obstacle, servers, with_direct_calls
 from amalthea_uros.timing.jobs.positions import ActivityPosition, ends_early, positions
-from amalthea_uros.timing.jobs.server_calls import obstacle, servers, with_direct_calls
-from amalthea_uros.timing.scheduling.allocation import frequency_of
 from amalthea_uros.units import Frequency, time_of_ticks
 
 #: With a finer time base, times could exceed 64-bit integers.
@@ -110,7 +106,7 @@ class DemandModel:
         """The clock frequency of a core; None if it is unknown."""
         if core in self.settings.frequencies:
             return self.settings.frequencies[core]
-        return frequency_of(self.system.cores[core].clock, self.system)
+        return self.system.frequency_of(self.system.cores[core].clock)
 
     def of_process(self, process: Process, core: str) -> MultiframeDemand:
         """Demand of the jobs of a process on a core, in its time base.
@@ -147,10 +143,10 @@ class DemandModel:
             frames += here
         return MultiframeDemand(scaled(summed(frames), self._growth(position.process)))
 
-    def of_decision(self, scheduler: Scheduler, core: str) -> MultiframeDemand:
-        """Demand of one decision of a scheduler; raises as `of_process`."""
+    def of_decision(self, overhead: Sequence[Activity], core: str) -> MultiframeDemand:
+        """Demand of one decision of a scheduler with some overhead; raises as `of_process`."""
         # The decisions for all tasks count.
-        frames = [any_time(frame) for frame in self._frames(scheduler.overhead, core, ())]
+        frames = [any_time(frame) for frame in self._frames(overhead, core, ())]
         return MultiframeDemand(scaled(summed(frames), self.settings.growth))
 
     def _growth(self, process: Process) -> Fraction:
@@ -350,8 +346,7 @@ class DemandModel:
 
     def _called(self, runnable: str) -> list[str]:
         """The runnables that a runnable calls directly."""
-        activities = walk(self.system.runnables[runnable].activities)
-        called = (activity.runnable for activity in activities if isinstance(activity, Call))
+        called = called_runnables(self.system.runnables[runnable].activities)
         return [name for name in called if name in self.system.runnables]
 
     def _time(self, ticks: Distribution[int], factor: Fraction, core: str) -> DemandFrame:

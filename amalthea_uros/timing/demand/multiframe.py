@@ -6,7 +6,7 @@ with different prescalers can fall on the same job, because their counters start
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import ceil, floor
@@ -14,7 +14,7 @@ from math import ceil, floor
 from amalthea_uros.perf.activities import Count
 from amalthea_uros.timing.basics.time_base import Ticks
 from amalthea_uros.timing.demand.means import exact_sum
-from amalthea_uros.timing.jobs.counts import count_of
+from amalthea_uros.timing.jobs.executed import count_of
 
 #: No demand.
 NOTHING = Ticks(0)
@@ -140,13 +140,9 @@ def _sum(same: Sequence[DemandFrame]) -> DemandFrame:
         worst=Ticks(sum(frame.worst for frame in same)),
         best=Ticks(sum(frame.best for frame in same)),
         average=exact_sum(frame.average for frame in same),
-        least=_certain_part(sum(frame.occurring for frame in same), same),
+        # The demand that certainly occurs; None if all of it does.
+        least=None if all(frame.least is None for frame in same) else Ticks(sum(frame.occurring for frame in same)),
     )
-
-
-def _certain_part(occurring: int, frames: Iterable[DemandFrame]) -> Ticks | None:
-    """The field `least` of a frame that sums up others: the demand that certainly occurs; None if all of it does."""
-    return None if all(frame.least is None for frame in frames) else Ticks(occurring)
 
 
 def scaled(frames: tuple[DemandFrame, ...], growth: Fraction) -> tuple[DemandFrame, ...]:

@@ -9,8 +9,8 @@ from amalthea_uros.perf import stimuli as perf
 from amalthea_uros.perf.distributions import highest, lowest
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.time_base import LIMIT
-from amalthea_uros.timing.event_models.base import EventModel
-from amalthea_uros.timing.event_models.periodic import (
+from amalthea_uros.timing.event_models.models import (
+    EventModel,
     EventPattern,
     MinimumDistances,
     PeriodicEvents,

@@ -24,6 +24,7 @@ from amalthea_uros.perf.activities import (
     SenderReceiverAccess,
     ServerCall,
     Trigger,
+    called_runnables,
     inner_activities,
     walk,
 )
@@ -157,7 +158,7 @@ class CallSites:
         found: dict[str, int] = {}
         runnables = self.system.runnables
         for name in bottom_up(
-            runnables, lambda name: (called for called in _called(runnables[name].activities) if called in runnables)
+            runnables, lambda name: (called for called in called_runnables(runnables[name].activities) if called in runnables)
         ):
             found[name] = reached(runnables[name].activities, found)
         return found
@@ -216,10 +217,6 @@ def reached(activities: tuple[Activity, ...], sizes: Mapping[str, int]) -> int:
     """The activities that one execution of some activities reaches, with those of called runnables at each call."""
     here = list(walk(activities))
     return len(here) + sum(sizes.get(activity.runnable, 0) for activity in here if isinstance(activity, Call))
-
-
-def _called(activities: tuple[Activity, ...]) -> Iterator[str]:
-    return (activity.runnable for activity in walk(activities) if isinstance(activity, Call))
 
 
 def _is_uncounted(site: _Site) -> bool:

@@ -20,14 +20,12 @@ from amalthea_uros.perf.activities import (
     Terminate,
     inner_activities,
 )
-from amalthea_uros.perf.conditions import Condition
+from amalthea_uros.perf.conditions import Condition, holds
 from amalthea_uros.perf.software import Process, Runnable
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.jobs.counters import ALWAYS, CallSites, reached
-from amalthea_uros.timing.jobs.counts import bounds_of
-from amalthea_uros.timing.jobs.executed import MAX_CALL_DEPTH
-from amalthea_uros.timing.jobs.modes import holds
+from amalthea_uros.timing.jobs.executed import MAX_CALL_DEPTH, bounds_of
 
 #: Processes with more activities are not analysed.
 MAX_POSITIONS = 200_000
@@ -207,11 +205,9 @@ def can_be_skipped(position: ActivityPosition, system: System, modes: Mapping[st
     """
     *around, (activities, index) = position.outer
     containers = [within[number] for within, number in around]
-    return any(_is_optional(each, system, modes) for each in containers) or _need_not_occur(activities[index], system, modes)
-
-
-def _is_optional(container: Activity, system: System, modes: Mapping[str, str]) -> bool:
-    return isinstance(container, Switch | ProbabilitySwitch | Loop) or _need_not_occur(container, system, modes)
+    return any(isinstance(each, Switch | ProbabilitySwitch | Loop) for each in containers) or any(
+        _need_not_occur(each, system, modes) for each in (*containers, activities[index])
+    )
 
 
 def _need_not_occur(activity: Activity, system: System, modes: Mapping[str, str]) -> bool:

@@ -1,4 +1,4 @@
-"""Possible cores, deciding schedulers, priorities and clocks of processes, also in systems that cannot be analysed."""
+"""Possible cores, deciding schedulers, policies, priorities and clocks of processes, also in systems that cannot be analysed."""
 
 from __future__ import annotations
 
@@ -9,7 +9,21 @@ from amalthea_uros.perf.hardware import StructureKind
 from amalthea_uros.perf.mapping import TaskAllocation
 from amalthea_uros.perf.os import Policy, Scheduler
 from amalthea_uros.perf.system import System
-from amalthea_uros.units import Frequency
+
+#: Policies that serve the highest priority first, as far as there is an analysis for them.
+BY_PRIORITY = {Policy.FIXED_PRIORITY_PREEMPTIVE, Policy.OSEK, Policy.PRIORITY_BASED_ROUND_ROBIN}
+#: Other names of policies, in lower case; since AMALTHEA 2.0 only the name identifies a policy.
+_ALIASES = {
+    **{policy.lower(): policy for policy in Policy},
+    "fpp": Policy.FIXED_PRIORITY_PREEMPTIVE,
+    "fixed priority preemptive": Policy.FIXED_PRIORITY_PREEMPTIVE,
+    "autosar": Policy.OSEK,
+    "edf": Policy.EARLIEST_DEADLINE_FIRST,
+    "deadline monotonic": Policy.DEADLINE_MONOTONIC,
+    "rate monotonic": Policy.RATE_MONOTONIC,
+}
+#: Scheduler, cores and priority.
+_Level = tuple[str, frozenset[str], int]
 
 
 def allocated_cores(system: System) -> Mapping[str, frozenset[str]]:
@@ -62,12 +76,6 @@ def operating_system_of(system: System) -> Mapping[str, str]:
     }
 
 
-def frequency_of(clock: str | None, system: System) -> Frequency | None:
-    """The frequency of a clock; None if it is unknown, and what a frequency that is not positive stands for is unknown, too."""
-    found = system.clocks.get(clock or "")
-    return found.frequency if found is not None and found.frequency is not None and found.frequency > 0 else None
-
-
 def controller_of_core(system: System) -> dict[str, str]:
     """The controller of each core; cores of different controllers do not share a clock."""
     found: dict[str, str] = {}
@@ -76,3 +84,47 @@ def controller_of_core(system: System) -> dict[str, str]:
             for inner in structure.walk():
                 found.update(dict.fromkeys((core.name for core in inner.cores), structure.name))
     return found
+
+
+def standard_policy(name: str | None) -> str | None:
+    """The standard name of a policy; that of the model if it is none of these."""
+    return _ALIASES.get((name or "").lower(), name)
+
+
+def is_by_priority(name: str | None) -> bool:
+    """Whether a policy serves the highest priority first."""
+    return standard_policy(name) in BY_PRIORITY | {Policy.FIXED_PRIORITY_WITH_BUDGETS}
+
+
+def sharing_a_priority(system: System, cores: Mapping[str, frozenset[str]]) -> Iterator[tuple[TaskAllocation, int, list[str]]]:
+    """The allocations of tasks that share a priority where the priority decides, with the priority and the other tasks that have it.
+
+    Parameters
+    ----------
+    cores : those on which each process may run
+    """
+    levels: dict[_Level, dict[str, None]] = {}
+    for allocation in system.mapping.tasks:
+        level = _level(allocation, system, cores)
+        if level is not None:
+            levels.setdefault(level, {})[allocation.task] = None
+    for allocation in system.mapping.tasks:
+        level = _level(allocation, system, cores)
+        others = [task for task in levels.get(level, ()) if task != allocation.task] if level is not None else []
+        if level is not None and others:
+            yield allocation, level[-1], others
+
+
+def _level(allocation: TaskAllocation, system: System, cores: Mapping[str, frozenset[str]]) -> _Level | None:
+    """Where and with which priority a task is scheduled, if others of the same priority have to wait for it."""
+    scheduler = deciding_scheduler(allocation.scheduler, system)
+    priority = effective_priority(allocation, system)
+    if scheduler is None or priority is None:
+        return None
+    # Messages on a wire that have no identifiers are meant to be sent in the order in which they were queued.
+    if allocation.task in system.transmissions:
+        return None
+    # Under round robin it is intended that tasks share a priority.
+    if not is_by_priority(scheduler.policy) or standard_policy(scheduler.policy) == Policy.PRIORITY_BASED_ROUND_ROBIN:
+        return None
+    return scheduler.name, cores.get(allocation.task, frozenset()), priority

@@ -19,7 +19,7 @@ from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Periodic
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.notes import AnalysisNotes
-from amalthea_uros.timing.scheduling.allocation import deciding_scheduler, effective_priority
+from amalthea_uros.timing.scheduling.allocation import BY_PRIORITY, deciding_scheduler, effective_priority, standard_policy
 from amalthea_uros.timing.scheduling.scheduled import EqualPriority, ScheduledProcess, SchedulingContext, Server
 from amalthea_uros.units import Time
 
@@ -27,31 +27,9 @@ from amalthea_uros.units import Time
 #: (`osekTaskGroup`, until 0.8.0).
 _GROUP, _NO_GROUP = "taskGroup", 0
 
-#: Policies that serve the highest priority first, as far as there is an analysis for them.
-_BY_PRIORITY = {Policy.FIXED_PRIORITY_PREEMPTIVE, Policy.OSEK, Policy.PRIORITY_BASED_ROUND_ROBIN}
-#: Other names of policies, in lower case; since AMALTHEA 2.0 only the name identifies a policy.
-_ALIASES = {
-    **{policy.lower(): policy for policy in Policy},
-    "fpp": Policy.FIXED_PRIORITY_PREEMPTIVE,
-    "fixed priority preemptive": Policy.FIXED_PRIORITY_PREEMPTIVE,
-    "autosar": Policy.OSEK,
-    "edf": Policy.EARLIEST_DEADLINE_FIRST,
-    "deadline monotonic": Policy.DEADLINE_MONOTONIC,
-    "rate monotonic": Policy.RATE_MONOTONIC,
-}
 #: Names of the parameters of servers: those of the standard definitions, and those of AMALTHEA until 1.2.
 CAPACITY = ("capacity", "maxBudget")
 PERIOD = ("period", "replenishment")
-
-
-def standard_policy(name: str | None) -> str | None:
-    """The standard name of a policy; that of the model if it is none of these."""
-    return _ALIASES.get((name or "").lower(), name)
-
-
-def is_by_priority(name: str | None) -> bool:
-    """Whether a policy serves the highest priority first."""
-    return standard_policy(name) in _BY_PRIORITY | {Policy.FIXED_PRIORITY_WITH_BUDGETS}
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +64,7 @@ def _of(scheduler: Scheduler, parameters: Sequence[Parameter], *names: str) -> P
 
 
 @dataclass(slots=True)
-class Scheduling:
+class SchedulingOrder:
     """Finds the scheduling of processes.
 
     Attributes
@@ -268,7 +246,7 @@ class Scheduling:
     def _is_shared(self, parent: Scheduler, priority: int | None) -> bool:
         """Whether several schedulers or tasks have a priority, under a policy that uses it."""
         policy = standard_policy(parent.policy)
-        if policy not in _BY_PRIORITY and policy not in SERVERS:
+        if policy not in BY_PRIORITY and policy not in SERVERS:
             return False
         children = [s for s in self.system.schedulers.values() if s.parent is not None and s.parent.scheduler == parent.name]
         priorities = [child.parent.priority for child in children if child.parent is not None]

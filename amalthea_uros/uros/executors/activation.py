@@ -13,7 +13,7 @@ from dataclasses import replace
 from amalthea_uros.executors.semantics.loops import is_paced, iterations_follow_at_once, timeout_of
 from amalthea_uros.perf.activities import Trigger, walk
 from amalthea_uros.perf.distributions import Boundaries, Uniform
-from amalthea_uros.perf.executors import Executor, HandleKind, Loop
+from amalthea_uros.perf.executors import Executor, HandleKind, ThreadLoop
 from amalthea_uros.perf.stimuli import (
     ArrivalCurve,
     ArrivalCurvePoint,
@@ -82,7 +82,7 @@ def _of_callback(executor: Executor, callback: Callback) -> Iterator[Stimulus]:
         yield unknown if callback.interval is None else _at_least(name, callback.min_interval)
 
 
-def _after_sleeps(name: str, loop: Loop, min_iteration: Time) -> Stimulus:
+def _after_sleeps(name: str, loop: ThreadLoop, min_iteration: Time) -> Stimulus:
     """Iterations between sleeps; the first of several can wait for long, so that the second follows after the shortest sleep."""
     shortest = loop.sleep - loop.sleep_early + min_iteration
     if loop.pace <= shortest:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from amalthea_uros.perf.activities import Demand, Execute
 from amalthea_uros.perf.distributions import Boundaries, lowest
-from amalthea_uros.perf.executors import Executor, Handle, Loop, LoopKind, Waiting
+from amalthea_uros.perf.executors import Executor, Handle, LoopKind, ThreadLoop, WaitBehaviour
 from amalthea_uros.perf.software import Runnable
 from amalthea_uros.spec import executors as spec
 from amalthea_uros.spec.description import Description
@@ -108,7 +108,7 @@ def _executor(
     )
 
 
-def _loop(section: spec.LoopSection, waiting: Waiting, os: OsSection) -> Loop:
+def _loop(section: spec.LoopSection, waiting: WaitBehaviour, os: OsSection) -> ThreadLoop:
     """The loop that a section describes, on an operating system that counts sleeps in ticks.
 
     See ros2/rclc `rclc/src/rclc/executor.c`: `rclc_executor_spin` is an endless `spin_some`; `rclc_executor_spin_period` calls
@@ -116,7 +116,7 @@ def _loop(section: spec.LoopSection, waiting: Waiting, os: OsSection) -> Loop:
     """
     if section.spin_some is not None:
         least, most, pace = slept(section.sleep, os)
-        return Loop(
+        return ThreadLoop(
             kind=LoopKind.SLEEPING,
             timeout=section.spin_some,
             sleep=most,
@@ -125,9 +125,9 @@ def _loop(section: spec.LoopSection, waiting: Waiting, os: OsSection) -> Loop:
         )
     if section.spin_period is not None:
         timeout = section.timeout if section.timeout is not None else waiting.default_timeout
-        return Loop(kind=LoopKind.PERIODIC, timeout=timeout, period=section.spin_period)
+        return ThreadLoop(kind=LoopKind.PERIODIC, timeout=timeout, period=section.spin_period)
     assert section.spin is not None
-    return Loop(kind=LoopKind.CONTINUOUS, timeout=section.spin)
+    return ThreadLoop(kind=LoopKind.CONTINUOUS, timeout=section.spin)
 
 
 class Sleep(NamedTuple):

@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple, Self
 
-from amalthea_uros.perf.executors import Waiting
+from amalthea_uros.perf.executors import WaitBehaviour
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.spec.application import Application
 from amalthea_uros.spec.middleware import Middleware, MiddlewareTask
@@ -144,10 +144,10 @@ class Profile(ABC):
         return whole_bytes(self.data.sizes[name])
 
     @property
-    def waiting(self) -> Waiting:
+    def waiting(self) -> WaitBehaviour:
         """How an executor waits."""
         figures = self.data.waiting
-        return Waiting(
+        return WaitBehaviour(
             messages_per_wait=figures.messages_per_wait,
             resolution=figures.resolution,
             stored_data_ends_wait=figures.stored_data_ends_wait,

@@ -22,7 +22,7 @@ from amalthea_uros.analyze.response_times.schedule import PeriodicTask
 from amalthea_uros.analyze.response_times.task import AnalysedTask
 from amalthea_uros.perf.stimuli import Periodic
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
-from amalthea_uros.timing.event_models import PeriodicEvents
+from amalthea_uros.timing.event_models.models import PeriodicEvents
 
 
 @cache

@@ -20,7 +20,7 @@ from amalthea_uros.perf.constraints import Bound, Constraints, LatencyConstraint
 from amalthea_uros.perf.events import EventChain
 from amalthea_uros.perf.software import Runnable
 from amalthea_uros.perf.stimuli import Counter
-from amalthea_uros.timing.activation.phases import unknown_phases
+from amalthea_uros.timing.activation.releases import unknown_phases
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.response import Claim
 from amalthea_uros.units import MICROSECOND as US

@@ -29,7 +29,7 @@ from amalthea_uros.perf.network import Purpose
 from amalthea_uros.perf.os import Policy, Scheduler
 from amalthea_uros.perf.software import Runnable
 from amalthea_uros.perf.stimuli import InterProcess, Periodic, RelativePeriodic
-from amalthea_uros.timing.event_models import SporadicEvents
+from amalthea_uros.timing.event_models.models import SporadicEvents
 
 TO_PWM = ("to pwm", "cmd_published", "on_cmd_end", "speed_written", "pwm_end")
 TO_HOST = ("to host", "cmd_published", "on_cmd_end", "odom_at_host")

@@ -7,26 +7,24 @@ prod(T) / lcm(T) of them differ (J. Goossens, "Scheduling of offset free systems
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import combinations, product
+from itertools import combinations
 from math import gcd, prod
 from typing import TypeAlias
 
 from amalthea_uros.analyze.results.chains import LatencyQuantity
 from amalthea_uros.design.changes.change import Change
 from amalthea_uros.design.changes.key import Configuration
-from amalthea_uros.design.optimize.candidate import Candidate
+from amalthea_uros.design.optimize.judged import Judged
 from amalthea_uros.design.optimize.problem import Problem, SearchResult
 from amalthea_uros.design.optimize.quantities import FROM_ARRIVAL, JITTER, LOAD
-from amalthea_uros.design.optimize.solvers.judged import Judged
-from amalthea_uros.design.optimize.space import Choice, Kind
+from amalthea_uros.design.optimize.space import Candidate, Choice, DecisionKind, combinations_of
 from amalthea_uros.executors.semantics.loops import timing_context
 from amalthea_uros.perf.constraints import LatencyConstraint, TimeLimit, TimeMetric
 from amalthea_uros.perf.stimuli import RelativePeriodic
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.activation.phases import unknown_phases
-from amalthea_uros.timing.activation.releases import known_releases
+from amalthea_uros.timing.activation.releases import known_releases, unknown_phases
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.timing.blocking.critical_sections import LockUsage
 from amalthea_uros.timing.scheduling.scheduled import EqualPriority, is_preemptive
@@ -61,24 +59,13 @@ def solve_offsets(problem: Problem) -> SearchResult | None:
 def offset_classes(problem: Problem) -> Sequence[Sequence[Candidate]] | None:
     """The designs, grouped by those that are shifts of each other, in each group those with the fewest changes first; None as above."""
     varied = [choice for choice in problem.space.choices if len(choice.options) > 1]
-    if not varied or problem.space.orders or any(choice.kind is not Kind.OFFSET for choice in varied):
+    if not varied or problem.space.orders or any(choice.kind is not DecisionKind.OFFSET for choice in varied):
         return None
     shifts = _Shifts.of(problem, varied) if _can_be_shifted(problem.present) and not _depends_on_start(problem) else None
     classes: dict[object, list[Candidate]] = {}
-    for number, design in enumerate(_designs(varied)):
+    for number, design in enumerate(combinations_of(varied)):
         classes.setdefault(number if shifts is None else shifts.key(design), []).append(design)
     return [sorted(designs, key=lambda design: (len(design), tuple(map(str, design)))) for designs in classes.values()]
-
-
-def _designs(choices: Sequence[Choice]) -> Iterator[Candidate]:
-    """All designs; the first option of a choice is no change."""
-    ordered = sorted(choices, key=lambda choice: choice.target)
-    for values in product(*(range(len(choice.options)) for choice in ordered)):
-        yield tuple(
-            Change(choice.object, choice.key, choice.options[value])
-            for choice, value in zip(ordered, values, strict=True)
-            if value
-        )
 
 
 def _can_be_shifted(configuration: Configuration) -> bool:

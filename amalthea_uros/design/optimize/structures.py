@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
-from itertools import permutations, product
+from itertools import permutations
 from math import prod
 from pathlib import Path
 
 from amalthea_uros.design.changes.change import Change
 from amalthea_uros.design.description.edit import edit_description
-from amalthea_uros.design.optimize.candidate import Candidate
-from amalthea_uros.design.optimize.designs import Structure
-from amalthea_uros.design.optimize.space import Choice, Kind
+from amalthea_uros.design.optimize.designs import RebuiltStructure
+from amalthea_uros.design.optimize.space import Candidate, Choice, DecisionKind, combinations_of
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.system import System
 from amalthea_uros.spec.executors import ExecutorSection
@@ -25,7 +24,7 @@ from amalthea_uros.uros.described import Described, describe_text
 MOST_STRUCTURES = 500
 
 #: What makes the rules and orders of the structure of a system.
-Completed = Callable[[tuple[Change, ...], Assembly], Structure]
+Completed = Callable[[tuple[Change, ...], Assembly], RebuiltStructure]
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +64,7 @@ class DescribedCallbacks:
         """For each callback, a task of its own or the executor."""
         for callback in self.callbacks:
             words = ("executor", "own-task") if callback.in_executor else ("own-task", "executor")
-            yield Choice(object=callback.name, key="runs_in", kind=Kind.PLACEMENT, options=words)
+            yield Choice(object=callback.name, key="runs_in", kind=DecisionKind.PLACEMENT, options=words)
 
     @property
     def targets(self) -> frozenset[str]:
@@ -78,15 +77,15 @@ class DescribedCallbacks:
         inside = self.inside
         if len(inside) > 1:
             options = tuple(",".join(order) for order in permutations(inside))
-            yield Choice(object=self.executor.name, key="order", kind=Kind.ORDER, options=options)
+            yield Choice(object=self.executor.name, key="order", kind=DecisionKind.ORDER, options=options)
 
     def semantics(self) -> Iterator[Choice]:
         """When callbacks in the executor take their messages."""
         if self.inside:
             options = tuple(dict.fromkeys((self.executor.semantics, "ROS", "LET")))
-            yield Choice(object=self.executor.name, key="semantics", kind=Kind.COMMUNICATION, options=options)
+            yield Choice(object=self.executor.name, key="semantics", kind=DecisionKind.COMMUNICATION, options=options)
 
-    def structures(self, choices: Sequence[Choice], complete: Completed) -> Mapping[Candidate, Structure | str]:
+    def structures(self, choices: Sequence[Choice], complete: Completed) -> Mapping[Candidate, RebuiltStructure | str]:
         """What is built for each combination of options, apart from the present one.
 
         Raises
@@ -99,9 +98,9 @@ class DescribedCallbacks:
             raise InvalidArgumentError(
                 f"{names} have {count:,} combinations; at most {MOST_STRUCTURES:,} are possible, leave some out with --keep"
             )
-        return {own: self._built(own, complete) for own in _combinations(choices)}
+        return {own: self._built(own, complete) for own in combinations_of(choices) if own}
 
-    def _built(self, own: Candidate, complete: Completed) -> Structure | str:
+    def _built(self, own: Candidate, complete: Completed) -> RebuiltStructure | str:
         """A structure, or why it is impossible."""
         inside = {callback.name: callback.in_executor for callback in self.callbacks}
         moved = {change.object: change.value == "executor" for change in own if change.key == "runs_in"}
@@ -124,17 +123,6 @@ class DescribedCallbacks:
         order = [name for name in chosen if inside[name]]
         others = tuple(change for change in own if change.key != "order")
         return others if order == self.executor.order else (*others, Change(self.executor.name, "order", ",".join(order)))
-
-
-def _combinations(choices: Sequence[Choice]) -> Iterator[Candidate]:
-    for values in product(*(choice.options for choice in choices)):
-        own = [
-            Change(choice.object, choice.key, value)
-            for choice, value in zip(choices, values, strict=True)
-            if value != choice.options[0]
-        ]
-        if own:
-            yield tuple(sorted(own, key=lambda change: change.target))
 
 
 def _demands(system: System) -> list[object]:

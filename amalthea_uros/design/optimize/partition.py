@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from enum import StrEnum
 from fractions import Fraction
 from itertools import permutations, product
 
@@ -16,9 +15,8 @@ from amalthea_uros.analyze.response_times.critical_instant import certain_respon
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.design.changes.change import Change
-from amalthea_uros.design.optimize.candidate import Candidate
-from amalthea_uros.design.optimize.problem import Problem
-from amalthea_uros.design.optimize.space import Choice, Kind
+from amalthea_uros.design.optimize.problem import Feasibility, Problem
+from amalthea_uros.design.optimize.space import Candidate, Choice, DecisionKind
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.executors.semantics.loops import timing_context
 from amalthea_uros.judge.verdict import FAILURES, Verdict
@@ -34,14 +32,6 @@ MAX_EXCHANGED = 5
 
 #: The core of each task.
 Assignment = Mapping[str, str]
-
-
-class Fit(StrEnum):
-    """Whether a set of tasks is schedulable on a core: proved, refuted for certain, or neither."""
-
-    YES = "yes"
-    NO = "no"
-    UNKNOWN = "unknown"
 
 
 @dataclass(slots=True)
@@ -62,13 +52,17 @@ class Partition:
     least: Fraction = Fraction(0)
     _loads: dict[tuple[str, str], Fraction] = field(default_factory=dict)
     _class_of: dict[str, str] = field(default_factory=dict)
-    _fits: dict[tuple[str, frozenset[str]], Fit] = field(default_factory=dict)
+    _fits: dict[tuple[str, frozenset[str]], Feasibility] = field(default_factory=dict)
 
     @classmethod
     def of(cls, problem: Problem) -> Partition | None:
         """The tasks whose cores may change; None if something else may change, or tasks depend on those of other cores."""
         varied = [choice for choice in problem.space.choices if len(choice.options) > 1]
-        if not varied or problem.space.orders or any(choice.kind is not Kind.CORE or choice.key != "core" for choice in varied):
+        if (
+            not varied
+            or problem.space.orders
+            or any(choice.kind is not DecisionKind.CORE or choice.key != "core" for choice in varied)
+        ):
             return None
         if not _is_separable(problem):
             return None
@@ -134,8 +128,8 @@ class Partition:
         key = self._class_of[core], tasks
         if key not in self._fits:
             self._fits[key] = self._judged(core, tasks)
-            self.is_certain = self.is_certain and self._fits[key] is not Fit.UNKNOWN
-        return self._fits[key] is Fit.YES
+            self.is_certain = self.is_certain and self._fits[key] is not Feasibility.UNKNOWN
+        return self._fits[key] is Feasibility.YES
 
     def minimal(self, core: str, tasks: frozenset[str]) -> frozenset[str]:
         """A part of a set that does not fit, of which each part fits."""
@@ -163,21 +157,22 @@ class Partition:
             groups.setdefault(self._class_of[core], []).append(core)
         return list(groups.values())
 
-    def _judged(self, core: str, tasks: frozenset[str]) -> Fit:
+    def _judged(self, core: str, tasks: frozenset[str]) -> Feasibility:
+        """Whether a set of tasks is schedulable on a core."""
         try:
             analysis = self._analysis(core, tasks)
         except InvalidArgumentError:
-            return Fit.NO
+            return Feasibility.NO
         processes = [each for each in analysis.processes if each.verdict is not Verdict.MET and each.deadline is not None]
         if not processes:
-            return Fit.YES
+            return Feasibility.YES
         is_missed = analysis.processors[core].is_overloaded or any(
             each.verdict in FAILURES
             or (each.deadline is not None and (certain_response(each.name, analysis.solution) or 0) > each.deadline)
             for each in processes
             if each.response is not None
         )
-        return Fit.NO if is_missed else Fit.UNKNOWN
+        return Feasibility.NO if is_missed else Feasibility.UNKNOWN
 
     def _analysis(self, core: str, tasks: frozenset[str]) -> Analysis:
         """The analysis of a core with some tasks, and nothing else."""

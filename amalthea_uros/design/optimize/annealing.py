@@ -8,18 +8,15 @@ that miss limits are compared by the time by which they miss them.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from fractions import Fraction
-from itertools import permutations, product
 from math import exp
 from random import Random
 
 from amalthea_uros.design.changes.change import Change
-from amalthea_uros.design.optimize.candidate import UNCHANGED, Candidate, candidate
-from amalthea_uros.design.optimize.problem import Evaluation, Feasibility, Problem, SearchResult
-from amalthea_uros.design.optimize.solvers.judged import BATCH, Judged
-from amalthea_uros.design.optimize.space import Space
+from amalthea_uros.design.optimize.judged import BATCH, Judged
+from amalthea_uros.design.optimize.problem import DesignEvaluation, Feasibility, Problem, SearchResult
+from amalthea_uros.design.optimize.space import UNCHANGED, Candidate, Space, candidate
 
 #: The difference of costs that is accepted with a probability of 1/e at the start.
 TEMPERATURE = 0.1
@@ -108,13 +105,8 @@ class _Walker:
         self.best = min(self.best, cost)
 
 
-def solve_by_annealing(problem: Problem, designs: int = 2000, ended: Callable[[], str] = lambda: "") -> SearchResult:
-    """The best of so many designs.
-
-    Parameters
-    ----------
-    ended : asked between rounds: why to end early, "" to go on
-    """
+def solve_by_annealing(problem: Problem, designs: int = 2000) -> SearchResult:
+    """The best of so many designs of a larger space."""
     space, judged = _sorted(problem.space), Judged(problem)
     judged.judge([UNCHANGED])
     scale = sum(each or 0 for each in judged[UNCHANGED].violations.values()) or 1
@@ -122,10 +114,8 @@ def solve_by_annealing(problem: Problem, designs: int = 2000, ended: Callable[[]
     units = tuple(1e9 if goal.unit == "ps" else 1.0 for goal in problem.goals)
     first = _cost(judged[UNCHANGED], scale, units)
     walkers = [_Walker(Random(f"{problem.seed}/{number}"), start, first, first) for number in range(BATCH)]
-    best, lowest, idle, reason = start, first, 0, ""
-    if space.size <= designs:
-        judged.judge(design.candidate(space) for design in _every(space))
-    while len(judged) < min(designs, space.size) and idle < IDLE_ROUNDS and not (reason := ended()):
+    best, lowest, idle = start, first, 0
+    while len(judged) < designs and idle < IDLE_ROUNDS:
         before = len(judged)
         proposed = [walker.design.neighbour(space, walker.random) for walker in walkers[: designs - before]]
         judged.judge(design.candidate(space) for design in proposed)
@@ -136,11 +126,10 @@ def solve_by_annealing(problem: Problem, designs: int = 2000, ended: Callable[[]
                 best, lowest = walker.design, walker.cost
         for number, walker in enumerate(walkers):
             if walker.idle >= PATIENCE:
-                _restart(walker, best if number % 2 else start, lowest if number % 2 else first)
+                walker.design, walker.cost = (best, lowest) if number % 2 else (start, first)
+                walker.best, walker.idle = walker.cost, 0
         idle = 0 if len(judged) > before else idle + 1
-    if len(judged) == space.size:
-        return judged.concluded(f"all {space.size} designs were judged")
-    return judged.concluded("", ended=reason or f"{len(judged)} designs were judged")
+    return judged.concluded("", ended=f"{len(judged)} designs were judged")
 
 
 def _sorted(space: Space) -> Space:
@@ -151,18 +140,7 @@ def _sorted(space: Space) -> Space:
     )
 
 
-def _every(space: Space) -> Iterator[Design]:
-    """All designs of a space."""
-    for options in product(*(range(len(choice.options)) for choice in space.choices)):
-        for orders in product(*(permutations(order.tasks) for order in space.orders)):
-            yield Design(options, orders)
-
-
-def _restart(walker: _Walker, design: Design, cost: float) -> None:
-    walker.design, walker.cost, walker.best, walker.idle = design, cost, cost, 0
-
-
-def _cost(evaluation: Evaluation, scale: int, units: Sequence[float]) -> float:
+def _cost(evaluation: DesignEvaluation, scale: int, units: Sequence[float]) -> float:
     """Feasible designs by their values, between 0 and 1; others above, by the time by which they miss limits.
 
     Parameters
@@ -171,15 +149,13 @@ def _cost(evaluation: Evaluation, scale: int, units: Sequence[float]) -> float:
     units : of the values, of about their size
     """
     if evaluation.feasible is Feasibility.YES:
-        shares = map(_share, evaluation.values, units)
-        return sum(weight * share for weight, share in zip(WEIGHTS, shares, strict=False))
+        values = zip(WEIGHTS, evaluation.values, units, strict=False)
+        # Each value as a share between 0 and 1.
+        return sum(
+            weight * (1 if value is None else max(0.0, float(value) / (float(value) + unit))) for weight, value, unit in values
+        )
     if evaluation.broken_rule or evaluation.reason:
         return 4
     late = sum(each or 0 for each in evaluation.violations.values())
     unknown = sum(each is None for each in evaluation.violations.values())
     return 1 + late / (late + scale) + unknown / (unknown + 1)
-
-
-def _share(value: Fraction | None, unit: float) -> float:
-    """A value between 0 and 1."""
-    return 1 if value is None else max(0.0, float(value) / (float(value) + unit))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
@@ -11,14 +10,12 @@ from pathlib import Path
 from typing import NamedTuple
 
 from amalthea_uros.design.changes.apply import apply, check_key, describe
-from amalthea_uros.design.changes.change import Change
+from amalthea_uros.design.changes.change import Change, Sweep, compact
 from amalthea_uros.design.changes.key import UNSET, Configuration
-from amalthea_uros.design.changes.sweep import Sweep
-from amalthea_uros.design.optimize.designs import Designs, Structure
-from amalthea_uros.design.optimize.rules import CapacityRule
-from amalthea_uros.design.optimize.space import Choice, Kind, PriorityOrder, Space
-from amalthea_uros.design.space.rules import rules
-from amalthea_uros.design.space.structures import DescribedCallbacks
+from amalthea_uros.design.optimize.designs import Designs, RebuiltStructure
+from amalthea_uros.design.optimize.rules import CapacityRule, rules
+from amalthea_uros.design.optimize.space import Choice, DecisionKind, PriorityOrder, Space
+from amalthea_uros.design.optimize.structures import DescribedCallbacks
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.names import require
 from amalthea_uros.perf.activities import AccessKind, Communication, LabelAccess
@@ -27,8 +24,7 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.timing.activation.releases import known_releases
 from amalthea_uros.timing.basics.settings import MemoryModel
 from amalthea_uros.timing.jobs.executed import executed
-from amalthea_uros.timing.scheduling.allocation import allocated_cores, scheduler_cores
-from amalthea_uros.timing.scheduling.ranks import is_by_priority
+from amalthea_uros.timing.scheduling.allocation import allocated_cores, is_by_priority, scheduler_cores
 from amalthea_uros.units import time_text
 from amalthea_uros.uros.assemble import Assembly
 
@@ -51,16 +47,15 @@ OFFSET_STEPS = 10
 #: What may change unless something else is asked for.
 DEFAULT = (Vary.PERIODS, Vary.PRIORITIES)
 
-_QUANTITY = re.compile(r"[\d.]+ [^\W\d]+")
-_KINDS: Mapping[str, Kind] = {
-    "period": Kind.PERIOD,
-    "offset": Kind.OFFSET,
-    "priority": Kind.PRIORITY,
-    "core": Kind.CORE,
-    "scheduler": Kind.CORE,
-    "frequency": Kind.CLOCK,
-    "communication": Kind.COMMUNICATION,
-    "memory": Kind.MEMORY,
+_KINDS: Mapping[str, DecisionKind] = {
+    "period": DecisionKind.PERIOD,
+    "offset": DecisionKind.OFFSET,
+    "priority": DecisionKind.PRIORITY,
+    "core": DecisionKind.CORE,
+    "scheduler": DecisionKind.CORE,
+    "frequency": DecisionKind.CLOCK,
+    "communication": DecisionKind.COMMUNICATION,
+    "memory": DecisionKind.MEMORY,
 }
 
 
@@ -104,9 +99,9 @@ def design_space(
     varies_priorities = Vary.PRIORITIES in wishes.vary and not follows
     space = Space(choices=(*builder.choices(), *stated), orders=orders if varies_priorities else ())
 
-    def completed(changes: tuple[Change, ...], rebuilt: Assembly) -> Structure:
+    def completed(changes: tuple[Change, ...], rebuilt: Assembly) -> RebuiltStructure:
         other = _Builder(rebuilt, present._replace(system=rebuilt.system), wishes)
-        return Structure(
+        return RebuiltStructure(
             changes=changes,
             system=rebuilt.system,
             rules=tuple(rules(rebuilt, rebuilt.system)),
@@ -141,7 +136,7 @@ def _check_keep(keep: Iterable[str], system: System, source: DescribedCallbacks 
             check_key(system, name, key)
 
 
-class _Use(NamedTuple):
+class _LabelUse(NamedTuple):
     """A process that reads or writes a label."""
 
     process: str
@@ -202,7 +197,7 @@ class _Builder:
             releases = known_releases(process, self.system)
             if releases is not None:
                 shorter = sorted((each for each in offered if each < releases.period), reverse=True)
-                yield _choice(name, "period", Kind.PERIOD, map(time_text, [releases.period, *shorter]))
+                yield _choice(name, "period", DecisionKind.PERIOD, map(time_text, [releases.period, *shorter]))
 
     def _offsets(self) -> Iterator[Choice]:
         for name, process in self.system.processes.items():
@@ -211,7 +206,7 @@ class _Builder:
                 step = releases.period // OFFSET_STEPS
                 grid = [number * step for number in range(OFFSET_STEPS)] if step else []
                 others = [offset for offset in grid if offset != releases.offset]
-                yield _choice(name, "offset", Kind.OFFSET, map(time_text, [releases.offset, *others]))
+                yield _choice(name, "offset", DecisionKind.OFFSET, map(time_text, [releases.offset, *others]))
 
     def _cores(self) -> Iterator[Choice]:
         """Other schedulers of the same policy: by the names of their cores if each of them has one of its own."""
@@ -228,7 +223,9 @@ class _Builder:
             names = [own.name, *others]
             cores = [core for name in names if (core := self._own_core(name)) is not None]
             is_by_core = own.parent is None and len(cores) == len(names)
-            yield _choice(allocation.task, "core" if is_by_core else "scheduler", Kind.CORE, cores if is_by_core else names)
+            yield _choice(
+                allocation.task, "core" if is_by_core else "scheduler", DecisionKind.CORE, cores if is_by_core else names
+            )
 
     def _own_core(self, scheduler: str) -> str | None:
         """The only core of a scheduler, if no other one is responsible for it."""
@@ -246,7 +243,9 @@ class _Builder:
             uses = self._uses(label)
             if any(use.process != other.process for use in uses for other in uses if use.is_write > other.is_write):
                 before = describe(*self.present, [Change(label, "communication", Communication.LET)])[0].before
-                yield _choice(label, "communication", Kind.COMMUNICATION, [before, Communication.IMPLICIT, Communication.LET])
+                yield _choice(
+                    label, "communication", DecisionKind.COMMUNICATION, [before, Communication.IMPLICIT, Communication.LET]
+                )
 
     def _memories(self) -> Iterator[Choice]:
         """Other memories with known space, which all cores that need a label can access; no flash for what is written."""
@@ -267,19 +266,19 @@ class _Builder:
                     for name in memories
                     if name in reached & limited and not (is_written and memories[name].kind is MemoryKind.FLASH)
                 ]
-                yield _choice(label.name, "memory", Kind.MEMORY, [now, *others])
+                yield _choice(label.name, "memory", DecisionKind.MEMORY, [now, *others])
 
-    def _uses(self, label: str) -> Sequence[_Use]:
+    def _uses(self, label: str) -> Sequence[_LabelUse]:
         return self._uses_of_labels.get(label, ())
 
     @cached_property
-    def _uses_of_labels(self) -> Mapping[str, Sequence[_Use]]:
+    def _uses_of_labels(self) -> Mapping[str, Sequence[_LabelUse]]:
         """Which processes read and write each label."""
-        found: dict[str, dict[_Use, None]] = {}
+        found: dict[str, dict[_LabelUse, None]] = {}
         for name, process in self.system.processes.items():
             for activity in executed(process.activities, self.system):
                 if isinstance(activity, LabelAccess):
-                    use = _Use(name, activity.kind is AccessKind.WRITE)
+                    use = _LabelUse(name, activity.kind is AccessKind.WRITE)
                     found.setdefault(activity.label, {})[use] = None
         return {label: tuple(uses) for label, uses in found.items()}
 
@@ -304,8 +303,8 @@ class _Builder:
         texts = [self._shown(change) for change in offer.changes()]
         before = describe(*self.present, [Change(offer.object, offer.key, offer.values[0])])[0].before
         if before == UNSET:
-            return _choice(offer.object, offer.key, _KINDS.get(offer.key, Kind.OTHER), texts)
-        return _choice(offer.object, offer.key, _KINDS.get(offer.key, Kind.OTHER), [before, *texts])
+            return _choice(offer.object, offer.key, _KINDS.get(offer.key, DecisionKind.OTHER), texts)
+        return _choice(offer.object, offer.key, _KINDS.get(offer.key, DecisionKind.OTHER), [before, *texts])
 
     def _shown(self, change: Change) -> str:
         """The value of a change as the system shows it, so that equal values are one option."""
@@ -321,10 +320,5 @@ class _Builder:
         return name in self.wishes.keep or f"{name}.{key}" in self.wishes.keep
 
 
-def _choice(name: str, key: str, kind: Kind, options: Iterable[str]) -> Choice:
-    return Choice(object=name, key=key, kind=kind, options=tuple(dict.fromkeys(map(_compact, options))))
-
-
-def _compact(text: str) -> str:
-    """A quantity without the blank before its unit, so that equal ones have equal texts; names stay as they are."""
-    return text.replace(" ", "") if _QUANTITY.fullmatch(text) else text
+def _choice(name: str, key: str, kind: DecisionKind, options: Iterable[str]) -> Choice:
+    return Choice(object=name, key=key, kind=kind, options=tuple(dict.fromkeys(map(compact, options))))

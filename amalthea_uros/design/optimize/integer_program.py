@@ -10,7 +10,7 @@ from math import lcm
 from typing import Any
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.design.optimize.solvers.partition import Assignment, Partition
+from amalthea_uros.design.optimize.partition import Assignment, Partition
 
 #: Limit of CP-SAT's own measure of work, which does not depend on the computer.
 MAX_WORK = 60.0

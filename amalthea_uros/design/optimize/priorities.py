@@ -7,30 +7,26 @@ judged by the full analysis, chains included. Elsewhere, all orders are judged i
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import chain, islice, permutations, product
 
 from amalthea_uros.analyze.priorities.orders import Order, PriorityOrders
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.design.optimize.candidate import UNCHANGED, Candidate, candidate
+from amalthea_uros.design.optimize.judged import Judged
 from amalthea_uros.design.optimize.problem import Conclusion, Problem, SearchResult
-from amalthea_uros.design.optimize.solvers.judged import Judged, batches
-from amalthea_uros.design.optimize.space import PriorityOrder
+from amalthea_uros.design.optimize.space import UNCHANGED, Candidate, PriorityOrder, candidate
 
 #: At most this many designs are judged.
 MAX_DESIGNS = 1000
 
 
-def solve_priorities(
-    problem: Problem, designs: int = MAX_DESIGNS, ended: Callable[[], str] = lambda: ""
-) -> SearchResult | None:
+def solve_priorities(problem: Problem, designs: int = MAX_DESIGNS) -> SearchResult | None:
     """The best order of priorities on each core; None if something else may change, or orders cannot be judged one core at a time.
 
     Parameters
     ----------
-    designs : at most so many are judged
-    ended : asked between groups of designs: why to end early, "" to go on
+    designs : at most so many are judged, beside the present one
     """
     space = problem.space
     if not space.orders or any(len(choice.options) > 1 for choice in space.choices):
@@ -41,17 +37,14 @@ def solve_priorities(
         return None
     for orders in cores:
         if reason := _refutation(orders):
-            return _none(f"on {orders.core!r}, {reason}", space.size)
+            proof = f"on {orders.core!r}, {reason}"
+            return SearchResult(best=(), front=(), conclusion=Conclusion.NONE, tried=0, excluded=space.size, proof=proof)
     is_independent = all(orders.is_independent for orders in cores)
     judged = Judged(problem)
     judged.judge([UNCHANGED])
     candidates = _candidates(cores, space.orders, analysis, is_everything=not is_independent and space.size <= designs)
-    for batch in batches(islice(candidates, designs)):
-        if reason := ended():
-            return judged.concluded("", ended=reason)
-        judged.judge(batch)
-    is_complete = next(candidates, None) is None
-    if not is_complete:
+    judged.judge(islice(candidates, designs))
+    if next(candidates, None) is not None:
         return judged.concluded("", ended=f"{len(judged)} designs were judged")
     return judged.concluded(_proof(cores, is_independent, judged, space.size), excluded=space.size - len(judged))
 
@@ -75,10 +68,6 @@ def _refutation(orders: PriorityOrders) -> str:
         return ""
     order, unfitting = next(orders.fitting())
     return orders.dead_end(order, unfitting) if unfitting else ""
-
-
-def _none(proof: str, size: int) -> SearchResult:
-    return SearchResult(best=(), front=(), conclusion=Conclusion.NONE, tried=0, excluded=size, proof=proof)
 
 
 def _candidates(

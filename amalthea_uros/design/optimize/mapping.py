@@ -13,10 +13,10 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 
 from amalthea_uros._internal.plural import counted
+from amalthea_uros.design.optimize.integer_program import solve_program
+from amalthea_uros.design.optimize.judged import Judged
+from amalthea_uros.design.optimize.partition import Assignment, Partition
 from amalthea_uros.design.optimize.problem import Feasibility, Problem, SearchResult
-from amalthea_uros.design.optimize.solvers.integer_program import solve_program
-from amalthea_uros.design.optimize.solvers.judged import Judged
-from amalthea_uros.design.optimize.solvers.partition import Assignment, Partition
 
 #: Problems with at most so many assignments are solved by branch and bound.
 MAX_ASSIGNMENTS = 300_000
@@ -119,7 +119,11 @@ class BranchAndBound:
         task, *rest = tasks
         for core in self._cores(task, sets):
             extended = sets[core] | {task}
-            larger = max(value, self._load(core, extended)) if self.goal == LOAD else value + self._change(core, task)
+            larger = (
+                max(value, self._load(core, extended))
+                if self.goal == LOAD
+                else value + (self.partition.choices[task].options[0] != core)
+            )
             if (self._value is None or larger <= self._value) and self.partition.fits(core, extended):
                 self._extend(rest, {**sets, core: extended}, larger)
 
@@ -140,6 +144,3 @@ class BranchAndBound:
 
     def _load(self, core: str, tasks: frozenset[str]) -> Fraction:
         return self.partition.base(core) + sum((self.partition.load(core, task) for task in tasks), Fraction(0))
-
-    def _change(self, core: str, task: str) -> int:
-        return int(self.partition.choices[task].options[0] != core)

@@ -1,0 +1,409 @@
+"""Event models: the maximum number of events in a window (eta+), and the minimum distance of events (delta-).
+
+After K. Richter, "Compositional Scheduling Analysis Using Standard Event Models", TU Braunschweig, 2005. A window is half open: an
+event at its end does not count.
+
+First those of stimuli: periodic and sporadic events, patterns such as bursts, arrival curves, and single events. Then those that are
+derived from others: several sources, every n-th event, another unit of time, delayed events, completions of jobs.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from bisect import bisect_right
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+
+from amalthea_uros.units import Time
+
+#: Longer than any window: the distance to events that never occur.
+NEVER: Time = 2**62
+
+
+class EventModel(ABC):
+    """Events whose density is bounded."""
+
+    @abstractmethod
+    def delta_min(self, count: int) -> Time:
+        """Minimum time from the first to the last of `count` consecutive events (delta-)."""
+
+    @property
+    @abstractmethod
+    def rate(self) -> Fraction:
+        """Maximum number of events per time in the long run."""
+
+    @property
+    def max_interarrival(self) -> Time | None:
+        """Maximum time between two consecutive events; None if it is unbounded or unknown."""
+        return None
+
+    @property
+    def can_be_suppressed(self) -> bool:
+        """Whether any of the events may not occur, so that their density is bounded from above only."""
+        return False
+
+    def eta_plus(self, window: Time) -> int:
+        """Maximum number of events in a window of that length (eta+)."""
+        if window <= 0:
+            return 0
+        above = 2
+        while self.delta_min(above) < window:
+            above *= 2
+        below = above // 2
+        # delta_min(below) < window <= delta_min(above); a single event always fits.
+        while above - below > 1:
+            middle = (below + above) // 2
+            below, above = (middle, above) if self.delta_min(middle) < window else (below, middle)
+        return below
+
+
+@dataclass(frozen=True)
+class PeriodicEvents(EventModel):
+    """Periodic events with jitter and a minimum distance."""
+
+    period: Time
+    jitter: Time = 0
+    min_interarrival: Time = 0
+
+    def delta_min(self, count: int) -> Time:
+        return max(0, (count - 1) * self.min_interarrival, (count - 1) * self.period - self.jitter) if count > 1 else 0
+
+    def eta_plus(self, window: Time) -> int:
+        if window <= 0:
+            return 0
+        count = -(-(window + self.jitter) // self.period)
+        return min(count, -(-window // self.min_interarrival)) if self.min_interarrival else count
+
+    @property
+    def rate(self) -> Fraction:
+        return Fraction(1, self.period)
+
+    @property
+    def max_interarrival(self) -> Time | None:
+        return self.period + self.jitter
+
+
+@dataclass(frozen=True)
+class SporadicEvents(PeriodicEvents):
+    """Events with a minimum distance that can also be less frequent.
+
+    Attributes
+    ----------
+    longest : maximum time between two events; None if it is unknown
+    """
+
+    longest: Time | None = None
+
+    @property
+    def max_interarrival(self) -> Time | None:
+        return self.longest
+
+
+@dataclass(frozen=True)
+class ConditionalEvents(SporadicEvents):
+    """Periodic or sporadic events, each of which occurs only if a condition is true."""
+
+    @property
+    def can_be_suppressed(self) -> bool:
+        return True
+
+
+def is_strictly_periodic(model: EventModel) -> bool:
+    """Whether an event occurs in every period, with or without jitter."""
+    return isinstance(model, PeriodicEvents) and not isinstance(model, SporadicEvents)
+
+
+def can_be_dense(model: EventModel) -> bool:
+    """Whether the minimum distances are known to occur, not only bounds."""
+    return isinstance(model, PeriodicEvents) and not model.can_be_suppressed
+
+
+@dataclass(frozen=True)
+class SingleEvent(EventModel):
+    """One event."""
+
+    def delta_min(self, count: int) -> Time:
+        return 0 if count < 2 else NEVER
+
+    @property
+    def rate(self) -> Fraction:
+        return Fraction(0)
+
+
+@dataclass(frozen=True)
+class EventPattern(EventModel):
+    """A list of events that repeats with a period.
+
+    Attributes
+    ----------
+    times : ascending, within the period
+    longest_at_start : the maximum time between two events while some of the list do not occur yet
+    """
+
+    period: Time
+    times: tuple[Time, ...]
+    longest_at_start: Time = 0
+
+    def delta_min(self, count: int) -> Time:
+        if count < 2:
+            return 0
+        rounds, distances = divmod(count - 1, len(self.times))
+        return rounds * self.period + self._shortest[distances]
+
+    def eta_plus(self, window: Time) -> int:
+        if window <= 0:
+            return 0
+        rounds, rest = divmod(window - 1, self.period)
+        return rounds * len(self.times) + bisect_right(self._shortest, rest)
+
+    @cached_property
+    def _shortest(self) -> list[Time]:
+        """Minimum time of so many consecutive distances, for less than one period."""
+        twice = (*self.times, *(time + self.period for time in self.times))
+        length = len(self.times)
+        return [min(twice[i + distances] - twice[i] for i in range(length)) for distances in range(length)]
+
+    @property
+    def rate(self) -> Fraction:
+        return Fraction(len(self.times), self.period)
+
+    @property
+    def max_interarrival(self) -> Time:
+        ends = (*self.times[1:], self.times[0] + self.period)
+        return max(self.longest_at_start, *(end - start for start, end in zip(self.times, ends, strict=True)))
+
+
+@dataclass(frozen=True)
+class MinimumDistances(EventModel):
+    """Events with given minimum distances for some counts.
+
+    Attributes
+    ----------
+    distances : (count, minimum time from the first to the last of that many consecutive events)
+    """
+
+    distances: tuple[tuple[int, Time], ...]
+
+    @cached_property
+    def _densest(self) -> tuple[int, Time]:
+        """The entry that bounds the long-run rate, as (count - 1, time)."""
+        return max(((count - 1, time) for count, time in self.distances), key=lambda entry: Fraction(entry[1], entry[0]))
+
+    def delta_min(self, count: int) -> Time:
+        """Distances add up over consecutive groups of events."""
+        spacings, time = self._densest
+        # The densest entry repeats; the rest is the best combination of entries.
+        rounds, rest = divmod(max(0, count - 1), spacings)
+        return rounds * time + self._combined[rest]
+
+    @cached_property
+    def _combined(self) -> list[Time]:
+        """Minimum time of so many spacings between events, for fewer than the densest entry has."""
+        best = [0]
+        for reached in range(1, self._densest[0]):
+            usable = [(count - 1, time) for count, time in self.distances if count - 1 <= reached]
+            best.append(max((best[reached - spacing] + time for spacing, time in usable), default=best[reached - 1]))
+        return best
+
+    @property
+    def rate(self) -> Fraction:
+        spacings, time = self._densest
+        return Fraction(spacings, time) if time else Fraction(NEVER)
+
+
+@dataclass(frozen=True)
+class AggregatedEventModel(EventModel):
+    """Events of several independent sources."""
+
+    sources: tuple[EventModel, ...]
+
+    def eta_plus(self, window: Time) -> int:
+        return sum(source.eta_plus(window) for source in self.sources)
+
+    def delta_min(self, count: int) -> Time:
+        if count not in self._distances:
+            self._distances[count] = self._delta_min(count)
+        return self._distances[count]
+
+    @cached_property
+    def _distances(self) -> dict[int, Time]:
+        """Cached results; busy windows need the same ones many times."""
+        return {}
+
+    def _delta_min(self, count: int) -> Time:
+        if count <= 1 or self.eta_plus(1) >= count:
+            return 0
+        above = 1
+        while self.eta_plus(above + 1) < count:
+            above *= 2
+            if above >= NEVER:
+                return NEVER
+        below = above // 2
+        while above - below > 1:
+            middle = (below + above) // 2
+            below, above = (below, middle) if self.eta_plus(middle + 1) >= count else (middle, above)
+        return above
+
+    @property
+    def rate(self) -> Fraction:
+        return sum((source.rate for source in self.sources), Fraction(0))
+
+    @property
+    def can_be_suppressed(self) -> bool:
+        return any(source.can_be_suppressed for source in self.sources)
+
+
+def aggregated(sources: tuple[EventModel, ...]) -> EventModel:
+    """The events of all sources; the same model for a single source."""
+    return sources[0] if len(sources) == 1 else AggregatedEventModel(sources)
+
+
+@dataclass(frozen=True)
+class DerivedEvents(EventModel):
+    """Events that follow from those of another model, as many in the long run unless a subclass says otherwise."""
+
+    events: EventModel
+
+    @property
+    def rate(self) -> Fraction:
+        return self.events.rate
+
+    @property
+    def can_be_suppressed(self) -> bool:
+        return self.events.can_be_suppressed
+
+
+@dataclass(frozen=True)
+class Multiplied(DerivedEvents):
+    """Several events for each event of another model, simultaneous in the worst case."""
+
+    factor: int
+
+    def delta_min(self, count: int) -> Time:
+        return self.events.delta_min(-(-count // self.factor))
+
+    @property
+    def rate(self) -> Fraction:
+        return self.events.rate * self.factor
+
+
+@dataclass(frozen=True)
+class Downsampled(DerivedEvents):
+    """Every n-th event of another model."""
+
+    prescaler: int
+
+    def delta_min(self, count: int) -> Time:
+        return self.events.delta_min((count - 1) * self.prescaler + 1) if count > 1 else 0
+
+    @property
+    def rate(self) -> Fraction:
+        return self.events.rate / self.prescaler
+
+
+@dataclass(frozen=True)
+class Rescaled(DerivedEvents):
+    """The same events in a unit of time that is smaller by a factor."""
+
+    factor: int
+
+    def delta_min(self, count: int) -> Time:
+        return self.events.delta_min(count) * self.factor
+
+    def eta_plus(self, window: Time) -> int:
+        return self.events.eta_plus(-(-window // self.factor))
+
+    @property
+    def rate(self) -> Fraction:
+        return self.events.rate / self.factor
+
+
+def rescaled(events: EventModel, factor: int) -> EventModel:
+    """Events in a unit of time that is smaller by a factor."""
+    match events:
+        case PeriodicEvents(period, jitter, distance):
+            kinds = (ConditionalEvents, SporadicEvents, PeriodicEvents)
+            kind = next(kind for kind in kinds if isinstance(events, kind))
+            return kind(period * factor, jitter * factor, distance * factor)
+    return Rescaled(events, factor)
+
+
+@dataclass(frozen=True)
+class Thinned(DerivedEvents):
+    """Those events of another model for which a condition is true."""
+
+    def delta_min(self, count: int) -> Time:
+        return self.events.delta_min(count)
+
+    def eta_plus(self, window: Time) -> int:
+        return self.events.eta_plus(window)
+
+    @property
+    def can_be_suppressed(self) -> bool:
+        return True
+
+
+def thinned(events: EventModel) -> EventModel:
+    """Events that occur only if a condition is true: none of them is certain, and there is no maximum time between two."""
+    if isinstance(events, PeriodicEvents):
+        return ConditionalEvents(events.period, events.jitter, events.min_interarrival)
+    return Thinned(events)
+
+
+@dataclass(frozen=True)
+class Delayed(DerivedEvents):
+    """Events delayed by a varying time.
+
+    Attributes
+    ----------
+    variation : maximum minus minimum delay
+    """
+
+    variation: Time
+
+    def delta_min(self, count: int) -> Time:
+        return max(0, self.events.delta_min(count) - self.variation) if count > 1 else 0
+
+
+@dataclass(frozen=True)
+class OutputEventModel(DerivedEvents):
+    """The completions of the jobs of a task.
+
+    Jobs of a task end at least their minimum execution time apart. The q-th job of a busy window ends no later than its entry in
+    `completions`; the job `count` - 1 after it is activated no earlier than delta- and takes at least its minimum execution time.
+    That bounds the distance of two completions (S. Schliecker, J. Rox, M. Ivers, R. Ernst, "Providing accurate event models for the
+    analysis of heterogeneous multiprocessor systems", CODES+ISSS 2008).
+
+    Attributes
+    ----------
+    completions : latest completions of the jobs of the longest busy window, from its start
+    bcet : minimum execution time of a job, which is a lower bound of all response times
+    """
+
+    completions: tuple[Time, ...]
+    bcet: Time
+
+    def delta_min(self, count: int) -> Time:
+        if count < 2:
+            return 0
+        if count not in self._distances:
+            self._distances[count] = max((count - 1) * self.bcet, self._earliest(count) + self.bcet)
+        return self._distances[count]
+
+    def _earliest(self, count: int) -> Time:
+        """Minimum time from the latest completion of a job to the earliest activation of the one `count` - 1 after it."""
+        if isinstance(self.events, PeriodicEvents) and not self.events.jitter:
+            # All distances are equal.
+            return self.events.delta_min(count) - self._wcrt
+        ends = enumerate(self.completions, start=1)
+        return min(self.events.delta_min(job + count - 1) - end for job, end in ends)
+
+    @cached_property
+    def _wcrt(self) -> Time:
+        return max(end - self.events.delta_min(job) for job, end in enumerate(self.completions, start=1))
+
+    @cached_property
+    def _distances(self) -> dict[int, Time]:
+        """Cached results; busy windows need the same ones many times."""
+        return {}
