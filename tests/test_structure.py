@@ -44,7 +44,7 @@ LINES = {
     "timing": 5080,
     "trace": 4828,
     "units": 164,
-    "uros": 5902,
+    "uros": 5881,
     "validate": 3476,
     "xmi": 8635,
 }

@@ -12,12 +12,12 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.hardware import HardwareSection
 from amalthea_uros.units import Time
+from amalthea_uros.uros.application.entities import Initialisation, initialisation
 from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.application.serving import placement
 from amalthea_uros.uros.assembly.context import AssemblyContext
 from amalthea_uros.uros.assembly.hardware import controller_of
 from amalthea_uros.uros.assembly.planned import PriorityScale
-from amalthea_uros.uros.initialisation import Initialisation, initialisation
 from amalthea_uros.uros.memory import MemoryDemand, check_memory, memory_of
 from amalthea_uros.uros.middleware.options import COUNTED, Option
 from amalthea_uros.uros.middleware.profile import Profile

@@ -2,34 +2,48 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Mapping as AbstractMapping
 from dataclasses import replace
 
-from amalthea_uros.perf.constraints import Constraints
+from amalthea_uros._internal.similar import Suggestions
+from amalthea_uros.diagnostics import Location
+from amalthea_uros.perf.activities import AccessKind, LabelAccess, walk
+from amalthea_uros.perf.constraints import (
+    Bound,
+    Constraints,
+    JitterLimit,
+    Limit,
+    Requirement,
+    RequirementSeverity,
+    TimeLimit,
+    TimeMetric,
+)
 from amalthea_uros.perf.events import Events
-from amalthea_uros.perf.mapping import Mapping
+from amalthea_uros.perf.mapping import Mapping, Placement
 from amalthea_uros.perf.software import Label, Software
 from amalthea_uros.perf.stimuli import Stimuli
 from amalthea_uros.perf.system import System
+from amalthea_uros.spec import requirements as spec
 from amalthea_uros.timing.dataflow.links import Dataflow
+from amalthea_uros.units import DataSize
 from amalthea_uros.uros.application.callbacks import Callback
+from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.assembly.context import AssemblyContext
-from amalthea_uros.uros.chain_members import Topics, chain_elements
+from amalthea_uros.uros.chain_members import ChainElement, Topics, chain_elements
 from amalthea_uros.uros.chains import ChainBuilder
 from amalthea_uros.uros.executors.activation import with_triggered_iterations
 from amalthea_uros.uros.executors.handles import deadlines
-from amalthea_uros.uros.labels import check_misspelled_labels, labels_of, placements
 from amalthea_uros.uros.network.network import PlannedNetwork, with_network
 from amalthea_uros.uros.os import check_shared_priorities, isr_allocations, os_of, task_allocations
-from amalthea_uros.uros.requirements import requirements
 from amalthea_uros.uros.transports.messages import waits_outside
 
 
 def assembled_system(context: AssemblyContext, callbacks: Sequence[Callback], network: PlannedNetwork | None) -> System:
     """The system of all that has been added to the context."""
     description, notes = context.description, context.notes
-    check_misspelled_labels(description, context.runnables, notes)
-    labels = labels_of(description, callbacks, context.runnables)
+    _check_misspelled_labels(context)
+    labels = _labels(context, callbacks)
     notes.unique("label or channel", ((item.name, item.origin) for item in (*labels, *context.channels.values())))
     elements = chain_elements(context, callbacks)
     system = with_triggered_iterations(with_network(_without_demands(context, labels), network, context))
@@ -38,7 +52,7 @@ def assembled_system(context: AssemblyContext, callbacks: Sequence[Callback], ne
     check_shared_priorities(system, context.tasks, notes, context.priority_scale)
     chains = ChainBuilder(elements, Topics.of(callbacks, system.network), Dataflow(system), notes)
     limits = chains.add_all(description.chains)
-    demanded = (*requirements(description.requirements, elements, notes), *deadlines(context.executors, callbacks))
+    demanded = (*_requirements(description.requirements, elements, notes), *deadlines(context.executors, callbacks))
     return replace(
         system,
         events=Events(events=tuple(chains.events.values()), chains=tuple(chains.chains.values())),
@@ -62,7 +76,108 @@ def _without_demands(context: AssemblyContext, labels: Sequence[Label]) -> Syste
         mapping=Mapping(
             tasks=tuple(task_allocations(context)),
             isrs=tuple(isr_allocations(context)),
-            placements=tuple(placements(labels, context.description, context.controller, context.notes)),
+            placements=tuple(_placements(labels, context)),
         ),
         executors=tuple(context.executors),
     )
+
+
+def _labels(context: AssemblyContext, callbacks: Sequence[Callback]) -> tuple[Label, ...]:
+    """All labels that are defined or accessed; one that is only accessed has the size of a word."""
+    sizes = {name: (label.size, label.location()) for name, label in context.description.labels.items()}
+    for callback in callbacks:
+        if callback.buffer is not None and callback.incoming is not None:
+            sizes.setdefault(callback.buffer, (callback.incoming.size, callback.origin))
+    for access, origin in _accesses(context):
+        sizes.setdefault(access.label, (_WORD, origin))
+    return tuple(Label(name=name, size=size, origin=origin) for name, (size, origin) in sizes.items())
+
+
+_WORD: DataSize = 32
+
+
+def _accesses(context: AssemblyContext) -> Iterator[tuple[LabelAccess, Location | None]]:
+    for runnable in context.runnables.values():
+        for activity in walk(runnable.activities):
+            if isinstance(activity, LabelAccess):
+                yield activity, runnable.origin
+
+
+def _placements(labels: Iterable[Label], context: AssemblyContext) -> Iterator[Placement]:
+    """The memory of each label."""
+    controller = context.controller
+    for label in labels:
+        section = context.description.labels.get(label.name)
+        memory = section.memory if section and section.memory else controller.label_memory
+        if section and section.memory and section.memory not in controller.memories:
+            context.notes.undefined("memory", section.memory, controller.memories, section.location("memory"))
+        elif memory is not None:
+            yield Placement(element=label.name, memory=memory)
+
+
+def _check_misspelled_labels(context: AssemblyContext) -> None:
+    """Report labels that are only read and whose name is similar to one that is only written: probably a typing error."""
+    readers: dict[str, Location | None] = {}
+    written = set()
+    for access, origin in _accesses(context):
+        if access.kind is AccessKind.READ:
+            readers.setdefault(access.label, origin)
+        else:
+            written.add(access.label)
+    suggestions, defined = Suggestions(), context.description.labels.keys()
+    for name, origin in readers.items():
+        if name in written or name in defined:
+            continue
+        if near := suggestions.nearest(name, written - readers.keys() - defined, cutoff=0.8):
+            message = f"label {name!r} is read but never written, and {near!r} is written but never read"
+            context.notes.warning("APP008", message, origin, f"Did you mean {near!r}? If not, define both under 'labels'.")
+
+
+_METRICS = {
+    "response_time": TimeMetric.RESPONSE_TIME,
+    "net_execution_time": TimeMetric.NET_EXECUTION_TIME,
+    "gross_execution_time": TimeMetric.GROSS_EXECUTION_TIME,
+    "start_delay": TimeMetric.START_DELAY,
+    "start_to_start": TimeMetric.START_TO_START,
+    "end_to_end": TimeMetric.END_TO_END,
+}
+
+
+def _requirements(
+    sections: Iterable[spec.RequirementSection], elements: AbstractMapping[str, ChainElement], notes: Notes
+) -> Iterator[Requirement]:
+    """The requirements of the description, one for each limit."""
+    for section in sections:
+        element = elements.get(section.process)
+        if element is None:
+            notes.undefined("process or runnable", section.process, elements, section.location("process"))
+            continue
+        yield from _limits(section, element)
+
+
+def _limits(section: spec.RequirementSection, element: ChainElement) -> Iterator[Requirement]:
+    for name, limit, origin in _stated(section):
+        yield Requirement(
+            name=name,
+            process=element.process if element.runnable is None else None,
+            runnable=element.runnable,
+            limit=limit,
+            severity=RequirementSeverity(section.severity) if section.severity else None,
+            origin=origin,
+        )
+
+
+def _stated(section: spec.RequirementSection) -> Iterator[tuple[str, Limit, Location | None]]:
+    """Each limit with its name, which all limits of one requirement can share, and where it is stated."""
+    for key, metric in _METRICS.items():
+        limits: spec.LimitsSection | None = getattr(section, key)
+        if limits is None:
+            continue
+        name = section.name or f"{section.process}_{key}"
+        if limits.max is not None:
+            yield name, TimeLimit(metric=metric, value=limits.max), limits.location()
+        if limits.min is not None:
+            yield f"{name}_least", TimeLimit(metric=metric, value=limits.min, bound=Bound.LOWER), limits.location()
+    if section.jitter is not None:
+        name = section.name or f"{section.process}_{section.jitter.of}_jitter"
+        yield name, JitterLimit(metric=_METRICS[section.jitter.of], value=section.jitter.max), section.jitter.location()

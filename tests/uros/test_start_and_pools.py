@@ -4,7 +4,7 @@ import pytest
 
 from amalthea_uros.units import MILLISECOND as MS
 from amalthea_uros.units import parse_time
-from amalthea_uros.uros.initialisation import CreatedEntity, response_cycles
+from amalthea_uros.uros.application.entities import CreatedEntity, response_cycles
 
 APP = """
     amuros: 1

@@ -8,8 +8,8 @@ from amalthea_uros.perf.executors import Executor
 from amalthea_uros.report.fields.declaration import declare
 from amalthea_uros.services.build import BuildResult
 from amalthea_uros.services.generate import GenerateResult, MetaCheck
+from amalthea_uros.uros.application.entities import Initialisation
 from amalthea_uros.uros.generated_options import values_of
-from amalthea_uros.uros.initialisation import Initialisation
 from amalthea_uros.uros.memory import MemoryDemand
 
 

@@ -10,8 +10,8 @@ from amalthea_uros.report.wording.cells import activation_text
 from amalthea_uros.report.writers.terminal import Terminal
 from amalthea_uros.services.build import BuildResult
 from amalthea_uros.units import percent_text, time_text
+from amalthea_uros.uros.application.entities import Initialisation
 from amalthea_uros.uros.assemble import Assembly
-from amalthea_uros.uros.initialisation import Initialisation
 from amalthea_uros.uros.memory import MemoryDemand
 from amalthea_uros.uros.middleware.options import Option, OptionRole
 

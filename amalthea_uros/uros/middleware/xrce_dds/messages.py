@@ -14,7 +14,7 @@ from itertools import repeat
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.spec.application import Application, NodeSection
 from amalthea_uros.units import DataSize
-from amalthea_uros.uros.application.messages import MessageKind
+from amalthea_uros.uros.application.messages import SENT, MessageKind
 from amalthea_uros.uros.middleware.profile import MessagePart, Profile, whole_bytes
 from amalthea_uros.uros.middleware.xrce_dds.build import XrceBuild
 
@@ -24,8 +24,6 @@ _EXTRA = {
     MessageKind.RESPONSE_OUT: "sample_identity",
     MessageKind.RESPONSE_IN: "reply_header",
 }
-#: What the controller sends.
-_SENT = (MessageKind.PUBLICATION, MessageKind.REQUEST_OUT, MessageKind.RESPONSE_OUT)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,7 +37,7 @@ class MessageContent(Brief):
     @property
     def incoming(self) -> bool:
         """Whether it arrives."""
-        return self.kind not in _SENT
+        return self.kind not in SENT
 
 
 def contents_of(application: Application) -> list[MessageContent]:
@@ -73,35 +71,37 @@ def _messages(node: NodeSection) -> Iterator[tuple[MessageKind, DataSize, str]]:
 
 
 @dataclass(frozen=True, slots=True)
-class MessageLayout:
+class MessageLayout(Profile):
     """The lengths of messages in bytes, by the figures of a profile and the build options of a description."""
 
-    profile: Profile
-    build: XrceBuild
+    @property
+    def build(self) -> XrceBuild:
+        """The values of its build options."""
+        return XrceBuild(self.middleware, self.data.options)
 
     def parts(self, kind: MessageKind, content: int, *, reliable: bool) -> Sequence[MessagePart]:
         """What is sent for a message; one that cannot be sent is a single part, which is longer than the MTU allows."""
-        acknowledgement = self.profile.size("acknowledgement") if reliable else None
+        acknowledgement = self.size("acknowledgement") if reliable else None
         before, body = self.headers, self.payload(kind, content)
         is_whole = before + body <= self.capacity(reliable=True)
-        if not reliable or is_whole or body > self.profile.size("longest_payload"):
+        if not reliable or is_whole or body > self.size("longest_payload"):
             return (MessagePart(length=before + body, acknowledgement=acknowledgement),)
         most = max(1, self.fragment)
-        full, rest = divmod(self.profile.size("submessage_header") + body, most)
+        full, rest = divmod(self.size("submessage_header") + body, most)
         lengths = [*repeat(most, full), *([rest] if rest else [])]
         return tuple(MessagePart(length=before + length, acknowledgement=acknowledgement) for length in lengths)
 
-    def largest_content(self, kind: MessageKind, *, reliable: bool, waits: bool) -> int:
+    def largest_content(self, kind: MessageKind, *, reliable: bool) -> int:
         """The longest content of a message; 0 if not even an empty one can be sent."""
         payload = self.capacity(reliable=reliable) - self.headers
         if reliable:
-            payload = max(payload, self._longest_fragmented(kind, waits))
+            payload = max(payload, self._longest_fragmented(kind))
         alignment = self._alignment(kind)
         return max(0, payload // alignment * alignment - self._fixed(kind))
 
     def least_mtu(self, contents: Iterable[MessageContent]) -> int:
         """The smallest MTU for all messages: whole ones if they are best effort; a fragment needs room for more than its headers."""
-        smallest = self.profile.size("buffer_header") + self.headers + 1
+        smallest = self.size("buffer_header") + self.headers + 1
         return max((smallest if each.reliable else self._whole(each) for each in contents), default=0)
 
     def fragments(self, content: MessageContent) -> int | None:
@@ -109,12 +109,12 @@ class MessageLayout:
         whole = self._whole(content)
         if whole <= self.capacity(reliable=True):
             return 1
-        return -(-(whole - self.profile.size("message_header")) // self.fragment) if self.fragment > 0 else None
+        return -(-(whole - self.size("message_header")) // self.fragment) if self.fragment > 0 else None
 
     @property
     def headers(self) -> int:
         """The headers of a message and its submessage."""
-        return self.profile.size("message_header") + self.profile.size("submessage_header")
+        return self.size("message_header") + self.size("submessage_header")
 
     @property
     def fragment(self) -> int:
@@ -123,7 +123,7 @@ class MessageLayout:
 
     def capacity(self, *, reliable: bool) -> int:
         """The longest message that is not cut into fragments."""
-        return self.build.mtu - (self.profile.size("buffer_header") if reliable else 0)
+        return self.build.mtu - (self.size("buffer_header") if reliable else 0)
 
     def payload(self, kind: MessageKind, content: int) -> int:
         """The payload of the submessage, aligned."""
@@ -133,24 +133,24 @@ class MessageLayout:
     def _whole(self, content: MessageContent) -> int:
         return self.headers + self.payload(content.kind, content.length)
 
-    def _longest_fragmented(self, kind: MessageKind, waits: bool) -> int:
+    def _longest_fragmented(self, kind: MessageKind) -> int:
         """The longest payload in fragments: as many as there are buffers, or any number if full buffers can be emptied in between.
 
         That is not possible in builds for several threads: see `uxr_prepare_output_stream_fragmented`.
         """
-        if kind in _SENT and waits and not self.profile.middleware.multithread:
-            return self.profile.size("longest_payload")
+        if kind in SENT and self.sending.waits and not self.middleware.multithread:
+            return self.size("longest_payload")
         received, sent = self.build.histories
-        history = sent if kind in _SENT else received
-        return max(1, self.fragment) * history - self.profile.size("submessage_header")
+        history = sent if kind in SENT else received
+        return max(1, self.fragment) * history - self.size("submessage_header")
 
     def _fixed(self, kind: MessageKind) -> int:
         """The part of the payload that is not content; all headers together are what the description states as `overhead`."""
-        transport = self.profile.middleware.transport
+        transport = self.middleware.transport
         if transport.states("overhead"):
             return whole_bytes(transport.overhead) - self.headers
-        return self.profile.size("object") + (self.profile.size(_EXTRA[kind]) if kind in _EXTRA else 0)
+        return self.size("object") + (self.size(_EXTRA[kind]) if kind in _EXTRA else 0)
 
     def _alignment(self, kind: MessageKind) -> int:
-        is_aligned = kind in _SENT and not self.profile.middleware.transport.states("overhead")
-        return max(1, self.profile.size("alignment")) if is_aligned else 1
+        is_aligned = kind in SENT and not self.middleware.transport.states("overhead")
+        return max(1, self.size("alignment")) if is_aligned else 1

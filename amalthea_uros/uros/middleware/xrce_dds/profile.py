@@ -20,8 +20,8 @@ from amalthea_uros.units import MILLISECOND, Time
 from amalthea_uros.uros.application.entities import Entities, entities_of
 from amalthea_uros.uros.application.messages import MessageKind
 from amalthea_uros.uros.middleware.options import Option, OptionRow
-from amalthea_uros.uros.middleware.profile import Heartbeat, MemoryUse, MessagePart, Profile, Sending
-from amalthea_uros.uros.middleware.xrce_dds.build import XrceBuild, rows
+from amalthea_uros.uros.middleware.profile import Heartbeat, MemoryUse, Sending
+from amalthea_uros.uros.middleware.xrce_dds.build import rows
 from amalthea_uros.uros.middleware.xrce_dds.messages import MessageLayout, contents_of
 
 #: Bytes of a slot for a received message, besides its buffer.
@@ -40,18 +40,8 @@ _ENTITIES = {
 
 
 @dataclass(frozen=True, slots=True)
-class XrceDds(Profile):
+class XrceDds(MessageLayout):
     """Micro XRCE-DDS, or a middleware of the kind with other figures."""
-
-    @property
-    def build(self) -> XrceBuild:
-        """The values of its build options."""
-        return XrceBuild(self.middleware, self.data.options)
-
-    @property
-    def layout(self) -> MessageLayout:
-        """The lengths of its messages."""
-        return MessageLayout(self, self.build)
 
     @property
     def slots(self) -> int:
@@ -92,10 +82,6 @@ class XrceDds(Profile):
         """What is known of its build options."""
         return rows()
 
-    def parts(self, kind: MessageKind, content: int, *, reliable: bool) -> Sequence[MessagePart]:
-        """What is sent for a message."""
-        return self.layout.parts(kind, content, reliable=reliable)
-
     def times_out_after(self, kind: MessageKind, content: int, *, reliable: bool) -> Time | None:
         """Time after which the sender of a message stops waiting; None if it does not wait.
 
@@ -107,10 +93,6 @@ class XrceDds(Profile):
         flushes = -(-len(self.parts(kind, content, reliable=True)) // self.buffers) - 1
         return how.timeout + flushes * (self.data.sending.flush_timeout or how.timeout)
 
-    def largest_content(self, kind: MessageKind, *, reliable: bool) -> int:
-        """The longest content that can be sent or received."""
-        return self.layout.largest_content(kind, reliable=reliable, waits=self.sending.waits)
-
     def limiting_options(self, *, reliable: bool) -> Sequence[str]:
         """The build options that limit the content of messages."""
         option = self.build.mtu_option
@@ -119,7 +101,7 @@ class XrceDds(Profile):
 
     def options(self, application: Application) -> Sequence[Option]:
         """Its build options."""
-        return tuple(_options(application, self.layout))
+        return tuple(_options(application, self))
 
     def memory(self, application: Application) -> Sequence[MemoryUse]:
         """Its static memory with the options of the description."""
