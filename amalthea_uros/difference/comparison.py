@@ -13,13 +13,19 @@ from enum import StrEnum
 from typing import TYPE_CHECKING, Any
 
 from amalthea_uros._internal.garbage import paused_garbage_collection
-from amalthea_uros.difference.alignment import increasing
-from amalthea_uros.difference.fingerprint import Fingerprints, is_sequence, unknown_content
+from amalthea_uros.difference.fingerprint import Fingerprints, UnsetAttributes, is_sequence, unknown_content
 from amalthea_uros.difference.matching import ElementMatching
-from amalthea_uros.difference.names import ElementNames, has_identity
-from amalthea_uros.difference.parts import PartsMatcher, Side
-from amalthea_uros.difference.unset import UnsetAttributes
-from amalthea_uros.difference.value_text import UNSET, is_inline, label, readable_name, shortened, value_text
+from amalthea_uros.difference.names import (
+    UNSET,
+    ElementNames,
+    has_identity,
+    is_inline,
+    label,
+    readable_name,
+    shortened,
+    value_text,
+)
+from amalthea_uros.difference.parts import PartsMatcher, Side, increasing
 from amalthea_uros.metamodel.classes_base import Amalthea
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.features import ElementFeature, features_of

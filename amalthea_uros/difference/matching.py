@@ -12,8 +12,8 @@ from amalthea_uros.metamodel.features import features_of
 if TYPE_CHECKING:
     from collections.abc import Callable, Hashable, Iterable
 
+    from amalthea_uros.difference.fingerprint import UnsetAttributes
     from amalthea_uros.difference.names import ElementNames, Token
-    from amalthea_uros.difference.unset import UnsetAttributes
 
 Pair = tuple[Element, Element]
 

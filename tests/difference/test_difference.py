@@ -8,8 +8,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from amalthea_uros.difference.alignment import align, increasing
 from amalthea_uros.difference.comparison import ChangeKind, ModelChange, difference
+from amalthea_uros.difference.parts import align, increasing
 from amalthea_uros.metamodel.classes import (
     ActivityGraph,
     Amalthea,

@@ -13,7 +13,7 @@ from amalthea_uros.errors import WriteError
 from amalthea_uros.metamodel.element import Element, extras_if_any
 from amalthea_uros.metamodel.model import Document
 from amalthea_uros.metamodel.naming import place
-from amalthea_uros.xmi.emf import refusals
+from amalthea_uros.xmi.emf import problems
 from amalthea_uros.xmi.emf.header import ModelHeader, NotAModelError, read_header
 from amalthea_uros.xmi.emf.plan import TYPE_PREFIX, ClassPlan, FeaturePlan
 from amalthea_uros.xmi.emf.serializer import EmfSerializer, tag_of
@@ -49,7 +49,7 @@ def check_read_back(text: str, document: Document, serializer: EmfSerializer, me
     WriteError : reading the text would not give the same model.
     """
     comparison = _ReadBackComparison(document, serializer, merger)
-    if refusals.lacks_namespace(text):
+    if problems.lacks_namespace(text):
         comparison.refuse(document.root, "the prefix 'xsi' would not be declared")
     parser = comparison.parser
     parser.StartElementHandler, parser.EndElementHandler = comparison.start, comparison.end

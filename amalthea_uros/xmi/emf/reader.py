@@ -20,13 +20,13 @@ from amalthea_uros.metamodel.containment import ContainmentList
 from amalthea_uros.metamodel.element import Element, extras_of
 from amalthea_uros.metamodel.model import Document
 from amalthea_uros.metamodel.source import Prefixes, SourceText
-from amalthea_uros.xmi.emf import refusals
+from amalthea_uros.xmi.emf import problems
 from amalthea_uros.xmi.emf.escape import WHITE_SPACE, escape_text
 from amalthea_uros.xmi.emf.files import FileText
-from amalthea_uros.xmi.emf.finding_collector import CollectedFinding, FindingCollector
 from amalthea_uros.xmi.emf.handlers import Handlers, connect, disconnect
 from amalthea_uros.xmi.emf.header import XSI_NAMESPACE, ModelHeader, NotAModelError, read_header
 from amalthea_uros.xmi.emf.plan import TYPE_PREFIX, ClassPlan, FeaturePlan, plans, reference_texts
+from amalthea_uros.xmi.emf.problems import CollectedFinding, FindingCollector
 
 _KEPT = "Unknown content is ignored, but preserved when the file is saved."
 
@@ -195,8 +195,8 @@ class _ModelReader:
             self.header = header = read_header(name, attributes)
         except NotAModelError as error:
             raise self.refuse(error.rule, error.message, error.help) from None
-        if refusals.lacks_namespace(self.content.text):
-            raise refusals.undeclared_prefix(self.path, self.content.text, self.offset, "xsi", XSI_NAMESPACE)
+        if problems.lacks_namespace(self.content.text):
+            raise problems.undeclared_prefix(self.path, self.content.text, self.offset, "xsi", XSI_NAMESPACE)
         if header.version_note:
             added = "Additions of that version are preserved when the file is saved, but ignored otherwise."
             self.report("XMI007", Severity.WARNING, header.version_note, added)
@@ -219,7 +219,7 @@ class _ModelReader:
         foreign_prefix = None if header.type_prefix == TYPE_PREFIX else header.type_prefix
         elements, add_element, add_start, add_end = self.elements, self.elements.append, self.starts.append, self.ends.append
         add_referable, add_id, add_reference = self.referables.append, self.xmi_ids.append, self.references.append
-        pending_extras, max_depth, max_references = self.pending_extras, refusals.MAX_DEPTH, MODEL_REFERENCES
+        pending_extras, max_depth, max_references = self.pending_extras, problems.MAX_DEPTH, MODEL_REFERENCES
 
         def start(name: str, attributes: dict[str, str]) -> None:
             parent, parent_plan, _, held = stack[-1]
@@ -460,15 +460,15 @@ class _ModelReader:
         self.collector.add(CollectedFinding(rule, severity, message, help_text, self.offset, attribute))
 
     def refuse(self, rule: str, message: str, help_text: str) -> ReadError:
-        return refusals.refusal(self.path, self.content.text, self.offset, rule, message, help_text)
+        return problems.refusal(self.path, self.content.text, self.offset, rule, message, help_text)
 
     def refuse_doctype(self, *_declaration: Any) -> None:
-        raise refusals.has_doctype(self.path, self.content.text, self.offset)
+        raise problems.has_doctype(self.path, self.content.text, self.offset)
 
     def too_deep(self) -> ReadError:
-        return refusals.too_deep(self.path, self.content.text, self.offset)
+        return problems.too_deep(self.path, self.content.text, self.offset)
 
     def malformed(self, error: expat.ExpatError) -> ReadError:
         held = next(((frame[0], frame[2]) for frame in reversed(self.stack) if frame[0] is not None), None)
         open_element = (type(held[0]).__name__, self.starts[held[1]]) if held else None
-        return refusals.malformed(self.path, self.content.text, error, self.parser.ErrorByteIndex, open_element)
+        return problems.malformed(self.path, self.content.text, error, self.parser.ErrorByteIndex, open_element)

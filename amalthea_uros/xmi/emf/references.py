@@ -20,8 +20,8 @@ from amalthea_uros.metamodel.containment import ReferenceList
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Document, Spelling
 from amalthea_uros.metamodel.naming import TYPE_MARK, decode, encode, has_prefix, unique_name
-from amalthea_uros.xmi.emf.finding_collector import location
 from amalthea_uros.xmi.emf.plan import FeaturePlan, plans
+from amalthea_uros.xmi.emf.problems import location
 from amalthea_uros.xmi.emf.reader import PendingReference, ReadResult
 
 #: Of objects with the same name, so many are listed.

@@ -17,8 +17,8 @@ from amalthea_uros.metamodel.versions import NAMESPACE_PREFIX, version_key
 from amalthea_uros.xmi.emf.escape import escape
 from amalthea_uros.xmi.emf.header import XMI_NAMESPACE, XSI_NAMESPACE
 from amalthea_uros.xmi.emf.plan import ClassPlan, FeaturePlan
+from amalthea_uros.xmi.emf.problems import MAX_DEPTH
 from amalthea_uros.xmi.emf.read_back import check_read_back
-from amalthea_uros.xmi.emf.refusals import MAX_DEPTH
 from amalthea_uros.xmi.emf.serializer import Child, ChildPart, EmfSerializer, KeptContent, WritePlan, used_prefixes
 from amalthea_uros.xmi.emf.source_merger import SourceMerger
 

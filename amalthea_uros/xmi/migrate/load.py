@@ -24,8 +24,7 @@ from amalthea_uros.xmi.migrate.steps import DOWN
 from amalthea_uros.xmi.tree.link import read_set
 from amalthea_uros.xmi.tree.model_set import ModelSet, Tree
 from amalthea_uros.xmi.tree.notes import MigrationChange, Note, StepNotes
-from amalthea_uros.xmi.tree.tree_reader import read_trees
-from amalthea_uros.xmi.tree.write import tree_text
+from amalthea_uros.xmi.tree.results import read_trees, tree_text
 
 
 class MigratedSet:

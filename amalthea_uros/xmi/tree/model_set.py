@@ -10,7 +10,7 @@ from pathlib import Path
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.metamodel.source import SourceText
 from amalthea_uros.xmi.emf.files import FileText
-from amalthea_uros.xmi.emf.finding_collector import location
+from amalthea_uros.xmi.emf.problems import location
 from amalthea_uros.xmi.tree.node import Node, NodeIndex, all_below
 from amalthea_uros.xmi.tree.notes import Postponed, StepNotes
 

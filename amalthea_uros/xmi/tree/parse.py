@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 from xml.parsers import expat
 
-from amalthea_uros.xmi.emf import refusals
+from amalthea_uros.xmi.emf import problems
 from amalthea_uros.xmi.emf.files import FileText
 from amalthea_uros.xmi.emf.handlers import Handlers, connect, disconnect
 from amalthea_uros.xmi.emf.header import XMI_NAMESPACE, XSI_NAMESPACE
@@ -103,7 +103,7 @@ class _NodeParser:
         except expat.ExpatError as error:
             held = next((node for node in reversed(self.stack) if node is not None), None)
             place = (held.type or held.tag, self.origins.starts[held.origin]) if held else None
-            raise refusals.malformed(self.path, self.content.text, error, parser.ErrorByteIndex, place) from None
+            raise problems.malformed(self.path, self.content.text, error, parser.ErrorByteIndex, place) from None
         assert self.root is not None
         names = {node.tag for node in self.nodes} | {node.type for node in self.nodes}
         tree = Tree(self.path, self.content, self.version, self.root, self.prolog, self.comments, frozenset(names))
@@ -112,8 +112,8 @@ class _NodeParser:
     def start_root(self, name: str, attributes: dict[str, str]) -> None:
         prefixes = {key.partition(":")[2]: uri for key, uri in attributes.items() if key.startswith("xmlns")}
         by_namespace = {uri: prefix for prefix, uri in prefixes.items()}
-        if refusals.lacks_namespace(self.content.text):
-            raise refusals.undeclared_prefix(self.path, self.content.text, self.offset, "xsi", XSI_NAMESPACE)
+        if problems.lacks_namespace(self.content.text):
+            raise problems.undeclared_prefix(self.path, self.content.text, self.offset, "xsi", XSI_NAMESPACE)
         self.xsi_type = f"{by_namespace.get(XSI_NAMESPACE, 'xsi')}:type"
         xmi = by_namespace.get(XMI_NAMESPACE, "xmi")
         self.xmi_id = f"{xmi}:id"
@@ -130,7 +130,7 @@ class _NodeParser:
 
     def start_handler(self) -> Callable[[str, dict[str, str]], None]:
         """The handler of start tags, with everything it needs in local names: it runs once per element."""
-        parser, stack, max_depth, origins = self.expat, self.stack, refusals.MAX_DEPTH, self.origins
+        parser, stack, max_depth, origins = self.expat, self.stack, problems.MAX_DEPTH, self.origins
         add_start, add_end, add_parent = origins.starts.append, origins.ends.append, origins.parents.append
         add_label, starts, add_node = origins.labels.append, origins.starts, self.nodes.append
         xsi_type, types = self.xsi_type, self.types
@@ -165,7 +165,7 @@ class _NodeParser:
                 node.comments, self.comments = self.comments, []
             stack.append(node)
             if len(stack) > max_depth:
-                raise refusals.too_deep(self.path, self.content.text, self.offset)
+                raise problems.too_deep(self.path, self.content.text, self.offset)
 
         return start
 
@@ -226,7 +226,7 @@ class _NodeParser:
             self.notes.lost(holder, "text between the elements", repr(data.strip()[:30]))
 
     def refuse_doctype(self, *_declaration: Any) -> None:
-        raise refusals.has_doctype(self.path, self.content.text, self.offset)
+        raise problems.has_doctype(self.path, self.content.text, self.offset)
 
     @property
     def offset(self) -> int:

@@ -5,7 +5,7 @@ from migration import meaning, migrated, opened
 
 from amalthea_uros.xmi.tree.node import all_below
 from amalthea_uros.xmi.tree.notes import NoteKind
-from amalthea_uros.xmi.tree.write import tree_text
+from amalthea_uros.xmi.tree.results import tree_text
 
 PRIORITY = '<schedulingParameterDefinitions name="priority" type="Integer" many="false" mandatory="true"/>'
 OSEK = '<schedulerDefinitions name="OSEK" processParameters="priority?type=SchedulingParameterDefinition"/>'

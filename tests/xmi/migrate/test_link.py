@@ -4,7 +4,7 @@ import pytest
 from itea import all_of, model, write
 from migration import migrated, opened
 
-from amalthea_uros.xmi.tree.write import tree_text
+from amalthea_uros.xmi.tree.results import tree_text
 
 UUID = "_N8EOQJLQEeWQC6k3Y09j_A"
 OTHER = "_QcnfcJLQEeWQC6k3Y09j_A"

@@ -24,7 +24,7 @@ from amalthea_uros.xmi.save import save
 from amalthea_uros.xmi.schema import validate
 from amalthea_uros.xmi.tree.link import read_set
 from amalthea_uros.xmi.tree.notes import NoteKind, StepNotes
-from amalthea_uros.xmi.tree.tree_reader import read_trees
+from amalthea_uros.xmi.tree.results import read_trees
 
 SAMPLES = sorted((ROOT / "samples").glob("*.yaml"))
 OLDER = ("2.2.0", "2.0.0", "1.2.0")

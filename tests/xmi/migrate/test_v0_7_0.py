@@ -4,7 +4,7 @@ import pytest
 from itea import all_of, messages, model, only, write
 from migration import migrated
 
-from amalthea_uros.xmi.tree.write import tree_text
+from amalthea_uros.xmi.tree.results import tree_text
 
 TARGET = "0.7.0"
 

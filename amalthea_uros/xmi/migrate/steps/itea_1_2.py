@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import partial
 
-from amalthea_uros.xmi.migrate.steps.itea_tools import is_isr, sub_models
+from amalthea_uros.xmi.migrate.steps.file_roots import is_isr, sub_models
 from amalthea_uros.xmi.migrate.steps.tools import attributes_text
 from amalthea_uros.xmi.tree.classes import local_name
 from amalthea_uros.xmi.tree.model_set import ModelSet, Step

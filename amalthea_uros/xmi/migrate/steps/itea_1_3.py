@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from functools import partial
 
-from amalthea_uros.xmi.migrate.steps.file_roots import wrap_objects
-from amalthea_uros.xmi.migrate.steps.itea_tools import SUB_MODELS, by_root, sub_model_or_new, trees_of
+from amalthea_uros.xmi.migrate.steps.file_roots import SUB_MODELS, by_root, sub_model_or_new, trees_of, wrap_objects
 from amalthea_uros.xmi.migrate.steps.tools import add_property
 from amalthea_uros.xmi.tree.classes import local_name
 from amalthea_uros.xmi.tree.model_set import ModelSet, Step, Tree

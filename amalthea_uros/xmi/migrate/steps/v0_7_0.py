@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 
-from amalthea_uros.xmi.migrate.steps.itea_tools import is_isr
+from amalthea_uros.xmi.migrate.steps.file_roots import is_isr
 from amalthea_uros.xmi.migrate.steps.tools import add_property, add_value
 from amalthea_uros.xmi.tree.classes import local_name
 from amalthea_uros.xmi.tree.model_set import ModelSet, Step

@@ -8,8 +8,7 @@ from math import ceil, floor
 
 from amalthea_uros.xmi.migrate.steps.tools import attributes_text, whole_number
 from amalthea_uros.xmi.migrate.steps.v0_9_0_clocks import Clocks, frequency_of
-from amalthea_uros.xmi.migrate.steps.v0_9_0_definitions import INSTRUCTIONS, HardwareDefinitions
-from amalthea_uros.xmi.migrate.steps.v0_9_0_shapes import is_cache
+from amalthea_uros.xmi.migrate.steps.v0_9_0_definitions import INSTRUCTIONS, HardwareDefinitions, is_cache
 from amalthea_uros.xmi.migrate.steps.v0_9_0_structures import Structures
 from amalthea_uros.xmi.tree.classes import class_of
 from amalthea_uros.xmi.tree.model_set import ModelSet, Step
@@ -310,14 +309,7 @@ STEP_0_9_0 = Step(
     change_0_8_3,
     frozenset(
         {
-            "accessPaths",
-            "coreTypes",
-            "ecus",
-            "memoryTypes",
-            "microcontrollers",
-            "networkTypes",
-            "quartzes",
-            "system",
+            *("accessPaths", "coreTypes", "ecus", "memoryTypes", "microcontrollers", "networkTypes", "quartzes", "system"),
             "RunnableInstructions",
         }
     ),

@@ -8,7 +8,7 @@ from math import isfinite
 from amalthea_uros.units import FREQUENCY
 from amalthea_uros.xmi.emf.data_types import format_double, parse_float
 from amalthea_uros.xmi.migrate.steps.tools import free_key
-from amalthea_uros.xmi.migrate.steps.v0_9_0_shapes import Shape, hash_order
+from amalthea_uros.xmi.migrate.steps.v0_9_0_definitions import Shape, hash_order
 from amalthea_uros.xmi.tree.model_set import ModelSet
 from amalthea_uros.xmi.tree.node import Node
 from amalthea_uros.xmi.tree.notes import StepNotes

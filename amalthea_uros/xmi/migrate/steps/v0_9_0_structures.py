@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from amalthea_uros.xmi.migrate.steps.tools import add_property
 from amalthea_uros.xmi.migrate.steps.v0_9_0_clocks import Clocks
-from amalthea_uros.xmi.migrate.steps.v0_9_0_shapes import Shape, is_cache, keep_reference
+from amalthea_uros.xmi.migrate.steps.v0_9_0_definitions import Shape, is_cache, keep_reference
 from amalthea_uros.xmi.tree.model_set import ModelSet
 from amalthea_uros.xmi.tree.node import Node
 from amalthea_uros.xmi.tree.notes import StepNotes
