@@ -10,41 +10,7 @@ from hypothesis import strategies as st
 
 from amalthea_uros.difference.comparison import ChangeKind, ModelChange, difference
 from amalthea_uros.difference.parts import align, increasing
-from amalthea_uros.metamodel.classes import (
-    ActivityGraph,
-    Amalthea,
-    CustomProperty,
-    DataSize,
-    DiscreteValueConstant,
-    Group,
-    HWModel,
-    HwPort,
-    HwStructure,
-    Label,
-    LabelAccess,
-    LabelAccessEnum,
-    MappingModel,
-    Namespace,
-    OperatingSystem,
-    OSModel,
-    PeriodicStimulus,
-    Preemption,
-    Runnable,
-    RunnableCall,
-    RunnableParameter,
-    SchedulingParameter,
-    SchedulingParameterDefinition,
-    Semaphore,
-    StimuliModel,
-    StringObject,
-    SWModel,
-    Task,
-    TaskAllocation,
-    TaskScheduler,
-    Ticks,
-    Time,
-)
-from amalthea_uros.metamodel.classes_common import CommonElements
+from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.model import Document, Model
 from amalthea_uros.xmi.load import load
 from amalthea_uros.xmi.save import save
@@ -52,50 +18,50 @@ from amalthea_uros.xmi.save import save
 
 def system() -> Model:
     """A small model with a bit of everything; each call gives new objects."""
-    labels = [Label(name=f"L{i}", size=DataSize(8 * (i + 1), "bit")) for i in range(4)]
+    labels = [am.Label(name=f"L{i}", size=am.DataSize(8 * (i + 1), "bit")) for i in range(4)]
     runnables = [runnable(i, labels) for i in range(4)]
-    stimuli = [PeriodicStimulus(name=f"every_{n}ms", recurrence=Time(n, "ms")) for n in (5, 10, 20)]
+    stimuli = [am.PeriodicStimulus(name=f"every_{n}ms", recurrence=am.Time(n, "ms")) for n in (5, 10, 20)]
     tasks = [
-        Task(
+        am.Task(
             name=f"T{i}",
-            preemption=Preemption.PREEMPTIVE,
+            preemption=am.Preemption.PREEMPTIVE,
             stimuli=[stimuli[i], stimuli[i + 1]],
-            activity_graph=ActivityGraph(items=[RunnableCall(runnable=r) for r in (*runnables, runnables[i])]),
-            custom_properties=[CustomProperty(key=key, value=StringObject(value=f"{key}{i}")) for key in "ab"],
+            activity_graph=am.ActivityGraph(items=[am.RunnableCall(runnable=r) for r in (*runnables, runnables[i])]),
+            custom_properties=[am.CustomProperty(key=key, value=am.StringObject(value=f"{key}{i}")) for key in "ab"],
         )
         for i in range(2)
     ]
-    scheduler = TaskScheduler(name="S")
+    scheduler = am.TaskScheduler(name="S")
     return Model.of(
-        Amalthea(
-            sw_model=SWModel(tasks=tasks, runnables=runnables, labels=labels),
-            stimuli_model=StimuliModel(stimuli=stimuli),
-            os_model=OSModel(
-                operating_systems=[OperatingSystem(name="OS", task_schedulers=[scheduler]), OperatingSystem(name="OS2")]
+        am.Amalthea(
+            sw_model=am.SWModel(tasks=tasks, runnables=runnables, labels=labels),
+            stimuli_model=am.StimuliModel(stimuli=stimuli),
+            os_model=am.OSModel(
+                operating_systems=[am.OperatingSystem(name="OS", task_schedulers=[scheduler]), am.OperatingSystem(name="OS2")]
             ),
-            mapping_model=MappingModel(task_allocation=[TaskAllocation(task=t, scheduler=scheduler) for t in tasks]),
+            mapping_model=am.MappingModel(task_allocation=[am.TaskAllocation(task=t, scheduler=scheduler) for t in tasks]),
         )
     )
 
 
-def runnable(number: int, labels: list[Label]) -> Runnable:
-    return Runnable(
+def runnable(number: int, labels: list[am.Label]) -> am.Runnable:
+    return am.Runnable(
         name=f"R{number}",
-        activity_graph=ActivityGraph(
+        activity_graph=am.ActivityGraph(
             items=[
-                LabelAccess(data=labels[number], access=LabelAccessEnum.READ),
-                Ticks(default=DiscreteValueConstant(value=100 * number)),
+                am.LabelAccess(data=labels[number], access=am.LabelAccessEnum.READ),
+                am.Ticks(default=am.DiscreteValueConstant(value=100 * number)),
             ]
         ),
     )
 
 
-def task(model: Model, name: str = "T0") -> Task:
-    return model[Task, name]
+def task(model: Model, name: str = "T0") -> am.Task:
+    return model[am.Task, name]
 
 
-def calls(*runnables: Runnable) -> ActivityGraph:
-    return ActivityGraph(items=[RunnableCall(runnable=r) for r in runnables])
+def calls(*runnables: am.Runnable) -> am.ActivityGraph:
+    return am.ActivityGraph(items=[am.RunnableCall(runnable=r) for r in runnables])
 
 
 def told(changes: list[ModelChange]) -> list[tuple[str, str, str, str, str, str]]:
@@ -120,40 +86,115 @@ def compared(tmp_path: Path, old: str, new: str, versions: tuple[str, str] = ("3
 # What is told
 
 
-def test_changed_attribute() -> None:
+def _reverse_side_by_side(model: Model) -> None:
+    """Reverse objects whose order means nothing."""
+    for collection in (model.root.sw_model.tasks, model.root.sw_model.labels, model.root.stimuli_model.stimuli):
+        collection[:] = list(reversed(collection))
+    task(model).custom_properties.append(task(model).custom_properties.pop(0))
+    model.root.mapping_model.task_allocation.append(model.root.mapping_model.task_allocation.pop(0))
+
+
+def _rename_and_refer(model: Model) -> None:
+    model[am.Runnable, "R1"].name = "Renamed"
+    model[am.Label, "L2"].name = "Renamed"
+
+
+def _change_quantities(model: Model) -> None:
+    model[am.PeriodicStimulus, "every_5ms"].recurrence = am.Time(6, "ms")
+    model[am.Label, "L0"].size = None
+
+
+def _change_properties(model: Model) -> None:
+    task(model).custom_properties.insert(0, am.CustomProperty(key="0", value=am.StringObject(value="x")))
+    task(model).custom_properties[2].value = am.StringObject(value="changed")
+
+
+def _change_allocations(model: Model) -> None:
+    model.root.mapping_model.task_allocation.reverse()
+    model.root.mapping_model.task_allocation[0].scheduler = None
+
+
+def _add_runnable(model: Model) -> None:
+    added = am.Runnable(name="New", activity_graph=calls(model[am.Runnable, "R0"]), parameters=[am.RunnableParameter(name="p")])
+    model.root.sw_model.runnables.append(added)
+
+
+def _call_earlier(model: Model) -> None:
+    items = task(model).activity_graph.items
+    items.insert(0, items.pop(3))
+
+
+#: What is done to a model -> the changes that are told: kind, class, name, feature, old, new.
+TOLD = {
+    "an attribute": (
+        lambda model: setattr(task(model), "preemption", am.Preemption.COOPERATIVE),
+        [("changed", "Task", "T0", "preemption", "preemptive", "cooperative")],
+    ),
+    "an attribute that was not set": (
+        lambda model: setattr(task(model), "preemption", None),
+        [("changed", "Task", "T0", "preemption", "preemptive", "unset")],
+    ),
+    "quantities, as values of their holders": (
+        _change_quantities,
+        [
+            ("changed", "Label", "L0", "size", "8 bit", "unset"),
+            ("changed", "PeriodicStimulus", "every_5ms", "recurrence", "5 ms", "6 ms"),
+        ],
+    ),
+    "a reference, by name": (
+        lambda model: setattr(task(model).activity_graph.items[1], "runnable", model[am.Runnable, "R3"]),
+        [("changed", "RunnableCall", "T0.activityGraph.items[1]", "runnable", "R1", "R3")],
+    ),
+    "what came to and went from references": (
+        lambda model: task(model).stimuli.__setitem__(0, model[am.PeriodicStimulus, "every_20ms"]),
+        [("changed", "Task", "T0", "stimuli", "removed every_5ms", "added every_20ms")],
+    ),
+    "an object without its parts": (_add_runnable, [("added", "Runnable", "New", "", "", "")]),
+    "a move": (
+        lambda model: model[am.OperatingSystem, "OS2"].task_schedulers.append(model[am.TaskScheduler, "S"]),
+        [("moved", "TaskScheduler", "S", "taskSchedulers", "OS", "OS2")],
+    ),
+    "no move of parts when their container is renamed": (
+        lambda model: setattr(model[am.OperatingSystem, "OS"], "name", "Other"),
+        [("changed", "OperatingSystem", "Amalthea.osModel.operatingSystems[0]", "name", "OS", "Other")],
+    ),
+    "map entries, matched by key": (
+        _change_properties,
+        [
+            ("added", "CustomProperty", "T0.customProperties[0]", "", "", "0"),
+            ("changed", "CustomProperty", "T0.customProperties[2]", "value", "b0", "changed"),
+        ],
+    ),
+    "allocations, matched by what they are about": (
+        _change_allocations,
+        [("changed", "TaskAllocation", "Amalthea.mappingModel.taskAllocation[0]", "scheduler", "S", "unset")],
+    ),
+    "the order of calls, as a change of their container": (
+        _call_earlier,
+        [("changed", "ActivityGraph", "T0.activityGraph", "items", "", "reordered RunnableCall R3")],
+    ),
+    "no order of objects that stand side by side": (_reverse_side_by_side, []),
+    "renames, and references follow": (
+        _rename_and_refer,
+        [("changed", "Runnable", "Renamed", "name", "R1", "Renamed"), ("changed", "Label", "Renamed", "name", "L2", "Renamed")],
+    ),
+}
+
+
+@pytest.mark.parametrize(("edit", "expected"), TOLD.values(), ids=TOLD)
+def test_what_is_told(edit, expected) -> None:
     old, new = system(), system()
-    task(new).preemption = Preemption.COOPERATIVE
-    (change,) = difference(old, new)
-    assert told([change]) == [("changed", "Task", "T0", "preemption", "preemptive", "cooperative")]
-    assert (change.old_element, change.new_element) == (task(old), task(new))
+    edit(new)
+    changes = difference(old, new)
+    assert told(changes) == expected
+    if expected and expected[0][1] == "Task":
+        assert (changes[0].old_element, changes[0].new_element) == (task(old), task(new))
 
 
-def test_attribute_that_was_not_set() -> None:
+def test_a_removal_is_the_opposite_of_an_addition() -> None:
     old, new = system(), system()
-    task(new).preemption = None
-    assert told(difference(old, new)) == [("changed", "Task", "T0", "preemption", "preemptive", "unset")]
-
-
-def test_quantity_is_told_as_value_of_its_holder() -> None:
-    old, new = system(), system()
-    new[PeriodicStimulus, "every_5ms"].recurrence = Time(6, "ms")
-    new[Label, "L0"].size = None
-    assert told(difference(old, new)) == [
-        ("changed", "Label", "L0", "size", "8 bit", "unset"),
-        ("changed", "PeriodicStimulus", "every_5ms", "recurrence", "5 ms", "6 ms"),
-    ]
-
-
-def test_reference_is_told_by_name() -> None:
-    old, new = system(), system()
-    task(new).activity_graph.items[1].runnable = new[Runnable, "R3"]
-    assert told(difference(old, new)) == [("changed", "RunnableCall", "T0.activityGraph.items[1]", "runnable", "R1", "R3")]
-
-
-def test_reference_list_tells_what_came_and_went() -> None:
-    old, new = system(), system()
-    task(new).stimuli[0] = new[PeriodicStimulus, "every_20ms"]
-    assert told(difference(old, new)) == [("changed", "Task", "T0", "stimuli", "removed every_5ms", "added every_20ms")]
+    _add_runnable(new)
+    assert told(difference(new, old)) == [("removed", "Runnable", "New", "", "", "")]
 
 
 def test_reference_list_in_another_order() -> None:
@@ -164,80 +205,34 @@ def test_reference_list_in_another_order() -> None:
     assert change.new in ("reordered every_5ms", "reordered every_10ms")
 
 
-def test_added_and_removed_objects_without_their_parts() -> None:
-    old, new = system(), system()
-    new.root.sw_model.runnables.append(Runnable(name="New", activity_graph=calls(new[Runnable, "R0"])))
-    assert told(difference(old, new)) == [("added", "Runnable", "New", "", "", "")]
-    assert told(difference(new, old)) == [("removed", "Runnable", "New", "", "", "")]
-
-
-def test_referable_parts_come_and_go_with_their_container() -> None:
-    old, new = system(), system()
-    new.root.sw_model.runnables.append(Runnable(name="New", parameters=[RunnableParameter(name="p")]))
-    assert told(difference(old, new)) == [("added", "Runnable", "New", "", "", "")]
-
-
-def test_moved_object() -> None:
-    old, new = system(), system()
-    new[OperatingSystem, "OS2"].task_schedulers.append(new[TaskScheduler, "S"])
-    assert told(difference(old, new)) == [("moved", "TaskScheduler", "S", "taskSchedulers", "OS", "OS2")]
-
-
 def test_moved_between_objects_with_unique_names() -> None:
     def model(holder: str) -> Model:
-        structures = [HwStructure(name=name) for name in "AB"]
-        structures["AB".index(holder)].structures.append(HwStructure(name="inner"))
-        return Model.of(Amalthea(hw_model=HWModel(structures=structures)))
+        structures = [am.HwStructure(name=name) for name in "AB"]
+        structures["AB".index(holder)].structures.append(am.HwStructure(name="inner"))
+        return Model.of(am.Amalthea(hw_model=am.HWModel(structures=structures)))
 
     assert told(difference(model("A"), model("B"))) == [("moved", "HwStructure", "inner", "structures", "A", "B")]
 
 
-def test_parts_do_not_move_when_their_container_is_renamed() -> None:
-    old, new = system(), system()
-    new[OperatingSystem, "OS"].name = "Other"
-    assert told(difference(old, new)) == [
-        ("changed", "OperatingSystem", "Amalthea.osModel.operatingSystems[0]", "name", "OS", "Other")
-    ]
-
-
-def test_map_entries_are_matched_by_key() -> None:
-    old, new = system(), system()
-    task(new).custom_properties.insert(0, CustomProperty(key="0", value=StringObject(value="x")))
-    task(new).custom_properties[2].value = StringObject(value="changed")
-    assert told(difference(old, new)) == [
-        ("added", "CustomProperty", "T0.customProperties[0]", "", "", "0"),
-        ("changed", "CustomProperty", "T0.customProperties[2]", "value", "b0", "changed"),
-    ]
-
-
 def test_map_entries_are_matched_by_the_object_that_is_their_key() -> None:
     def model(*values: tuple[str, str]) -> Model:
-        definitions = {name: SchedulingParameterDefinition(name=name) for name in ("priority", "quota")}
-        parameters = [SchedulingParameter(key=definitions[key], value=StringObject(value=value)) for key, value in values]
-        scheduler = TaskScheduler(name="S", scheduling_parameters=parameters)
-        os_model = OSModel(
+        definitions = {name: am.SchedulingParameterDefinition(name=name) for name in ("priority", "quota")}
+        parameters = [am.SchedulingParameter(key=definitions[key], value=am.StringObject(value=value)) for key, value in values]
+        scheduler = am.TaskScheduler(name="S", scheduling_parameters=parameters)
+        os_model = am.OSModel(
             scheduling_parameter_definitions=definitions.values(),
-            operating_systems=[OperatingSystem(name="OS", task_schedulers=[scheduler])],
+            operating_systems=[am.OperatingSystem(name="OS", task_schedulers=[scheduler])],
         )
-        return Model.of(Amalthea(os_model=os_model))
+        return Model.of(am.Amalthea(os_model=os_model))
 
     old, new = model(("priority", "1"), ("quota", "2")), model(("quota", "2"), ("priority", "3"))
     assert told(difference(old, new)) == [("changed", "SchedulingParameter", "S.schedulingParameters[1]", "value", "1", "3")]
 
 
-def test_allocations_are_matched_by_what_they_are_about() -> None:
-    old, new = system(), system()
-    new.root.mapping_model.task_allocation.reverse()
-    new.root.mapping_model.task_allocation[0].scheduler = None
-    assert told(difference(old, new)) == [
-        ("changed", "TaskAllocation", "Amalthea.mappingModel.taskAllocation[0]", "scheduler", "S", "unset")
-    ]
-
-
 def test_named_parts_are_matched_by_name() -> None:
     old, new = system(), system()
-    task(old).activity_graph.items = [Group(name="a"), Group(name="b")]
-    task(new).activity_graph.items = [Group(name="c", ordered=False), Group(name="a"), Group(name="b", ordered=False)]
+    task(old).activity_graph.items = [am.Group(name="a"), am.Group(name="b")]
+    task(new).activity_graph.items = [am.Group(name="c", ordered=False), am.Group(name="a"), am.Group(name="b", ordered=False)]
     assert told(difference(old, new)) == [
         ("added", "Group", "T0.activityGraph.items[0]", "", "", "c"),
         ("changed", "Group", "T0.activityGraph.items[2]", "ordered", "true", "false"),
@@ -249,75 +244,47 @@ def test_named_parts_are_matched_by_name() -> None:
 
 def many_calls(count: int) -> Model:
     model = system()
-    task(model).activity_graph.items = [RunnableCall(runnable=model[Runnable, f"R{i % 3}"]) for i in range(count)]
+    task(model).activity_graph.items = [am.RunnableCall(runnable=model[am.Runnable, f"R{i % 3}"]) for i in range(count)]
     return model
 
 
 @pytest.mark.parametrize("place", [0, 99, 100, 101, 200])
 def test_call_inserted_among_many_is_one_addition(place: int) -> None:
     old, new = many_calls(200), many_calls(200)
-    task(new).activity_graph.items.insert(place, RunnableCall(runnable=new[Runnable, "R3"]))
+    task(new).activity_graph.items.insert(place, am.RunnableCall(runnable=new[am.Runnable, "R3"]))
     assert told(difference(old, new)) == [("added", "RunnableCall", f"T0.activityGraph.items[{place}]", "", "", "R3")]
-
-
-def test_calls_in_another_order_are_a_change_of_their_container() -> None:
-    old, new = system(), system()
-    items = task(new).activity_graph.items
-    items.insert(0, items.pop(3))
-    assert told(difference(old, new)) == [
-        ("changed", "ActivityGraph", "T0.activityGraph", "items", "", "reordered RunnableCall R3")
-    ]
-
-
-def test_order_of_objects_that_stand_side_by_side_means_nothing() -> None:
-    old, new = system(), system()
-    for collection in (new.root.sw_model.tasks, new.root.sw_model.labels, new.root.stimuli_model.stimuli):
-        collection[:] = list(reversed(collection))
-    task(new).custom_properties.append(task(new).custom_properties.pop(0))
-    new.root.mapping_model.task_allocation.append(new.root.mapping_model.task_allocation.pop(0))
-    assert difference(old, new) == []
 
 
 # Renames
 
 
-def test_rename_is_one_change_and_references_follow() -> None:
-    old, new = system(), system()
-    new[Runnable, "R1"].name = "Renamed"
-    new[Label, "L2"].name = "Renamed"
-    assert told(difference(old, new)) == [
-        ("changed", "Runnable", "Renamed", "name", "R1", "Renamed"),
-        ("changed", "Label", "Renamed", "name", "L2", "Renamed"),
-    ]
-
-
 def test_renamed_objects_may_refer_to_each_other() -> None:
     old, new = system(), system()
-    new[Label, "L1"].name = "L1_new"
-    new[Runnable, "R1"].name = "R1_new"
+    new[am.Label, "L1"].name = "L1_new"
+    new[am.Runnable, "R1"].name = "R1_new"
     assert [c.feature for c in difference(old, new)] == ["name", "name"]
 
 
 def test_ambiguous_renames_are_removals_and_additions() -> None:
     old, new = system(), system()
     for model, names in ((old, "ab"), (new, "cd")):
-        model.root.sw_model.labels.extend(Label(name=name, size=DataSize(99, "bit")) for name in names)
+        model.root.sw_model.labels.extend(am.Label(name=name, size=am.DataSize(99, "bit")) for name in names)
     assert Counter(c.kind for c in difference(old, new)) == {ChangeKind.REMOVED: 2, ChangeKind.ADDED: 2}
 
 
 def test_other_content_is_no_rename() -> None:
     old, new = system(), system()
-    new[Label, "L1"].name = "Other"
-    new[Label, "Other"].constant = True
+    new[am.Label, "L1"].name = "Other"
+    new[am.Label, "Other"].constant = True
     kinds = {(c.kind.value, c.qualified_name) for c in difference(old, new) if c.class_name == "Label"}
     assert kinds == {("removed", "L1"), ("added", "Other")}
 
 
 def test_references_to_different_things_are_no_rename() -> None:
     def model(name: str, label: str, bits: int) -> Model:
-        target = Label(name=label, size=DataSize(bits, "bit"))
-        access = Runnable(name=name, activity_graph=ActivityGraph(items=[LabelAccess(data=target)]))
-        return Model.of(Amalthea(sw_model=SWModel(runnables=[access], labels=[target])))
+        target = am.Label(name=label, size=am.DataSize(bits, "bit"))
+        access = am.Runnable(name=name, activity_graph=am.ActivityGraph(items=[am.LabelAccess(data=target)]))
+        return Model.of(am.Amalthea(sw_model=am.SWModel(runnables=[access], labels=[target])))
 
     changes = difference(model("R1", "L1", 8), model("R2", "L2", 16))
     assert Counter((c.kind.value, c.class_name) for c in changes) == {
@@ -327,17 +294,19 @@ def test_references_to_different_things_are_no_rename() -> None:
 
 def test_parts_with_the_name_in_front_go_with_a_renamed_container() -> None:
     def model(board: str) -> Model:
-        structure = HwStructure(name=board, ports=[HwPort(name="eth0"), HwPort(name="eth1")])
-        return Model.of(Amalthea(hw_model=HWModel(structures=[structure])))
+        structure = am.HwStructure(name=board, ports=[am.HwPort(name="eth0"), am.HwPort(name="eth1")])
+        return Model.of(am.Amalthea(hw_model=am.HWModel(structures=[structure])))
 
     assert told(difference(model("Board"), model("Card"))) == [("changed", "HwStructure", "Card", "name", "Board", "Card")]
 
 
 def test_members_go_with_a_renamed_namespace() -> None:
     def model(name: str) -> Model:
-        namespace = Namespace(name=name)
-        labels = [Label(name="L", namespace=namespace), Label(name="M", namespace=namespace)]
-        return Model.of(Amalthea(common_elements=CommonElements(namespaces=[namespace]), sw_model=SWModel(labels=labels)))
+        namespace = am.Namespace(name=name)
+        labels = [am.Label(name="L", namespace=namespace), am.Label(name="M", namespace=namespace)]
+        return Model.of(
+            am.Amalthea(common_elements=am.CommonElements(namespaces=[namespace]), sw_model=am.SWModel(labels=labels))
+        )
 
     assert told(difference(model("old"), model("new"))) == [("changed", "Namespace", "new", "name", "old", "new")]
 
@@ -345,7 +314,7 @@ def test_members_go_with_a_renamed_namespace() -> None:
 def test_duplicate_names_are_matched_in_order() -> None:
     old, new = system(), system()
     for model, sizes in ((old, (1, 2)), (new, (1, 3))):
-        model.root.sw_model.labels.extend(Label(name="twice", size=DataSize(bits, "bit")) for bits in sizes)
+        model.root.sw_model.labels.extend(am.Label(name="twice", size=am.DataSize(bits, "bit")) for bits in sizes)
     assert told(difference(old, new)) == [("changed", "Label", "twice", "size", "2 bit", "3 bit")]
 
 
@@ -443,7 +412,7 @@ def test_attribute_that_only_one_version_knows_is_not_changed_by_its_default(tmp
 
 
 def _insert_call(model: Model, at: int) -> None:
-    task(model).activity_graph.items.insert(at % 5, RunnableCall(runnable=model[Runnable, "R0"]))
+    task(model).activity_graph.items.insert(at % 5, am.RunnableCall(runnable=model[am.Runnable, "R0"]))
 
 
 def _set(cls, name: str, feature: str, value):
@@ -452,25 +421,25 @@ def _set(cls, name: str, feature: str, value):
 
 #: Name -> what is done, and (kind, class, feature) of the one change that it is.
 EDITS = {
-    "attribute": (_set(Task, "T1", "preemption", lambda _: Preemption.COOPERATIVE), ("changed", "Task", "preemption")),
+    "attribute": (_set(am.Task, "T1", "preemption", lambda _: am.Preemption.COOPERATIVE), ("changed", "Task", "preemption")),
     "quantity": (
-        lambda m, n: setattr(m[PeriodicStimulus, "every_10ms"], "recurrence", Time(11 + n, "ms")),
+        lambda m, n: setattr(m[am.PeriodicStimulus, "every_10ms"], "recurrence", am.Time(11 + n, "ms")),
         ("changed", "PeriodicStimulus", "recurrence"),
     ),
-    "rename": (lambda m, n: setattr(m[Label, f"L{n % 4}"], "name", f"X{n}"), ("changed", "Label", "name")),
+    "rename": (lambda m, n: setattr(m[am.Label, f"L{n % 4}"], "name", f"X{n}"), ("changed", "Label", "name")),
     "reference": (
-        lambda m, _: setattr(m[Runnable, "R2"].activity_graph.items[0], "data", m.root.sw_model.labels[0]),
+        lambda m, _: setattr(m[am.Runnable, "R2"].activity_graph.items[0], "data", m.root.sw_model.labels[0]),
         ("changed", "LabelAccess", "data"),
     ),
     "call added": (_insert_call, ("added", "RunnableCall", "")),
     "call removed": (lambda m, n: task(m, "T1").activity_graph.items.pop(n % 5), ("removed", "RunnableCall", "")),
     "deep value": (
-        lambda m, n: setattr(m[Runnable, "R1"].activity_graph.items[1].default, "value", 7 + n),
+        lambda m, n: setattr(m[am.Runnable, "R1"].activity_graph.items[1].default, "value", 7 + n),
         ("changed", "DiscreteValueConstant", "value"),
     ),
-    "object added": (lambda m, _: m.root.os_model.semaphores.append(Semaphore(name="New")), ("added", "Semaphore", "")),
+    "object added": (lambda m, _: m.root.os_model.semaphores.append(am.Semaphore(name="New")), ("added", "Semaphore", "")),
     "object removed": (
-        lambda m, _: m.root.os_model.operating_systems.remove(m[OperatingSystem, "OS2"]),
+        lambda m, _: m.root.os_model.operating_systems.remove(m[am.OperatingSystem, "OS2"]),
         ("removed", "OperatingSystem", ""),
     ),
     "property removed": (lambda m, n: task(m).custom_properties.pop(n % 2), ("removed", "CustomProperty", "")),
@@ -521,7 +490,7 @@ def test_models_are_left_as_they_are() -> None:
 
 
 def test_nothing_against_everything() -> None:
-    nothing = Model([Document(Amalthea())])
+    nothing = Model([Document(am.Amalthea())])
     kinds = {c.kind for c in difference(nothing, system())}
     assert kinds == {ChangeKind.ADDED}
 
