@@ -16,6 +16,7 @@ from migration import meaning, migrated, opened
 
 from amalthea_uros.xmi.migrate.chain import migrate
 from amalthea_uros.xmi.tree.notes import NoteKind, StepNotes
+from amalthea_uros.xmi.tree.results import tree_text
 
 
 @dataclass
@@ -116,6 +117,24 @@ def test_what_is_converted_stays(step, tmp_path):
     migrate(models, target, notes)
     assert meaning(models) == expected
     assert not [note for note in notes.all if note.kind in (NoteKind.CONVERTED, NoteKind.MOVED, NoteKind.KEPT)]
+
+
+#: Steps back of which the step up restores what has no place in the older version.
+RESTORED = (("3.0.0", "2.2.0"), ("2.0.0", "1.2.0"))
+
+
+@pytest.mark.parametrize("step", [step for step in STEPS if step.versions in RESTORED], ids=lambda step: step.name)
+def test_what_a_step_back_does_not_lose_comes_back(step, tmp_path):
+    source, target = step.versions
+    newer = written(tmp_path, source, *step.before)
+    models, notes = migrated(newer, target)
+    if not any(note.kind is NoteKind.LOST for note in notes):
+        older = written(tmp_path, target, *step.before)
+        for path, tree in zip(older, models.trees, strict=True):
+            path.write_text(tree_text(tree), "utf-8")
+        restored, notes = migrated(older, source)
+        assert not any(note.kind is NoteKind.LOST for note in notes)
+        assert meaning(restored) == meaning(opened(*newer))
 
 
 @pytest.mark.parametrize("step", STEPS, ids=[step.name for step in STEPS])
