@@ -107,13 +107,6 @@ _LATENCY_TYPES = {"AgeConstraint": "Age", "ReactionConstraint": "Reaction"}
 
 def change_constraints(models: ModelSet, notes: StepNotes) -> None:
     """Change everything below constraintsModel."""
-    _rename_constraints(models, notes)
-    _remove_without_successor(models, notes)
-    for constraint in models.nodes("runnableSequencingConstraints"):
-        _change_groups(constraint, notes)
-
-
-def _rename_constraints(models: ModelSet, notes: StepNotes) -> None:
     for constraint in models.nodes("timingConstraints"):
         if constraint.type in _LATENCY_TYPES:
             constraint.attributes["type"] = _LATENCY_TYPES[constraint.type]
@@ -125,14 +118,12 @@ def _rename_constraints(models: ModelSet, notes: StepNotes) -> None:
         if constraint.type in RENAMED_CONSTRAINTS:
             notes.renamed(constraint, f"{constraint.type} -> {RENAMED_CONSTRAINTS[constraint.type]}")
     models.rename_classes(RENAMED_CONSTRAINTS)
-
-
-def _remove_without_successor(models: ModelSet, notes: StepNotes) -> None:
     removed = [node for node in models.nodes("timingConstraints", "affinityConstraints") if node.type in REMOVED_CONSTRAINTS]
     for constraint in removed:
-        message = f"{constraint.type}: there is no successor"
-        notes.kept(constraint, message, constraint.name)
+        notes.kept(constraint, f"{constraint.type}: there is no successor", constraint.name)
     remove_and_keep(removed, "0.7.1")
+    for constraint in models.nodes("runnableSequencingConstraints"):
+        _change_groups(constraint, notes)
 
 
 def _change_groups(constraint: Node, notes: StepNotes) -> None:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from amalthea_uros.xmi.migrate.steps.tools import add_property, add_value
 from amalthea_uros.xmi.tree.classes import reference_text
 from amalthea_uros.xmi.tree.model_set import ModelSet, Step
@@ -21,20 +19,16 @@ def state_conditions(models: ModelSet, notes: StepNotes) -> None:
     for switch in models.nodes("graphEntries", "runnableItems", "items"):
         if switch.type not in (_SWITCH, _RUNNABLE_SWITCH):
             continue
-        _change_switch(switch, notes)
-
-
-def _change_switch(switch: Node, notes: StepNotes) -> None:
-    labels = switch.references.pop(_PROVIDER, [])
-    text = switch.attributes.pop(_PROVIDER, None)
-    if text is not None:
-        notes.lost(switch, "mode label of a switch that is not a reference", text, _PROVIDER)
-    label = labels[0] if labels else None
-    entries = switch.all("entries")
-    if label is not None and not entries:
-        notes.lost(switch, "mode label of a switch without entries", reference_text(label), _PROVIDER)
-    for entry in entries:
-        _state_condition(entry, label, notes)
+        label = switch.target(_PROVIDER)
+        switch.references.pop(_PROVIDER, None)
+        text = switch.attributes.pop(_PROVIDER, None)
+        if text is not None:
+            notes.lost(switch, "mode label of a switch that is not a reference", text, _PROVIDER)
+        entries = switch.all("entries")
+        if label is not None and not entries:
+            notes.lost(switch, "mode label of a switch without entries", reference_text(label), _PROVIDER)
+        for entry in entries:
+            _state_condition(entry, label, notes)
 
 
 def _state_condition(entry: Node, label: Node | None, notes: StepNotes) -> None:
@@ -64,15 +58,21 @@ _OLD_NAMES = {new: old for old, new in _CLASSES.items()}
 
 _DEVIATION = "stimulusDeviation"
 
+#: Classes of stimuli -> the old and the new name of a part.
+_PARTS = {
+    "PeriodicStimulus": (_DEVIATION, "jitter"),
+    "PeriodicSyntheticStimulus": ("period", "recurrence"),
+    "RelativePeriodicStimulus": (_DEVIATION, "nextOccurrence"),
+    "SingleStimulus": ("activation", "occurrence"),
+}
+
 
 def change(models: ModelSet, notes: StepNotes) -> None:
     """Change the content of the files of AMALTHEA 0.8.2."""
     for node in models.rename_classes(_CLASSES):
         notes.renamed(node, "class renamed", f"{_OLD_NAMES[node.type]} -> {node.type}")
     for stimulus in models.parts("stimuliModel", "stimuli"):
-        kind = _KINDS.get(stimulus.type)
-        if kind is not None:
-            kind(stimulus, notes)
+        _change_stimulus(stimulus, notes)
         _keep_deviation(stimulus, _DEVIATION, "deviation of a stimulus", notes)
     for activation in models.parts("swModel", "activations"):
         if activation.type == "VariableRateActivation":
@@ -91,17 +91,26 @@ def _keep_deviation(holder: Node, tag: str, what: str, notes: StepNotes) -> None
             notes.kept(holder, what, text)
 
 
-def _rename_part(holder: Node, old: str, new: str, notes: StepNotes) -> None:
-    for part in holder.all(old):
+def _change_stimulus(stimulus: Node, notes: StepNotes) -> None:
+    if stimulus.type == "PeriodicStimulus" and ("clock" in stimulus.references or "clock" in stimulus.attributes):
+        _follow_clock(stimulus, notes)
+    old, new = _PARTS.get(stimulus.type, ("", ""))
+    for part in stimulus.all(old):
         part.tag = new
         notes.renamed(part, f"{old} -> {new}")
-
-
-def _change_periodic(stimulus: Node, notes: StepNotes) -> None:
-    if "clock" in stimulus.references or "clock" in stimulus.attributes:
-        _follow_clock(stimulus, notes)
-    else:
-        _rename_part(stimulus, _DEVIATION, "jitter", notes)
+    if stimulus.type == "RelativePeriodicStimulus" and (description := stimulus.attributes.pop("description", None)):
+        notes.lost(stimulus, "description of a sporadic stimulus", repr(description), "description")
+    elif stimulus.type == "PeriodicSyntheticStimulus":
+        for times in stimulus.all("triggerTimes"):
+            for time in times.all("timestamps"):
+                time.tag = "occurrenceTimes"
+            notes.converted(times, "triggerTimes / timestamps -> occurrenceTimes")
+            stimulus.take(times.children)
+            times.remove()
+    elif stimulus.type == "ArrivalCurveStimulus":
+        for entry in stimulus.all("entries"):
+            if entry.rename("numberOfEvents", "numberOfOccurrences"):
+                notes.renamed(entry, "numberOfEvents -> numberOfOccurrences", attribute="numberOfEvents")
 
 
 def _follow_clock(stimulus: Node, notes: StepNotes) -> None:
@@ -123,33 +132,6 @@ def _follow_clock(stimulus: Node, notes: StepNotes) -> None:
         deviation.remove()
 
 
-def _change_sporadic(stimulus: Node, notes: StepNotes) -> None:
-    _rename_part(stimulus, _DEVIATION, "nextOccurrence", notes)
-    description = stimulus.attributes.pop("description", None)
-    if description:
-        notes.lost(stimulus, "description of a sporadic stimulus", repr(description), "description")
-
-
-def _change_synthetic(stimulus: Node, notes: StepNotes) -> None:
-    _rename_part(stimulus, "period", "recurrence", notes)
-    for times in stimulus.all("triggerTimes"):
-        for time in times.all("timestamps"):
-            time.tag = "occurrenceTimes"
-        notes.converted(times, "triggerTimes / timestamps -> occurrenceTimes")
-        stimulus.take(times.children)
-        times.remove()
-
-
-def _change_single(stimulus: Node, notes: StepNotes) -> None:
-    _rename_part(stimulus, "activation", "occurrence", notes)
-
-
-def _change_arrival_curve(stimulus: Node, notes: StepNotes) -> None:
-    for entry in stimulus.all("entries"):
-        if entry.rename("numberOfEvents", "numberOfOccurrences"):
-            notes.renamed(entry, "numberOfEvents -> numberOfOccurrences", attribute="numberOfEvents")
-
-
 def _outline(node: Node) -> str:
     """What the parts of an object are, as text: `lowerBound=1ms, distribution=WeibullEstimators(pRemainPromille=0.5)`."""
     return ", ".join(f"{child.tag}={_value(child)}" for child in node.children)
@@ -162,13 +144,5 @@ def _value(node: Node) -> str:
     stated += [_outline(node)] if node.children else []
     return node.type + (f"({', '.join(stated)})" if stated else "")
 
-
-_KINDS: dict[str, Callable[[Node, StepNotes], None]] = {
-    "ArrivalCurveStimulus": _change_arrival_curve,
-    "PeriodicStimulus": _change_periodic,
-    "PeriodicSyntheticStimulus": _change_synthetic,
-    "RelativePeriodicStimulus": _change_sporadic,
-    "SingleStimulus": _change_single,
-}
 
 STEP = Step("0.8.2", "0.8.3", change, frozenset({*_CLASSES, _DEVIATION, "triggerTimes", "timestamps"}))

@@ -51,52 +51,29 @@ _TO_MEMORIES = {
 }
 
 
-class References:
-    """The conversion of references, before that of the hardware."""
-
-    def __init__(self, models: ModelSet, notes: StepNotes) -> None:
-        self.models = models
-        self.notes = notes
-
-    def convert(self) -> None:
-        """Rename the references to cores; remove those to what cannot be referred to any more."""
-        for tag, names in _TO_CORES.items():
-            for node in self.models.nodes(tag):
-                for old, new in names.items():
-                    self._convert_to_cores(node, old, new)
-        for tag, name in _TO_MEMORIES.items():
-            for node in self.models.nodes(tag):
-                self.check_memories(node, name)
-        for node in self.models.nodes("limit"):
-            self._check_hardware_context(node)
-
-    def _convert_to_cores(self, node: Node, old: str, new: str) -> None:
-        if not node.rename(old, new):
-            return
-        if old != new:
-            self.notes.renamed(node, f"{old!r} -> {new!r}", attribute=old)
-
-    def check_memories(self, node: Node, name: str) -> None:
-        """Remove references to caches."""
-        targets = node.references.get(name, ())
-        lost = dict.fromkeys(filter(is_cache, targets))
-        if lost:
-            names = ", ".join(target.name for target in lost)
-            self.notes.lost(node, f"{name!r}: caches cannot be referred to", names, name)
-            node.references[name] = [target for target in targets if target not in lost]
-            if not node.references[name]:
-                del node.references[name]
-
-    def _check_hardware_context(self, limit: Node) -> None:
+def convert_references(models: ModelSet, notes: StepNotes) -> None:
+    """Rename the references to cores, and the classes of what is in no file; remove what cannot be referred to any more."""
+    for tag, names in _TO_CORES.items():
+        for node in models.nodes(tag):
+            for old, new in names.items():
+                if node.rename(old, new) and old != new:
+                    notes.renamed(node, f"{old!r} -> {new!r}", attribute=old)
+    for tag, name in _TO_MEMORIES.items():
+        for node in models.nodes(tag):
+            targets = node.references.get(name, [])
+            lost = dict.fromkeys(filter(is_cache, targets))
+            if lost:
+                notes.lost(node, f"{name!r}: caches cannot be referred to", ", ".join(target.name for target in lost), name)
+                node.references[name] = [target for target in targets if target not in lost]
+                if not node.references[name]:
+                    del node.references[name]
+    for limit in models.nodes("limit"):
         context = limit.target("hardwareContext")
         if context is not None and class_of(context) not in ("Core", "ProcessingUnit"):
             del limit.references["hardwareContext"]
-            self.notes.lost(limit, "'hardwareContext' other than a core", context.name, "hardwareContext")
-
-    def convert_proxies(self) -> None:
-        """Rename the classes of what is in none of the files."""
-        for node in self.models.proxies:
-            node.target_class = _CLASSES.get(node.target_class, node.target_class)
+            notes.lost(limit, "'hardwareContext' other than a core", context.name, "hardwareContext")
+    for node in models.proxies:
+        node.target_class = _CLASSES.get(node.target_class, node.target_class)
 
 
 # Access paths with latencies -> access elements of cores
@@ -289,9 +266,7 @@ def _make_entry(instructions: Node, notes: StepNotes) -> None:
 
 def change_0_8_3(models: ModelSet, notes: StepNotes) -> None:
     """Change the content of the files of AMALTHEA 0.8.3."""
-    references = References(models, notes)
-    references.convert()
-    references.convert_proxies()
+    convert_references(models, notes)
     clocks = Clocks(notes)
     clocks.convert_quartzes(models)
     definitions = HardwareDefinitions(models, notes)

@@ -48,7 +48,11 @@ def change(models: ModelSet, notes: StepNotes) -> None:
     ticks.convert_overheads(models.nodes("osOverheads"))
     models.rename_classes({"OsInstructions": "OsOverhead"})
     # Their ticks are the same on all cores, so that there is no place for a quotient.
-    _rename_chunks(models, NoteKind.TO_CHECK if ticks.rates else NoteKind.RENAMED, notes)
+    kind = NoteKind.TO_CHECK if ticks.rates else NoteKind.RENAMED
+    for node in models.nodes("transmissionPolicy"):
+        if node.rename("chunkProcessingInstructions", "chunkProcessingTicks"):
+            message = "instructions per chunk are now ticks, not divided by the instructions per cycle"
+            notes.add(kind, node, message, node.get("chunkProcessingTicks"), "chunkProcessingInstructions")
     for name in _LATENCIES:
         for node in found[name]:
             _convert_latency(node, values, notes)
@@ -57,13 +61,6 @@ def change(models: ModelSet, notes: StepNotes) -> None:
             _convert_deviations(node, place, values, notes)
     for node in found["VariableRateStimulus"]:
         _convert_step_limits(node, notes)
-
-
-def _rename_chunks(models: ModelSet, kind: NoteKind, notes: StepNotes) -> None:
-    for node in models.nodes("transmissionPolicy"):
-        if node.rename("chunkProcessingInstructions", "chunkProcessingTicks"):
-            message = "instructions per chunk are now ticks, not divided by the instructions per cycle"
-            notes.add(kind, node, message, node.get("chunkProcessingTicks"), "chunkProcessingInstructions")
 
 
 def _convert_latency(node: Node, values: Values, notes: StepNotes) -> None:

@@ -237,7 +237,10 @@ def change(models: ModelSet, notes: StepNotes) -> None:
     for node in models.parts("swModel", "runnables"):
         _move_deadlines(node, models, notes)
     for node in models.nodes("dataMapping"):
-        _convert_mapping(node, notes)
+        node.tag = "aliases"
+        node.rename("platformName", "target")
+        node.rename("platformType", "alias")
+        notes.renamed(node, "the mapping of a data type to a platform is now an alias", node.get("alias"))
     for node in models.nodes("ports"):
         if node.get("portInterface") == "ABH":
             node.attributes["portInterface"] = "AHB"
@@ -261,13 +264,6 @@ def _move_deadlines(runnable: Node, models: ModelSet, notes: StepNotes) -> None:
             # It would be one for a response time of 0.
             drop, message = requirement.remove, "a deadline without value is no requirement"
             models.postponed.append(Postponed(BEYOND_CONVERTERS, drop, NoteKind.CONVERTED, deadline, message, is_kept=True))
-
-
-def _convert_mapping(node: Node, notes: StepNotes) -> None:
-    node.tag = "aliases"
-    node.rename("platformName", "target")
-    node.rename("platformType", "alias")
-    notes.renamed(node, "the mapping of a data type to a platform is now an alias", node.get("alias"))
 
 
 STEP = Step(

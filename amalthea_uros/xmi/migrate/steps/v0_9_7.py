@@ -19,7 +19,10 @@ _ITEM_TYPES = {"segments": "sequence", "strands": "parallel"}
 
 def change_0_9_5(models: ModelSet, notes: StepNotes) -> None:
     """Change the content of the files of AMALTHEA 0.9.5."""
-    _check_event_chains(models, notes)
+    for chain in models.nodes("eventChains", "eventChain"):
+        for end in ("stimulus", "response"):
+            if not (chain.references.get(end) or chain.get(end)):
+                notes.to_check(chain, f"event chain without {end}, which is mandatory")
     convert_event_chains(models, notes)
     convert_mode_conditions(models, notes)
 
@@ -40,19 +43,12 @@ def convert_event_chains(models: ModelSet, notes: StepNotes) -> None:
             kind = "segments" if segments else "strands"
             _name_items(chain, kind)
             notes.converted(chain, f"{kind} of the event chain are now items of type {_ITEM_TYPES[kind]}")
-        if strands and not constrained.isdisjoint((chain, _outermost(chain))):
+        if strands and not constrained.isdisjoint((chain, chain.enclosing("eventChains") or chain)):
             notes.to_check(
                 chain,
                 "parallel event chain with a latency constraint: one completed item is enough unless minItemsCompleted is set",
                 f"{len(strands)} items",
             )
-
-
-def _check_event_chains(models: ModelSet, notes: StepNotes) -> None:
-    for chain in models.nodes("eventChains", "eventChain"):
-        for end in ("stimulus", "response"):
-            if not (chain.references.get(end) or chain.get(end)):
-                notes.to_check(chain, f"event chain without {end}, which is mandatory")
 
 
 def _constrained_chains(models: ModelSet) -> set[Node]:
@@ -75,10 +71,6 @@ def _constrained_chains(models: ModelSet) -> set[Node]:
                 for part in item.references.get("eventChain", ())
             ]
     return found
-
-
-def _outermost(chain: Node) -> Node:
-    return chain.enclosing("eventChains") or chain
 
 
 def _name_items(chain: Node, kind: str) -> None:
