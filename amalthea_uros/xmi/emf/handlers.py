@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
 from itertools import islice
 from typing import Any
 from xml.parsers import expat
@@ -18,31 +17,29 @@ _MOST_LOOKED_AT, _LONGEST_TAG = 2_000, 2_000
 _CDATA = "<![CDATA["
 
 
-@dataclass(frozen=True, eq=False)
-class Handlers:
-    """What a reader does at each part of a file; the parser may be given others for elements meanwhile."""
-
-    start: Callable[[str, dict[str, str]], None]
-    end: Callable[[str], None]
-    characters: Callable[[str], None]
-    comment: Callable[[str], None]
-    processing_instruction: Callable[[str, str], None]
-    doctype: Callable[..., None]
-
-
-def connect(parser: Any, text: str, handlers: Handlers) -> None:
-    """Let a parser report the parts of a text."""
+def connect(
+    parser: Any,
+    text: str,
+    *,
+    start: Callable[[str, dict[str, str]], None],
+    end: Callable[[str], None],
+    characters: Callable[[str], None],
+    comment: Callable[[str], None],
+    processing_instruction: Callable[[str, str], None],
+    doctype: Callable[..., None],
+) -> None:
+    """Let a parser report the parts of a text; it may be given other handlers for elements meanwhile."""
     parser.SetParamEntityParsing(expat.XML_PARAM_ENTITY_PARSING_NEVER)
     parser.buffer_text = True
-    parser.StartDoctypeDeclHandler = handlers.doctype
-    parser.StartElementHandler = handlers.start
-    parser.EndElementHandler = handlers.end
-    parser.CommentHandler = handlers.comment
-    parser.ProcessingInstructionHandler = handlers.processing_instruction
+    parser.StartDoctypeDeclHandler = doctype
+    parser.StartElementHandler = start
+    parser.EndElementHandler = end
+    parser.CommentHandler = comment
+    parser.ProcessingInstructionHandler = processing_instruction
     if has_character_data(text):
         # Larger than any text, so that one that is longer than the usual buffer is not reported in pieces.
         parser.buffer_size = len(text.encode())
-        parser.CharacterDataHandler = handlers.characters
+        parser.CharacterDataHandler = characters
 
 
 def disconnect(parser: Any) -> None:

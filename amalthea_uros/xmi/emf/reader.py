@@ -23,7 +23,7 @@ from amalthea_uros.metamodel.source import Prefixes, SourceText
 from amalthea_uros.xmi.emf import problems
 from amalthea_uros.xmi.emf.escape import WHITE_SPACE, escape_text
 from amalthea_uros.xmi.emf.files import FileText
-from amalthea_uros.xmi.emf.handlers import Handlers, connect, disconnect
+from amalthea_uros.xmi.emf.handlers import connect, disconnect
 from amalthea_uros.xmi.emf.header import XSI_NAMESPACE, ModelHeader, NotAModelError, read_header
 from amalthea_uros.xmi.emf.plan import TYPE_PREFIX, ClassPlan, FeaturePlan, plans, reference_texts
 from amalthea_uros.xmi.emf.problems import CollectedFinding, FindingCollector
@@ -152,15 +152,16 @@ class _ModelReader:
     def read(self) -> ReadResult:
         parser = self.parser
         text = self.content.text
-        handlers = Handlers(
-            self.start_root,
-            self.end_part,
-            self.characters,
-            self.comment,
-            self.processing_instruction,
-            self.refuse_doctype,
+        connect(
+            parser,
+            text,
+            start=self.start_root,
+            end=self.end_part,
+            characters=self.characters,
+            comment=self.comment,
+            processing_instruction=self.processing_instruction,
+            doctype=self.refuse_doctype,
         )
-        connect(parser, text, handlers)
         try:
             # As str: then offsets count UTF-8 bytes, whatever the encoding of the file.
             parser.Parse(text, True)

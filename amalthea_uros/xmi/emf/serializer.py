@@ -47,11 +47,11 @@ class WritePlan(NamedTuple):
 
     Attributes
     ----------
-    attributes : (text before the value, feature, whether it is set)
+    attributes : features with whether they are set
     children : features that may be written as child elements
     """
 
-    attributes: tuple[tuple[str, FeaturePlan, bool], ...]
+    attributes: tuple[tuple[FeaturePlan, bool], ...]
     children: tuple[FeaturePlan, ...]
     has_extras: bool
 
@@ -98,7 +98,7 @@ class EmfSerializer:
         for feature in plan.features:
             is_set = feature.name in present
             if feature.xml_name in plan.attributes and (is_set or feature.default_text is not None):
-                attributes.append((f' {feature.xml_name}="', feature, is_set))
+                attributes.append((feature, is_set))
         children = tuple(f for f in plan.features if f.xml_name in plan.children and f.name in present)
         # A plan with features unknown to the version is not shared, so that every object with one is reported.
         write_plan = WritePlan(tuple(attributes), children, "_extras" in present)
@@ -108,35 +108,17 @@ class EmfSerializer:
 
     # Attributes
 
-    def tag(self, part: FeaturePlan | None, plan: ClassPlan, element: Element, write_plan: WritePlan) -> str:
-        """The start tag after the element name and without its end, as EMF writes it."""
-        pieces = []
-        if part is not None and plan.cls is not part.target:
-            self.uses_xsi = True
-            pieces.append(f' {self.prefixes.xsi_type}="{self.prefixes.type_prefix}{plan.cls.__name__}"')
-        if plan.referable:
-            pieces.append(f' {self.prefixes.xmi_id}="{escape(self.target(element)[0])}"')
-        values = element.__dict__
-        for opening, feature, is_set in write_plan.attributes:
-            value = values[feature.name] if is_set else None
-            if value is None:
-                if feature.default_text is not None:
-                    pieces.append(f'{opening}{feature.default_text}"')
-                continue
-            text = self.value_text(element, feature, value)
-            if text is not None:
-                pieces.append(f'{opening}{escape(text)}"')
-        return "".join(pieces)
-
     def attributes(self, part: FeaturePlan | None, plan: ClassPlan, element: Element, write_plan: WritePlan) -> dict[str, str]:
-        """The same as `tag` as a mapping: attribute name -> value."""
+        """The attributes as EMF writes them, not yet escaped."""
         found = {}
         if part is not None and plan.cls is not part.target:
+            self.uses_xsi = True
             found[self.prefixes.xsi_type] = f"{self.prefixes.type_prefix}{plan.cls.__name__}"
         if plan.referable:
             found[self.prefixes.xmi_id] = self.target(element)[0]
-        for _, feature, is_set in write_plan.attributes:
-            value = element.__dict__[feature.name] if is_set else None
+        values = element.__dict__
+        for feature, is_set in write_plan.attributes:
+            value = values[feature.name] if is_set else None
             text = feature.default_text if value is None else self.value_text(element, feature, value)
             if text is not None:
                 found[feature.xml_name] = text

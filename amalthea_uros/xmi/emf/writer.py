@@ -19,7 +19,7 @@ from amalthea_uros.xmi.emf.header import XMI_NAMESPACE, XSI_NAMESPACE
 from amalthea_uros.xmi.emf.plan import ClassPlan, FeaturePlan
 from amalthea_uros.xmi.emf.problems import MAX_DEPTH
 from amalthea_uros.xmi.emf.read_back import check_read_back
-from amalthea_uros.xmi.emf.serializer import Child, ChildPart, EmfSerializer, KeptContent, WritePlan, used_prefixes
+from amalthea_uros.xmi.emf.serializer import Child, ChildPart, EmfSerializer, KeptContent, used_prefixes
 from amalthea_uros.xmi.emf.source_merger import SourceMerger
 
 _DECLARATION = '<?xml version="1.0" encoding="UTF-8"?>'
@@ -104,7 +104,7 @@ class _Writer:
             self.out[opening_at] = f"<{tag}{self.root_attributes()}"
         self.out[opening_at] += self.missing_declarations(self.out[opening_at])
         if not self.source:
-            self.out[opening_at] += _extra_attributes(self.root)
+            self.out[opening_at] += _attributes_text(self.root.extras.attributes if self.root.extras else {})
         return "".join(self.out)
 
     def missing_declarations(self, opening: str) -> str:
@@ -156,31 +156,28 @@ class _Writer:
         tag = feature.xml_name
         write_plan = self.serializer.write_plan(plan, element)
         children = self.serializer.children(element, write_plan) if write_plan.children else []
-        attributes = self.serializer.tag(feature, plan, element, write_plan)
+        wanted = self.serializer.attributes(feature, plan, element, write_plan)
         if self.merger is None or self.source is None or place is None:
-            self.out.append(
-                f"<{tag}{self.with_extras(feature, element, plan, write_plan) if write_plan.has_extras else attributes}"
-            )
+            if write_plan.has_extras:
+                self.add_extras(wanted, element, plan)
+            self.out.append(f"<{tag}{_attributes_text(wanted)}")
             self.canonical_content(element, tag, children, indent)
             return
-        opening = f"<{tag}{attributes}"
+        opening = f"<{tag}{_attributes_text(wanted)}"
         start = self.source.start(place)
         at = start + len(opening)
         if not self.source.text.startswith(opening, start) or self.source.text[at] not in "/>":
-            wanted = self.serializer.attributes(feature, plan, element, write_plan)
             opening, at = self.merger.tag(element, plan, wanted, place)
         self.out.append(opening)
         self.merged_content(element, tag, children, indent, place, at)
 
-    def with_extras(self, feature: FeaturePlan, element: Element, plan: ClassPlan, write_plan: WritePlan) -> str:
-        """The attributes of an object with the unknown ones of its file, unless they were replaced since."""
-        wanted = self.serializer.attributes(feature, plan, element, write_plan)
+    def add_extras(self, wanted: dict[str, str], element: Element, plan: ClassPlan) -> None:
+        """Add the unknown attributes of an object in its file, unless they were replaced since."""
         for key, text in element.extras.attributes.items() if element.extras else ():
             known = plan.attributes.get(key)
             if known is None or element.__dict__.get(known.name) in (None, []):
                 wanted[key] = text
                 self.serializer.kept.append(f'{key}="{text}"')
-        return "".join(f' {key}="{escape(text)}"' for key, text in wanted.items())
 
     def canonical_content(self, element: Element, tag: str, children: list[Child], indent: str) -> None:
         """The end of the start tag, the children, and the end tag, in EMF's layout."""
@@ -261,6 +258,5 @@ def known_namespaces(document: Document) -> dict[str, str]:
     return found
 
 
-def _extra_attributes(element: Element) -> str:
-    extras = element.extras
-    return "".join(f' {key}="{escape(value)}"' for key, value in extras.attributes.items()) if extras else ""
+def _attributes_text(attributes: dict[str, str]) -> str:
+    return "".join([f' {key}="{escape(text)}"' for key, text in attributes.items()])

@@ -10,7 +10,7 @@ from xml.parsers import expat
 
 from amalthea_uros.xmi.emf import problems
 from amalthea_uros.xmi.emf.files import FileText
-from amalthea_uros.xmi.emf.handlers import Handlers, connect, disconnect
+from amalthea_uros.xmi.emf.handlers import connect, disconnect
 from amalthea_uros.xmi.emf.header import XMI_NAMESPACE, XSI_NAMESPACE
 from amalthea_uros.xmi.emf.versions import itea_package, namespace_version
 from amalthea_uros.xmi.tree.model_set import Origins, Tree
@@ -87,15 +87,16 @@ class _NodeParser:
 
     def parse(self) -> ParsedFile:
         parser = self.expat
-        handlers = Handlers(
-            self.start_root,
-            self.end,
-            self.characters,
-            lambda data: self.comments.append(f"<!--{data}-->"),
-            lambda target, data: self.comments.append(f"<?{target} {data}?>"),
-            self.refuse_doctype,
+        connect(
+            parser,
+            self.content.text,
+            start=self.start_root,
+            end=self.end,
+            characters=self.characters,
+            comment=lambda data: self.comments.append(f"<!--{data}-->"),
+            processing_instruction=lambda target, data: self.comments.append(f"<?{target} {data}?>"),
+            doctype=self.refuse_doctype,
         )
-        connect(parser, self.content.text, handlers)
         self.origins.begin_file(self.path, self.content.text)
         try:
             # As str: then offsets count UTF-8 bytes, whatever the encoding of the file.
