@@ -52,49 +52,37 @@ class ModelHeader(NamedTuple):
         return f"AMALTHEA {self.version} is {known}; the model is read as {self.facts_version}"
 
 
-class NotAModelError(Exception):
-    """The root element is not that of a model that can be read.
+class NotAModel(NamedTuple):
+    """Why the root element is not that of a model that can be read: the content of the finding."""
 
-    Attributes
-    ----------
-    rule, message, help : content of the finding
-    """
-
-    def __init__(self, rule: str, message: str, help_text: str = "") -> None:
-        super().__init__(rule, message, help_text)
-        self.rule, self.message, self.help = rule, message, help_text
+    rule: str
+    message: str
+    help: str = ""
 
 
-def read_header(name: str, attributes: dict[str, str]) -> ModelHeader:
-    """The declarations of a root element.
-
-    Raises
-    ------
-    NotAModelError : it is not `am:Amalthea`, or its version was never published.
-    """
+def read_header(name: str, attributes: dict[str, str]) -> ModelHeader | NotAModel:
+    """The declarations of a root element, unless it is not `am:Amalthea`, or its version was never published."""
     prefix, _, local = name.rpartition(":")
     namespace = attributes.get(f"xmlns:{prefix}" if prefix else "xmlns", "")
     if "itea2.org/model" in namespace:
-        raise NotAModelError(
-            "XMI006", f"{namespace_version(namespace) or namespace} is no known version of AMALTHEA", _VERSIONS
-        )
+        return NotAModel("XMI006", f"{namespace_version(namespace) or namespace} is no known version of AMALTHEA", _VERSIONS)
     if local != "Amalthea" or not prefix or not namespace.startswith(NAMESPACE_PREFIX):
         within = f" in namespace {namespace}" if namespace else ""
-        raise NotAModelError(
+        return NotAModel(
             "XMI005",
             f"not an AMALTHEA model: the root element is <{name}>{within}, expected <am:Amalthea>",
             f'A model starts with <am:Amalthea xmlns:am="{NAMESPACE_PREFIX}{newest_version()}" ...>.',
         )
     version = namespace.removeprefix(NAMESPACE_PREFIX)
     if not _VERSION(version):
-        raise NotAModelError("XMI005", f"namespace {namespace} does not end with an AMALTHEA version")
+        return NotAModel("XMI005", f"namespace {namespace} does not end with an AMALTHEA version")
     if version_key(version) < version_key(OLDEST_SUPPORTED):
-        raise NotAModelError("XMI006", f"AMALTHEA {version} was never published", _VERSIONS)
+        return NotAModel("XMI006", f"AMALTHEA {version} was never published", _VERSIONS)
     namespaces = {key.partition(":")[2]: uri for key, uri in attributes.items() if key.startswith("xmlns:")}
     for usual, uri in (("xmi", XMI_NAMESPACE), ("xsi", XSI_NAMESPACE)):
         given = namespaces.get(usual, uri)
         if given != uri:
-            raise NotAModelError("XMI005", f"the prefix {usual!r} is bound to {given!r}", f'Write xmlns:{usual}="{uri}".')
+            return NotAModel("XMI005", f"the prefix {usual!r} is bound to {given!r}", f'Write xmlns:{usual}="{uri}".')
     xmi, xsi = _prefix(namespaces, XMI_NAMESPACE, "xmi"), _prefix(namespaces, XSI_NAMESPACE, "xsi")
     return ModelHeader(
         version=version,

@@ -14,7 +14,7 @@ from amalthea_uros.metamodel.element import Element, extras_if_any
 from amalthea_uros.metamodel.model import Document
 from amalthea_uros.metamodel.naming import place
 from amalthea_uros.xmi.emf import problems
-from amalthea_uros.xmi.emf.header import ModelHeader, NotAModelError, read_header
+from amalthea_uros.xmi.emf.header import ModelHeader, NotAModel, read_header
 from amalthea_uros.xmi.emf.plan import TYPE_PREFIX, ClassPlan, FeaturePlan
 from amalthea_uros.xmi.emf.serializer import EmfSerializer, tag_of
 from amalthea_uros.xmi.emf.source_merger import SourceMerger
@@ -105,10 +105,10 @@ class _ReadBackComparison:
 
     def start_root(self, name: str, attributes: dict[str, str]) -> None:
         root = self.document.root
-        try:
-            self.header = header = read_header(name, attributes)
-        except NotAModelError as error:
-            self.refuse(root, error.message)
+        header = read_header(name, attributes)
+        if isinstance(header, NotAModel):
+            self.refuse(root, header.message)
+        self.header = header
         if header.facts_version != self.document.facts_version:
             self.refuse(root, f"the version would be {header.version}")
         plan = self.serializer.plans.of("Amalthea")

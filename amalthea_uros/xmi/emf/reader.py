@@ -24,7 +24,7 @@ from amalthea_uros.xmi.emf import problems
 from amalthea_uros.xmi.emf.escape import WHITE_SPACE, escape_text
 from amalthea_uros.xmi.emf.files import FileText
 from amalthea_uros.xmi.emf.handlers import connect, disconnect
-from amalthea_uros.xmi.emf.header import XSI_NAMESPACE, ModelHeader, NotAModelError, read_header
+from amalthea_uros.xmi.emf.header import XSI_NAMESPACE, ModelHeader, NotAModel, read_header
 from amalthea_uros.xmi.emf.plan import TYPE_PREFIX, ClassPlan, FeaturePlan, plans, reference_texts
 from amalthea_uros.xmi.emf.problems import CollectedFinding, FindingCollector
 
@@ -192,10 +192,10 @@ class _ModelReader:
     # Elements
 
     def start_root(self, name: str, attributes: dict[str, str]) -> None:
-        try:
-            self.header = header = read_header(name, attributes)
-        except NotAModelError as error:
-            raise self.refuse(error.rule, error.message, error.help) from None
+        header = read_header(name, attributes)
+        if isinstance(header, NotAModel):
+            raise self.refuse(*header)
+        self.header = header
         if problems.lacks_namespace(self.content.text):
             raise problems.undeclared_prefix(self.path, self.content.text, self.offset, "xsi", XSI_NAMESPACE)
         if header.version_note:

@@ -70,33 +70,25 @@ def migrated_name(name: str, target: str) -> str:
 _PIECE = 10_000
 
 
-class _Found(Exception):  # noqa: N818 (no error: it ends the search)
-    """Stops the parser at the root element, or at a document type declaration, which is refused elsewhere."""
-
-    def __init__(self, version: str) -> None:
-        super().__init__(version)
-        self.version = version
-
-
 def version_of(text: str) -> str:
     """The AMALTHEA version that a file declares, "" if its root is not that of a model, or if it cannot be read."""
     parser = expat.ParserCreate()
+    #: The version of the root element; "" at a document type declaration, which is refused elsewhere.
+    found: list[str] = []
 
     def at_root(name: str, attributes: dict[str, str]) -> None:
         prefix, mark, _ = name.rpartition(":")
-        raise _Found(namespace_version(attributes.get(f"xmlns{mark}{prefix}", "")))
-
-    def at_doctype(*_declaration: object) -> None:
-        raise _Found("")
+        found.append(namespace_version(attributes.get(f"xmlns{mark}{prefix}", "")))
+        parser.StartElementHandler = None
 
     parser.StartElementHandler = at_root
-    parser.StartDoctypeDeclHandler = at_doctype
+    parser.StartDoctypeDeclHandler = lambda *_declaration: found.append("")
     try:
         # The root is mostly near the start, but comments in front of it may have any length.
         for start in range(0, len(text), _PIECE):
             parser.Parse(text[start : start + _PIECE], False)
-    except _Found as found:
-        return found.version
+            if found:
+                break
     except expat.ExpatError:
         pass
-    return ""
+    return found[0] if found else ""
