@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from amalthea_uros.bridge.context import Building
-from amalthea_uros.bridge.entries import ClassTable
+from amalthea_uros.bridge.basics.context import Building
+from amalthea_uros.bridge.basics.entries import ClassTable
 from amalthea_uros.bridge.tables.constraints import CONSTRAINTS, DATA_AGES, ORDERS, build_data_group, build_requirement
 from amalthea_uros.bridge.tables.events import CHAINS, EVENTS
 from amalthea_uros.bridge.tables.hardware import HardwareBuilder
@@ -37,14 +37,14 @@ def build_model(system: System, version: str | None = None) -> Model:
         that the version does not have are refused when the model is written.
     """
     context = Building(version or newest_version())
-    root = _Build(system, context).root()
+    root = _ModelBuilder(system, context).root()
     context.finish()
     model = Model.of(root, context.version)
     model.documents[0].origins = context.origins
     return model
 
 
-class _Build:
+class _ModelBuilder:
     """Creates all objects first, so that references find them, and then sets their features."""
 
     def __init__(self, system: System, context: Building) -> None:

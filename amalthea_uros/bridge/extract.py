@@ -6,17 +6,18 @@ becomes a finding, and the rest is extracted.
 
 from __future__ import annotations
 
+from collections import defaultdict
 from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
 from amalthea_uros._internal.garbage import paused_garbage_collection
-from amalthea_uros.bridge.context import Extracting
+from amalthea_uros.bridge.basics.context import Extracting
 from amalthea_uros.bridge.tables.constraints import CONSTRAINTS, DATA_AGES, ORDERS, extract_data_group, extract_requirement
 from amalthea_uros.bridge.tables.events import CHAINS, EVENTS
 from amalthea_uros.bridge.tables.hardware import HardwareExtractor
 from amalthea_uros.bridge.tables.mapping import extract_mapping
 from amalthea_uros.bridge.tables.middleware import extract_executors, extract_network, with_unknown_activation
-from amalthea_uros.bridge.tables.os import SEMAPHORES, Allocations, extract_overhead, extract_system
+from amalthea_uros.bridge.tables.os import SEMAPHORES, extract_overhead, extract_system
 from amalthea_uros.bridge.tables.software import CHANNELS, LABELS, MODE_LABELS, OS_EVENTS, PROCESSES, RUNNABLES, extract_modes
 from amalthea_uros.bridge.tables.stimuli import CLOCKS, STIMULI
 from amalthea_uros.diagnostics import Finding
@@ -121,7 +122,9 @@ class _Extract:
     def os(self) -> Os:
         """The operating systems of all files."""
         context = self.context
-        allocations = Allocations(self.parts(am.MappingModel, "scheduler_allocation"))
+        allocations: dict[am.Scheduler | None, list[am.SchedulerAllocation]] = defaultdict(list)
+        for allocation in self.parts(am.MappingModel, "scheduler_allocation"):
+            allocations[allocation.scheduler].append(allocation)
         return Os(
             systems=tuple(
                 extract_system(system, allocations, context) for system in self.parts(am.OSModel, "operating_systems")
@@ -168,10 +171,7 @@ class _Extract:
     def constraints(self) -> Constraints:
         """The constraints and requirements of all files."""
         context, parts = self.context, self.parts
-        for feature in (
-            "affinity_constraints",
-            "physical_section_constraints",
-        ):
+        for feature in ("affinity_constraints", "physical_section_constraints"):
             for element in parts(am.ConstraintsModel, feature):
                 context.leave_out(element)
         requirements = (extract_requirement(r, context) for r in parts(am.ConstraintsModel, "requirements"))

@@ -12,9 +12,9 @@ from copy import deepcopy
 from typing import Any
 
 from amalthea_uros._internal.garbage import paused_garbage_collection
+from amalthea_uros.bridge.basics.context import Extracting
+from amalthea_uros.bridge.basics.kinds import kind_of
 from amalthea_uros.bridge.build import build_model
-from amalthea_uros.bridge.context import Extracting
-from amalthea_uros.bridge.kinds import kind_of
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.features import ElementFeature, features_of

@@ -42,15 +42,15 @@ def new_name(stem: str, cls: type[Element], context: Context) -> str:
     return name
 
 
-class _Names(NamedTuple):
+class _UsedNames(NamedTuple):
     """The names in use by class, and the next number for a stem, so that many objects are named in one pass."""
 
     taken: dict[type[Element], set[str | None]]
     numbers: dict[tuple[type[Element], str], Iterator[int]]
 
 
-def _names(context: Context) -> _Names:
+def _names(context: Context) -> _UsedNames:
     taken: dict[type[Element], set[str | None]] = defaultdict(set)
     for element in (*context.all(Element), *context.referred):
         taken[type(element)].add(element.__dict__.get("name"))
-    return _Names(taken, defaultdict(lambda: count(1)))
+    return _UsedNames(taken, defaultdict(lambda: count(1)))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 from typing import Any, cast
 
-from amalthea_uros.bridge.codecs import (
+from amalthea_uros.bridge.basics.codecs import (
     PLAIN,
     Codec,
     build_reason,
@@ -15,11 +15,11 @@ from amalthea_uros.bridge.codecs import (
     references,
     same_names,
 )
-from amalthea_uros.bridge.context import Building, Extracting
-from amalthea_uros.bridge.entries import ClassEntry, ClassTable, Column
-from amalthea_uros.bridge.kinds import ObjectKind
+from amalthea_uros.bridge.basics.context import Building, Extracting
+from amalthea_uros.bridge.basics.entries import ClassEntry, ClassTable
+from amalthea_uros.bridge.basics.kinds import ObjectKind
 from amalthea_uros.bridge.tables.conditions import CONDITION
-from amalthea_uros.bridge.tables.distributions import DISCRETE
+from amalthea_uros.bridge.tables.distributions import TICKS
 from amalthea_uros.bridge.tables.stimuli import COUNTER
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.element import Element
@@ -32,17 +32,17 @@ def _build_demand(demand: perf.Demand, context: Building) -> am.Ticks:
     entries = []
     for name, ticks in demand.by_core_type:
         core_type: Any = context.find(ObjectKind.CORE_TYPE, name)
-        entries.append(am.TicksEntry(key=core_type, value=DISCRETE.build(ticks, context)))
-    return am.Ticks(default=None if demand.ticks is None else DISCRETE.build(demand.ticks, context), extended=entries)
+        entries.append(am.TicksEntry(key=core_type, value=TICKS.build(ticks, context)))
+    return am.Ticks(default=TICKS.build_given(demand.ticks, context), extended=entries)
 
 
 def _extract_demand(ticks: Any, context: Extracting, _element: Element) -> perf.Demand | None:
     by_core_type: list[tuple[str, Any]] = [
-        (name, None if entry.value is None else DISCRETE.extract(entry.value, context))
+        (name, TICKS.extract_given(entry.value, context, ticks))
         for entry in ticks.extended
         if (name := _CORE_TYPE.extract(entry.key, context, ticks)) is not None
     ]
-    default = None if ticks.default is None else DISCRETE.extract(ticks.default, context)
+    default = TICKS.extract_given(ticks.default, context, ticks)
     values = [value for _, value in by_core_type]
     # A core type whose own value is unknown does not take the default.
     if None in values or (default is None and (ticks.default is not None or not values)):
@@ -84,10 +84,7 @@ def _extract_accesses(statistic: am.LabelAccessStatistic, context: Extracting, e
     return _extract_count(statistic.value, context, element)
 
 
-_ACCESSES = Codec(
-    lambda count, context: am.LabelAccessStatistic(value=_build_count(count, context)),
-    _extract_accesses,
-)
+_ACCESSES = Codec(lambda count, context: am.LabelAccessStatistic(value=_build_count(count, context)), _extract_accesses)
 _CALLS = Codec(
     lambda count, context: am.RunEntityCallStatistic(statistic=_build_count(count, context)),
     lambda value, context, element: _extract_count(value.statistic, context, element),
@@ -119,9 +116,7 @@ class _Activities(ClassTable):
             case perf.Execute(demand=demand):
                 return _build_demand(demand, context)
             case perf.ExecutionNeed(needs=needs):
-                return am.ExecutionNeed(
-                    needs=[am.NeedEntry(key=key, value=DISCRETE.build(need, context)) for key, need in needs]
-                )
+                return am.ExecutionNeed(needs=[am.NeedEntry(key=key, value=TICKS.build(need, context)) for key, need in needs])
             case perf.ProbabilitySwitch(branches=branches):
                 return am.ProbabilitySwitch(
                     entries=[
@@ -162,8 +157,7 @@ class _Activities(ClassTable):
                 return None if demand is None else perf.Execute(demand=demand, locate=partial(context.location, element))
             case am.ExecutionNeed():
                 needs: tuple[tuple[str, Any], ...] = tuple(
-                    (entry.key or "", None if entry.value is None else DISCRETE.extract(entry.value, context))
-                    for entry in element.needs
+                    (entry.key or "", TICKS.extract_given(entry.value, context, element)) for entry in element.needs
                 )
                 if any(need is None for _, need in needs):
                     context.note("EXT004", "ExecutionNeed is incomplete: a value is missing", element)
@@ -188,20 +182,13 @@ class _Activities(ClassTable):
 
 def _build_switch(switch: perf.Switch, context: Building) -> Element:
     # Until 1.2 there is the switch on modes only.
-    classes = (
-        (am.Switch, am.SwitchEntry, am.SwitchDefault)
-        if context.is_at_least(2)
-        else (am.ModeSwitch, am.ModeSwitchEntry, am.ModeSwitchDefault)
-    )
-    switch_class: Any
-    entry_class: Any
-    default_class: Any
-    switch_class, entry_class, default_class = classes
+    prefix = "Switch" if context.is_at_least(2) else "ModeSwitch"
+    switch_class, entry_class, default_class = (getattr(am, prefix + suffix) for suffix in ("", "Entry", "Default"))
     found = switch_class(
         entries=[
             entry_class(
                 name=case.name or None,
-                condition=None if case.condition is None else CONDITION.build(case.condition, context),
+                condition=CONDITION.build_given(case.condition, context),
                 items=ITEMS.build(case.activities, context),
             )
             for case in switch.cases
@@ -216,14 +203,13 @@ def _extract_switch(element: Any, context: Extracting) -> perf.Switch:
     cases = tuple(
         perf.Case(
             name=entry.name or "",
-            condition=None if entry.condition is None else CONDITION.extract(entry.condition, context, element),
+            condition=CONDITION.extract_given(entry.condition, context, element),
             activities=ITEMS.extract(entry.items, context, element),
         )
         for entry in element.entries
     )
-    default = element.default_entry
-    activities = None if default is None else ITEMS.extract(default.items, context, element)
-    return perf.Switch(cases=cases, default=activities, locate=partial(context.location, element))
+    default = ITEMS.extract_given(getattr(element.default_entry, "items", None), context, element)
+    return perf.Switch(cases=cases, default=default, locate=partial(context.location, element))
 
 
 def _build_communication(access: perf.SenderReceiverAccess, context: Building) -> Element:
@@ -255,7 +241,7 @@ def _build_server_call(call: perf.ServerCall, context: Building) -> Element:
         case perf.ServerCallKind.SYNCHRONOUS:
             return am.SynchronousServerCall(
                 server_runnable=server,
-                waiting_behaviour=None if call.waiting is None else _WAITING_CODEC.build(call.waiting, context),
+                waiting_behaviour=_WAITING_CODEC.build_given(call.waiting, context),
             )
         case perf.ServerCallKind.ASYNCHRONOUS:
             return am.AsynchronousServerCall(server_runnable=server, result_runnable=_RUNNABLE.build(call.result, context))
@@ -284,8 +270,8 @@ def _waiting(element: Any, context: Extracting) -> perf.Waiting | None:
     if isinstance(element, am.GetResultServerCall):
         return next((waiting for waiting, blocking in _BLOCKING.items() if blocking is element.blocking_type), None)
     stated = element.waiting_behaviour if isinstance(element, am.SynchronousServerCall) else None
-    found: perf.Waiting | None = None if stated is None else _WAITING_CODEC.extract(stated, context, element)
-    return found
+    waiting: perf.Waiting | None = _WAITING_CODEC.extract_given(stated, context, element)
+    return waiting
 
 
 _LABEL, _RUNNABLE, _RUNNABLES = reference(ObjectKind.DATA), reference(ObjectKind.RUNNABLE), references(ObjectKind.RUNNABLE)
@@ -322,11 +308,11 @@ PROTECTIONS = {
     "CUSTOM": "CUSTOM_PROTECTION",
     "BY_MODEL": "HANDLED_BY_MODEL_ELEMENTS",
 }
-_WAITING = Column("waiting_behaviour", _WAITING_CODEC)
-_MASK = Column("event_mask", _EVENT_MASK)
-_ITEMS = Column("items", ITEMS)
-_CHANNEL = Column("data", reference(ObjectKind.DATA))
-_MODE_LABEL = Column("data", reference(ObjectKind.MODE_LABEL))
+_WAITING = ("waiting_behaviour", _WAITING_CODEC)
+_MASK = ("event_mask", _EVENT_MASK)
+_ITEMS = ("items", ITEMS)
+_CHANNEL = ("data", reference(ObjectKind.DATA))
+_MODE_LABEL = ("data", reference(ObjectKind.MODE_LABEL))
 _ALL_OF_THEM = Codec(
     lambda value, _: am.WaitEventType.AND if value else am.WaitEventType.OR,
     lambda value, _context, _element: value is not am.WaitEventType.OR,
@@ -334,14 +320,14 @@ _ALL_OF_THEM = Codec(
 
 ACTIVITIES: ClassTable = _Activities(
     ClassEntry(
-        perf.Call, am.RunnableCall, runnable=reference(ObjectKind.RUNNABLE), counter=COUNTER, times=Column("statistic", _CALLS)
+        perf.Call, am.RunnableCall, runnable=reference(ObjectKind.RUNNABLE), counter=COUNTER, times=("statistic", _CALLS)
     ),
     ClassEntry(
         perf.LabelAccess,
         am.LabelAccess,
-        label=Column("data", reference(ObjectKind.DATA)),
-        kind=Column("access", same_names(perf.AccessKind, am.LabelAccessEnum)),
-        communication=Column(
+        label=("data", reference(ObjectKind.DATA)),
+        kind=("access", same_names(perf.AccessKind, am.LabelAccessEnum)),
+        communication=(
             "implementation",
             enumeration(
                 {
@@ -351,8 +337,8 @@ ACTIVITIES: ClassTable = _Activities(
                 }
             ),
         ),
-        protection=Column("data_stability", same_names(perf.Protection, am.LabelAccessDataStability, **PROTECTIONS)),
-        times=Column("statistic", _ACCESSES),
+        protection=("data_stability", same_names(perf.Protection, am.LabelAccessDataStability, **PROTECTIONS)),
+        times=("statistic", _ACCESSES),
     ),
     ClassEntry(perf.Group, am.Group, name=PLAIN, activities=_ITEMS, ordered=PLAIN, interruptible=PLAIN),
     ClassEntry(perf.Loop, am.WhileLoop, activities=_ITEMS, condition=CONDITION),
@@ -360,7 +346,7 @@ ACTIVITIES: ClassTable = _Activities(
         perf.SemaphoreAccess,
         am.SemaphoreAccess,
         semaphore=reference(ObjectKind.SEMAPHORE),
-        operation=Column("access", same_names(perf.SemaphoreOperation, am.SemaphoreAccessEnum)),
+        operation=("access", same_names(perf.SemaphoreOperation, am.SemaphoreAccessEnum)),
         waiting=_WAITING,
     ),
     ClassEntry(perf.Trigger, am.InterProcessTrigger, stimulus=reference(ObjectKind.STIMULUS), counter=COUNTER),
@@ -368,12 +354,7 @@ ACTIVITIES: ClassTable = _Activities(
     ClassEntry(perf.SetEvent, am.SetEvent, events=_MASK, process=reference(ObjectKind.PROCESS), counter=COUNTER),
     ClassEntry(perf.ClearEvent, am.ClearEvent, events=_MASK, counter=COUNTER),
     ClassEntry(
-        perf.WaitEvent,
-        am.WaitEvent,
-        events=_MASK,
-        all_of_them=Column("mask_type", _ALL_OF_THEM),
-        waiting=_WAITING,
-        counter=COUNTER,
+        perf.WaitEvent, am.WaitEvent, events=_MASK, all_of_them=("mask_type", _ALL_OF_THEM), waiting=_WAITING, counter=COUNTER
     ),
     ClassEntry(perf.Send, am.ChannelSend, channel=_CHANNEL, elements=PLAIN),
     ClassEntry(
@@ -381,20 +362,20 @@ ACTIVITIES: ClassTable = _Activities(
         am.ChannelReceive,
         channel=_CHANNEL,
         elements=PLAIN,
-        operation=Column("receive_operation", same_names(perf.ReceiveOperation, am.ReceiveOperation)),
-        must_be_new=Column("data_must_be_new"),
-        index=Column("element_index"),
-        at_least=Column("lower_bound"),
+        operation=("receive_operation", same_names(perf.ReceiveOperation, am.ReceiveOperation)),
+        must_be_new="data_must_be_new",
+        index="element_index",
+        at_least="lower_bound",
     ),
     ClassEntry(
         perf.ModeAccess,
         am.ModeLabelAccess,
         label=_MODE_LABEL,
-        operation=Column("access", same_names(perf.ModeOperation, am.ModeLabelAccessEnum)),
+        operation=("access", same_names(perf.ModeOperation, am.ModeLabelAccessEnum)),
         value=PLAIN,
         step=PLAIN,
     ),
     ClassEntry(perf.SchedulePoint, am.SchedulePoint),
     ClassEntry(perf.Terminate, am.TerminateProcess, counter=COUNTER),
-    ClassEntry(perf.Migrate, am.EnforcedMigration, scheduler=Column("resource_owner", reference(ObjectKind.SCHEDULER))),
+    ClassEntry(perf.Migrate, am.EnforcedMigration, scheduler=("resource_owner", reference(ObjectKind.SCHEDULER))),
 )

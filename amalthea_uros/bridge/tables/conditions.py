@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from amalthea_uros.bridge.codecs import PLAIN, Codec, build_reason, enumeration, extract_reason, reference
-from amalthea_uros.bridge.context import Building, Extracting
-from amalthea_uros.bridge.entries import ClassEntry, ClassTable, Column, parts
-from amalthea_uros.bridge.kinds import ObjectKind
+from amalthea_uros.bridge.basics.codecs import PLAIN, Codec, build_reason, enumeration, extract_reason, reference
+from amalthea_uros.bridge.basics.context import Building, Extracting
+from amalthea_uros.bridge.basics.entries import ClassEntry, ClassTable, parts
+from amalthea_uros.bridge.basics.kinds import ObjectKind
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.perf import conditions as perf
@@ -47,16 +47,12 @@ _COMPARISONS: ClassTable = _Comparisons(
     ClassEntry(
         perf.ModeLabelsAre,
         am.ModeLabelCondition,
-        first=Column("label1", _MODE_LABEL),
+        first=("label1", _MODE_LABEL),
         relation=_RELATION,
-        second=Column("label2", _MODE_LABEL),
+        second=("label2", _MODE_LABEL),
     ),
     ClassEntry(
-        perf.ChannelFillIs,
-        am.ChannelFillCondition,
-        channel=reference(ObjectKind.DATA),
-        relation=_RELATION,
-        level=Column("fill_level"),
+        perf.ChannelFillIs, am.ChannelFillCondition, channel=reference(ObjectKind.DATA), relation=_RELATION, level="fill_level"
     ),
 )
 

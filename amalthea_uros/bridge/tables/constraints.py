@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from amalthea_uros.bridge.codecs import FREQUENCY, TIME, Codec, reference, references, same_names, time_property
-from amalthea_uros.bridge.context import Building, Extracting
-from amalthea_uros.bridge.entries import ClassEntry, ClassTable, Column, part
-from amalthea_uros.bridge.kinds import ObjectKind
+from amalthea_uros.bridge.basics.codecs import FLOAT, FREQUENCY, TIME, Codec, reference, references, same_names, time_property
+from amalthea_uros.bridge.basics.context import Building, Extracting
+from amalthea_uros.bridge.basics.entries import ClassEntry, ClassTable, part
+from amalthea_uros.bridge.basics.kinds import ObjectKind
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.perf import constraints as perf
@@ -15,24 +15,24 @@ from amalthea_uros.perf import constraints as perf
 _EVENT = reference(ObjectKind.EVENT)
 #: AMALTHEA limits no jitter of a latency or of a time of jobs.
 _JITTER = time_property("jitter")
-_EVERY = Column("multiple_occurrences_allowed")
+_EVERY = "multiple_occurrences_allowed"
 
 CONSTRAINTS = ClassTable(
     ClassEntry(
         perf.LatencyConstraint,
         am.EventChainLatencyConstraint,
-        chain=Column("scope", reference(ObjectKind.CHAIN)),
-        kind=Column("type", same_names(perf.LatencyKind, am.LatencyType)),
+        chain=("scope", reference(ObjectKind.CHAIN)),
+        kind=("type", same_names(perf.LatencyKind, am.LatencyType)),
         minimum=TIME,
         maximum=TIME,
-        jitter=Column("custom_properties", _JITTER),
+        jitter=("custom_properties", _JITTER),
     ),
     ClassEntry(
         perf.DelayConstraint,
         am.DelayConstraint,
         source=_EVENT,
         target=_EVENT,
-        matching=Column("mapping_type", same_names(perf.Matching, am.MappingType, ONE_TO_ONE="ONETOONE")),
+        matching=("mapping_type", same_names(perf.Matching, am.MappingType, ONE_TO_ONE="ONETOONE")),
         lower=TIME,
         upper=TIME,
     ),
@@ -57,8 +57,8 @@ CONSTRAINTS = ClassTable(
     ClassEntry(
         perf.ChainSynchronization,
         am.EventChainSynchronizationConstraint,
-        chains=Column("scope", references(ObjectKind.CHAIN)),
-        end=Column("type", same_names(perf.ChainEnd, am.SynchronizationType)),
+        chains=("scope", references(ObjectKind.CHAIN)),
+        end=("type", same_names(perf.ChainEnd, am.SynchronizationType)),
         tolerance=TIME,
         every_occurrence=_EVERY,
     ),
@@ -104,16 +104,16 @@ DATA_AGES = ClassTable(
 
 # Requirements
 
-_BOUND = Column("limit_type", same_names(perf.Bound, am.LimitType, UPPER="UPPER_LIMIT", LOWER="LOWER_LIMIT"))
-_VALUE = Column("limit_value")
-_FLOAT = Column("limit_value", Codec(lambda value, _: float(value), lambda value, _context, _element: value))
+_BOUND = ("limit_type", same_names(perf.Bound, am.LimitType, UPPER="UPPER_LIMIT", LOWER="LOWER_LIMIT"))
+_VALUE = "limit_value"
+_FLOAT = ("limit_value", FLOAT)
 
 _LIMITS = ClassTable(
     ClassEntry(
         perf.TimeLimit,
         am.TimeRequirementLimit,
         metric=same_names(perf.TimeMetric, am.TimeMetric, END_TO_END="ENDTOEND"),
-        value=Column("limit_value", TIME),
+        value=("limit_value", TIME),
         bound=_BOUND,
     ),
     ClassEntry(
@@ -135,7 +135,7 @@ _LIMITS = ClassTable(
         metric=same_names(perf.LoadMetric, am.CPUPercentageMetric, **{m.name: f"CPU{m.name}" for m in perf.LoadMetric}),
         value=_FLOAT,
         bound=_BOUND,
-        core=Column("hardware_context", reference(ObjectKind.MODULE)),
+        core=("hardware_context", reference(ObjectKind.MODULE)),
     ),
     ClassEntry(
         perf.RatioLimit,
@@ -156,12 +156,9 @@ _LIMITS = ClassTable(
         perf.FrequencyLimit,
         am.FrequencyRequirementLimit,
         metric=same_names(
-            perf.FrequencyMetric,
-            am.FrequencyMetric,
-            CACHE_HITS="CACHE_HIT_FREQUENCY",
-            CACHE_MISSES="CACHE_MISS_FREQUENCY",
+            perf.FrequencyMetric, am.FrequencyMetric, CACHE_HITS="CACHE_HIT_FREQUENCY", CACHE_MISSES="CACHE_MISS_FREQUENCY"
         ),
-        value=Column("limit_value", FREQUENCY),
+        value=("limit_value", FREQUENCY),
         bound=_BOUND,
     ),
 )
@@ -260,9 +257,9 @@ ORDERS = ClassTable(
     ClassEntry(
         perf.OrderConstraint,
         am.RunnableSequencingConstraint,
-        groups=Column("runnable_groups", _GROUPS),
-        ordering=Column("order_type", _ORDERING),
-        processes=Column("process_scope", references(ObjectKind.PROCESS)),
+        groups=("runnable_groups", _GROUPS),
+        ordering=("order_type", _ORDERING),
+        processes=("process_scope", references(ObjectKind.PROCESS)),
     )
 )
 

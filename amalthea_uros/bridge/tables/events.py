@@ -4,69 +4,69 @@ from __future__ import annotations
 
 from typing import Any
 
-from amalthea_uros.bridge.codecs import reference, references, same_names
-from amalthea_uros.bridge.context import Building, Extracting
-from amalthea_uros.bridge.entries import ClassEntry, ClassTable, Column
-from amalthea_uros.bridge.kinds import ObjectKind
+from amalthea_uros.bridge.basics.codecs import reference, references, same_names
+from amalthea_uros.bridge.basics.context import Building, Extracting
+from amalthea_uros.bridge.basics.entries import ClassEntry, ClassTable
+from amalthea_uros.bridge.basics.kinds import ObjectKind
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.perf import events as perf
 
 _PROCESS = reference(ObjectKind.PROCESS)
 _RUNNABLE = reference(ObjectKind.RUNNABLE)
-_CORE = Column("processing_unit", reference(ObjectKind.MODULE))
+_CORE = ("processing_unit", reference(ObjectKind.MODULE))
 
 EVENTS = ClassTable(
     ClassEntry(
         perf.ProcessEvent,
         am.ProcessEvent,
-        change=Column("event_type", same_names(perf.ProcessChange, am.ProcessEventType)),
-        process=Column("entity", reference(ObjectKind.PROCESS)),
+        change=("event_type", same_names(perf.ProcessChange, am.ProcessEventType)),
+        process=("entity", reference(ObjectKind.PROCESS)),
         core=_CORE,
     ),
     ClassEntry(
         perf.RunnableEvent,
         am.RunnableEvent,
-        change=Column("event_type", same_names(perf.RunnableChange, am.RunnableEventType)),
-        runnable=Column("entity", reference(ObjectKind.RUNNABLE)),
+        change=("event_type", same_names(perf.RunnableChange, am.RunnableEventType)),
+        runnable=("entity", reference(ObjectKind.RUNNABLE)),
         process=_PROCESS,
         core=_CORE,
     ),
     ClassEntry(
         perf.LabelEvent,
         am.LabelEvent,
-        change=Column("event_type", same_names(perf.LabelChange, am.LabelEventType)),
-        label=Column("entity", reference(ObjectKind.DATA)),
+        change=("event_type", same_names(perf.LabelChange, am.LabelEventType)),
+        label=("entity", reference(ObjectKind.DATA)),
         runnable=_RUNNABLE,
         process=_PROCESS,
     ),
     ClassEntry(
         perf.ModeLabelEvent,
         am.ModeLabelEvent,
-        change=Column("event_type", same_names(perf.ModeChange, am.ModeLabelEventType)),
-        label=Column("entity", reference(ObjectKind.MODE_LABEL)),
+        change=("event_type", same_names(perf.ModeChange, am.ModeLabelEventType)),
+        label=("entity", reference(ObjectKind.MODE_LABEL)),
         runnable=_RUNNABLE,
         process=_PROCESS,
     ),
     ClassEntry(
         perf.ChannelEvent,
         am.ChannelEvent,
-        change=Column("event_type", same_names(perf.ChannelChange, am.ChannelEventType)),
-        channel=Column("entity", reference(ObjectKind.DATA)),
+        change=("event_type", same_names(perf.ChannelChange, am.ChannelEventType)),
+        channel=("entity", reference(ObjectKind.DATA)),
         runnable=_RUNNABLE,
         process=_PROCESS,
     ),
     ClassEntry(
         perf.SemaphoreEvent,
         am.SemaphoreEvent,
-        change=Column("event_type", same_names(perf.SemaphoreChange, am.SemaphoreEventType)),
-        semaphore=Column("entity", reference(ObjectKind.SEMAPHORE)),
+        change=("event_type", same_names(perf.SemaphoreChange, am.SemaphoreEventType)),
+        semaphore=("entity", reference(ObjectKind.SEMAPHORE)),
         runnable=_RUNNABLE,
         process=_PROCESS,
         core=_CORE,
     ),
-    ClassEntry(perf.StimulusEvent, am.StimulusEvent, stimulus=Column("entity", reference(ObjectKind.STIMULUS))),
-    ClassEntry(perf.CustomEvent, am.CustomEvent, kind=Column("event_type")),
+    ClassEntry(perf.StimulusEvent, am.StimulusEvent, stimulus=("entity", reference(ObjectKind.STIMULUS))),
+    ClassEntry(perf.CustomEvent, am.CustomEvent, kind="event_type"),
     ClassEntry(perf.EventSet, am.EventSet, events=references(ObjectKind.EVENT)),
 )
 
@@ -118,7 +118,7 @@ def _extract_item(item: Any, context: Extracting) -> perf.ChainItem | None:
     )
 
 
-class _Chains(ClassEntry):
+class _ChainEntry(ClassEntry):
     def fill(self, element: Element, item: Any, context: Building) -> Element:
         context.at(item)
         found: Element = _fill(element, item, context)
@@ -134,4 +134,4 @@ class _Chains(ClassEntry):
         )
 
 
-CHAINS = ClassTable(_Chains(perf.EventChain, am.EventChain))
+CHAINS = ClassTable(_ChainEntry(perf.EventChain, am.EventChain))

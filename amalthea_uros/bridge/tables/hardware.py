@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from typing import Any, TypeVar
 
-from amalthea_uros.bridge.codecs import FREQUENCY, RATE, SIZE, enumeration, reference, references, same_names
-from amalthea_uros.bridge.context import Building, Extracting
-from amalthea_uros.bridge.entries import ClassEntry, ClassTable, Column
-from amalthea_uros.bridge.kinds import ObjectKind
+from amalthea_uros.bridge.basics.codecs import FLOAT, FREQUENCY, RATE, SIZE, enumeration, reference, references, same_names
+from amalthea_uros.bridge.basics.context import Building, Extracting
+from amalthea_uros.bridge.basics.entries import ClassEntry, ClassTable
+from amalthea_uros.bridge.basics.kinds import ObjectKind
 from amalthea_uros.bridge.tables.distributions import TICKS
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.element import Element
@@ -32,25 +32,27 @@ _ARBITRATION = enumeration(
 _CLOCK, _CORE_TYPE, _MODULE = reference(ObjectKind.CLOCK), reference(ObjectKind.CORE_TYPE), reference(ObjectKind.MODULE)
 _MODULES = references(ObjectKind.MODULE)
 
-CLOCKS = ClassTable(ClassEntry(perf.Clock, am.FrequencyDomain, frequency=Column("default_value", FREQUENCY)))
+CLOCKS = ClassTable(ClassEntry(perf.Clock, am.FrequencyDomain, frequency=("default_value", FREQUENCY)))
 
 
-def _set_latency(element: Any, latency: perf.Latency, context: Building) -> None:
-    if latency.read is not None:
-        element.read_latency = TICKS.build(latency.read, context)
-    if latency.write is not None:
-        element.write_latency = TICKS.build(latency.write, context)
-    if latency.rate is not None:
-        element.data_rate = RATE.build(latency.rate, context)
-
-
-def _latency(element: Any, context: Extracting) -> perf.Latency:
-    read, write = element.read_latency, element.write_latency
-    return perf.Latency(
-        read=None if read is None else TICKS.extract(read, context, element),
-        write=None if write is None else TICKS.extract(write, context, element),
-        rate=RATE.extract(element.data_rate, context, element),
-    )
+#: What definitions say of modules.
+_MEMORY = ClassEntry(
+    perf.Memory,
+    am.MemoryDefinition,
+    kind=("memory_type", _MEMORY_KIND),
+    size=SIZE,
+    latency=("access_latency", TICKS),
+    rate=("data_rate", RATE),
+)
+_CACHE = ClassEntry(perf.Cache, am.CacheDefinition, size=SIZE, latency=("access_latency", TICKS), hit_rate=FLOAT)
+#: Connections, accesses and definitions of interconnects have it alike.
+_LATENCY = ClassEntry(
+    perf.Latency,
+    am.HwConnection,
+    read=("read_latency", TICKS),
+    write=("write_latency", TICKS),
+    rate=("data_rate", RATE),
+)
 
 
 class HardwareBuilder:
@@ -92,7 +94,7 @@ class HardwareBuilder:
                 known = am.HwFeature(name=feature.name, value=float(feature.value))
                 category.features.append(known)
             features.append(known)
-        kind = None if core_type.kind is None else _CORE_KIND.build(core_type.kind, self.context)
+        kind = _CORE_KIND.build_given(core_type.kind, self.context)
         definition = am.ProcessingUnitDefinition(name=core_type.name, pu_type=kind, features=features)
         self.context.register(core_type, definition)
         self.definitions.append(definition)
@@ -107,7 +109,7 @@ class HardwareBuilder:
         ]
         element = am.HwStructure(
             name=structure.name,
-            structure_type=None if structure.kind is None else _STRUCTURE_KIND.build(structure.kind, self.context),
+            structure_type=_STRUCTURE_KIND.build_given(structure.kind, self.context),
             structures=[self.structure(inner) for inner in structure.structures],
             modules=modules,
         )
@@ -121,34 +123,24 @@ class HardwareBuilder:
     def core(self, core: perf.Core) -> am.HwModule:
         """A core with its caches; what it accesses is not known yet."""
         element = self._module(am.ProcessingUnit, core)
-        if core.type is not None:
-            element.definition = _CORE_TYPE.build(core.type, self.context)
+        element.definition = _CORE_TYPE.build(core.type, self.context)
         element.caches = [self.cache(cache) for cache in core.caches]
         return element
 
     def memory(self, memory: perf.Memory) -> am.HwModule:
         """A memory with a definition of its own."""
         element = self._module(am.Memory, memory)
-        if (memory.size, memory.kind, memory.latency, memory.rate) != (None, None, None, None):
-            element.definition = am.MemoryDefinition(
-                name=memory.name,
-                size=SIZE.build(memory.size, self.context),
-                memory_type=None if memory.kind is None else _MEMORY_KIND.build(memory.kind, self.context),
-                access_latency=None if memory.latency is None else TICKS.build(memory.latency, self.context),
-                data_rate=RATE.build(memory.rate, self.context),
-            )
+        if any(getattr(memory, name) is not None for name in _MEMORY.columns):
+            element.definition = am.MemoryDefinition(name=memory.name)
+            _MEMORY.fill(element.definition, memory, self.context)
             self.definitions.append(element.definition)
         return element
 
     def cache(self, cache: perf.Cache) -> am.Cache:
         """A cache with a definition of its own."""
         element = self._module(am.Cache, cache)
-        element.definition = am.CacheDefinition(
-            name=cache.name,
-            size=SIZE.build(cache.size, self.context),
-            access_latency=None if cache.latency is None else TICKS.build(cache.latency, self.context),
-            hit_rate=float(cache.hit_rate),
-        )
+        element.definition = am.CacheDefinition(name=cache.name)
+        _CACHE.fill(element.definition, cache, self.context)
         self.definitions.append(element.definition)
         return element
 
@@ -156,9 +148,8 @@ class HardwareBuilder:
         """An interconnect with a definition of its own."""
         element = self._module(am.ConnectionHandler, interconnect)
         definition = am.ConnectionHandlerDefinition(name=interconnect.name)
-        if interconnect.arbitration is not None:
-            definition.policy = _ARBITRATION.build(interconnect.arbitration, self.context)
-        _set_latency(definition, interconnect.latency, self.context)
+        definition.policy = _ARBITRATION.build_given(interconnect.arbitration, self.context)
+        _LATENCY.fill(definition, interconnect.latency, self.context)
         element.definition = definition
         self.definitions.append(definition)
         return element
@@ -167,8 +158,7 @@ class HardwareBuilder:
         element = kind(name=item.name)
         self.context.register(item, element)
         self.context.at(item)
-        if item.clock is not None:
-            element.frequency_domain = _CLOCK.build(item.clock, self.context)
+        element.frequency_domain = _CLOCK.build(item.clock, self.context)
         return element
 
     def join(self, connection: perf.Connection) -> None:
@@ -177,7 +167,7 @@ class HardwareBuilder:
         element: Any = self.context.find(ObjectKind.MODULE, connection.name)
         source: Any = self.context.find(ObjectKind.MODULE, connection.source)
         target: Any = self.context.find(ObjectKind.MODULE, connection.target)
-        _set_latency(element, connection.latency, self.context)
+        _LATENCY.fill(element, connection.latency, self.context)
         if source is not None and target is not None:
             element.port1 = self._port(source, connection, am.PortType.INITIATOR)
             element.port2 = self._port(target, connection, am.PortType.RESPONDER)
@@ -197,7 +187,7 @@ class HardwareBuilder:
         element: Any = self.context.find(ObjectKind.MODULE, core.name)
         for access in core.accesses:
             found = am.HwAccessElement(name=access.memory, destination=_MODULE.build(access.memory, self.context))
-            _set_latency(found, access.latency, self.context)
+            _LATENCY.fill(found, access.latency, self.context)
             if access.path:
                 found.access_path = am.HwAccessPath(path_elements=_MODULES.build(access.path, self.context))
             element.access_elements.append(found)
@@ -257,10 +247,8 @@ class HardwareExtractor:
         """A core with its caches and what it accesses."""
         accesses = (self.access(access) for access in element.access_elements)
         return perf.Core(
-            name=self.context.names[element],
-            origin=self.context.location(element),
+            **self._module(element),
             type=_CORE_TYPE.extract(element.definition, self.context, element),
-            clock=self._clock(element),
             accesses=tuple(access for access in accesses if access is not None),
             caches=tuple(map(self.cache, element.caches)),
         )
@@ -273,45 +261,26 @@ class HardwareExtractor:
             return None
         path = element.access_path.path_elements if element.access_path else []
         return perf.Access(
-            memory=memory, latency=_latency(element, self.context), path=_MODULES.extract(path, self.context, element)
+            memory=memory, latency=_LATENCY.complete(element, self.context), path=_MODULES.extract(path, self.context, element)
         )
 
     def memory(self, element: am.Memory) -> perf.Memory:
         """A memory with what its definition says."""
-        definition: Any = element.definition if isinstance(element.definition, am.MemoryDefinition) else am.MemoryDefinition()
-        latency = definition.access_latency
-        return perf.Memory(
-            name=self.context.names[element],
-            origin=self.context.location(element),
-            clock=self._clock(element),
-            kind=_MEMORY_KIND.extract(definition.memory_type, self.context, element),
-            size=SIZE.extract(definition.size, self.context, element),
-            latency=None if latency is None else TICKS.extract(latency, self.context, element),
-            rate=RATE.extract(definition.data_rate, self.context, element),
-        )
+        definition = element.definition if isinstance(element.definition, am.MemoryDefinition) else am.MemoryDefinition()
+        return perf.Memory(**self._module(element), **(_MEMORY.values(definition, self.context) or {}))
 
     def cache(self, element: am.Cache) -> perf.Cache:
         """A cache with what its definition says."""
-        definition: Any = element.definition if isinstance(element.definition, am.CacheDefinition) else am.CacheDefinition()
-        latency = definition.access_latency
-        return perf.Cache(
-            name=self.context.names[element],
-            origin=self.context.location(element),
-            clock=self._clock(element),
-            size=SIZE.extract(definition.size, self.context, element),
-            latency=None if latency is None else TICKS.extract(latency, self.context, element),
-            hit_rate=definition.hit_rate or 0.0,
-        )
+        definition = element.definition if isinstance(element.definition, am.CacheDefinition) else am.CacheDefinition()
+        return perf.Cache(**self._module(element), **(_CACHE.values(definition, self.context) or {}))
 
     def interconnect(self, element: am.ConnectionHandler) -> perf.Interconnect:
         """An interconnect with what its definition says."""
-        definition: Any = element.definition or am.ConnectionHandlerDefinition()
+        definition = element.definition or am.ConnectionHandlerDefinition()
         return perf.Interconnect(
-            name=self.context.names[element],
-            origin=self.context.location(element),
-            clock=self._clock(element),
+            **self._module(element),
             arbitration=_ARBITRATION.extract(definition.policy, self.context, element),
-            latency=_latency(definition, self.context),
+            latency=_LATENCY.complete(definition, self.context),
         )
 
     def connection(self, element: am.HwConnection) -> perf.Connection | None:
@@ -329,9 +298,13 @@ class HardwareExtractor:
             origin=self.context.location(element),
             source=source,
             target=target,
-            latency=_latency(element, self.context),
+            latency=_LATENCY.complete(element, self.context),
         )
 
-    def _clock(self, element: am.HwModule) -> str | None:
-        name: str | None = _CLOCK.extract(element.frequency_domain, self.context, element)
-        return name
+    def _module(self, element: am.HwModule) -> dict[str, Any]:
+        """What all modules have."""
+        return {
+            "name": self.context.names[element],
+            "origin": self.context.location(element),
+            "clock": _CLOCK.extract(element.frequency_domain, self.context, element),
+        }

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from amalthea_uros.bridge.codecs import PLAIN, reference, references
-from amalthea_uros.bridge.context import Building, Extracting
-from amalthea_uros.bridge.entries import ClassEntry, ClassTable, Column
-from amalthea_uros.bridge.kinds import ObjectKind
+from amalthea_uros.bridge.basics.codecs import PLAIN, reference, references
+from amalthea_uros.bridge.basics.context import Building, Extracting
+from amalthea_uros.bridge.basics.entries import ClassEntry, ClassTable
+from amalthea_uros.bridge.basics.kinds import ObjectKind
 from amalthea_uros.bridge.tables.parameters import Given, SchedulingDefinitions, extract_parameters
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.perf import mapping as perf
@@ -23,11 +23,7 @@ ISR_ALLOCATIONS = ClassTable(
 )
 PLACEMENTS = ClassTable(
     ClassEntry(
-        perf.Placement,
-        am.MemoryMapping,
-        element=Column("abstract_element", _DATA),
-        memory=_MEMORY,
-        address=Column("memory_position_address"),
+        perf.Placement, am.MemoryMapping, element=("abstract_element", _DATA), memory=_MEMORY, address="memory_position_address"
     )
 )
 
@@ -35,10 +31,7 @@ PLACEMENTS = ClassTable(
 def build_mapping(system: System, definitions: SchedulingDefinitions) -> am.MappingModel:
     """The mapping of software to hardware."""
     context = definitions.context
-    schedulers: list[Scheduler | InterruptController] = [
-        *system.schedulers.values(),
-        *system.interrupt_controllers.values(),
-    ]
+    schedulers: list[Scheduler | InterruptController] = [*system.schedulers.values(), *system.interrupt_controllers.values()]
     return am.MappingModel(
         scheduler_allocation=[found for s in schedulers if (found := _scheduler_allocation(s, context)) is not None],
         task_allocation=[_task_allocation(allocation, system, definitions) for allocation in system.mapping.tasks],
@@ -52,9 +45,10 @@ def _scheduler_allocation(scheduler: Scheduler | InterruptController, context: B
     if not scheduler.cores and scheduler.executing_core is None:
         return None
     element: Any = context.find(ObjectKind.SCHEDULER, scheduler.name)
-    executing = None if scheduler.executing_core is None else _CORE.build(scheduler.executing_core, context)
     return am.SchedulerAllocation(
-        scheduler=element, responsibility=_CORES.build(scheduler.cores, context), executing_pu=executing
+        scheduler=element,
+        responsibility=_CORES.build(scheduler.cores, context),
+        executing_pu=_CORE.build(scheduler.executing_core, context),
     )
 
 
@@ -81,16 +75,12 @@ def extract_mapping(mapping: am.MappingModel, context: Extracting) -> perf.Mappi
     """The way back."""
     for left_out in (*mapping.runnable_allocation, *mapping.physical_section_mapping):
         context.leave_out(left_out)
-    placed = []
-    for placement in mapping.memory_mapping:
-        if _is_other(placement):
-            context.leave_out(placement)
-        else:
-            placed.append(placement)
+    for placement in filter(_is_other, mapping.memory_mapping):
+        context.leave_out(placement)
     return perf.Mapping(
         tasks=tuple(_extract_tasks(mapping.task_allocation, context)),
         isrs=ISR_ALLOCATIONS.extract_all(mapping.isr_allocation, context),
-        placements=PLACEMENTS.extract_all(placed, context),
+        placements=PLACEMENTS.extract_all((m for m in mapping.memory_mapping if not _is_other(m)), context),
     )
 
 

@@ -11,9 +11,9 @@ from dataclasses import replace
 from functools import partial
 from typing import Any, TypeVar
 
-from amalthea_uros.bridge.context import Building, Extracting
-from amalthea_uros.bridge.json_text import from_text, to_text
-from amalthea_uros.bridge.kinds import ObjectKind
+from amalthea_uros.bridge.basics.context import Building, Extracting
+from amalthea_uros.bridge.basics.json_text import from_text, to_text
+from amalthea_uros.bridge.basics.kinds import ObjectKind
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.element import Element

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Mapping, Sequence
 from typing import Any
 
-from amalthea_uros.bridge.codecs import PLAIN, enumeration, reference, same_names
-from amalthea_uros.bridge.context import Building, Extracting
-from amalthea_uros.bridge.entries import ClassEntry, ClassTable, Column
-from amalthea_uros.bridge.kinds import ObjectKind
+from amalthea_uros.bridge.basics.codecs import PLAIN, enumeration, reference, same_names
+from amalthea_uros.bridge.basics.context import Building, Extracting
+from amalthea_uros.bridge.basics.entries import ClassEntry, ClassTable
+from amalthea_uros.bridge.basics.kinds import ObjectKind
 from amalthea_uros.bridge.tables.activities import ACTIVITIES, DEMAND, ITEMS, PROTECTIONS
 from amalthea_uros.bridge.tables.parameters import Given, SchedulingDefinitions, extract_parameters, extract_policy
 from amalthea_uros.metamodel import classes as am
@@ -19,10 +19,10 @@ SEMAPHORES = ClassTable(
     ClassEntry(
         perf.Semaphore,
         am.Semaphore,
-        kind=Column("semaphore_type", same_names(perf.SemaphoreKind, am.SemaphoreType, COUNTING="COUNTING_SEMAPHORE")),
-        users=Column("max_value"),
-        initial_users=Column("initial_value"),
-        ceiling=Column("priority_ceiling_protocol"),
+        kind=("semaphore_type", same_names(perf.SemaphoreKind, am.SemaphoreType, COUNTING="COUNTING_SEMAPHORE")),
+        users="max_value",
+        initial_users="initial_value",
+        ceiling="priority_ceiling_protocol",
         ownership=PLAIN,
     )
 )
@@ -49,9 +49,8 @@ def build_overhead(overhead: perf.Overhead, element: Any, context: Building) -> 
             setattr(element.api_overhead, _SERVICES[service], DEMAND.build(demand, context))
     for stated, feature in ((overhead.category_1, "isr_category1_overhead"), (overhead.category_2, "isr_category2_overhead")):
         if stated is not None:
-            parts = {"pre_execution_overhead": stated.before, "post_execution_overhead": stated.after}
-            found = {name: DEMAND.build(demand, context) for name, demand in parts.items() if demand is not None}
-            setattr(element, feature, am.OsISROverhead(**found))
+            before, after = (DEMAND.build_given(demand, context) for demand in (stated.before, stated.after))
+            setattr(element, feature, am.OsISROverhead(pre_execution_overhead=before, post_execution_overhead=after))
 
 
 def extract_overhead(element: am.OsOverhead, context: Extracting) -> perf.Overhead:
@@ -59,8 +58,7 @@ def extract_overhead(element: am.OsOverhead, context: Extracting) -> perf.Overhe
     api = element.api_overhead
     services = []
     for service, feature in _SERVICES.items():
-        ticks = getattr(api, feature) if api is not None else None
-        demand = None if ticks is None else DEMAND.extract(ticks, context, element)
+        demand = DEMAND.extract_given(getattr(api, feature, None), context, element)
         if demand is not None:
             services.append((service, demand))
     return perf.Overhead(
@@ -75,10 +73,9 @@ def extract_overhead(element: am.OsOverhead, context: Extracting) -> perf.Overhe
 def _isr_overhead(element: am.OsISROverhead | None, context: Extracting) -> perf.IsrOverhead | None:
     if element is None:
         return None
-    before, after = element.pre_execution_overhead, element.post_execution_overhead
     return perf.IsrOverhead(
-        before=None if before is None else DEMAND.extract(before, context, element),
-        after=None if after is None else DEMAND.extract(after, context, element),
+        before=DEMAND.extract_given(element.pre_execution_overhead, context, element),
+        after=DEMAND.extract_given(element.post_execution_overhead, context, element),
     )
 
 
@@ -102,8 +99,7 @@ def fill_system(system: perf.OperatingSystem, element: am.OperatingSystem, defin
     """Everything of an operating system that refers to something."""
     context = definitions.context
     context.at(system)
-    if system.overhead is not None:
-        element.overhead = _OVERHEAD.build(system.overhead, context)
+    element.overhead = _OVERHEAD.build(system.overhead, context)
     if system.protection is not None:
         element.os_data_consistency = am.OsDataConsistency(mode=_PROTECTION.build(system.protection, context))
     policies = {scheduler.name: scheduler.policy for scheduler in system.schedulers}
@@ -129,20 +125,11 @@ def _fill_scheduler(
     element.computation_items = ITEMS.build(scheduler.overhead, definitions.context)
 
 
-class Allocations:
-    """Which cores a scheduler decides for: in AMALTHEA a matter of the mapping model."""
-
-    def __init__(self, allocations: Iterable[am.SchedulerAllocation]) -> None:
-        self._by_scheduler: dict[Any, list[am.SchedulerAllocation]] = {}
-        for allocation in allocations:
-            self._by_scheduler.setdefault(allocation.scheduler, []).append(allocation)
-
-    def of(self, scheduler: am.Scheduler) -> list[am.SchedulerAllocation]:
-        """The allocations of a scheduler."""
-        return self._by_scheduler.get(scheduler, [])
+#: Which cores schedulers decide for, in AMALTHEA a matter of the mapping model.
+SchedulerAllocations = Mapping[am.Scheduler | None, Sequence[am.SchedulerAllocation]]
 
 
-def extract_system(element: am.OperatingSystem, allocations: Allocations, context: Extracting) -> perf.OperatingSystem:
+def extract_system(element: am.OperatingSystem, allocations: SchedulerAllocations, context: Extracting) -> perf.OperatingSystem:
     """An operating system with its schedulers."""
     return perf.OperatingSystem(
         name=context.names[element],
@@ -153,17 +140,11 @@ def extract_system(element: am.OperatingSystem, allocations: Allocations, contex
             for controller in element.interrupt_controllers
         ),
         overhead=_OVERHEAD.extract(element.overhead, context, element),
-        protection=_protection(element, context),
+        protection=_PROTECTION.extract_given(getattr(element.os_data_consistency, "mode", None), context, element),
     )
 
 
-def _protection(element: am.OperatingSystem, context: Extracting) -> Protection | None:
-    mode = element.os_data_consistency.mode if element.os_data_consistency is not None else None
-    found: Protection | None = None if mode is None else _PROTECTION.extract(mode, context, element)
-    return found
-
-
-def _scheduler(element: am.TaskScheduler, allocations: Allocations, context: Extracting) -> perf.Scheduler:
+def _scheduler(element: am.TaskScheduler, allocations: SchedulerAllocations, context: Extracting) -> perf.Scheduler:
     association = element.parent_association
     parent = None
     if association is not None:
@@ -175,11 +156,11 @@ def _scheduler(element: am.TaskScheduler, allocations: Allocations, context: Ext
     return perf.Scheduler(**_common(element, allocations, context), parent=parent)
 
 
-def _common(element: Any, allocations: Allocations, context: Extracting) -> dict[str, Any]:
+def _common(element: Any, allocations: SchedulerAllocations, context: Extracting) -> dict[str, Any]:
     """What task schedulers and interrupt controllers have."""
     cores: dict[str, None] = {}
     executing: str | None = None
-    for allocation in allocations.of(element):
+    for allocation in allocations.get(element, ()):
         for core in allocation.responsibility:
             if core in context.names:
                 cores[context.names[core]] = None

@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any, NamedTuple
 
-from amalthea_uros.bridge.codecs import build_time
-from amalthea_uros.bridge.context import Building, Extracting
+from amalthea_uros.bridge.basics.codecs import build_time
+from amalthea_uros.bridge.basics.context import Building, Extracting
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.magnitudes import picoseconds
 from amalthea_uros.perf.named import Named
@@ -239,9 +239,7 @@ def extract_parameters(element: Any, context: Extracting, defaults: Iterable[am.
     return Given(priority, deadline, tuple(others))
 
 
-def _defaults(
-    definitions: Iterable[am.SchedulingParameterDefinition],
-) -> Iterable[tuple[str, tuple[ParameterValue, ...]]]:
+def _defaults(definitions: Iterable[am.SchedulingParameterDefinition]) -> Iterable[tuple[str, tuple[ParameterValue, ...]]]:
     for definition in definitions:
         values = _extract_values(definition.default_value)
         if definition.name and values:

@@ -4,19 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from amalthea_uros.bridge.codecs import (
-    PLAIN,
-    SIZE,
-    Codec,
-    enumeration,
-    marked,
-    reference,
-    references,
-    same_names,
-)
-from amalthea_uros.bridge.context import Building, Extracting
-from amalthea_uros.bridge.entries import ClassEntry, ClassTable, Column
-from amalthea_uros.bridge.kinds import ObjectKind
+from amalthea_uros.bridge.basics.codecs import PLAIN, SIZE, Codec, enumeration, marked, reference, references, same_names
+from amalthea_uros.bridge.basics.context import Building, Extracting
+from amalthea_uros.bridge.basics.entries import ClassEntry, ClassTable
+from amalthea_uros.bridge.basics.kinds import ObjectKind
 from amalthea_uros.bridge.tables.activities import ITEMS, PROTECTIONS
 from amalthea_uros.bridge.tables.conditions import CONDITION
 from amalthea_uros.metamodel import classes as am
@@ -29,7 +20,7 @@ _GRAPH = Codec(
     lambda items, context: am.ActivityGraph(items=ITEMS.build(items, context)),
     lambda value, context, element: ITEMS.extract(value.items, context, element),
 )
-_ACTIVITIES = Column("activity_graph", _GRAPH)
+_ACTIVITIES = ("activity_graph", _GRAPH)
 
 
 def _extract_stimuli(values: list[Any], context: Extracting, element: Element) -> tuple[str, ...]:
@@ -54,7 +45,7 @@ PROCESSES = ClassTable(
         stimuli=_STIMULI,
         activities=_ACTIVITIES,
         preemption=_PREEMPTION,
-        activation_limit=Column("multiple_task_activation_limit", _LIMIT),
+        activation_limit=("multiple_task_activation_limit", _LIMIT),
     ),
     ClassEntry(
         perf.Isr, am.ISR, stimuli=_STIMULI, activities=_ACTIVITIES, category=same_names(perf.IsrCategory, am.ISRCategory)
@@ -67,8 +58,8 @@ RUNNABLES = ClassTable(
         activities=_ACTIVITIES,
         callback=PLAIN,
         service=PLAIN,
-        is_overhead=Column("custom_properties", marked("osOverhead", default=False)),
-        condition=Column("execution_condition", CONDITION),
+        is_overhead=("custom_properties", marked("osOverhead", default=False)),
+        condition=("execution_condition", CONDITION),
     )
 )
 LABELS = ClassTable(
@@ -77,8 +68,8 @@ LABELS = ClassTable(
         am.Label,
         size=SIZE,
         constant=PLAIN,
-        volatile=Column("b_volatile"),
-        protection=Column(
+        volatile="b_volatile",
+        protection=(
             "data_stability",
             enumeration({Protection[name]: am.LabelDataStability[other] for name, other in PROTECTIONS.items()}),
         ),
@@ -103,16 +94,14 @@ CHANNELS = ClassTable(
     ClassEntry(
         perf.Channel,
         am.Channel,
-        element_size=Column("element_type", Codec(_build_element_type, _extract_element_type)),
+        element_size=("element_type", Codec(_build_element_type, _extract_element_type)),
         default_elements=PLAIN,
-        capacity=Column("max_elements"),
-        external=Column("custom_properties", marked("external", default=False)),
+        capacity="max_elements",
+        external=("custom_properties", marked("external", default=False)),
     )
 )
 OS_EVENTS = ClassTable(ClassEntry(perf.OsEvent, am.OsEvent))
-MODE_LABELS = ClassTable(
-    ClassEntry(perf.ModeLabel, am.ModeLabel, mode=reference(ObjectKind.MODE), initial=Column("initial_value"))
-)
+MODE_LABELS = ClassTable(ClassEntry(perf.ModeLabel, am.ModeLabel, mode=reference(ObjectKind.MODE), initial="initial_value"))
 
 
 def build_modes(modes: tuple[perf.Mode, ...], context: Building) -> list[am.Mode]:

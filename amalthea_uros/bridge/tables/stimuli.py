@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from amalthea_uros.bridge.codecs import (
+from amalthea_uros.bridge.basics.codecs import (
     FREQUENCY,
     PLAIN,
     TIME,
@@ -16,9 +16,9 @@ from amalthea_uros.bridge.codecs import (
     reference,
     same_names,
 )
-from amalthea_uros.bridge.context import Building, Extracting
-from amalthea_uros.bridge.entries import ClassEntry, ClassTable, Column, Columns, all_parts, part, parts
-from amalthea_uros.bridge.kinds import ObjectKind
+from amalthea_uros.bridge.basics.context import Building, Extracting
+from amalthea_uros.bridge.basics.entries import ClassEntry, ClassTable, Columns, all_parts, part, parts
+from amalthea_uros.bridge.basics.kinds import ObjectKind
 from amalthea_uros.bridge.tables.conditions import ASSIGNMENTS, CONDITION
 from amalthea_uros.bridge.tables.distributions import NUMBER, TIME_SPAN
 from amalthea_uros.metamodel import classes as am
@@ -72,33 +72,30 @@ def _extract_arrivals(element: Any) -> perf.Arrivals | None:
 #: Numbers that are not given have these values in every version: prescaler 1, offset 0.
 COUNTER = part(_Counters(ClassEntry(perf.Counter, am.Counter, prescaler=PLAIN, offset=PLAIN)))
 
-_COMMON: Columns = {
-    "condition": Column("execution_condition", CONDITION),
-    "assignments": Column("set_mode_value_list", ASSIGNMENTS),
-}
-_PERIOD: Columns = {"period": Column("recurrence", TIME), "offset": TIME}
+_COMMON: Columns = {"condition": ("execution_condition", CONDITION), "assignments": ("set_mode_value_list", ASSIGNMENTS)}
+_PERIOD: Columns = {"period": ("recurrence", TIME), "offset": TIME}
 
 _SCENARIO = ClassTable(
     ClassEntry(
         perf.Scenario,
         am.Scenario,
         clock=reference(ObjectKind.STIMULUS_CLOCK),
-        offset=Column("sampling_offset"),
-        recurrence=Column("sampling_recurrence"),
+        offset="sampling_offset",
+        recurrence="sampling_recurrence",
     )
 )
 _POINTS = ClassTable(
     ClassEntry(
         perf.ArrivalCurvePoint,
         am.ArrivalCurveEntry,
-        occurrences=Column("number_of_occurrences"),
-        lower=Column("lower_time_border", TIME),
-        upper=Column("upper_time_border", TIME),
+        occurrences="number_of_occurrences",
+        lower=("lower_time_border", TIME),
+        upper=("upper_time_border", TIME),
     )
 )
 
 
-class _Stimuli(ClassTable):
+class _StimulusTable(ClassTable):
     """Stimuli; what is incomplete activates at an unknown rate, like a custom one."""
 
     def extract(self, element: Element, context: Extracting) -> Any:
@@ -107,62 +104,60 @@ class _Stimuli(ClassTable):
         return found or perf.Custom(name=context.names[element], description="incomplete", origin=context.location(element))
 
 
-STIMULI: ClassTable = _Stimuli(
+STIMULI: ClassTable = _StimulusTable(
     ClassEntry(perf.Periodic, am.PeriodicStimulus, **_PERIOD, jitter=TIME_SPAN, min_distance=TIME, **_COMMON),
     ClassEntry(
         perf.RelativePeriodic,
         am.RelativePeriodicStimulus,
         offset=TIME,
-        distance=Column("next_occurrence", TIME_SPAN),
-        has_maximum=Column("custom_properties", marked("maximumKnown", default=True)),
+        distance=("next_occurrence", TIME_SPAN),
+        has_maximum=("custom_properties", marked("maximumKnown", default=True)),
         **_COMMON,
     ),
-    ClassEntry(perf.Synthetic, am.PeriodicSyntheticStimulus, **_PERIOD, times=Column("occurrence_times", TIMES), **_COMMON),
+    ClassEntry(perf.Synthetic, am.PeriodicSyntheticStimulus, **_PERIOD, times=("occurrence_times", TIMES), **_COMMON),
     ClassEntry(
         perf.Burst,
         am.PeriodicBurstStimulus,
         **_PERIOD,
-        length=Column("burst_length", TIME),
-        distance=Column("occurrence_min_distance", TIME),
-        count=Column("occurrence_count"),
+        length=("burst_length", TIME),
+        distance=("occurrence_min_distance", TIME),
+        count="occurrence_count",
         **_COMMON,
     ),
-    ClassEntry(perf.Single, am.SingleStimulus, time=Column("occurrence", TIME), **_COMMON),
+    ClassEntry(perf.Single, am.SingleStimulus, time=("occurrence", TIME), **_COMMON),
     ClassEntry(
         perf.VariableRate,
         am.VariableRateStimulus,
         step=TIME,
-        rate=Column("occurrences_per_step", NUMBER),
-        max_increase=Column("max_increase_per_step"),
-        max_decrease=Column("max_decrease_per_step"),
+        rate=("occurrences_per_step", NUMBER),
+        max_increase="max_increase_per_step",
+        max_decrease="max_decrease_per_step",
         scenario=part(_SCENARIO),
         **_COMMON,
     ),
-    ClassEntry(perf.ArrivalCurve, am.ArrivalCurveStimulus, points=Column("entries", parts(_POINTS)), **_COMMON),
+    ClassEntry(perf.ArrivalCurve, am.ArrivalCurveStimulus, points=("entries", parts(_POINTS)), **_COMMON),
     ClassEntry(perf.InterProcess, am.InterProcessStimulus, counter=COUNTER, **_COMMON),
     ClassEntry(
         perf.EventTriggered,
         am.EventStimulus,
-        events=Column("triggering_events", all_references(ObjectKind.EVENT)),
+        events=("triggering_events", all_references(ObjectKind.EVENT)),
         counter=COUNTER,
         **_COMMON,
     ),
     ClassEntry(perf.Custom, am.CustomStimulus, description=PLAIN, **_COMMON),
 )
 
-_STEPS = ClassTable(
-    ClassEntry(perf.ClockStep, am.ClockStep, time=TIME, frequency=FREQUENCY),
-)
+_STEPS = ClassTable(ClassEntry(perf.ClockStep, am.ClockStep, time=TIME, frequency=FREQUENCY))
 
 CLOCKS = ClassTable(
     ClassEntry(
         perf.ClockFunction,
         am.ClockFunction,
-        curve=Column("curve_type", same_names(perf.Curve, am.CurveType)),
+        curve=("curve_type", same_names(perf.Curve, am.CurveType)),
         period=TIME,
-        lowest=Column("y_offset", FREQUENCY),
-        swing=Column("peak_to_peak", FREQUENCY),
-        shift=Column("x_offset", TIME),
+        lowest=("y_offset", FREQUENCY),
+        swing=("peak_to_peak", FREQUENCY),
+        shift=("x_offset", TIME),
     ),
-    ClassEntry(perf.ClockSteps, am.ClockStepList, steps=Column("entries", all_parts(_STEPS)), period=TIME),
+    ClassEntry(perf.ClockSteps, am.ClockStepList, steps=("entries", all_parts(_STEPS)), period=TIME),
 )

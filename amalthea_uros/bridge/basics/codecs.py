@@ -7,8 +7,8 @@ from enum import StrEnum
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-from amalthea_uros.bridge.context import Building, Extracting
-from amalthea_uros.bridge.kinds import ObjectKind
+from amalthea_uros.bridge.basics.context import Building, Extracting
+from amalthea_uros.bridge.basics.kinds import ObjectKind
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel import magnitudes
 from amalthea_uros.metamodel.classes_enums import DataRateUnit, DataSizeUnit
@@ -28,9 +28,20 @@ class Codec(NamedTuple):
     build: Callable[[Any, Building], Any]
     extract: Callable[[Any, Extracting, Element], Any]
 
+    def build_given(self, value: Any, context: Building) -> Any:
+        """The value of a feature; None for one that is not given."""
+        return None if value is None else self.build(value, context)
+
+    def extract_given(self, value: Any, context: Extracting, element: Element) -> Any:
+        """The value of perf; None for one that is not given."""
+        return None if value is None else self.extract(value, context, element)
+
 
 #: Texts, numbers, truth values.
 PLAIN = Codec(lambda value, _: value, lambda value, _context, _element: value)
+
+#: Numbers that AMALTHEA holds as floating-point ones.
+FLOAT = Codec(lambda value, _: float(value), lambda value, _context, _element: value)
 
 
 def marked(key: str, default: bool) -> Codec:

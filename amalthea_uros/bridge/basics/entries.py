@@ -7,27 +7,28 @@ from dataclasses import MISSING, fields
 from functools import partial
 from typing import Any, NamedTuple
 
-from amalthea_uros.bridge.codecs import PLAIN, Codec
-from amalthea_uros.bridge.context import Building, Extracting
+from amalthea_uros.bridge.basics.codecs import PLAIN, Codec
+from amalthea_uros.bridge.basics.context import Building, Extracting
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.features import features_of
 from amalthea_uros.perf.named import Named
 
 
-class Column(NamedTuple):
-    """The feature of AMALTHEA for a field of perf, where it has another name.
-
-    Attributes
-    ----------
-    feature : its Python name
-    """
+class FeatureColumn(NamedTuple):
+    """The feature of AMALTHEA for a field of perf, by its Python name, and the conversion of its values."""
 
     feature: str
     codec: Codec = PLAIN
 
 
-#: Columns that several classes share, by the fields of perf.
-Columns = dict[str, Codec | Column]
+#: What a field becomes: a value of the feature of the same name, of another one, or one that is copied from another one.
+Columns = dict[str, Codec | tuple[str, Codec] | str]
+
+
+def _column(field: str, given: Codec | tuple[str, Codec] | str) -> FeatureColumn:
+    if isinstance(given, Codec):
+        return FeatureColumn(field, given)
+    return FeatureColumn(given) if isinstance(given, str) else FeatureColumn(*given)
 
 
 class ClassEntry:
@@ -37,10 +38,12 @@ class ClassEntry:
     a finding.
     """
 
-    def __init__(self, model_class: type[Any], amalthea_class: type[Element], /, **columns: Codec | Column) -> None:
+    def __init__(
+        self, model_class: type[Any], amalthea_class: type[Element], /, **columns: Codec | tuple[str, Codec] | str
+    ) -> None:
         self.model_class = model_class
         self.amalthea_class = amalthea_class
-        self.columns = {name: each if isinstance(each, Column) else Column(name, each) for name, each in columns.items()}
+        self.columns = {name: _column(name, given) for name, given in columns.items()}
         self.is_named = issubclass(model_class, Named)
         declared = {field.name: field for field in fields(model_class)}
         self.has_origin = "origin" in declared
@@ -97,6 +100,19 @@ class ClassEntry:
         ----------
         strictly : a value that is given but cannot be read is not replaced by the default
         """
+        values = self.values(element, context, strictly=strictly)
+        if values is None:
+            return None
+        if self.is_named:
+            values["name"] = context.names[element]
+        if self.has_origin:
+            values["origin"] = partial(context.location, element)
+        if self.is_activity:
+            values["locate"] = partial(context.location, element)
+        return self.model_class(**values)
+
+    def values(self, element: Element, context: Extracting, *, strictly: bool = False) -> dict[str, Any] | None:
+        """The fields of perf for the columns; None, with a finding, if a required value is missing."""
         values: dict[str, Any] = {}
         features = element.__dict__  # quicker than by the descriptors, which also make a list for each unset feature
         for name, feature, unset, extract, default in self._extracted:
@@ -110,13 +126,7 @@ class ClassEntry:
                     context.note("EXT004", f"{type(element).__name__} is incomplete: it {flaw} {what}", element)
                     return None
             values[name] = value
-        if self.is_named:
-            values["name"] = context.names[element]
-        if self.has_origin:
-            values["origin"] = partial(context.location, element)
-        if self.is_activity:
-            values["locate"] = partial(context.location, element)
-        return self.model_class(**values)
+        return values
 
 
 def _default(field: Any) -> Any:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from amalthea_uros.bridge.kinds import ObjectKind, kind_of
+from amalthea_uros.bridge.basics.kinds import ObjectKind, kind_of
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import WriteError
 from amalthea_uros.metamodel.element import Element
