@@ -9,7 +9,6 @@ from pathlib import Path
 from amalthea_uros._internal.garbage import paused_garbage_collection
 from amalthea_uros._internal.paths import StrPath, by_model, without_other_yaml
 from amalthea_uros._internal.shown import Shown
-from amalthea_uros._internal.similar import did_you_mean
 from amalthea_uros.diagnostics import Finding, Severity, by_place
 from amalthea_uros.errors import InvalidArgumentError, ReadError
 from amalthea_uros.findings.baseline import baseline_text, read_baseline
@@ -27,7 +26,7 @@ from amalthea_uros.services.settings import CheckSettings, project_settings
 from amalthea_uros.validate import registry
 from amalthea_uros.validate.engine import run, run_system
 from amalthea_uros.validate.rule import ModelCheck, RuleProfile, SystemCheck
-from amalthea_uros.validate.selection import Selection, UnknownPatternError, select
+from amalthea_uros.validate.selection import Selection, select, unknown_rule
 from amalthea_uros.validate.user_rules import rules_of_file
 
 
@@ -198,16 +197,7 @@ def selection_of(settings: CheckSettings) -> Selection:
     ------
     InvalidArgumentError : a pattern matches no rule.
     """
-    try:
-        return select(map(RuleProfile, settings.profiles), settings.select, settings.ignore)
-    except UnknownPatternError as error:
-        raise unknown_rule(error.pattern, error.known) from None
-
-
-def unknown_rule(name: str, known: Iterable[str]) -> InvalidArgumentError:
-    """The error for the name of a rule, or the beginning of such names, that does not exist."""
-    advice = did_you_mean(name, known) or "`amuros rules` lists all rules"
-    return InvalidArgumentError(f"unknown rule {name!r}; {advice}")
+    return select(map(RuleProfile, settings.profiles), settings.select, settings.ignore)
 
 
 def _accepted(baseline: Path | None) -> Collection[str]:

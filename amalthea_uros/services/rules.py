@@ -10,10 +10,9 @@ from amalthea_uros.diagnostics import Severity
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.findings import catalogue
 from amalthea_uros.findings.kind import FindingKind
-from amalthea_uros.services.check import unknown_rule
 from amalthea_uros.validate import registry
 from amalthea_uros.validate.rule import RuleProfile
-from amalthea_uros.validate.selection import UnknownPatternError, select
+from amalthea_uros.validate.selection import select
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,10 +40,7 @@ def find_rules(
     ------
     InvalidArgumentError : a pattern matches no rule.
     """
-    try:
-        selection = select(profiles, patterns, ())
-    except UnknownPatternError as error:
-        raise unknown_rule(error.pattern, error.known) from None
+    selection = select(profiles, patterns, ())
     wanted = frozenset(severities) or frozenset(Severity)
     rules = filter(None, map(registry.kind, selection.rules()))
     return RulesResult(tuple(rule for rule in rules if rule.severity in wanted and text.casefold() in _words(rule)))

@@ -6,6 +6,8 @@ from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 
+from amalthea_uros._internal.similar import did_you_mean
+from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.findings import catalogue
 from amalthea_uros.validate import registry
 from amalthea_uros.validate.rule import RuleProfile
@@ -34,26 +36,12 @@ class Selection:
         return identifier not in self.ignored and (self.selected is None or identifier in self.selected)
 
 
-class UnknownPatternError(Exception):
-    """A pattern that matches no id.
-
-    Attributes
-    ----------
-    pattern : the pattern
-    known : what it may have been meant to be: ids, and their first parts
-    """
-
-    def __init__(self, pattern: str, known: Collection[str]) -> None:
-        self.pattern, self.known = pattern, known
-        super().__init__(pattern)
-
-
 def select(profiles: Iterable[RuleProfile], selected: Iterable[str], ignored: Iterable[str]) -> Selection:
     """The selection of some profiles and patterns: an id, the first characters of ids, or a text in which `*` matches anything.
 
     Raises
     ------
-    UnknownPatternError : a pattern matches no rule, or, among the ignored ones, no finding either.
+    InvalidArgumentError : a pattern matches no rule, or, among the ignored ones, no finding either.
     """
     rules = list(registry.ids())
     asked, refused = tuple(selected), tuple(ignored)
@@ -69,15 +57,21 @@ def matching(patterns: Iterable[str], known: Collection[str]) -> frozenset[str]:
 
     Raises
     ------
-    UnknownPatternError : a pattern matches none.
+    InvalidArgumentError : a pattern matches none.
     """
     found: set[str] = set()
     for pattern in patterns:
         matches = _matches(pattern, known)
         if not matches:
-            raise UnknownPatternError(pattern, [*known, *_beginnings(known)])
+            raise unknown_rule(pattern, [*known, *_beginnings(known)])
         found.update(matches)
     return frozenset(found)
+
+
+def unknown_rule(name: str, known: Iterable[str]) -> InvalidArgumentError:
+    """The error for the name of a rule, or the beginning of such names, that does not exist."""
+    advice = did_you_mean(name, known) or "`amuros rules` lists all rules"
+    return InvalidArgumentError(f"unknown rule {name!r}; {advice}")
 
 
 def _matches(pattern: str, known: Collection[str]) -> list[str]:

@@ -7,9 +7,9 @@ from effort import examples
 from hypothesis import given
 from hypothesis import strategies as st
 
+from amalthea_uros.bridge.basics.json_text import from_text, to_text
 from amalthea_uros.bridge.build import build_model
 from amalthea_uros.bridge.extract import extract
-from amalthea_uros.bridge.basics.json_text import from_text, to_text
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.errors import UnknownError, WriteError
 from amalthea_uros.metamodel import classes as am
