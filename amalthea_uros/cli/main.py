@@ -125,7 +125,7 @@ def main() -> None:
         cli()
     except AmurosError as error:
         from amalthea_uros.cli.output import show_findings
-        from amalthea_uros.findings.unreadable import is_unreadable
+        from amalthea_uros.findings.catalogue import is_unreadable
         from amalthea_uros.report.wording.findings import findings_text
         from amalthea_uros.report.writers.terminal import Terminal
 

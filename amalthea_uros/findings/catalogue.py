@@ -6,9 +6,10 @@ Each family of ids is a file in `families`.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
+from amalthea_uros.diagnostics import Finding
 from amalthea_uros.findings.kind import FindingKind, ids_in, kind_in
 
 #: The letters with which the ids of a family start, and where its findings come from.
@@ -33,6 +34,9 @@ FAMILIES = {
     "CHK": "Running rules",
     "IMP": "Importing source code",
 }
+
+#: What the ids of findings about the content of a readable description start with; `YML00` is for texts that are no YAML.
+_CONTENT = ("YML01", "APP", "UR1")
 
 _FOLDER = Path(__file__).parent / "families"
 _ID = re.compile(r"([A-Z]{2,3})\d{3}")
@@ -59,6 +63,11 @@ def find(identifier: str) -> FindingKind | None:
     match = _ID.fullmatch(identifier)
     file = _file(match[1]) if match is not None else None
     return kind_in(file, identifier) if file is not None and file.exists() and identifier in ids_in(file) else None
+
+
+def is_unreadable(findings: Iterable[Finding]) -> bool:
+    """Whether one of the findings that ended the reading is about more than the content of a description."""
+    return any(not finding.rule.startswith(_CONTENT) for finding in findings)
 
 
 def _file(family: str) -> Path:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from amalthea_uros.diagnostics import Finding, by_place
-from amalthea_uros.findings.fingerprint import fingerprint
+from amalthea_uros.findings.accepted import fingerprint
 from amalthea_uros.findings.grouping import FindingGroup, group
 from amalthea_uros.findings.targets import TargetTool, split
 

@@ -12,7 +12,7 @@ from amalthea_uros._internal.paths import StrPath
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import AmurosError, InvalidArgumentError, WriteError
-from amalthea_uros.findings.suppression import unsuppressed
+from amalthea_uros.findings.accepted import unsuppressed
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.uros.assemble import Assembly
 

@@ -10,7 +10,7 @@ from amalthea_uros.analyze.results.chains import ChainResult
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError, UnknownError
-from amalthea_uros.findings.suppression import unsuppressed
+from amalthea_uros.findings.accepted import unsuppressed
 from amalthea_uros.names import require
 from amalthea_uros.services.inputs import open_system
 from amalthea_uros.timing.dataflow.paths import Path as ProcessPath

@@ -11,13 +11,11 @@ from amalthea_uros._internal.paths import StrPath, by_model, without_other_yaml
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.diagnostics import Finding, Severity, by_place
 from amalthea_uros.errors import InvalidArgumentError, ReadError
-from amalthea_uros.findings.baseline import baseline_text, read_baseline
-from amalthea_uros.findings.fingerprint import fingerprint
+from amalthea_uros.findings.accepted import baseline_text, fingerprint, is_suppressed, read_baseline
+from amalthea_uros.findings.catalogue import is_unreadable
 from amalthea_uros.findings.grouping import FindingGroup, group
 from amalthea_uros.findings.presentation import Presentation, present
-from amalthea_uros.findings.suppression import is_suppressed
 from amalthea_uros.findings.targets import TARGETS, TargetTool
-from amalthea_uros.findings.unreadable import is_unreadable
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.perf.system import System

@@ -13,7 +13,7 @@ from amalthea_uros.services.file_changes import FileChange
 from amalthea_uros.services.inputs import as_paths
 from amalthea_uros.services.settings import CheckSettings, project_settings
 from amalthea_uros.validate import registry
-from amalthea_uros.validate.repair import repair
+from amalthea_uros.validate.engine import repair
 from amalthea_uros.validate.rule import ModelCheck
 from amalthea_uros.xmi.load import load
 

@@ -14,7 +14,7 @@ from amalthea_uros._internal.resources import resource_folder
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError, WriteError
-from amalthea_uros.findings.suppression import unsuppressed
+from amalthea_uros.findings.accepted import unsuppressed
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.services.build import describe
 from amalthea_uros.services.waiting_messages import waiting_messages, with_analysed_storage

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from amalthea_uros._internal.paths import StrPath
 from amalthea_uros.diagnostics import Finding
-from amalthea_uros.findings.suppression import unsuppressed
+from amalthea_uros.findings.accepted import unsuppressed
 from amalthea_uros.metamodel.summary import ModelSummary, summarise
 from amalthea_uros.services.inputs import as_paths, open_model
 

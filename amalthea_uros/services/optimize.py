@@ -21,7 +21,7 @@ from amalthea_uros.design.optimize.space import Space
 from amalthea_uros.design.proposals import DesignProposal, SearchPlan, plan_search, proved_proposal
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.findings.suppression import unsuppressed
+from amalthea_uros.findings.accepted import unsuppressed
 from amalthea_uros.services.names import require_settings
 from amalthea_uros.services.subject import Subject, description_text, open_subject, paths_of, reusable
 from amalthea_uros.timing.basics.settings import Settings

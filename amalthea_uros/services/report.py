@@ -15,7 +15,7 @@ from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.design.changes.apply import Difference, apply, describe
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.findings.suppression import unsuppressed
+from amalthea_uros.findings.accepted import unsuppressed
 from amalthea_uros.perf.activities import Call, walk
 from amalthea_uros.perf.system import System
 from amalthea_uros.services.inputs import ModelInput, as_paths, refuse_descriptions

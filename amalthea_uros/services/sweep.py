@@ -16,7 +16,7 @@ from amalthea_uros.design.changes.change import Change, Sweep
 from amalthea_uros.design.changes.key import Configuration
 from amalthea_uros.design.changes.timing_changes import described
 from amalthea_uros.diagnostics import Finding
-from amalthea_uros.findings.suppression import unsuppressed
+from amalthea_uros.findings.accepted import unsuppressed
 from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.names import require
 from amalthea_uros.services.inputs import SystemInput, as_paths, open_system

@@ -31,7 +31,8 @@ def emitted():
     for path in (ROOT / "amalthea_uros").rglob("*.py"):
         if "rules" in path.parts or "findings" in path.parts:
             continue
-        for node in ast.walk(ast.parse(path.read_text())):
+        text = path.read_text()
+        for node in ast.walk(ast.parse(text)) if ID.search(text) else ():
             if isinstance(node, ast.Call):
                 for value in node.args[:4]:
                     if isinstance(value, ast.Constant) and isinstance(value.value, str) and ID.fullmatch(value.value):

@@ -7,7 +7,7 @@ from typing import Any
 
 from amalthea_uros.design.changes.timing_changes import TimingChange
 from amalthea_uros.difference.comparison import ModelChange
-from amalthea_uros.findings.fingerprint import fingerprint
+from amalthea_uros.findings.accepted import fingerprint
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.report.fields import changes
 from amalthea_uros.report.fields.declaration import ALSO, declare, given, json_of

@@ -63,7 +63,7 @@ def _rule(identifier: str) -> dict[str, Any]:
 
 
 def _result(entry: FindingEntry, index: int, artifact: Callable[[Path], dict[str, str]]) -> dict[str, Any]:
-    from amalthea_uros.findings.fingerprint import fingerprint
+    from amalthea_uros.findings.accepted import fingerprint
 
     finding = entry.finding
     result: dict[str, Any] = {

@@ -3,24 +3,57 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from itertools import combinations_with_replacement
+from itertools import combinations_with_replacement, product
 from typing import NamedTuple
 
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import AccessKind, Communication, LabelAccess, Protection, SenderReceiverAccess
+from amalthea_uros.perf.named import Located
 from amalthea_uros.perf.software import Label
 from amalthea_uros.timing.blocking.critical_sections import exclusively_held
+from amalthea_uros.timing.dataflow.chains import steps
+from amalthea_uros.timing.dataflow.routes import crosses, is_linked
 from amalthea_uros.timing.jobs.positions import ActivityPosition
 from amalthea_uros.timing.scheduling.allocation import operating_system_of
 from amalthea_uros.validate.rule import SystemProblem, system_rule
 from amalthea_uros.validate.system_context import SystemContext
-from amalthea_uros.validate.unlinked_steps import unlinked_steps
 from amalthea_uros.validate.wording import joined
+
+
+class _UnlinkedStep(NamedTuple):
+    """A step of a chain.
+
+    Attributes
+    ----------
+    item : the chain or segment
+    first, then : events
+    """
+
+    chain: str
+    item: Located
+    first: str
+    then: str
+
+
+def _unlinked_steps(context: SystemContext) -> Iterator[_UnlinkedStep]:
+    """All of them; events of which it is unknown where they occur do not count.
+
+    What a message passes between events on wires and in executors that loop, the analysis of its way says.
+    """
+    system, events = context.system, context.system.events_by_name
+    for chain in system.events.chains:
+        if crosses(chain, context.dataflow):
+            continue
+        for item, starts, ends in steps(chain, system):
+            for first, then in product(starts, ends):
+                is_known = first != then and first in events and then in events
+                if is_known and not is_linked(events[first], events[then], context.dataflow):
+                    yield _UnlinkedStep(chain.name, item, first, then)
 
 
 @system_rule("TIM-CHAIN-CARRIED")
 def _check_chain_carried(context: SystemContext) -> Iterator[SystemProblem]:
-    for step in unlinked_steps(context):
+    for step in _unlinked_steps(context):
         message = f"no data flow or trigger connects {step.first!r} to {step.then!r}"
         yield SystemProblem(step.item, message, step.chain)
 
