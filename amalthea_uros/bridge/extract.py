@@ -12,14 +12,13 @@ from typing import Any, TypeVar
 
 from amalthea_uros._internal.garbage import paused_garbage_collection
 from amalthea_uros.bridge.basics.context import Extracting
-from amalthea_uros.bridge.tables.constraints import CONSTRAINTS, DATA_AGES, ORDERS, extract_data_group, extract_requirement
-from amalthea_uros.bridge.tables.events import CHAINS, EVENTS
+from amalthea_uros.bridge.tables.constraints import extract_data_group, extract_requirement
 from amalthea_uros.bridge.tables.hardware import HardwareExtractor
 from amalthea_uros.bridge.tables.mapping import extract_mapping
 from amalthea_uros.bridge.tables.middleware import extract_executors, extract_network, with_unknown_activation
-from amalthea_uros.bridge.tables.os import SEMAPHORES, extract_overhead, extract_system
-from amalthea_uros.bridge.tables.software import CHANNELS, LABELS, MODE_LABELS, OS_EVENTS, PROCESSES, RUNNABLES, extract_modes
-from amalthea_uros.bridge.tables.stimuli import CLOCKS, STIMULI
+from amalthea_uros.bridge.tables.objects import OBJECTS
+from amalthea_uros.bridge.tables.os import extract_overhead, extract_system
+from amalthea_uros.bridge.tables.software import extract_modes
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.element import Element
@@ -77,9 +76,19 @@ class _Extract:
         """What a feature holds in the sub-models of a class, of all files."""
         return [item for part in self.sub_models(cls) for item in getattr(part, feature)]
 
+    def objects(self, part: str) -> dict[str, tuple[Any, ...]]:
+        """The objects of a part of the system that a table alone converts, by field."""
+        lists = (each for each in OBJECTS if each.part == part)
+        return {each.field: each.table.extract_all(self.parts(each.model_class, each.feature), self.context) for each in lists}
+
+    def leave_out(self, cls: type[Element], *features: str) -> None:
+        """Report what features of the sub-models of a class hold as not used."""
+        for feature in features:
+            for element in self.parts(cls, feature):
+                self.context.leave_out(element)
+
     def system(self) -> System:
         """The whole."""
-        context = self.context
         software = self.software()
         system = System(
             hardware=self.hardware(),
@@ -87,10 +96,7 @@ class _Extract:
             stimuli=self.stimuli(),
             software=software,
             mapping=self.mapping(),
-            events=Events(
-                events=EVENTS.extract_all(self.parts(am.EventModel, "events"), context),
-                chains=CHAINS.extract_all(self.parts(am.ConstraintsModel, "event_chains"), context),
-            ),
+            events=Events(**self.objects("events")),
             constraints=self.constraints(),
         )
         return self.with_middleware(system)
@@ -130,34 +136,19 @@ class _Extract:
                 extract_system(system, allocations, context) for system in self.parts(am.OSModel, "operating_systems")
             ),
             overheads=tuple(extract_overhead(overhead, context) for overhead in self.parts(am.OSModel, "os_overheads")),
-            semaphores=SEMAPHORES.extract_all(self.parts(am.OSModel, "semaphores"), context),
+            **self.objects("os"),
         )
 
     def stimuli(self) -> Stimuli:
         """The stimuli of all files, and those that processes refer to in vain."""
-        context = self.context
-        unresolved = (Custom(name=name, description="not part of the model") for name in context.unresolved_stimuli)
-        return Stimuli(
-            stimuli=(*STIMULI.extract_all(self.parts(am.StimuliModel, "stimuli"), context), *unresolved),
-            clocks=CLOCKS.extract_all(self.parts(am.StimuliModel, "clocks"), context),
-        )
+        found = Stimuli(**self.objects("stimuli"))
+        unresolved = (Custom(name=name, description="not part of the model") for name in self.context.unresolved_stimuli)
+        return replace(found, stimuli=(*found.stimuli, *unresolved))
 
     def software(self) -> Software:
         """The software of all files."""
-        context, parts = self.context, self.parts
-        for feature in ("process_prototypes", "custom_entities", "process_chains"):
-            for element in parts(am.SWModel, feature):
-                context.leave_out(element)
-        return Software(
-            tasks=PROCESSES.extract_all(parts(am.SWModel, "tasks"), context),
-            isrs=PROCESSES.extract_all(parts(am.SWModel, "isrs"), context),
-            runnables=RUNNABLES.extract_all(parts(am.SWModel, "runnables"), context),
-            labels=LABELS.extract_all(parts(am.SWModel, "labels"), context),
-            channels=CHANNELS.extract_all(parts(am.SWModel, "channels"), context),
-            os_events=OS_EVENTS.extract_all(parts(am.SWModel, "events"), context),
-            modes=extract_modes(parts(am.SWModel, "modes"), context),
-            mode_labels=MODE_LABELS.extract_all(parts(am.SWModel, "mode_labels"), context),
-        )
+        self.leave_out(am.SWModel, "process_prototypes", "custom_entities", "process_chains")
+        return Software(**self.objects("software"), modes=extract_modes(self.parts(am.SWModel, "modes"), self.context))
 
     def mapping(self) -> Mapping:
         """The mapping of all files."""
@@ -171,14 +162,10 @@ class _Extract:
     def constraints(self) -> Constraints:
         """The constraints and requirements of all files."""
         context, parts = self.context, self.parts
-        for feature in ("affinity_constraints", "physical_section_constraints"):
-            for element in parts(am.ConstraintsModel, feature):
-                context.leave_out(element)
+        self.leave_out(am.ConstraintsModel, "affinity_constraints", "physical_section_constraints")
         requirements = (extract_requirement(r, context) for r in parts(am.ConstraintsModel, "requirements"))
         return Constraints(
-            constraints=CONSTRAINTS.extract_all(parts(am.ConstraintsModel, "timing_constraints"), context),
-            data_ages=DATA_AGES.extract_all(parts(am.ConstraintsModel, "data_age_constraints"), context),
-            orders=ORDERS.extract_all(parts(am.ConstraintsModel, "runnable_sequencing_constraints"), context),
+            **self.objects("constraints"),
             data_groups=tuple(
                 extract_data_group(group, context)
                 for feature in ("data_coherency_groups", "data_stability_groups")
