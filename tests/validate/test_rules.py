@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from importlib import import_module
 
 import inchron
 import pytest
@@ -10,9 +11,10 @@ from support import MODEL, ROOT, SHARED
 from amalthea_uros import check, check_files, load
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.errors import ReadError
+from amalthea_uros.findings.kind import ids_in
 from amalthea_uros.validate import registry
 from amalthea_uros.validate.engine import run
-from amalthea_uros.validate.rule import ModelCheck, RuleProfile
+from amalthea_uros.validate.rule import CHECKS, ModelCheck, RuleProfile
 
 IDS = list(registry.ids())
 
@@ -70,6 +72,16 @@ def told_of(path):
 
 def test_ids_are_unique():
     assert len(IDS) == len(set(IDS))
+
+
+FOLDER = ROOT / "amalthea_uros" / "validate" / "rules"
+
+
+@pytest.mark.parametrize("path", sorted(FOLDER.glob("*/*.yaml")), ids=lambda path: f"{path.parent.name}-{path.stem}")
+def test_the_checks_of_a_module_are_those_of_the_texts_beside_it(path):
+    module = f"amalthea_uros.validate.rules.{path.parent.name}.{path.stem}"
+    import_module(module)
+    assert {identifier for identifier, check in CHECKS.items() if check.check.__module__ == module} == set(ids_in(path))
 
 
 LETTERS = {Severity.ERROR: "E", Severity.WARNING: "W", Severity.INFO: "I"}
