@@ -24,7 +24,7 @@ class TimePart:
     """
 
     name: str
-    least: Time
+    least: Time = 0
     most: Time | None
     why: str = ""
 
@@ -61,7 +61,7 @@ class Hop(Shown):
     kind: HopKind
     name: str
     best: Time
-    worst: Time | None
+    worst: Time | None = None
     source: str = ""
     parts: tuple[TimePart, ...] = ()
     share: Fraction | None = None

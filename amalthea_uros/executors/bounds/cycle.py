@@ -169,11 +169,6 @@ class Cycle:
         return has_backlog(self.executor, self.solved.context.system.executors)
 
     @property
-    def wait(self) -> Time:
-        """The longest wait."""
-        return longest_wait(self.executor)
-
-    @property
     def sleep(self) -> Time:
         """The sleep after each iteration."""
         return sleep_of(self.executor).upper
@@ -243,7 +238,7 @@ class Cycle:
     @cached_property
     def longest_with_wait(self) -> Time | None:
         """The longest cycle with a wait that nothing ends before its timeout; None if it is not bounded."""
-        return self.longest_with(self.wait)
+        return self.longest_with(longest_wait(self.executor))
 
     def longest_with(self, wait: Time) -> Time | None:
         """The longest cycle with some wait, after which the thread has to get its core again; None if it is not bounded."""

@@ -28,7 +28,7 @@ from amalthea_uros.executors.bounds.losses import (
 from amalthea_uros.executors.bounds.queue import Delay, certain_overload, delay_of
 from amalthea_uros.executors.bounds.solved_system import METHOD, SolvedSystem
 from amalthea_uros.executors.results import ExecutorResult, HandleResult, TimePart
-from amalthea_uros.executors.semantics.loops import why_not_woken
+from amalthea_uros.executors.semantics.loops import longest_wait, why_not_woken
 from amalthea_uros.executors.semantics.readiness import is_message, sharing, starts_alone
 from amalthea_uros.perf.executors import Executor, Handle, HandleKind, LoopKind
 from amalthea_uros.perf.network import Span
@@ -42,7 +42,7 @@ def handle_result(handle: Handle, cycle: Cycle, extra_jitter: Mapping[str, Time 
     """The response time of a handle, and the lateness of a timer; losses of messages are found for all handles together."""
     # Each cycle before that which serves the handle can wait nevertheless.
     waited_for = why_not_woken(handle, cycle.executor, cycle.has_backlog)
-    wait = cycle.wait if waited_for else 0
+    wait = longest_wait(cycle.executor) if waited_for else 0
     length = cycle.longest_with(wait)
     delay = _delay(handle, cycle, length, extra_jitter)
     start, end = cycle.until_start(handle), cycle.until_end(handle)
@@ -106,36 +106,33 @@ def _terms(handle: Handle, cycle: Cycle, delay: Delay, wait: Time, waited_for: s
     """
     found = [
         *_of_cycle(cycle),
-        TimePart(name="wait", least=0, most=wait, why=waited_for),
+        TimePart(name="wait", most=wait, why=waited_for),
         _before(cycle, delay, wait),
         *_of_iteration(handle, cycle),
     ]
     stated = [term for term in found if term.most]
     rest = worst - sum(term.most or 0 for term in stated)
     if rest:
-        stated.insert(
-            -1, TimePart(name="preemption", least=0, most=rest, why="processes of higher priority, blocking, and rounding")
-        )
+        stated.insert(-1, TimePart(name="preemption", most=rest, why="processes of higher priority, blocking, and rounding"))
     return tuple(stated)
 
 
 def _of_cycle(cycle: Cycle) -> list[TimePart]:
     """The cycle that is running when the handle is released."""
     demand = _time(cycle.whole.demand, cycle)
-    found = [TimePart(name="rest of the running iteration", least=0, most=demand, why="what is ready was fixed just before")]
+    found = [TimePart(name="rest of the running iteration", most=demand, why="what is ready was fixed just before")]
     loop = cycle.executor.loop
     if loop.kind is LoopKind.PERIODIC:
         why = f"the next iteration begins when the period of {time_text(loop.period or 0)} has passed"
-        return [*found, TimePart(name="sleep", least=0, most=max(0, (cycle.longest or 0) - demand), why=why)]
+        return [*found, TimePart(name="sleep", most=max(0, (cycle.longest or 0) - demand), why=why)]
     suspension = cycle.whole.suspension
     return [
         *found,
-        TimePart(name="publications of the running iteration", least=0, most=suspension.most or 0, why=suspension.why),
-        TimePart(name="sleep", least=0, most=cycle.sleep, why="the loop sleeps after each iteration"),
-        TimePart(name="acknowledgements", least=0, most=cycle.writing.most or 0, why=cycle.writing.why),
+        TimePart(name="publications of the running iteration", most=suspension.most or 0, why=suspension.why),
+        TimePart(name="sleep", most=cycle.sleep, why="the loop sleeps after each iteration"),
+        TimePart(name="acknowledgements", most=cycle.writing.most or 0, why=cycle.writing.why),
         TimePart(
             name="session",
-            least=0,
             most=cycle.session_wait or 0,
             why="other executors of the session wait for input and keep it",
         ),
@@ -148,7 +145,7 @@ def _before(cycle: Cycle, delay: Delay, wait: Time) -> TimePart:
     why = f"{counted(count, 'message')}, each of which takes an iteration of at most {time_text(length)}"
     if delay.earlier:
         why += f", less {time_text(delay.earlier)} by which it arrives later"
-    return TimePart(name="messages before it", least=0, most=count * length - delay.earlier, why=why)
+    return TimePart(name="messages before it", most=count * length - delay.earlier, why=why)
 
 
 def _of_iteration(handle: Handle, cycle: Cycle) -> list[TimePart]:
@@ -158,16 +155,13 @@ def _of_iteration(handle: Handle, cycle: Cycle) -> list[TimePart]:
     others = before.demand - spin - take
     names = [each.name for each in cycle.executor.handles[: cycle.executor.handles.index(handle)]]
     return [
-        TimePart(
-            name="overhead of the executor", least=0, most=_time(spin, cycle), why="fill the wait set and check all handles"
-        ),
+        TimePart(name="overhead of the executor", most=_time(spin, cycle), why="fill the wait set and check all handles"),
         TimePart(
             name="callbacks before it",
-            least=0,
             most=_time(others, cycle),
             why=f"in the order of the executor: {', '.join(names)}",
         ),
-        TimePart(name="publications before it", least=0, most=before.suspension.most or 0, why=before.suspension.why),
+        TimePart(name="publications before it", most=before.suspension.most or 0, why=before.suspension.why),
         TimePart(
             name="take",
             least=costs.takes[handle.name].lower // cycle.time_base,

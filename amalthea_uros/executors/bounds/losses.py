@@ -42,18 +42,14 @@ def loss_of_timer(handle: Handle, cycle: Cycle, lateness: Span) -> Loss | None:
         return None
     count = lost_periods(lateness.most, period)
     following = next_expiration(0, lateness.most, period)
+    multiples = ", ".join([*(time_text(number * period) for number in range(1, min(count, 3) + 1)), *["..."] * (count > 3)])
     sequence = (
         f"{handle.name} is due at 0 s, just after an iteration has checked its timers; the rest of the iteration"
         f"{f' and the sleep of {time_text(cycle.sleep)}' if cycle.sleep else ''}, then the next iteration up to the callback, end at "
-        f"{_text(lateness.most)}; what was due until then at {_multiples(count, period)} is lost, "
+        f"{_text(lateness.most)}; what was due until then at {multiples} is lost, "
         f"the next call is due at {time_text(following)}"
     )
     return Loss(what="periods", is_certain=cycle.least_average > period, most=count, sequence=sequence)
-
-
-def _multiples(count: int, period: Time) -> str:
-    shown = [time_text(number * period) for number in range(1, min(count, 3) + 1)]
-    return ", ".join([*shown, *(["..."] if count > 3 else [])])
 
 
 def loss_of_triggers(
@@ -63,31 +59,27 @@ def loss_of_triggers(
     if can_defer(cycle.executor):
         sequence = f"{handle.name} is triggered; the next iteration sees and clears it, but the trigger condition is false"
         return Loss(what="triggers", is_certain=False, most=None, sequence=sequence)
+    lost: int | None = None
     if seen_after is None:
-        return _lost_triggers(
-            None, f"{handle.name} is triggered twice before the executor sees it, which has no bound; it calls it once"
-        )
-    try:
-        # The first one sets the flag; the others come until it is seen, at the last moment, too.
-        lost = arrivals(handle, extra_jitter).eta_plus(seen_after + 1) - 1
-    except UnknownError:
-        sequence = (
-            f"{handle.name} is triggered twice within {_text(seen_after)}, until the executor sees it, and it calls it once; "
-            "its rate is not specified"
-        )
-        return _lost_triggers(None, sequence)
-    if not lost:
-        return None
-    then = arrivals(handle, extra_jitter).delta_min(2)
-    sequence = (
-        f"{handle.name} is triggered at 0 s and {time_text(then)}; the executor sees it only after {_text(seen_after)}, "
-        "and calls it once"
-    )
-    return _lost_triggers(lost, sequence)
-
-
-def _lost_triggers(most: int | None, sequence: str) -> Loss:
-    return Loss(what="triggers", is_certain=False, most=most, is_replaced=True, sequence=sequence)
+        sequence = f"{handle.name} is triggered twice before the executor sees it, which has no bound; it calls it once"
+    else:
+        try:
+            events = arrivals(handle, extra_jitter)
+        except UnknownError:
+            sequence = (
+                f"{handle.name} is triggered twice within {_text(seen_after)}, until the executor sees it, and it calls it once; "
+                "its rate is not specified"
+            )
+        else:
+            # The first one sets the flag; the others come until it is seen, at the last moment, too.
+            lost = events.eta_plus(seen_after + 1) - 1
+            if not lost:
+                return None
+            sequence = (
+                f"{handle.name} is triggered at 0 s and {time_text(events.delta_min(2))}; the executor sees it only after "
+                f"{_text(seen_after)}, and calls it once"
+            )
+    return Loss(what="triggers", is_certain=False, most=lost, is_replaced=True, sequence=sequence)
 
 
 def with_lost_messages(

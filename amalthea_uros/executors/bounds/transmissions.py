@@ -13,9 +13,9 @@ from amalthea_uros.executors.bounds.solved_system import SolvedSystem
 from amalthea_uros.executors.results import Hop, HopKind
 from amalthea_uros.perf.network import Direction, Purpose, Span, Transmission
 from amalthea_uros.perf.software import Isr, Task
+from amalthea_uros.timing.basics.time_base import max_time
 from amalthea_uros.units import Time
 
-_STATED = "stated"
 #: Why an unknown latency of the agent does not make arrivals unknown, if the description states the jitter of messages.
 _STATED_JITTER = "where the latency of the agent is not stated, the stated jitter is that of the messages that enter the wire"
 
@@ -63,23 +63,15 @@ def wire_hop(transmission: Transmission, solved: SolvedSystem) -> Hop:
         remedy = f"See the results of {transmission.name!r}."
         if response is not None and response.is_overload:
             remedy = f"Increase the rate of {transmission.wire!r}, send less often, or without acknowledgements."
-        return Hop(kind=HopKind.WIRE, name=transmission.wire, best=best, worst=None, reason=reason, remedy=remedy)
+        return Hop(kind=HopKind.WIRE, name=transmission.wire, best=best, reason=reason, remedy=remedy)
+    worst, source = response.worst, f"response time of {transmission.name} by {response.method}"
     if (sender := _only_sender(transmission, solved)) is not None:
         solved.context.notes.assume(f"a write to {transmission.wire} returns when the message is on the wire, not before")
-        return Hop(
-            kind=HopKind.WIRE,
-            name=transmission.wire,
-            best=response.best,
-            worst=min(response.worst, _longest(transmission, solved)),
-            source=f"only {sender} sends there, and a write returns when the message is on the wire, so that no message waits",
-        )
-    return Hop(
-        kind=HopKind.WIRE,
-        name=transmission.wire,
-        best=response.best,
-        worst=response.worst,
-        source=f"response time of {transmission.name} by {response.method}",
-    )
+        # Its response time is known, so its demand is, too.
+        demand = solved.context.demands[transmission.name].worst
+        worst = min(worst, max_time(demand, solved.context.time_base(transmission.name)))
+        source = f"only {sender} sends there, and a write returns when the message is on the wire, so that no message waits"
+    return Hop(kind=HopKind.WIRE, name=transmission.wire, best=response.best, worst=worst, source=source)
 
 
 def _only_sender(transmission: Transmission, solved: SolvedSystem) -> str | None:
@@ -109,12 +101,6 @@ def _only_sender(transmission: Transmission, solved: SolvedSystem) -> str | None
     return None
 
 
-def _longest(transmission: Transmission, solved: SolvedSystem) -> Time:
-    """The longest time of a message on its wire, without waiting for it; its response time is known, so its demand is, too."""
-    name = transmission.name
-    return -(-solved.context.demands[name].worst // solved.context.time_base(name))
-
-
 def process_hop(name: str, solved: SolvedSystem) -> Hop:
     """From the activation of a process that a message passes to its end."""
     kind = HopKind.INTERRUPT if isinstance(solved.context.system.processes.get(name), Isr) else HopKind.MIDDLEWARE
@@ -123,7 +109,7 @@ def process_hop(name: str, solved: SolvedSystem) -> Hop:
     if response is None or response.worst is None or solved.depends_on_losses(name):
         why = response.reason if response is not None else solved.reasons.get(name, "it was not analysed")
         reason = f"the response time of {name!r} has no bound: {why or 'it can lose activations'}"
-        return Hop(kind=kind, name=name, best=best, worst=None, reason=reason, remedy=f"See the results of {name!r}.")
+        return Hop(kind=kind, name=name, best=best, reason=reason, remedy=f"See the results of {name!r}.")
     return Hop(kind=kind, name=name, best=best, worst=response.worst, source=f"response time by {response.method}")
 
 
@@ -177,5 +163,5 @@ def _driver(transmission: Transmission) -> Iterator[Hop]:
 
 def _of_span(kind: HopKind, name: str, span: Span, reason: str, remedy: str) -> Hop:
     if span.most is None:
-        return Hop(kind=kind, name=name, best=span.least, worst=None, reason=reason, remedy=remedy)
-    return Hop(kind=kind, name=name, best=span.least, worst=span.most, source=_STATED)
+        return Hop(kind=kind, name=name, best=span.least, reason=reason, remedy=remedy)
+    return Hop(kind=kind, name=name, best=span.least, worst=span.most, source="stated")
