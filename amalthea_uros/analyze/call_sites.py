@@ -127,7 +127,8 @@ class CallSite:
             # Whatever the call follows, it takes its own time.
             before = self._demand([replace(self.call, counter=None)]).best
         if self.is_once:
-            after = min_time(self._demand(self._after).best, time_base)
+            following = [activity for activities, index in self.position.outer for activity in activities[index + 1 :]]
+            after = min_time(self._demand(following).best, time_base)
         return Metric(
             min=before // time_base,
             max=None if response.worst is None else response.worst - after,
@@ -137,11 +138,6 @@ class CallSite:
         """What jobs execute until the end of the call."""
         context = self.solution.context
         return context.demand_model.of_position(self.position, context.scheduled[self.process.name].core, including=True)
-
-    @property
-    def _after(self) -> list[Activity]:
-        """The activities that a job executes after the call."""
-        return [activity for activities, index in self.position.outer for activity in activities[index + 1 :]]
 
     def _demand(self, activities: Sequence[Activity]) -> MultiframeDemand:
         context = self.solution.context

@@ -191,9 +191,10 @@ def compare(before: Iterable[ComparedFigure], after: Iterable[ComparedFigure]) -
     pairs = [(old.get(key), new.get(key)) for key in (*new, *(key for key in old if key not in new))]
     rows = tuple(
         ImpactRow(before=one, after=other, effect=_effect(one, other))
-        for one, other in sorted(pairs, key=lambda pair: _place(*pair))
+        for one, other in pairs
         if one is None or other is None or one.compared != other.compared
     )
+    rows = tuple(sorted(rows, key=lambda row: tuple(ResultPart).index(row.part)))
     return Impact(rows=rows, unchanged=len(pairs) - len(rows))
 
 
@@ -207,12 +208,6 @@ def _numbered(given: Iterable[ComparedFigure]) -> dict[tuple[object, ...], Compa
     return found
 
 
-def _place(before: ComparedFigure | None, after: ComparedFigure | None) -> int:
-    figure = after or before
-    assert figure is not None
-    return tuple(ResultPart).index(figure.part)
-
-
 def _effect(before: ComparedFigure | None, after: ComparedFigure | None) -> Effect:
     if before is None:
         return Effect.ADDED
@@ -222,19 +217,13 @@ def _effect(before: ComparedFigure | None, after: ComparedFigure | None) -> Effe
     if isinstance(old, StrEnum) or isinstance(new, StrEnum):
         return _effect_of_verdicts(old, new)
     if new is None:
-        return _effect_of_losing(before, after)
+        is_worse = old is not None or (after.is_overload and not before.is_overload)
+        return Effect.WORSE if is_worse else Effect.UNKNOWN
     if old is None:
         return Effect.BETTER if before.is_overload else Effect.UNKNOWN
     if after.goal is Preference.NONE:
         return Effect.CHANGED
     return Effect.BETTER if (new < old) == (after.goal is Preference.LOW) else Effect.WORSE
-
-
-def _effect_of_losing(before: ComparedFigure, after: ComparedFigure) -> Effect:
-    """The effect if the value is unknown afterwards."""
-    if before.value is not None or (after.is_overload and not before.is_overload):
-        return Effect.WORSE
-    return Effect.UNKNOWN
 
 
 #: Verdicts from good to bad: of a process or requirement, and of a system; what was observed is ordered alike.

@@ -26,7 +26,11 @@ from amalthea_uros.units import percent_text
 def processor_results(solution: Solution) -> Iterator[ProcessorResult]:
     """The load of each core; unknown if the demand or activation of a process that can run on it is unknown."""
     context = solution.context
-    known = {core for core in context.system.cores if _is_load_known(core, solution)}
+    known = {
+        core
+        for core in context.system.cores
+        if solution.is_closed(core) and all(solution.is_known(item.name) for item in context.on_core(core))
+    }
     certain: Mapping[str, Fraction] = {}
     if len(known) < len(context.system.cores):
         uncertain = {*context.with_uncertain_activations, *suppressible(context.system, context.activations)}
@@ -50,10 +54,10 @@ def without_doubtful_overload(name: str, solution: Solution) -> Response | None:
         return found
     item = context.scheduled[name]
     here = [other for other in context.on_core(item.core) if other.rank >= item.rank and solution.is_known(other.name)]
-    each = _sum(_demand(other.name, context).mean_worst * solution.event_models[other.name].rate for other in here)
+    rates = (_demand(other.name, context).mean_worst * solution.event_models[other.name].rate for other in here)
     together = _load((other.name for other in here), item.core, solution)
     are_suppressed = any(solution.event_models[other.name].can_be_suppressed for other in here)
-    if together.certain * context.time_base(name) == each and not are_suppressed:
+    if together.certain * context.time_base(name) == sum(rates, Fraction(0)) and not are_suppressed:
         return found
     if _certain_load(here, item.core, solution) > 1:
         return replace(
@@ -74,11 +78,6 @@ def _loads(core: str, solution: Solution) -> tuple[Fraction, Fraction | None, Fr
         return _load(regular, core, solution).best, None, load.worst
     has_mean = all(states_mean(item.process, context.system) for item in here)
     return load.best, load.mean if has_mean else None, load.worst
-
-
-def _is_load_known(core: str, solution: Solution) -> bool:
-    """Whether all processes that can run on a core run nowhere else, and their demand and activations are known."""
-    return solution.is_closed(core) and all(solution.is_known(item.name) for item in solution.context.on_core(core))
 
 
 def _load(names: Iterable[str], core: str, solution: Solution) -> JobDemand:
@@ -106,10 +105,6 @@ def _certain_load(items: Iterable[ScheduledProcess], core: str, solution: Soluti
 def _never_suppressed(names: Iterable[str], solution: Solution) -> list[str]:
     """The processes of which no condition can suppress activations."""
     return [name for name in names if not solution.event_models[name].can_be_suppressed]
-
-
-def _sum(values: Iterable[Fraction]) -> Fraction:
-    return sum(values, Fraction(0))
 
 
 def note_ignored(solution: Solution) -> None:

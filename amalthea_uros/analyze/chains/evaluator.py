@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import zip_longest
 
 import numpy as np
 
@@ -212,7 +213,8 @@ class ChainEvaluator:
                 self._require_known_writers(link.names)
         parts: list[list[TimedStage]] = []
         before = None
-        for group, follower in _with_followers(self.groups(route)):
+        groups = self.groups(route)
+        for group, follower in zip_longest(groups, (after[0] for after in groups[1:])):
             controller = self.controller(group[0].process.name)
             if controller != before or not parts:
                 parts.append([])
@@ -259,11 +261,6 @@ def _groups(found: Sequence[Stage]) -> list[list[Stage]]:
         else:
             groups.append([stage])
     return groups
-
-
-def _with_followers(groups: Sequence[Sequence[Stage]]) -> list[tuple[Sequence[Stage], Stage | None]]:
-    followers: list[Stage | None] = [group[0] for group in groups[1:]]
-    return list(zip(groups, [*followers, None], strict=True))
 
 
 def _why(found: Sequence[str]) -> str:
@@ -338,13 +335,7 @@ def _tightest(values: Sequence[LatencyValue]) -> tuple[LatencyValue, ...]:
     for quantity in LatencyQuantity:
         here = [value for value in values if value.quantity is quantity and value.value is not None]
         exact = [value for value in here if value.claim is Claim.EXACT]
-        if exact or here:
-            found[quantity] = (exact or [_best(here, quantity)])[0]
+        if here:
+            tightest = (min if quantity.is_upper else max)(here, key=lambda value: value.value or 0)
+            found[quantity] = exact[0] if exact else tightest
     return tuple(found.values())
-
-
-def _best(values: Sequence[LatencyValue], quantity: LatencyQuantity) -> LatencyValue:
-    def time(value: LatencyValue) -> int:
-        return value.value or 0
-
-    return min(values, key=time) if quantity.is_upper else max(values, key=time)

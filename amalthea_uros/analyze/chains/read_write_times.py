@@ -95,17 +95,11 @@ def reach(chain: Sequence[ReadWriteTimes]) -> Time:
     At each task up to two periods of waiting, and the time from a release to a read or write. With bounds of these times a job can
     write before it reads, so that the time in between says nothing.
     """
-    return sum(2 * _longest_gap(task) + _longest_delay(task) for task in chain)
-
-
-def _longest_gap(task: ReadWriteTimes) -> Time:
-    """The maximum time between two consecutive releases."""
-    return int(np.diff(task.releases).max()) if len(task.releases) > 1 else task.cycle
-
-
-def _longest_delay(task: ReadWriteTimes) -> Time:
-    """The maximum time from the release of a job until it has read and written."""
-    return int((np.maximum(task.reads, task.writes) - task.releases).max())
+    time = 0
+    for task in chain:
+        gap = int(np.diff(task.releases).max()) if len(task.releases) > 1 else task.cycle
+        time += 2 * gap + int((np.maximum(task.reads, task.writes) - task.releases).max())
+    return time
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -255,7 +255,9 @@ class RouteLatencies:
             return
         reaction = bounds.kloda(tasks)
         if reaction is not None:
-            yield from self._reactions(total(reaction) + _not_released(tasks), tasks, "next releases", bounds.KLODA)
+            # Otherwise the tasks would have been released in the whole periods before their first jobs.
+            missing = sum(task.first_release // task.period * task.period for task in tasks[1:])
+            yield from self._reactions(total(reaction) + missing, tasks, "next releases", bounds.KLODA)
         age = bounds.becker(tasks)
         if age is not None:
             yield self._bound(LatencyQuantity.MAX_REDUCED_DATA_AGE, total(age), "reachable jobs", bounds.BECKER)
@@ -267,11 +269,6 @@ class RouteLatencies:
 def _wait_at_start(tasks: Sequence[ChainTask]) -> Time:
     """How much longer than its period data can wait for each task of a chain, because its first job comes late."""
     return sum(max(0, task.first_release - task.period) for task in tasks[1:])
-
-
-def _not_released(tasks: Sequence[ChainTask]) -> Time:
-    """The time of the whole periods before their first jobs in which the tasks of a chain would have been released otherwise."""
-    return sum(task.first_release // task.period * task.period for task in tasks[1:])
 
 
 def in_picoseconds(value: Fraction | Time, unit: int, is_upper: bool) -> Time:

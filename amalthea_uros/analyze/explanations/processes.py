@@ -20,9 +20,7 @@ from amalthea_uros.analyze.results.explanations import (
     ProcessExplanation,
     Share,
 )
-from amalthea_uros.analyze.results.processes import CallbackResult
 from amalthea_uros.errors import UnknownError
-from amalthea_uros.executors.results import HandleResult
 from amalthea_uros.judge.verdict import FAILURES, Verdict
 from amalthea_uros.perf.activities import Activity, Call, Execute, ExecutionNeed, Group, LabelAccess, Loop, WaitEvent, walk
 from amalthea_uros.perf.stimuli import Counter
@@ -50,7 +48,12 @@ def explain_process(analysis: Analysis, name: str) -> ProcessExplanation:
         supply=Fraction(server.budget, server.period) if server is not None else Fraction(1),
         callbacks=tuple(each for each in analysis.callbacks if each.process == name),
         worst_job=worst_job,
-        in_worst_job=_executed_in(analysis, name, worst_job) if worst_job is not None else (),
+        in_worst_job=()
+        if worst_job is None
+        else tuple(
+            share.counter is None or takes_effect(share.counter, worst_job)
+            for share in execution_shares(analysis.solution_of(name).context, name)
+        ),
         origins=tuple(origins(analysis.solution, name)) if is_unbounded else (),
     )
 
@@ -67,12 +70,6 @@ def _worst_job(schedule: CoreSchedule, name: str) -> int:
     """The index of the job with the worst-case response time."""
     jobs = schedule.worst[name]
     return int((jobs.ends - jobs.releases).argmax())
-
-
-def _executed_in(analysis: Analysis, name: str, job: int) -> tuple[bool, ...]:
-    """For each execution share, whether a job executes it, in the phase in which the response time is the worst."""
-    shares = execution_shares(analysis.solution_of(name).context, name)
-    return tuple(share.counter is None or takes_effect(share.counter, job) for share in shares)
 
 
 def _loads(solution: Solution, scheduled: ScheduledProcess) -> list[Load]:
@@ -140,33 +137,22 @@ def _in_window(solution: Solution, scheduled: ScheduledProcess, response: Respon
             return []
         count = solution.event_models[other.name].eta_plus(response.window)
         found.append(Share(other.name, count, min_time(context.demands[other.name].max_demand(count), time_base)))
-    return found if _adds_up(found, response) else []
-
-
-def _adds_up(found: Sequence[Share], response: Response) -> bool:
-    """Whether the shares add up to the interference, apart from one picosecond of rounding each."""
-    return abs(sum(share.time for share in found) - response.terms.get("interference", 0)) <= len(found) + 1
+    # Apart from one picosecond of rounding each, the shares must add up.
+    difference = sum(share.time for share in found) - response.terms.get("interference", 0)
+    return found if abs(difference) <= len(found) + 1 else []
 
 
 def explain_callback(analysis: Analysis, name: str) -> tuple[CallbackExplanation, ...]:
     """The explanation of a callback, for each process that calls it."""
-    return tuple(
-        CallbackExplanation(
-            callback=callback,
-            process=analysis.processes[callback.process],
-            execution=() if handles else _until(execution_shares(analysis.solution.context, callback.process), name),
-            handles=handles,
-        )
-        for callback in analysis.callbacks
-        if callback.name == name
-        for handles in [_handles(analysis, callback)]
-    )
-
-
-def _handles(analysis: Analysis, callback: CallbackResult) -> tuple[HandleResult, ...]:
-    """The handles of an executor that spins in a loop that call a callback."""
-    found = (executor for executor in analysis.executors if executor.task == callback.process)
-    return tuple(handle for executor in found for handle in executor.handles if handle.runnable == callback.name)
+    found = []
+    for callback in analysis.callbacks:
+        if callback.name == name:
+            here = (executor for executor in analysis.executors if executor.task == callback.process)
+            handles = tuple(handle for executor in here for handle in executor.handles if handle.runnable == name)
+            execution = () if handles else _until(execution_shares(analysis.solution.context, callback.process), name)
+            process = analysis.processes[callback.process]
+            found.append(CallbackExplanation(callback=callback, process=process, execution=execution, handles=handles))
+    return tuple(found)
 
 
 def _until(shares: list[ExecutionShare], name: str) -> tuple[ExecutionShare, ...]:

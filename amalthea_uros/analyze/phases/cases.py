@@ -146,13 +146,8 @@ class PhaseCases:
         context = self.first.context
         if context.system.os.semaphores:
             return frozenset(context.system.cores)
-        return frozenset(
-            item.core for name, item in context.scheduled.items() if name in self._taking or self._is_triggered(name)
-        )
-
-    @cached_property
-    def _taking(self) -> frozenset[str]:
-        return frozenset(occurrence.process for occurrence in self.combinations[0])
+        taking = {occurrence.process for occurrence in self.combinations[0]}
+        return frozenset(item.core for name, item in context.scheduled.items() if name in taking or self._is_triggered(name))
 
     def _is_triggered(self, name: str) -> bool:
         system = self.first.context.system

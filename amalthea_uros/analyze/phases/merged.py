@@ -28,6 +28,7 @@ from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.units import Time
 
 T = TypeVar("T")
+R = TypeVar("R", ProcessResult, CallbackResult)
 
 
 def merged(analyses: Mapping[int, Analysis], cases: PhaseCases, solution: Solution) -> Analysis:
@@ -48,7 +49,7 @@ def merged(analyses: Mapping[int, Analysis], cases: PhaseCases, solution: Soluti
     callbacks = []
     for index, callback in enumerate(first.callbacks):
         of_process = cases.of_processes[callback.process]
-        callbacks.append(_callback([analyses[number].callbacks[index] for number in of_process], list(of_process.values())))
+        callbacks.append(_job_results([analyses[number].callbacks[index] for number in of_process], list(of_process.values())))
     chains = []
     for index, of_chain in enumerate(cases.of_chains):
         chains.append(_merged_chain([analyses[number].chains[index] for number in of_chain], list(of_chain.values())))
@@ -79,14 +80,12 @@ def _badness(result: ProcessResult | CallbackResult) -> tuple[int, int]:
 
 
 def _process(results: Sequence[ProcessResult], counts: Sequence[int]) -> ProcessResult:
-    worst = max(results, key=_badness)
     judged = min(results, key=lambda result: WORST_FIRST.index(result.verdict))
-    found = metrics.merged([result.metrics for result in results], counts)
-    worst = replace(worst, verdict=judged.verdict, failure=judged.failure, reason=judged.reason, metrics=found)
-    return worst if worst.response is None else replace(worst, response=_response(worst.response, results, counts))
+    return replace(_job_results(results, counts), verdict=judged.verdict, failure=judged.failure, reason=judged.reason)
 
 
-def _callback(results: Sequence[CallbackResult], counts: Sequence[int]) -> CallbackResult:
+def _job_results(results: Sequence[R], counts: Sequence[int]) -> R:
+    """The result with the worst response time, and the metrics of all phases."""
     worst = max(results, key=_badness)
     worst = replace(worst, metrics=metrics.merged([result.metrics for result in results], counts))
     return worst if worst.response is None else replace(worst, response=_response(worst.response, results, counts))

@@ -120,7 +120,7 @@ class PriorityOrders:
             if order
             else "at the lowest priority, each task"
         )
-        misses = ", ".join(f"{name!r} by {_excess(late)}" for name, late in missing if late is not None)
+        misses = ", ".join(f"{name!r} by {f'up to {time_text(late)}' if late else 'an unknown time'}" for name, late in missing)
         return f"{where} misses its deadline: {misses}"
 
     def is_met(self, name: str, order: Order) -> bool:
@@ -154,7 +154,7 @@ class PriorityOrders:
         if self._is_any_triggered():
             return False
         here = self.context.on_core(self.core)
-        if not any(map(self._keeps_off_others, here)):
+        if all(is_preemptive(item) and self.context.protection[item.name] == LockUsage() for item in here):
             return True
         return self._has_set_blocking([item for item in here if not item.is_isr])
 
@@ -214,9 +214,6 @@ class PriorityOrders:
         except UnknownError:
             return None
 
-    def _keeps_off_others(self, item: ScheduledProcess) -> bool:
-        return not is_preemptive(item) or self.context.protection[item.name] != LockUsage()
-
     def _is_any_triggered(self) -> bool:
         return any(self._is_triggered(item.process) for item in self.context.on_core(self.core))
 
@@ -230,7 +227,3 @@ class PriorityOrders:
 
         self.context.activations.of(process, output)
         return bool(triggering)
-
-
-def _excess(late: Time) -> str:
-    return f"up to {time_text(late)}" if late else "an unknown time"

@@ -155,7 +155,8 @@ class Blocking:
     def _between(self, above: _Above) -> Iterator[Rank]:
         """The ranks of tasks that preempt a cooperative one of lower rank while it keeps off one of a higher rank."""
         below = [other for other in self.processes if other.rank < above.lowest]
-        blocking = [other.rank for other in below if _can_be_preempted(other) and self._throughout(other, above)]
+        cooperative = (other for other in below if preemption(other) is Preemption.COOPERATIVE and other.group is None)
+        blocking = [other.rank for other in cooperative if self._throughout(other, above)]
         if blocking:
             lowest = min(blocking)
             yield from (
@@ -313,7 +314,3 @@ class BlockingByDeadline:
                 later = (length for blocking, length in stretches if blocking is None or blocking > deadline)
                 found = max([found, *later])
         return found
-
-
-def _can_be_preempted(item: ScheduledProcess) -> bool:
-    return preemption(item) is Preemption.COOPERATIVE and item.group is None

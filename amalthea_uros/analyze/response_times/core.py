@@ -64,7 +64,8 @@ class _CoreAnalysis:
         here = self.context.served(self.core, server)
         usable, blocking = self._known(here), self._blocking(here)
         # What is blocked for an unknown time delays others nevertheless.
-        blocked = self._blocked_for_unknown_time(usable, here, blocking)
+        servers = [item for item in here if isinstance(item, Server)]
+        blocked = [item for item in usable if self._is_blocked_for_unknown_time(item, blocking, servers)]
         found = self.bounds(usable, blocking, supply)
         by_name = {item.name: response for item, response in zip(usable, found, strict=True) if item not in blocked}
         for item in usable:
@@ -76,24 +77,20 @@ class _CoreAnalysis:
         """The items that depend on no unknown process of the same or a higher rank; the others are marked unknown."""
         found: list[ScheduledProcess | Server] = []
         unknown = self.solution.intruder(self.core, above_isrs=True)
-        for (is_isr, _), group in groupby(here, key=lambda item: (_is_isr(item), item.rank)):
+        for (is_isr, _), group in groupby(
+            here, key=lambda item: (isinstance(item, ScheduledProcess) and item.is_isr, item.rank)
+        ):
             level = list(group)
             if not is_isr:
                 unknown = unknown or self.solution.intruder(self.core, above_isrs=False)
-            unknown = unknown or next((item.name for item in level if not self._is_known(item)), None)
+            processes = (item.name for item in level if isinstance(item, ScheduledProcess))
+            unknown = unknown or next((name for name in processes if not self.solution.is_analysable(name)), None)
             if unknown is None:
                 found += level
             else:
                 for item in level:
                     self._mark_unknown(item, f"depends on {unknown!r}, which could not be analysed")
         return found
-
-    def _blocked_for_unknown_time(
-        self, items: Sequence[ScheduledProcess | Server], here: Sequence[ScheduledProcess | Server], blocking: Blocking
-    ) -> list[ScheduledProcess | Server]:
-        """The items that a process can block, or delay beyond the budget of its server, for an unknown time."""
-        servers = [item for item in here if isinstance(item, Server)]
-        return [item for item in items if self._is_blocked_for_unknown_time(item, blocking, servers)]
 
     def _blocking(self, here: Sequence[ScheduledProcess | Server]) -> Blocking:
         """The blocking on the core itself or in a server; what is in a server waits and keeps others off at the rank of the server."""
@@ -119,7 +116,8 @@ class _CoreAnalysis:
             )
         for server in servers:
             # What is above the server and waits for a job beyond its budget delays the next budget, too.
-            is_touched = server is not item or self._is_below_others(server)
+            beside = (other for other in self.context.served(self.core, server.server) if other is not server)
+            is_touched = server is not item or any(other.rank >= server.rank for other in beside)
             if not obstacle and is_touched and (obstacle := self._not_preempted_in(server)):
                 # Whether the end of a budget interrupts it is not standardised: it may go on, before what is above and what is below.
                 self._mark_unknown(
@@ -127,11 +125,6 @@ class _CoreAnalysis:
                     f"{obstacle!r} in the server {server.name!r} cannot be preempted everywhere, and may go on beyond its budget",
                 )
         return bool(obstacle)
-
-    def _is_below_others(self, server: Server) -> bool:
-        """Whether something of at least the rank of a server shares its core, or the budget that it uses."""
-        others = self.context.served(self.core, server.server)
-        return any(other is not server and other.rank >= server.rank for other in others)
 
     def _cooperative_below(self, server: Server, blocking: Blocking) -> str:
         """A cooperative process below a server that has cooperative ones, too; "" if there is none."""
@@ -159,9 +152,6 @@ class _CoreAnalysis:
             ),
             "",
         )
-
-    def _is_known(self, item: ScheduledProcess | Server) -> bool:
-        return isinstance(item, Server) or self.solution.is_analysable(item.name)
 
     def _mark_unknown(self, item: ScheduledProcess | Server, reason: str) -> None:
         """Record why a process, or all processes in the budget of a server, cannot be analysed."""
@@ -297,7 +287,3 @@ def _without_order_beside_servers(
         replace(task, equal_priority=EqualPriority.UNKNOWN) if item.rank in with_server else task
         for task, item in zip(tasks, items, strict=True)
     ]
-
-
-def _is_isr(item: ScheduledProcess | Server) -> bool:
-    return isinstance(item, ScheduledProcess) and item.is_isr

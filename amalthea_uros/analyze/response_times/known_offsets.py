@@ -119,7 +119,8 @@ class _OffsetWindows:
         if len(known) * sum(hyperperiod // releases[name].period for name in known) > MAX_WINDOWS:
             return None
         blocking = Blocking.of(here, solution)
-        if not _can_help(blocking, [releases[name] for name in known]):
+        # Offsets must differ, or blocking must be impossible at some releases.
+        if not blocking.is_possible and len({releases[name].offset % releases[name].period for name in known}) < 2:
             return None
         found = cls(core, solution, blocking, here, known, releases, hyperperiod, {})
         for item in here:
@@ -163,22 +164,15 @@ class _OffsetWindows:
         # If others of the level can come at any time, they can wait for the blocking process before the start, and pile up.
         is_start_known = all(other.name in self.known for other in above)
         found: _Worst | None = None
-        for start in self._starts(above):
-            for worst in window.jobs_from(start, self._blocking_at(start, below) if is_start_known else longest):
+        starting = [self.releases[other.name] for other in above if other.name in self.known]
+        for start in sorted({start for releases in starting for start in releases.from_(0, self.hyperperiod)}):
+            remaining = (self._remaining(other, start, length) for other, length in below)
+            for worst in window.jobs_from(start, max(remaining, default=0) if is_start_known else longest):
                 if worst is None:
                     return None
                 if found is None or worst.time > found.time:
                     found = worst
         return found
-
-    def _starts(self, above: Sequence[ScheduledProcess]) -> list[Time]:
-        """The releases of known processes of a level in one hyperperiod."""
-        known = [self.releases[other.name] for other in above if other.name in self.known]
-        return sorted({start for releases in known for start in releases.from_(0, self.hyperperiod)})
-
-    def _blocking_at(self, start: Time, below: Sequence[tuple[ScheduledProcess, Time]]) -> Time:
-        """The maximum blocking in a busy window with a start: by jobs that can be pending then."""
-        return max((self._remaining(other, start, length) for other, length in below), default=0)
 
     def _remaining(self, other: ScheduledProcess, start: Time, length: Time) -> Time:
         releases, bound = self.releases[other.name], self.bounds.get(other.name)
@@ -280,8 +274,3 @@ class _LevelWindow:
 
     def _demand(self, start: Time, length: Time, releases: Sequence[_Releases]) -> Time:
         return sum(each.in_window(start, length) for each in releases)
-
-
-def _can_help(blocking: Blocking, known: Sequence[_Releases]) -> bool:
-    """Whether offsets differ, or blocking may be impossible at some releases."""
-    return blocking.is_possible or len({releases.offset % releases.period for releases in known}) > 1

@@ -122,13 +122,9 @@ def _require_known_iterations(name: str, context: TimingContext) -> None:
     if executor is None or demand is None:
         return
     reason = why_dense(executor, context.system.executors, max_time(demand.worst, context.time_base(name)))
-    if reason and (_is_above_others(item, context) or _triggers_others(item, context)):
+    delayed = (other for other in context.on_core(item.core) if other.rank <= item.rank and other.name != item.name)
+    if reason and (any(delayed) or _triggers_others(item, context)):
         raise UnknownError(reason)
-
-
-def _is_above_others(item: ScheduledProcess, context: TimingContext) -> bool:
-    """Whether a process can delay others of its core."""
-    return any(other.rank <= item.rank and other.name != item.name for other in context.on_core(item.core))
 
 
 def _triggers_others(item: ScheduledProcess, context: TimingContext) -> bool:

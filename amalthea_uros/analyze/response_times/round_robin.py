@@ -126,10 +126,7 @@ class _Window:
         most = [slices * jobs * other.slice for other, jobs in zip(self.others, self.pending, strict=True)]
         if self.demands is not None:
             most = list(map(min, most, self.demands))
-        prolonged = self._preemptions(window) * max(other.slice for other in self.others)
+        preemptions = sum(task.events.eta_plus(window) for task in self.higher.tasks)
+        prolonged = preemptions * max(other.slice for other in self.others)
         total = sum(most) + prolonged
         return total if everything is None else min(total, everything)
-
-    def _preemptions(self, window: Time) -> int:
-        """Maximum number of times that tasks of higher priority preempt the others in a window."""
-        return sum(task.events.eta_plus(window) for task in self.higher.tasks)

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
+from operator import attrgetter
 from typing import TYPE_CHECKING
 
 from amalthea_uros.perf.software import Task
@@ -14,7 +15,7 @@ from amalthea_uros.timing.basics.time_base import min_time
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.event_models.models import EventModel
 from amalthea_uros.timing.response import Response
-from amalthea_uros.timing.scheduling.scheduled import Rank, ScheduledProcess
+from amalthea_uros.timing.scheduling.scheduled import ScheduledProcess
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
@@ -139,7 +140,7 @@ class Solution:
     def _losing_on(self) -> Mapping[str, Sequence[ScheduledProcess]]:
         """The losing tasks of each core, highest rank first."""
         found: dict[str, list[ScheduledProcess]] = {}
-        for scheduled in sorted((self.context.scheduled[name] for name in self.losing), key=_rank, reverse=True):
+        for scheduled in sorted((self.context.scheduled[name] for name in self.losing), key=attrgetter("rank"), reverse=True):
             found.setdefault(scheduled.core, []).append(scheduled)
         return found
 
@@ -147,7 +148,3 @@ class Solution:
         """Best-case execution time of a process, in picoseconds; 0 if it is unknown."""
         demand = self.context.demands.get(name)
         return 0 if demand is None else min_time(demand.best, self.context.time_base(name))
-
-
-def _rank(scheduled: ScheduledProcess) -> Rank:
-    return scheduled.rank
