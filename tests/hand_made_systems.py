@@ -22,7 +22,7 @@ from amalthea_uros.perf.activities import (
     WaitEvent,
     Waiting,
 )
-from amalthea_uros.perf.distributions import Constant
+from amalthea_uros.perf.distributions import Boundaries, Constant
 from amalthea_uros.perf.events import EventChain, Events, ProcessChange, ProcessEvent, Segment, Sequence
 from amalthea_uros.perf.hardware import Clock, Core, Hardware, Structure
 from amalthea_uros.perf.mapping import IsrAllocation, Mapping, TaskAllocation
@@ -47,8 +47,8 @@ CORES = ("c0", "c1")
 READ, WRITE = AccessKind.READ, AccessKind.WRITE
 
 
-def ticks(number):
-    return Execute(demand=Demand(Constant(number)))
+def ticks(worst, best=None):
+    return Execute(demand=Demand(Constant(worst) if best in (None, worst) else Boundaries(lower=best, upper=worst)))
 
 
 def request(semaphore, waiting=None, *, exclusive=False):
@@ -88,6 +88,28 @@ def chain(name, *events):
     """A chain through some events."""
     segments = tuple(Segment(stimulus=first, response=then) for first, then in pairwise(events))
     return EventChain(name=name, stimulus=events[0], response=events[-1], items=Sequence(segments))
+
+
+def of_parts(tasks, allocations, stimuli, *, cores=("core",), schedulers=None, policy=Policy.OSEK, frequency=10**6, **parts):
+    """A system of cores with one clock, each with a scheduler of its own name if none are given.
+
+    Parameters
+    ----------
+    parts : of the operating system (`os_parts`), of the software by name, and of the system itself
+    """
+    schedulers = schedulers or [Scheduler(name=core, policy=policy, cores=(core,)) for core in cores]
+    software = {name: tuple(parts.pop(name)) for name in ("isrs", "runnables", "labels") if name in parts}
+    operating_system = OperatingSystem(name="OS", schedulers=tuple(schedulers), overhead=parts.pop("overhead", None))
+    structure = Structure(name="ECU", cores=tuple(Core(name=core, clock="clock") for core in cores))
+    clock = Clock(name="clock", frequency=Fraction(frequency))
+    return System(
+        hardware=parts.pop("hardware", None) or Hardware(clocks=(clock,), structures=(structure,)),
+        os=Os(systems=(operating_system,), **parts.pop("os_parts", {})),
+        stimuli=Stimuli(stimuli=tuple(stimuli)),
+        software=Software(tasks=tuple(tasks), **software),
+        mapping=Mapping(tasks=tuple(allocations)),
+        **parts,
+    )
 
 
 def system(*processes, schedulers=None, triggers=(), chains=(), **parts):

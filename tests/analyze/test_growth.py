@@ -4,10 +4,9 @@ The steps are counted as lines that are executed, so that nothing depends on the
 """
 
 import sys
-from fractions import Fraction
 
 import pytest
-from hand_made_systems import READ, US, WRITE, access, ticks
+from hand_made_systems import READ, US, WRITE, access, of_parts, ticks
 
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros.analyze.constraints.requirements import evaluate_requirements
@@ -19,11 +18,9 @@ from amalthea_uros.perf.activities import Call, Demand, Execute, RaiseEvent, Tri
 from amalthea_uros.perf.constraints import Constraints, DataAgeConstraint, Requirement, TimeLimit, TimeMetric
 from amalthea_uros.perf.distributions import Boundaries
 from amalthea_uros.perf.events import CustomEvent, EventChain, Events, LabelChange, LabelEvent, Segment, Sequence
-from amalthea_uros.perf.hardware import Clock, Core, Hardware, Structure
-from amalthea_uros.perf.mapping import Mapping, TaskAllocation
-from amalthea_uros.perf.os import OperatingSystem, Os, Policy, Scheduler
+from amalthea_uros.perf.mapping import TaskAllocation
 from amalthea_uros.perf.software import Label, Runnable, Software, Task
-from amalthea_uros.perf.stimuli import EventTriggered, InterProcess, Periodic, Stimuli
+from amalthea_uros.perf.stimuli import EventTriggered, InterProcess, Periodic
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.notes import AnalysisNotes
 from amalthea_uros.timing.context import TimingContext
@@ -57,30 +54,17 @@ def system(bodies, period=1000, stimuli=None, **parts):
     tasks = [f"t{number}" for number in range(len(bodies))]
     cores = [f"c{number}" for number in range(-(-len(bodies) // HERE))]
     stimuli = stimuli or [Periodic(name=name, period=period * US) for name in tasks]
-    return System(
-        hardware=Hardware(
-            clocks=(Clock(name="clock", frequency=Fraction(10**6)),),
-            structures=(Structure(name="ECU", cores=tuple(Core(name=core, clock="clock") for core in cores)),),
-        ),
-        os=Os(
-            systems=(
-                OperatingSystem(
-                    name="OS", schedulers=tuple(Scheduler(name=core, policy=Policy.OSEK, cores=(core,)) for core in cores)
-                ),
-            )
-        ),
-        stimuli=Stimuli(stimuli=tuple(stimuli)),
-        software=Software(
-            tasks=tuple(Task(name=name, stimuli=(name,), activities=(Call(runnable=name),)) for name in tasks),
-            runnables=tuple(Runnable(name=name, activities=tuple(body)) for name, body in zip(tasks, bodies, strict=True)),
-            labels=tuple(Label(name=name) for name in tasks),
-        ),
-        mapping=Mapping(
-            tasks=tuple(
-                TaskAllocation(task=name, scheduler=cores[number // HERE], priority=1 + number % HERE)
-                for number, name in enumerate(tasks)
-            )
-        ),
+    runnables = [Runnable(name=name, activities=tuple(body)) for name, body in zip(tasks, bodies, strict=True)]
+    return of_parts(
+        [Task(name=name, stimuli=(name,), activities=(Call(runnable=name),)) for name in tasks],
+        [
+            TaskAllocation(task=name, scheduler=cores[number // HERE], priority=1 + number % HERE)
+            for number, name in enumerate(tasks)
+        ],
+        stimuli,
+        cores=cores,
+        runnables=runnables,
+        labels=[Label(name=name) for name in tasks],
         **parts,
     )
 

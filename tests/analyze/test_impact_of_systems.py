@@ -63,13 +63,13 @@ def changed_systems(draw):
     return apply(SAMPLE, Settings(), changes)
 
 
-@examples(15)
+@examples(8)
 @given(changed_systems(), changed_systems())
 def test_pairs_of_changed_samples(one, other):
     judge(analyze_system(*one), analyze_system(*other))
 
 
-@examples(15)
+@examples(8)
 @given(systems(), systems())
 def test_pairs_of_random_systems(one, other):
     judge(analyze_system(one), analyze_system(other))

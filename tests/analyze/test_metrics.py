@@ -7,6 +7,7 @@ from math import lcm
 from textwrap import dedent
 
 import pytest
+from hand_made_systems import of_parts, ticks
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from support import ROOT, analysis_of
@@ -17,21 +18,17 @@ from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.activities import (
     Call,
     Chance,
-    Demand,
-    Execute,
     Loop,
     ProbabilitySwitch,
     SemaphoreAccess,
     SemaphoreOperation,
 )
 from amalthea_uros.perf.constraints import Bound, Constraints, Requirement, TimeLimit, TimeMetric
-from amalthea_uros.perf.distributions import Boundaries, Constant, Uniform
-from amalthea_uros.perf.hardware import Clock, Core, Hardware, Structure
-from amalthea_uros.perf.mapping import Mapping, TaskAllocation
-from amalthea_uros.perf.os import OperatingSystem, Os, Policy, Scheduler, Semaphore
-from amalthea_uros.perf.software import Runnable, Software, Task
-from amalthea_uros.perf.stimuli import Counter, Periodic, Stimuli
-from amalthea_uros.perf.system import System
+from amalthea_uros.perf.distributions import Uniform
+from amalthea_uros.perf.mapping import TaskAllocation
+from amalthea_uros.perf.os import Semaphore
+from amalthea_uros.perf.software import Runnable, Task
+from amalthea_uros.perf.stimuli import Counter, Periodic
 from amalthea_uros.services.analyze import analyze
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.units import MICROSECOND as US
@@ -100,10 +97,6 @@ class Row:
         return number >= max(self.counter.offset, 1) and (number - self.counter.offset) % self.counter.prescaler == 0
 
 
-def ticks(worst, best=None):
-    return Execute(demand=Demand(Constant(worst) if best in (None, worst) else Boundaries(lower=best, upper=worst)))
-
-
 def calls(name, row):
     """What a task of a row executes: a callback in each job, and one that a counter selects."""
     return (Call(runnable=f"{name}.base"), *([Call(runnable=f"{name}.extra", counter=row.counter)] if row.extra else []))
@@ -115,38 +108,13 @@ def built(rows, requirements=(), activities=calls, limit=99, semaphores=(), jitt
     callbacks = {}
     for name, row in zip(names, rows, strict=True):
         callbacks |= {f"{name}.base": ticks(row.worst, row.best), f"{name}.extra": ticks(row.extra)}
-    return System(
-        hardware=Hardware(
-            clocks=(Clock(name="clock", frequency=Fraction(10**6)),),
-            structures=(Structure(name="ECU", cores=(Core(name="core", clock="clock"),)),),
-        ),
-        os=Os(
-            systems=(OperatingSystem(name="OS", schedulers=(Scheduler(name="core", policy=Policy.OSEK, cores=("core",)),)),),
-            semaphores=tuple(semaphores),
-        ),
-        stimuli=Stimuli(
-            stimuli=tuple(
-                Periodic(name=f"every {name}", period=row.period * US, offset=row.offset * US, jitter=jitter)
-                for name, row in zip(names, rows, strict=True)
-            )
-        ),
-        software=Software(
-            tasks=tuple(
-                Task(
-                    name=name,
-                    stimuli=(f"every {name}",),
-                    activation_limit=limit,
-                    activities=activities(name, row),
-                )
-                for name, row in zip(names, rows, strict=True)
-            ),
-            runnables=tuple(Runnable(name=name, activities=(need,), callback=True) for name, need in callbacks.items()),
-        ),
-        mapping=Mapping(
-            tasks=tuple(
-                TaskAllocation(task=name, scheduler="core", priority=len(names) - index) for index, name in enumerate(names)
-            )
-        ),
+    named = list(zip(names, rows, strict=True))
+    return of_parts(
+        [Task(name=n, stimuli=(f"every {n}",), activation_limit=limit, activities=activities(n, row)) for n, row in named],
+        [TaskAllocation(task=name, scheduler="core", priority=len(names) - index) for index, name in enumerate(names)],
+        [Periodic(name=f"every {n}", period=row.period * US, offset=row.offset * US, jitter=jitter) for n, row in named],
+        runnables=[Runnable(name=name, activities=(need,), callback=True) for name, need in callbacks.items()],
+        os_parts={"semaphores": tuple(semaphores)},
         constraints=Constraints(requirements=tuple(requirements)),
     )
 

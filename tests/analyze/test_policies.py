@@ -5,6 +5,7 @@ from fractions import Fraction
 
 import pytest
 from effort import examples
+from hand_made_systems import of_parts, ticks
 from hypothesis import given
 from hypothesis import strategies as st
 from system_strategies import systems
@@ -19,7 +20,6 @@ from amalthea_uros.perf.activities import (
     Case,
     Count,
     Demand,
-    Execute,
     Group,
     LabelAccess,
     RaiseEvent,
@@ -36,17 +36,12 @@ from amalthea_uros.perf.distributions import Boundaries, Constant, Gauss
 from amalthea_uros.perf.events import CustomEvent, Events, LabelChange, LabelEvent
 from amalthea_uros.perf.hardware import Clock, Core, Hardware, Structure
 from amalthea_uros.perf.mapping import Mapping, TaskAllocation
-from amalthea_uros.perf.os import Duration, OperatingSystem, Os, Overhead, Parameter, Parent, Policy, Scheduler, Service
-from amalthea_uros.perf.software import Channel, Isr, IsrCategory, Label, Preemption, Runnable, Software, Task
-from amalthea_uros.perf.stimuli import EventTriggered, Periodic, RelativePeriodic, Stimuli
-from amalthea_uros.perf.system import System
+from amalthea_uros.perf.os import Duration, Overhead, Parameter, Parent, Policy, Scheduler, Service
+from amalthea_uros.perf.software import Channel, Isr, IsrCategory, Label, Preemption, Runnable, Task
+from amalthea_uros.perf.stimuli import EventTriggered, Periodic, RelativePeriodic
 from amalthea_uros.report.wording.closing_line import closing_line
 from amalthea_uros.timing.basics.settings import MemoryModel, Settings
 from amalthea_uros.units import MICROSECOND as US
-
-
-def ticks(number):
-    return Execute(demand=Demand(Constant(number)))
 
 
 def system(schedulers, tasks, stimuli=(), events=(), isrs=(), labels=(), runnables=(), **os_parts):
@@ -56,23 +51,16 @@ def system(schedulers, tasks, stimuli=(), events=(), isrs=(), labels=(), runnabl
         for name, distance, _, _ in tasks
         if distance
     ]
-    return System(
-        hardware=Hardware(
-            clocks=(Clock(name="clock", frequency=Fraction(10**6)),),
-            structures=(Structure(name="ECU", cores=(Core(name="core", clock="clock"),)),),
-        ),
-        os=Os(
-            systems=(OperatingSystem(name="OS", schedulers=tuple(schedulers), overhead="overhead"),),
-            **os_parts,
-        ),
-        stimuli=Stimuli(stimuli=(*sporadic, *stimuli)),
-        software=Software(
-            tasks=tuple(Task(name=name, stimuli=(f"every {name}",), activities=tuple(body)) for name, _, body, _ in tasks),
-            isrs=tuple(isrs),
-            labels=tuple(labels),
-            runnables=tuple(runnables),
-        ),
-        mapping=Mapping(tasks=tuple(TaskAllocation(task=name, **allocation) for name, _, _, allocation in tasks)),
+    return of_parts(
+        [Task(name=name, stimuli=(f"every {name}",), activities=tuple(body)) for name, _, body, _ in tasks],
+        [TaskAllocation(task=name, **allocation) for name, _, _, allocation in tasks],
+        [*sporadic, *stimuli],
+        schedulers=schedulers,
+        overhead="overhead",
+        isrs=isrs,
+        labels=labels,
+        runnables=runnables,
+        os_parts=os_parts,
         events=Events(events=tuple(events)),
     )
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 from fractions import Fraction
 
 import pytest
+from hand_made_systems import of_parts, ticks
 from support import ROOT, SHARED, analysis_of
 
 from amalthea_uros import extract, load
@@ -13,13 +14,11 @@ from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.perf import stimuli as perf_stimuli
 from amalthea_uros.perf.activities import Call, Case, Chance, Demand, Execute, Loop, ProbabilitySwitch, Switch, Trigger
 from amalthea_uros.perf.constraints import Bound, Constraints, CountLimit, CountMetric, Requirement, TimeLimit, TimeMetric
-from amalthea_uros.perf.distributions import Boundaries, Constant, Uniform
-from amalthea_uros.perf.hardware import Clock, Core, Hardware, Structure
+from amalthea_uros.perf.distributions import Boundaries, Uniform
 from amalthea_uros.perf.mapping import Mapping, TaskAllocation
 from amalthea_uros.perf.os import OperatingSystem, Os, Policy, Scheduler
 from amalthea_uros.perf.software import Preemption, Runnable, Software, Task
 from amalthea_uros.perf.stimuli import InterProcess, Periodic, RelativePeriodic, Stimuli
-from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
@@ -94,24 +93,8 @@ def challenge(figures, preemptive):
     return system(cores, stimuli, tasks, allocations)
 
 
-def system(cores, stimuli, tasks, allocations, runnables=(), policy=Policy.OSEK, frequency=200 * 10**6, **more):
-    return System(
-        hardware=Hardware(
-            clocks=(Clock(name="clock", frequency=Fraction(frequency)),),
-            structures=(Structure(name="ECU", cores=tuple(Core(name=core, clock="clock") for core in cores)),),
-        ),
-        os=Os(
-            systems=(
-                OperatingSystem(
-                    name="OS", schedulers=tuple(Scheduler(name=core, policy=policy, cores=(core,)) for core in cores)
-                ),
-            )
-        ),
-        stimuli=Stimuli(stimuli=tuple(stimuli)),
-        software=Software(tasks=tuple(tasks), runnables=tuple(runnables)),
-        mapping=Mapping(tasks=tuple(allocations)),
-        **more,
-    )
+def system(cores, stimuli, tasks, allocations, frequency=200 * 10**6, **parts):
+    return of_parts(tasks, allocations, stimuli, cores=cores, frequency=frequency, **parts)
 
 
 class TestTheChallengeOf2017:
@@ -152,10 +135,6 @@ class TestTheChallengeOf2017:
         faster = analyze_system(built, Settings(dict.fromkeys(built.cores, Fraction(400 * 10**6))))
         scaled = analyze_system(built, Settings(scale=Fraction(1, 2)))
         assert [p.response for p in faster.processes] == [p.response for p in scaled.processes]
-
-
-def ticks(worst, best=None):
-    return Execute(demand=Demand(Constant(worst) if best is None else Boundaries(lower=best, upper=worst)))
 
 
 def one_core(*tasks, stimuli=None, **more):

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 from itertools import groupby
 
 from amalthea_uros.analyze.response_times import fixed_priority, priority_levels
-from amalthea_uros.analyze.response_times.blocked_window import BlockedWindow
 from amalthea_uros.analyze.response_times.blocking import Blocking
 from amalthea_uros.analyze.response_times.core_schedule import CoreSchedule, periodic_tasks
+from amalthea_uros.analyze.response_times.priority_levels import BlockedWindow
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.response_times.task import FULL, AnalysedTask, Budget, Supply
 from amalthea_uros.perf.os import Policy

@@ -5,6 +5,7 @@ from fractions import Fraction
 from itertools import pairwise
 
 import pytest
+from hand_made_systems import of_parts, ticks
 from support import ROOT, SHARED
 from test_methods import cases
 
@@ -14,8 +15,6 @@ from amalthea_uros.perf.activities import (
     AccessKind,
     Call,
     Communication,
-    Demand,
-    Execute,
     LabelAccess,
     RaiseEvent,
     Receive,
@@ -24,7 +23,7 @@ from amalthea_uros.perf.activities import (
     Send,
     Trigger,
 )
-from amalthea_uros.perf.distributions import Boundaries, Constant
+from amalthea_uros.perf.distributions import Boundaries
 from amalthea_uros.perf.events import (
     ChainReference,
     ChannelChange,
@@ -47,17 +46,11 @@ from amalthea_uros.perf.events import (
     StimulusEvent,
 )
 from amalthea_uros.perf.hardware import Clock, Core, Hardware, Structure, StructureKind
-from amalthea_uros.perf.mapping import Mapping, TaskAllocation
-from amalthea_uros.perf.os import OperatingSystem, Os, Policy, Scheduler
-from amalthea_uros.perf.software import Preemption, Runnable, Software, Task
-from amalthea_uros.perf.stimuli import Counter, EventTriggered, InterProcess, Periodic, RelativePeriodic, Stimuli
-from amalthea_uros.perf.system import System
+from amalthea_uros.perf.mapping import TaskAllocation
+from amalthea_uros.perf.software import Preemption, Runnable, Task
+from amalthea_uros.perf.stimuli import Counter, EventTriggered, InterProcess, Periodic, RelativePeriodic
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import NANOSECOND as NS
-
-
-def ticks(worst, best=None):
-    return Execute(demand=Demand(Constant(worst) if best is None else Boundaries(lower=best, upper=worst)))
 
 
 def read(label):
@@ -89,35 +82,16 @@ def system(tasks, events, chains=None, stimuli=(), runnables=(), cores=("core",)
     names = [event.name for event in events]
     segments = tuple(Segment(stimulus=first, response=then) for first, then in pairwise(names))
     whole = EventChain(name="chain", stimulus=names[0], response=names[-1], items=Sequence(segments))
-    return System(
+    return of_parts(
+        [Task(name=name, stimuli=(name,), activities=tuple(body), activation_limit=NO_LOSSES) for name, _, body, _, _ in rows],
+        [TaskAllocation(task=row[0], scheduler=row[3], priority=-number) for number, row in enumerate(rows)],
+        [
+            *(Periodic(name=name, period=period * unit, offset=at * unit) for name, period, _, _, at in rows if period),
+            *stimuli,
+        ],
+        cores=cores,
+        runnables=runnables,
         hardware=Hardware(clocks=(Clock(name="clock", frequency=Fraction(10**12, unit)),), structures=structures),
-        os=Os(
-            systems=(
-                OperatingSystem(
-                    name="OS", schedulers=tuple(Scheduler(name=core, policy=Policy.OSEK, cores=(core,)) for core in cores)
-                ),
-            )
-        ),
-        stimuli=Stimuli(
-            stimuli=(
-                *(
-                    Periodic(name=name, period=period * unit, offset=offset * unit)
-                    for name, period, _, _, offset in rows
-                    if period
-                ),
-                *stimuli,
-            )
-        ),
-        software=Software(
-            tasks=tuple(
-                Task(name=name, stimuli=(name,), activities=tuple(body), activation_limit=NO_LOSSES)
-                for name, _, body, _, _ in rows
-            ),
-            runnables=tuple(runnables),
-        ),
-        mapping=Mapping(
-            tasks=tuple(TaskAllocation(task=row[0], scheduler=row[3], priority=-number) for number, row in enumerate(rows))
-        ),
         events=Events(events=tuple(events), chains=chains or (whole,)),
     )
 
