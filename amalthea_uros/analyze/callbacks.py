@@ -10,13 +10,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import lcm
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from amalthea_uros.analyze.response_times import metrics
 from amalthea_uros.analyze.response_times.core_schedule import CoreSchedule, times_of_completion
-from amalthea_uros.analyze.response_times.metrics import JobInterval
 from amalthea_uros.analyze.response_times.schedule import demand_cycle, demand_table, demands_of_jobs
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.results.processes import CallbackResult, Metric
@@ -34,9 +32,6 @@ from amalthea_uros.timing.jobs.counters import first_effect, is_always, min_dist
 from amalthea_uros.timing.jobs.positions import ActivityPosition
 from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.units import Time
-
-if TYPE_CHECKING:
-    from amalthea_uros.analyze.response_times.kernel import Numbers
 
 _METHOD = "response time of the process, less the minimum demand after the call"
 
@@ -201,13 +196,16 @@ class CallSite:
         if not self.is_simple:
             # Somewhere between the start and the end of the job.
             earliest = jobs[0].begins + self._demand([self.call]).best
-            anywhere = JobInterval(releases, (earliest, jobs[1].ends)).metric(repeating, time_base, is_attained=False)
+            anywhere = metrics.JobInterval(releases, (earliest, jobs[1].ends)).metric(repeating, time_base, is_attained=False)
             return replace(anywhere, mean=None)
         count, counter = len(releases[0]), self.counter
-        executed, others = self._until(), self._besides_activities(count)
+        executed, worst = self._until(), MultiframeDemand.worst_of
+        # What belongs to no activity, such as copies of labels, can come before the call.
+        activities = demands_of_jobs(self._demand(self.process.activities), count, worst)
+        others = demands_of_jobs(self.solution.context.demands[name], count, worst) - activities
         ends = (
             times_of_completion(jobs[0], demands_of_jobs(executed, count, MultiframeDemand.best_of)),
-            times_of_completion(jobs[1], demands_of_jobs(executed, count, MultiframeDemand.worst_of) + others),
+            times_of_completion(jobs[1], demands_of_jobs(executed, count, worst) + others),
         )
         calling, is_attained = np.ones(count, dtype=bool), not others.any()
         if counter is not None and not is_always(counter):
@@ -217,7 +215,9 @@ class CallSite:
                 is_attained = False
             else:
                 calling = np.array([takes_effect(counter, number) for number in range(1, count + 1)])
-        selected = JobInterval(metrics.both(each[calling] for each in releases), metrics.both(each[calling] for each in ends))
+        selected = metrics.JobInterval(
+            metrics.both(each[calling] for each in releases), metrics.both(each[calling] for each in ends)
+        )
         metric = selected.metric(int(calling[-repeating:].sum()), time_base, is_attained, found.has_idle_time)
         return metric if is_attained else replace(metric, mean=None)
 
@@ -250,13 +250,6 @@ class CallSite:
     def _demand(self, activities: Sequence[Activity]) -> MultiframeDemand:
         context = self.solution.context
         return context.demand_model.of_activities(self.process, activities, context.scheduled[self.process.name].core)
-
-    def _besides_activities(self, count: int) -> Numbers:
-        """What each job executes besides the activities of its process, such as copies of labels: possibly before the call."""
-        everything, activities = self.solution.context.demands[self.process.name], self._demand(self.process.activities)
-        return demands_of_jobs(everything, count, MultiframeDemand.worst_of) - demands_of_jobs(
-            activities, count, MultiframeDemand.worst_of
-        )
 
 
 def _unknown(name: str, process: Process, reason: str, deadline: Time | None = None) -> CallbackResult:

@@ -75,11 +75,7 @@ class TestTheSample:
 
     def test_the_model_and_the_description_give_the_same(self):
         described = describe(SAMPLE).system
-        extracted = extract(build_model(described)).system
-        assert extracted == described
-        analyses = [analyze_system(each) for each in (described, extracted)]
-        assert analyses[0].processes == analyses[1].processes
-        assert analyses[0].chains == analyses[1].chains
+        assert extract(build_model(described)).system == described
 
     def test_it_is_an_assumption(self):
         assert (
@@ -107,9 +103,11 @@ class TestTheSample:
     def test_factors_are_those_of_all_phases(self, analyze):
         analysis = analyze(sample(limit=("reaction: 25 ms", "reaction: 20.058 ms")))
         # 20 ms + 29 us * factor <= 20.058 ms.
-        factor = max_growth(analysis)
-        assert float(factor) == pytest.approx(2, rel=2e-3)
-        assert factor <= 2
+        system = analysis.solution.context.system
+        grown = [analyze_system(system, Settings(growth=Fraction(factor, 1000))) for factor in (2000, 2001)]
+        assert [each.summary.schedulable == "yes" for each in grown] == [True, False]
+        if IS_THOROUGH:
+            assert 0 <= 2 - max_growth(analysis) < Fraction(4, 1000)
 
     def test_proposals_do_not_depend_on_a_phase(self, analyze):
         limit = ("period: 1 ms, execution_time: {base", "period: 1 ms, deadline: 1 ms, execution_time: {base")

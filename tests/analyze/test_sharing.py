@@ -8,7 +8,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from amalthea_uros.analyze.response_times import priority_levels
-from amalthea_uros.analyze.response_times.task import AnalysedTask, Budget
+from amalthea_uros.analyze.response_times.task import AnalysedTask, Supply
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.event_models.models import PeriodicEvents
 from amalthea_uros.timing.scheduling.scheduled import EqualPriority
@@ -114,7 +114,7 @@ def test_no_schedule_of_a_server_is_worse_than_the_bound(rows, offsets, budget, 
         for index, (period, wcet, _) in enumerate(rows)
     ]
     assume(load(tasks) < Fraction(budget, period))
-    supply = Budget(budget=budget, period=period, wait=2 * idle)
+    supply = Supply(budget=budget, period=period, wait=2 * idle)
     # The budget comes at the start of the first period and at the end of all others.
     start = (-phase) % period
 
@@ -131,7 +131,7 @@ def test_no_schedule_of_a_server_is_worse_than_the_bound(rows, offsets, budget, 
 def test_a_server_by_hand():
     # 2 in each 5: in the worst case nothing for 6, then 2, nothing for 3, 1 more: 6 + 2 + 3 + 1.
     task = AnalysedTask(name="T", events=PeriodicEvents(100), demand=MultiframeDemand.constant(3))
-    (response,) = priority_levels.response_times([task], supply=Budget(budget=2, period=5, wait=6))
+    (response,) = priority_levels.response_times([task], supply=Supply(budget=2, period=5, wait=6))
     assert response.worst == 12
 
 

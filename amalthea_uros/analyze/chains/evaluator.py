@@ -67,13 +67,26 @@ class ChainEvaluator:
         every = [route for found in paths.values() for route in found]
         self._note_left_out(chain, left_out)
         self._note_ends(chain, tuple(paths))
-        found = self._evaluated(paths)
+        values: dict[tuple[str, ...], list[LatencyValue]] = {}
+        why = why_unbounded = reason = ""
+        for events, of_path in paths.items():
+            try:
+                methods = [self.latencies(route) for route in of_path]
+                of_methods = [list(method.values()) for method in methods]
+            except UnknownError as error:
+                reason, values[events] = str(error), []
+                continue
+            values[events] = _worst_of(of_methods)
+            whys = [method.why(own) for method, own in zip(methods, of_methods, strict=True)]
+            # As soon as one of the routes has only bounds, because of that.
+            why = why or next((each for each in whys if each.startswith("bounds")), whys[0])
+            why_unbounded = why_unbounded or next((m.why_unbounded for m in methods if m.why_unbounded), "")
         if self.budget.is_exceeded:
             self.context.notes.assume(f"{TOO_MANY_JOBS}; the chains without them have bounds of other methods")
-        all_values = _combine(unfolded, found.values)
+        all_values = _combine(unfolded, values)
         tightest = _tightest(all_values)
         has_bound = any(value.quantity is LatencyQuantity.MAX_REDUCED_REACTION_TIME for value in tightest)
-        reason = found.reason or ("" if has_bound else found.why_unbounded)
+        reason = reason or ("" if has_bound else why_unbounded)
         if reason:
             self.context.notes.warning("CHN003", f"the chain {chain.name!r} has no finite bound: {reason}", chain)
         return ChainResult(
@@ -82,7 +95,7 @@ class ChainEvaluator:
             routes=tuple(map(route_text, every)),
             values=tightest,
             all_values=tuple(all_values),
-            why=found.why,
+            why=why,
             reason=reason,
         )
 
@@ -131,22 +144,6 @@ class ChainEvaluator:
             return list(dict.fromkeys(found))
         except UnknownError:
             return []
-
-    def _evaluated(self, paths: Mapping[tuple[str, ...], Sequence[Route]]) -> _Evaluated:
-        """The values of each path through a chain, and the reasons."""
-        found = _Evaluated()
-        for events, found_routes in paths.items():
-            try:
-                methods = [self.latencies(route) for route in found_routes]
-                values = [list(method.values()) for method in methods]
-            except UnknownError as error:
-                found.reason = str(error)
-                found.values[events] = []
-                continue
-            found.values[events] = _worst_of(values)
-            found.why = found.why or _why([method.why(own) for method, own in zip(methods, values, strict=True)])
-            found.why_unbounded = found.why_unbounded or next((m.why_unbounded for m in methods if m.why_unbounded), "")
-        return found
 
     def worst(self, found: Iterable[Route]) -> tuple[LatencyValue, ...]:
         """The tightest values over routes from one event to another, which need not be part of a chain.
@@ -235,23 +232,6 @@ class ChainEvaluator:
         return self.controllers.get(scheduled.core, "") if scheduled is not None else ""
 
 
-@dataclass(slots=True)
-class _Evaluated:
-    """Values by the events of a path through a chain.
-
-    Attributes
-    ----------
-    why : why the tightest values are exact or only bounds
-    why_unbounded : why there is no bound of the reaction time
-    reason : why a path has no values
-    """
-
-    values: dict[tuple[str, ...], list[LatencyValue]] = field(default_factory=dict)
-    why: str = ""
-    why_unbounded: str = ""
-    reason: str = ""
-
-
 def _groups(found: Sequence[Stage]) -> list[list[Stage]]:
     """Each stage together with those that it triggers."""
     groups: list[list[Stage]] = []
@@ -261,11 +241,6 @@ def _groups(found: Sequence[Stage]) -> list[list[Stage]]:
         else:
             groups.append([stage])
     return groups
-
-
-def _why(found: Sequence[str]) -> str:
-    """Why values over several routes are exact or only bounds: as soon as one of the routes has only bounds, because of that."""
-    return next((why for why in found if why.startswith("bounds")), found[0])
 
 
 def _worst_of(found: Sequence[Sequence[LatencyValue]]) -> list[LatencyValue]:

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from math import lcm
-from typing import TYPE_CHECKING
 
 from amalthea_uros.analyze.chains.boundary_times import (
     BoundaryWindows,
@@ -39,9 +38,6 @@ from amalthea_uros.timing.demand.model import MAX_TIME_BASE
 from amalthea_uros.timing.jobs.counters import first_effect, is_always, max_distance
 from amalthea_uros.timing.response import Response
 from amalthea_uros.units import Time
-
-if TYPE_CHECKING:
-    pass
 
 
 @dataclass(slots=True)

@@ -50,14 +50,6 @@ def of_executions(
     return (*interfering, *cause(CauseKind.EXECUTION, own), *cause(rest, remaining))
 
 
-def response_terms(timing: StageTiming, stage: Stage, time: Time) -> tuple[tuple[str, Time], ...]:
-    """The terms of the worst-case response time of a process, in picoseconds; nothing if that is not the time."""
-    response = timing.solution.responses.get(stage.process.name)
-    if response is None or response.worst is None or response.worst * timing.unit != time:
-        return ()
-    return tuple((name, value) for name, value in response.terms.items() if value)
-
-
 @dataclass(frozen=True, slots=True)
 class HopReasons:
     """Why a job of the worst case waits and runs; times are those of the chain.
@@ -77,18 +69,17 @@ class HopReasons:
     ) -> tuple[tuple[LatencyCause, ...], tuple[LatencyCause, ...], tuple[Execution, ...]]:
         """The causes of its wait and of its run, and what is executed from its release, with times relative to the read."""
         # Before its release, it waits for that; after it, for other jobs.
-        pending = min(max(previous, release), read)
+        name, pending = self.stage.process.name, min(max(previous, release), read)
         waits = cause(CauseKind.NEXT_JOB, pending - previous)
         if self.timed.is_logical:
             return waits, cause(CauseKind.LOGICAL, write - read), ()
         before, after = self._executed(pending, read), self._executed(read, write)
         if before is None or after is None:
-            return (
-                (*waits, *cause(CauseKind.READ_DELAY, read - pending)),
-                self._bounded(write - read),
-                (),
-            )
-        name = self.stage.process.name
+            run, response = cause(self._rest(CauseKind.RESPONSE), write - read), self.timing.solution.responses.get(name)
+            if response is not None and response.worst is not None and response.worst * self.timing.unit == write - read:
+                terms = tuple((term, value) for term, value in response.terms.items() if value)
+                run = tuple(replace(each, terms=terms) for each in run)
+            return (*waits, *cause(CauseKind.READ_DELAY, read - pending)), run, ()
         own = [each for each in after if (each.process, each.job) == (name, self.number)]
         # What is executed after the job says nothing about an output at the end of the period.
         last = max((each.end for each in own), default=read)
@@ -97,13 +88,6 @@ class HopReasons:
             (*waits, *of_executions(before, name, read - pending, CauseKind.INTERFERENCE, CauseKind.READ_DELAY)),
             of_executions(during, name, write - read, CauseKind.PREEMPTION, self._rest(CauseKind.RESPONSE)),
             tuple(replace(each, begin=each.begin - read, end=each.end - read) for each in (*before, *during)),
-        )
-
-    def _bounded(self, time: Time) -> tuple[LatencyCause, ...]:
-        """From the earliest read to the latest output."""
-        return tuple(
-            replace(each, terms=response_terms(self.timing, self.stage, time))
-            for each in cause(self._rest(CauseKind.RESPONSE), time)
         )
 
     def _rest(self, otherwise: CauseKind) -> CauseKind:

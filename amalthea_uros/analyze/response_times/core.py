@@ -11,7 +11,7 @@ from amalthea_uros.analyze.response_times.blocking import Blocking
 from amalthea_uros.analyze.response_times.core_schedule import CoreSchedule, periodic_tasks
 from amalthea_uros.analyze.response_times.priority_levels import BlockedWindow
 from amalthea_uros.analyze.response_times.solution import Solution
-from amalthea_uros.analyze.response_times.task import FULL, AnalysedTask, Budget, Supply
+from amalthea_uros.analyze.response_times.task import FULL, AnalysedTask, Supply
 from amalthea_uros.perf.os import Policy
 from amalthea_uros.perf.software import Preemption
 from amalthea_uros.timing.basics.time_base import Ticks, to_ticks
@@ -169,7 +169,7 @@ class _CoreAnalysis:
             return {}
         # Worst case: a job is activated just after the budget was used up as early as possible, or just after the server polled.
         used = 0 if server.scheduler.policy == Policy.POLLING_SERVER else budget
-        supply = Budget(
+        supply = Supply(
             budget=budget,
             period=period,
             wait=period - used + response.worst - budget,

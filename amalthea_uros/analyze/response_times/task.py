@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.event_models.models import EventModel, rescaled
@@ -67,24 +67,8 @@ class AnalysedTask:
         ]
 
 
-@dataclass(frozen=True, slots=True)
-class Full:
-    """All of the time of a core.
-
-    Attributes
-    ----------
-    rate : share of the core in the long run
-    """
-
-    rate: ClassVar[Fraction] = Fraction(1)
-
-    def time_for(self, demand: Time) -> Time:
-        """Maximum time until the demand has been served."""
-        return demand
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Budget:
+class Supply:
     """A budget in each period.
 
     Attributes
@@ -101,16 +85,16 @@ class Budget:
 
     @property
     def rate(self) -> Fraction:
-        """See `Full`."""
+        """Share of the core in the long run."""
         return Fraction(self.budget, self.period)
 
     def time_for(self, demand: Time) -> Time:
-        """See `Full`; each further budget that is needed adds a gap."""
+        """Maximum time until the demand has been served; each further budget that is needed adds a gap."""
         if demand <= 0:
             return 0
         gaps = demand // self.budget if self.is_needed_at_end else -(-demand // self.budget) - 1
         return self.wait + gaps * (self.period - self.budget) + demand
 
 
-Supply = Full | Budget
-FULL = Full()
+#: All of the time of a core.
+FULL = Supply(budget=1, period=1, wait=0)
