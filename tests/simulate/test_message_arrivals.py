@@ -1,6 +1,5 @@
 """Messages that arrive by themselves, and the jobs that take them."""
 
-from contextlib import contextmanager
 from dataclasses import replace
 
 import numpy as np
@@ -22,6 +21,7 @@ from amalthea_uros.simulate.program.messages import QUEUE_LENGTH
 from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
 from amalthea_uros.timing.basics.settings import Settings
+from amalthea_uros.trace.sinks import EventRecorder
 from amalthea_uros.trace.table import EventKind
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
@@ -44,18 +44,6 @@ def simulate(*changes, system=THESIS, duration=200 * MS, sinks=(), **options):
 def observed(simulation):
     """What a simulation shows, without what it assumes."""
     return replace(simulation, assumptions=())
-
-
-class Recorded(list):
-    """A sink that keeps the tables of events."""
-
-    @contextmanager
-    def open(self, entities):
-        self.entities = entities
-        yield self
-
-    def write(self, table):
-        self.append(table)
 
 
 @given(st.integers(0, 39))
@@ -108,18 +96,16 @@ def taking_jobs(arrivals, activations):
 )
 def test_irregular_arrivals(changes):
     """The jobs that take 25 us are those that a queue by the book gives messages to."""
-    recorded = Recorded()
-    found = simulate(*changes, sinks=[recorded.open], traced=(0, 200 * MS))
-    numbers = {(entity.kind, entity.name): number for number, entity in enumerate(recorded.entities)}
-    (executor,) = (number for (_, name), number in numbers.items() if name == "Executor_Task")
-    arrivals, activations, starts, ends = [], [], [], []
-    for table in recorded:
-        names = np.array([entity.name for entity in table.entities])
-        of_executor = table.target == executor
-        arrivals += table.time[(table.kind == EventKind.TRIGGER) & (names[table.target] == "Message_Factor")].tolist()
-        activations += table.time[(table.kind == EventKind.ACTIVATE) & of_executor].tolist()
-        starts += table.time[(table.kind == EventKind.START) & of_executor].tolist()
-        ends += table.time[(table.kind == EventKind.TERMINATE) & of_executor].tolist()
+    recorder = EventRecorder()
+    found = simulate(*changes, sinks=[recorder], traced=(0, 200 * MS))
+    events, names = recorder.table, np.array([entity.name for entity in recorder.table.entities])
+    arrivals, activations, starts, ends = (
+        events.time[(events.kind == kind) & (names[events.target] == name)].tolist()
+        for kind, name in (
+            (EventKind.TRIGGER, "Message_Factor"),
+            *((kind, "Executor_Task") for kind in (EventKind.ACTIVATE, EventKind.START, EventKind.TERMINATE)),
+        )
+    )
     assert len(arrivals) > 5
     durations = [end - start for start, end in zip(starts, ends, strict=True)]
     taking, lost = taking_jobs(arrivals, activations)

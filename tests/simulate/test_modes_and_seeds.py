@@ -4,9 +4,9 @@ from dataclasses import replace
 from fractions import Fraction
 
 import pytest
+from hand_made_systems import Proc, system, ticks
 from hypothesis import given
 from hypothesis import strategies as st
-from one_core import Job, interrupt, one_core
 from support import ROOT
 
 from amalthea_uros import describe
@@ -26,7 +26,7 @@ from amalthea_uros.perf.distributions import (
 )
 from amalthea_uros.perf.mapping import TaskAllocation
 from amalthea_uros.perf.os import OperatingSystem, Policy, Scheduler
-from amalthea_uros.perf.software import Runnable, Software, Task
+from amalthea_uros.perf.software import Runnable, Task
 from amalthea_uros.perf.stimuli import Counter, Periodic
 from amalthea_uros.simulate.kernel import machine_code
 from amalthea_uros.simulate.options import Mode, Options
@@ -76,10 +76,10 @@ BODIES = st.lists(st.recursive(EXECUTE | CALLS, nested, max_leaves=6) | COUNTED,
 
 @given(BODIES, EXECUTE, st.integers(0, 100))
 def test_net_execution_times_are_ordered_by_the_modes(body, called, seed):
-    software = Software(runnables=(Runnable(name="work", activities=(called,)),))
-    system = one_core([Job("task", body, period=2000)], software=software)
+    runnables = (Runnable(name="work", activities=(called,)),)
+    model = system(Proc("task", tuple(body), 2000, priority=1), runnables=runnables)
     found = {
-        mode: simulate_system(system, Options(duration=100 * MS, mode=mode, seed=seed))["task"].metrics[JobMetric.RUNNING_TIME]
+        mode: simulate_system(model, Options(duration=100 * MS, mode=mode, seed=seed))["task"].metrics[JobMetric.RUNNING_TIME]
         for mode in Mode
     }
     best, worst = found[Mode.BEST], found[Mode.WORST]
@@ -87,7 +87,7 @@ def test_net_execution_times_are_ordered_by_the_modes(body, called, seed):
         assert best.min <= found[mode].min
         assert found[mode].max <= worst.max
         assert best.mean <= found[mode].mean <= worst.mean
-    bounds = analyze_system(system).processes["task"]
+    bounds = analyze_system(model).processes["task"]
     assert bounds.bcet <= best.min
     assert worst.max <= bounds.wcet
 
@@ -99,9 +99,9 @@ def is_skewed(distribution):
 
 @given(DEMANDS.filter(lambda distribution: not is_skewed(distribution)))
 def test_the_average_of_many_samples_is_near_the_average_mode(distribution):
-    system = one_core([Job("task", [Execute(demand=Demand(ticks=distribution))], period=100)])
+    model = system(Proc("task", (Execute(demand=Demand(ticks=distribution)),), 100, priority=1))
     found = {
-        mode: simulate_system(system, Options(duration=100 * MS, mode=mode))["task"].metrics[JobMetric.RUNNING_TIME]
+        mode: simulate_system(model, Options(duration=100 * MS, mode=mode))["task"].metrics[JobMetric.RUNNING_TIME]
         for mode in (Mode.SAMPLED, Mode.AVERAGE)
     }
     sampled, average = found[Mode.SAMPLED], found[Mode.AVERAGE]
@@ -113,7 +113,7 @@ def test_the_average_of_many_samples_is_near_the_average_mode(distribution):
 DRIVE = describe(ROOT / "samples" / "drive-and-lift.yaml").system_with_bus()
 
 
-def played(seed=1, system=DRIVE, mode=Mode.SAMPLED, duration=2 * SECOND):
+def played(seed=1, system=DRIVE, mode=Mode.SAMPLED, duration=SECOND // 2):
     return simulate_system(system, Options(duration=duration, seed=seed, mode=mode))
 
 
@@ -151,16 +151,16 @@ def test_a_task_on_another_core_changes_nothing(mode):
         ),
     )
     alone, together = played(mode=mode), played(system=system, mode=mode)
-    assert together["other"].jobs == 667
+    assert together["other"].jobs == 167
     assert [process for process in together.processes if process.name != "other"] == list(alone.processes)
     assert list(together.chains) == list(alone.chains)
 
 
 def test_a_task_of_lower_priority_does_not_change_what_others_draw():
-    high = Job("high", [Execute(demand=Demand(ticks=Uniform(lower=1, upper=50)))], priority=2, period=100)
-    low = Job("low", [Execute(demand=Demand(ticks=Uniform(lower=1, upper=50)))], priority=1, period=150)
-    isr = interrupt("isr", 3, period=130)
-    alone, together = (simulate_system(one_core(jobs, [isr]), Options(duration=50 * MS)) for jobs in ([high], [high, low]))
+    varying = (Execute(demand=Demand(ticks=Uniform(lower=1, upper=50))),)
+    high, low = Proc("high", varying, 100, priority=2), Proc("low", varying, 150, priority=1)
+    isr = Proc("isr", (ticks(3),), 130, priority=1, is_isr=True)
+    alone, together = (simulate_system(system(*found, isr), Options(duration=50 * MS)) for found in ((high,), (high, low)))
     assert together["high"] == alone["high"]
 
 

@@ -12,6 +12,7 @@ from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
 from amalthea_uros.timing.basics.settings import Settings
+from amalthea_uros.trace.sinks import EventRecorder
 from amalthea_uros.trace.table import EventKind
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
@@ -41,28 +42,16 @@ def described(tmp_path):
 
 def executed(system, duration, phases):
     """What the executor executes in each job: the runnables in their order, with the time from the activation to the end of each."""
-    tables = []
-
-    class Sink:
-        def __enter__(self):
-            return self
-
-        def __exit__(self, *_):
-            pass
-
-        def write(self, table):
-            tables.append(table)
-
+    recorder = EventRecorder()
     options = Options(duration=duration, mode=Mode.WORST, settings=Settings(phases=phases), traced=(0, duration))
-    simulate_system(system, options, [lambda entities: Sink()])
-    jobs = []
-    for table in tables:
-        names = [entity.name for entity in table.entities]
-        for time, kind, source, target in zip(table.time, table.kind, table.source, table.target, strict=True):
-            if kind == EventKind.ACTIVATE and names[target] == "rclc_executor":
-                jobs.append((int(time), []))
-            elif kind == EventKind.RUNNABLE_TERMINATE and names[source] == "rclc_executor":
-                jobs[-1][1].append((names[target], int(time) - jobs[-1][0]))
+    simulate_system(system, options, [recorder])
+    events, jobs = recorder.table, []
+    names = [entity.name for entity in events.entities]
+    for time, kind, source, target in zip(events.time, events.kind, events.source, events.target, strict=True):
+        if kind == EventKind.ACTIVATE and names[target] == "rclc_executor":
+            jobs.append((int(time), []))
+        elif kind == EventKind.RUNNABLE_TERMINATE and names[source] == "rclc_executor":
+            jobs[-1][1].append((names[target], int(time) - jobs[-1][0]))
     return [job for _, job in jobs]
 
 
