@@ -13,8 +13,7 @@ import numpy as np
 from amalthea_uros._version import __version__
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.trace.files import opened_text
-from amalthea_uros.trace.problems import TracePlace, TraceProblems
+from amalthea_uros.trace.files import TracePlace, TraceProblems, opened_text
 from amalthea_uros.trace.reading import (
     BLOCK,
     MAX,

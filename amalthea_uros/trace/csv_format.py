@@ -16,15 +16,11 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice
 from pathlib import Path
 
-import numpy as np
-
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.trace.files import opened_text
-from amalthea_uros.trace.problems import TracePlace
+from amalthea_uros.trace.files import TracePlace, opened_text
 from amalthea_uros.trace.reading import BLOCK, MAX, LineReader, NumberedTable, Row, note_of, numbered_table
 from amalthea_uros.trace.sinks import Encoder, WriteOptions
-from amalthea_uros.trace.table import NO_NOTE, Entity, EntityKind, EventKind, EventTable
-from amalthea_uros.trace.vocabulary import OS_EVENTS
+from amalthea_uros.trace.table import Entity, EntityKind, EventKind, EventTable
 
 HEADER = ["time_ps", "event", "source_kind", "source", "source_instance", "target_kind", "target", "target_instance", "note"]
 
@@ -125,7 +121,7 @@ class CsvEncoder(Encoder):
             table.source_instance.tolist(),
             [fields[target] for target in table.target.tolist()],
             table.target_instance.tolist(),
-            self._notes(table),
+            ["" if note is None else _quoted(note) if isinstance(note, str) else note for note in table.notes()],
             strict=True,
         )
         return "".join(
@@ -134,13 +130,6 @@ class CsvEncoder(Encoder):
                 for time, kind, source, job, target, number, note in rows
             ]
         ).encode()
-
-    def _notes(self, table: EventTable) -> list[str]:
-        notes = [""] * len(table)
-        for row in np.flatnonzero(table.note != NO_NOTE).tolist():
-            note = int(table.note[row])
-            notes[row] = _quoted(self._entities[note].name) if table.kind[row] in OS_EVENTS else str(note)
-        return notes
 
 
 def _quoted(name: str) -> str:

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from amalthea_uros._internal.arrays import Numbers
 from amalthea_uros.diagnostics import Finding, Severity
-from amalthea_uros.trace.problems import TracePlace, TraceProblems
+from amalthea_uros.trace.files import TracePlace, TraceProblems
 from amalthea_uros.trace.readers import open_trace
 from amalthea_uros.trace.table import Entity, EntityKind, EventKind, EventTable
 from amalthea_uros.trace.vocabulary import (

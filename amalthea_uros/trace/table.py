@@ -162,11 +162,11 @@ class EventTable:
                 "target_kind": pd.Categorical([entity.kind.value for entity in targets]),
                 "target": pd.Categorical([entity.name for entity in targets]),
                 "target_instance": self.target_instance,
-                "note": pd.Series(self._notes(), dtype=object),
+                "note": pd.Series(self.notes(), dtype=object),
             }
         )
 
-    def _notes(self) -> list[int | str | None]:
+    def notes(self) -> list[int | str | None]:
         """The notes with the names of the owners of OS events; None where there is none."""
         is_owner = np.isin(self.kind, (EventKind.SET_EVENT, EventKind.CLEAR_EVENT, EventKind.WAIT_EVENT))
         return [

@@ -17,7 +17,7 @@ from amalthea_uros.design.changes.change import parse_change
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.simulate.kernel import machine_code
 from amalthea_uros.simulate.options import Mode, Options
-from amalthea_uros.simulate.program.messages import QUEUE_LENGTH
+from amalthea_uros.simulate.program.stimulus_records import QUEUE_LENGTH
 from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
 from amalthea_uros.timing.basics.settings import Settings

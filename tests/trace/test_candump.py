@@ -16,7 +16,7 @@ from amalthea_uros.trace.can.candump_blocks import read_lines
 from amalthea_uros.trace.can.candump_lines import parse
 from amalthea_uros.trace.can.frames import XL
 from amalthea_uros.trace.can.logs import open_can_log
-from amalthea_uros.trace.problems import UnreadableError
+from amalthea_uros.trace.files import UnreadableError
 
 HEAD = "(1436509052.000000) can0 "
 

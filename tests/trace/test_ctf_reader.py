@@ -18,7 +18,7 @@ from amalthea_uros.errors import InvalidArgumentError, ReadError
 from amalthea_uros.trace.ctf.metadata import described, read_metadata
 from amalthea_uros.trace.ctf.streams import PacketStream
 from amalthea_uros.trace.ctf.types import ArrayType, IntegerType, StringType
-from amalthea_uros.trace.problems import TraceProblems, UnreadableError
+from amalthea_uros.trace.files import TraceProblems, UnreadableError
 from amalthea_uros.trace.readers import format_of, open_trace
 from amalthea_uros.trace.state_charts import check_trace
 

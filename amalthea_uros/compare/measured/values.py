@@ -17,8 +17,7 @@ from pathlib import Path
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.measure.series import Counts, MeasuredKind, Measurement, Series
 from amalthea_uros.measure.window import MeasurementWindow
-from amalthea_uros.trace.files import opened_text
-from amalthea_uros.trace.problems import TracePlace, TraceProblems
+from amalthea_uros.trace.files import TracePlace, TraceProblems, opened_text
 from amalthea_uros.units import MICROSECOND, MILLISECOND, NANOSECOND, SECOND
 
 _UNITS = {"ps": 1, "ns": NANOSECOND, "us": MICROSECOND, "ms": MILLISECOND, "s": SECOND}

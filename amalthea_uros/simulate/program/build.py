@@ -14,12 +14,11 @@ from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.program.chains import ChainCompiler, FollowedRoute
 from amalthea_uros.simulate.program.hardware import HardwareRecords
 from amalthea_uros.simulate.program.image import Image
-from amalthea_uros.simulate.program.messages import Messages
 from amalthea_uros.simulate.program.modes import ModeRecords
 from amalthea_uros.simulate.program.process_records import PLACES_AT_FIRST, ProcessRecords
 from amalthea_uros.simulate.program.resources import Resources
 from amalthea_uros.simulate.program.scheduling import Dispatching
-from amalthea_uros.simulate.program.stimulus_records import StimulusRecords, hook_firings
+from amalthea_uros.simulate.program.stimulus_records import Messages, StimulusRecords, hook_firings
 from amalthea_uros.simulate.program.watches import EventSource, Watches, watched
 from amalthea_uros.simulate.sampling.streams import ValueStream
 from amalthea_uros.timing.context import TimingContext

@@ -16,8 +16,7 @@ from amalthea_uros._internal.limits import ADVICE, MODEL_SIZE
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.trace.can.python_can import FrameRow, PythonCanLog, python_can
-from amalthea_uros.trace.files import opened_bytes
-from amalthea_uros.trace.problems import TracePlace, UnreadableError
+from amalthea_uros.trace.files import TracePlace, UnreadableError, opened_bytes
 
 if TYPE_CHECKING:
     from can import BLFReader, MF4Reader

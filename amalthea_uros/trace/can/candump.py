@@ -18,8 +18,7 @@ from amalthea_uros.trace.can.candump_blocks import CandumpLines, read_lines
 from amalthea_uros.trace.can.candump_lines import CandumpLine, parse
 from amalthea_uros.trace.can.frames import UNKNOWN, FrameKind, FrameTable, is_receive_overflow, report_error, report_lost
 from amalthea_uros.trace.can.logs import CanLog
-from amalthea_uros.trace.files import LINE_TOO_LONG, opened_bytes
-from amalthea_uros.trace.problems import TracePlace, UnreadableError
+from amalthea_uros.trace.files import LINE_TOO_LONG, TracePlace, UnreadableError, opened_bytes
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

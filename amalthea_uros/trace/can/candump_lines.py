@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 
 from amalthea_uros.trace.can.frames import EXTENDED, XL, FrameKind
-from amalthea_uros.trace.problems import UnreadableError
+from amalthea_uros.trace.files import UnreadableError
 
 #: Largest number of bytes of a frame of CAN, CAN FD and CAN XL.
 _CLASSIC, _FLEXIBLE, _LARGE = 8, 64, 2048

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.arrays import Numbers
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.trace.problems import TracePlace, TraceProblems
+from amalthea_uros.trace.files import TracePlace, TraceProblems
 
 if TYPE_CHECKING:
     import numpy as np

@@ -17,8 +17,7 @@ from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.trace.can.candump_lines import is_frame
 from amalthea_uros.trace.can.frames import UNKNOWN, FrameTable
 from amalthea_uros.trace.can.plausibility import BusWatch, ClockWatch
-from amalthea_uros.trace.files import first_bytes
-from amalthea_uros.trace.problems import TracePlace, TraceProblems
+from amalthea_uros.trace.files import TracePlace, TraceProblems, first_bytes
 from amalthea_uros.trace.readers import format_of
 
 #: A computer has a few buses.

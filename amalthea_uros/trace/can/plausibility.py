@@ -10,7 +10,7 @@ import numpy as np
 from amalthea_uros._internal.arrays import Numbers
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.trace.can.frames import FrameKind, FrameTable
-from amalthea_uros.trace.problems import TracePlace, TraceProblems
+from amalthea_uros.trace.files import TracePlace, TraceProblems
 
 #: A pause is worth a word if it is so many times as long as the second longest, and at least so long.
 _FACTOR, _SHORTEST = 10, 10**12

@@ -19,7 +19,7 @@ from amalthea_uros.diagnostics import Severity
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.trace.can.frames import EXTENDED, UNKNOWN, FrameKind, FrameTable, report_error
 from amalthea_uros.trace.can.logs import CanLog
-from amalthea_uros.trace.problems import TracePlace
+from amalthea_uros.trace.files import TracePlace
 
 if TYPE_CHECKING:
     from can import Message

@@ -10,8 +10,7 @@ from typing import IO, TYPE_CHECKING, cast
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.trace.can.frames import FrameKind, report_lost
 from amalthea_uros.trace.can.python_can import FrameRow, PythonCanLog, python_can
-from amalthea_uros.trace.files import opened_text
-from amalthea_uros.trace.problems import TracePlace
+from amalthea_uros.trace.files import TracePlace, opened_text
 
 if TYPE_CHECKING:
     from can import Message

@@ -16,7 +16,7 @@ from amalthea_uros.trace.ctf.types import (
     StructType,
     VariantType,
 )
-from amalthea_uros.trace.problems import UnreadableError
+from amalthea_uros.trace.files import UnreadableError
 
 if TYPE_CHECKING:
     from mmap import mmap

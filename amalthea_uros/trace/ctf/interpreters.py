@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable
 from typing import ClassVar, TypeAlias
 
 from amalthea_uros.trace.ctf.streams import CtfEvent
-from amalthea_uros.trace.problems import TraceProblems
+from amalthea_uros.trace.files import TraceProblems
 from amalthea_uros.trace.reading import EventRows
 from amalthea_uros.trace.schedulers.thread_log import UniqueNames, add_mark
 from amalthea_uros.trace.schedulers.thread_states import Leaving, ThreadStates

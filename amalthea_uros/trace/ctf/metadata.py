@@ -10,7 +10,7 @@ from pathlib import Path
 
 from amalthea_uros.trace.ctf.tsdl import MetadataBlock, parse
 from amalthea_uros.trace.ctf.types import FieldType, IntegerType, StructType, VariantType
-from amalthea_uros.trace.problems import UnreadableError
+from amalthea_uros.trace.files import UnreadableError
 
 #: Of packets of metadata: the magic number, and the header after it (section 7.1): uuid, checksum, content and packet size in bits,
 #: compression, encryption, checksum scheme, version.

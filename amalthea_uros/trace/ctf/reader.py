@@ -12,8 +12,7 @@ from amalthea_uros.trace.ctf.interpreters import Interpreter, LinuxScheduler, Ze
 from amalthea_uros.trace.ctf.metadata import Metadata, read_metadata
 from amalthea_uros.trace.ctf.ros2 import Ros2
 from amalthea_uros.trace.ctf.streams import CtfEvent, PacketStream
-from amalthea_uros.trace.files import METADATA, stream_files, trace_folders
-from amalthea_uros.trace.problems import TracePlace, TraceProblems, UnreadableError
+from amalthea_uros.trace.files import METADATA, TracePlace, TraceProblems, UnreadableError, stream_files, trace_folders
 from amalthea_uros.trace.reading import BLOCK, EventRows, NumberedTable, TraceReader
 from amalthea_uros.trace.schedulers.thread_log import UniqueNames
 from amalthea_uros.trace.schedulers.thread_states import ThreadStates

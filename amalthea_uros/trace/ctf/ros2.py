@@ -12,7 +12,7 @@ from typing import ClassVar, TypeAlias
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.trace.ctf.interpreters import Handler, Interpreter
 from amalthea_uros.trace.ctf.streams import CtfEvent
-from amalthea_uros.trace.problems import TracePlace, TraceProblems
+from amalthea_uros.trace.files import TracePlace, TraceProblems
 from amalthea_uros.trace.reading import EventRows
 from amalthea_uros.trace.schedulers.thread_log import UniqueNames
 from amalthea_uros.trace.schedulers.thread_states import ThreadStates

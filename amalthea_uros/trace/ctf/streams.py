@@ -11,7 +11,7 @@ from amalthea_uros.diagnostics import Severity
 from amalthea_uros.trace.ctf.decoding import Decoder, Fields
 from amalthea_uros.trace.ctf.metadata import EventType, Metadata, StreamType, TraceClock
 from amalthea_uros.trace.ctf.types import IntegerType, StructType
-from amalthea_uros.trace.problems import TraceProblems, UnreadableError
+from amalthea_uros.trace.files import TraceProblems, UnreadableError
 
 _MAGIC = 0xC1FC1FC1
 #: A pause of a short clock at its overflow is uncertain if it is so many times the longest one before, and long at all.

@@ -17,7 +17,7 @@ from amalthea_uros.trace.ctf.types import (
     StructType,
     VariantType,
 )
-from amalthea_uros.trace.problems import UnreadableError
+from amalthea_uros.trace.files import UnreadableError
 
 _TOKEN = re.compile(
     r"""(?P<skip>\s+|//[^\n]*|/\*.*?\*/)

@@ -8,8 +8,7 @@ from collections.abc import Callable, Hashable, Iterator
 from pathlib import Path
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.trace.files import opened_text
-from amalthea_uros.trace.problems import TracePlace
+from amalthea_uros.trace.files import TracePlace, opened_text
 from amalthea_uros.trace.reading import BLOCK, EventRows, NumberedTable, TraceReader
 from amalthea_uros.trace.schedulers.thread_states import ThreadStates
 from amalthea_uros.trace.table import NO_NOTE, EntityKind

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.trace.problems import TracePlace, TraceProblems
+from amalthea_uros.trace.files import TracePlace, TraceProblems
 from amalthea_uros.trace.reading import BLOCK, EventRows, NumberedTable
 from amalthea_uros.trace.table import NO_NOTE, EventKind
 

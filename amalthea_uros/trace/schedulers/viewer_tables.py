@@ -8,7 +8,7 @@ from abc import abstractmethod
 from collections.abc import Mapping, Sequence
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.trace.problems import TracePlace
+from amalthea_uros.trace.files import TracePlace
 from amalthea_uros.trace.schedulers.thread_log import ThreadLogReader, picoseconds
 from amalthea_uros.trace.schedulers.thread_states import Leaving
 
