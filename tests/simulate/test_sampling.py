@@ -26,10 +26,9 @@ from amalthea_uros.perf.distributions import (
     lowest,
 )
 from amalthea_uros.simulate.options import Mode
-from amalthea_uros.simulate.sampling.quantile_table import tabulated
 from amalthea_uros.simulate.sampling.streams import choices, durations, permutations, values
 from amalthea_uros.simulate.sampling.variates import sampling_assumption, variate
-from amalthea_uros.simulate.sampling.words import RandomSource, scaled
+from amalthea_uros.simulate.sampling.words import RandomSource, scaled, tabulated
 from amalthea_uros.timing.demand.means import mean
 
 #: Bounds so far apart that rounding to whole numbers does not matter.

@@ -12,8 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from amalthea_uros.errors import InvalidArgumentError, ReadError
-from amalthea_uros.trace.can.candump_blocks import read_lines
-from amalthea_uros.trace.can.candump_lines import parse
+from amalthea_uros.trace.can.candump_lines import parse, read_lines
 from amalthea_uros.trace.can.frames import XL
 from amalthea_uros.trace.can.logs import open_can_log
 from amalthea_uros.trace.files import UnreadableError

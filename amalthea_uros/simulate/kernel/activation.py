@@ -6,7 +6,6 @@ from amalthea_uros.simulate.kernel.budgets import activate_server, deactivate_se
 from amalthea_uros.simulate.kernel.conditions import counts, holds, set_mode
 from amalthea_uros.simulate.kernel.cores import leave_core, restore_level
 from amalthea_uros.simulate.kernel.layout import *
-from amalthea_uros.simulate.kernel.operations import *
 from amalthea_uros.simulate.kernel.reports import NO_NOTE, emit, enter_state, observe, report, watch
 from amalthea_uros.simulate.kernel.stages import publish
 

@@ -11,7 +11,6 @@
 from __future__ import annotations
 
 from amalthea_uros.simulate.kernel.layout import *
-from amalthea_uros.simulate.kernel.operations import *
 
 
 def has_budget(m: Memory, process: int) -> bool:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from amalthea_uros.simulate.kernel.budgets import exhaust, has_budget
 from amalthea_uros.simulate.kernel.layout import *
-from amalthea_uros.simulate.kernel.operations import *
 from amalthea_uros.simulate.kernel.reports import enter_state, report
 
 #: The kinds of events, as in `trace.table.EventKind`.

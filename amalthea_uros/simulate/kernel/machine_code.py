@@ -20,7 +20,6 @@ from amalthea_uros.simulate.kernel import (
     jobs,
     layout,
     loop,
-    operations,
     reports,
     stages,
     waiting,
@@ -43,7 +42,7 @@ _PREFIX = "kernel_"
 @cache
 def effort() -> CompilationEffort:
     """What the kernel has taken as Python in this process: the runs of a campaign count together."""
-    sources = [Path(str(module.__file__)) for module in (loop, *_MODULES, layout, operations, sys.modules[__name__])]
+    sources = [Path(str(module.__file__)) for module in (loop, *_MODULES, layout, sys.modules[__name__])]
     return CompilationEffort("the simulation", sources, f"{_PREFIX}*", _COMPILING)
 
 
@@ -91,7 +90,7 @@ def _is_in(value: object, machine: dict[FunctionType, Any]) -> bool:
 @cache
 def _name() -> str:
     """A name that changes with every change of the kernel."""
-    sources = "".join(getsource(module) for module in (*_MODULES, layout, operations, sys.modules[__name__]))
+    sources = "".join(getsource(module) for module in (*_MODULES, layout, sys.modules[__name__]))
     return f"{_PREFIX}{blake2b(sources.encode(), digest_size=8).hexdigest()}"
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from amalthea_uros.simulate.kernel.layout import *
-from amalthea_uros.simulate.kernel.operations import *
 
 #: In the column of the note of an event: there is none, as in `trace.table`.
 NO_NOTE = -(2**63)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from amalthea_uros.simulate.kernel.layout import *
-from amalthea_uros.simulate.kernel.operations import *
 from amalthea_uros.simulate.kernel.reports import emit
 
 _CHAIN_STEP = 70

@@ -5,7 +5,6 @@ from __future__ import annotations
 from amalthea_uros.simulate.kernel.budgets import activate_server, deactivate_server
 from amalthea_uros.simulate.kernel.cores import change_level, is_before, leave_core, pause, requeue, run
 from amalthea_uros.simulate.kernel.layout import *
-from amalthea_uros.simulate.kernel.operations import *
 from amalthea_uros.simulate.kernel.reports import NO_NOTE, emit, enter_state, report, report_access
 
 #: The kinds of events, as in `trace.table.EventKind`.

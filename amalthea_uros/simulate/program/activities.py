@@ -55,7 +55,7 @@ from amalthea_uros.perf.events import (
     SemaphoreEvent,
 )
 from amalthea_uros.perf.software import Runnable
-from amalthea_uros.simulate.kernel import layout, operations
+from amalthea_uros.simulate.kernel import layout
 from amalthea_uros.simulate.options import SimulationMode
 from amalthea_uros.simulate.program.image import JumpLabel, JumpTable
 from amalthea_uros.timing.basics.settings import MemoryModel
@@ -91,7 +91,7 @@ def call(body: Body, activity: Call) -> None:
     body.add_all(body.hooks.after.get(number, ()))
     body.mark(skip)
     if again is not None:
-        body.code.add(operations.JUMP, again)
+        body.code.add(layout.JUMP, again)
     body.mark(done)
 
 
@@ -113,9 +113,9 @@ def _repeated(body: Body, activity: Call) -> tuple[JumpLabel | None, JumpLabel |
     least, mean, most = count_of(activity.times)
     record, done = body.resources.image.record(layout.LOOP_SIZE), JumpLabel()
     passes = Statistics(lower=least, average=float(mean), upper=most)
-    body.code.add(operations.REPEAT, record, body.resources.count(passes, f"{body.place()} passes"))
+    body.code.add(layout.REPEAT, record, body.resources.count(passes, f"{body.place()} passes"))
     again = body.code.here()
-    body.code.add(operations.AGAIN, record, done)
+    body.code.add(layout.AGAIN, record, done)
     return again, done
 
 
@@ -125,22 +125,22 @@ def _execution(body: Body, runnable: Runnable) -> None:
     site = body.resources.site(runnable.name) if body.resources.is_noted else 0
     measured = _measured(body, runnable.name)
     if site:
-        body.code.add(operations.BEGIN_RUNNABLE, site)
+        body.code.add(layout.BEGIN_RUNNABLE, site)
     if measured:
-        body.code.add(operations.BEGIN_EXECUTION, measured)
+        body.code.add(layout.BEGIN_EXECUTION, measured)
     body.observe(RunnableEvent, runnable.name, RunnableChange.START)
     if service:
-        body.code.add(operations.SERVE, service)
+        body.code.add(layout.SERVE, service)
     outer, body.above = body.above, (*body.above, runnable.name)
     body.activities(runnable.activities)
     body.above = outer
     if service:
-        body.code.add(operations.ANSWER, service)
+        body.code.add(layout.ANSWER, service)
     body.observe(RunnableEvent, runnable.name, RunnableChange.TERMINATE)
     if measured:
-        body.code.add(operations.END_EXECUTION, measured)
+        body.code.add(layout.END_EXECUTION, measured)
     if site:
-        body.code.add(operations.END_RUNNABLE, site)
+        body.code.add(layout.END_RUNNABLE, site)
 
 
 def _measured(body: Body, runnable: str) -> int:
@@ -161,12 +161,12 @@ def server_call(body: Body, activity: ServerCall) -> None:
     elif activity.runnable not in body.resources.executing:
         raise UnknownError(f"it waits for the server runnable {activity.runnable!r}, which no process executes")
     # Where a model does not state it, a client waits actively, as for INCHRON's importer.
-    flags = 0 if activity.waiting is Waiting.PASSIVE else operations.ACTIVE
+    flags = 0 if activity.waiting is Waiting.PASSIVE else layout.ACTIVE
     service = body.resources.services.get(activity.runnable, 0)
     if activity.kind is not ServerCallKind.GET_RESULT and service:
-        body.code.add(operations.ASK, service)
+        body.code.add(layout.ASK, service)
     if waits:
-        body.code.add(operations.AWAIT, service, flags)
+        body.code.add(layout.AWAIT, service, flags)
 
 
 def check_executing(body: Body, activity: ServerCall | SenderReceiverAccess) -> None:
@@ -187,14 +187,14 @@ def check_executing(body: Body, activity: ServerCall | SenderReceiverAccess) -> 
 def group(body: Body, activity: Group) -> None:
     """Activities one after the other, or in any order; perhaps without interruption."""
     if not activity.interruptible:
-        body.code.add(operations.MASK)
+        body.code.add(layout.MASK)
         body.masks += 1
     if activity.ordered or len(activity.activities) < 2 or body.resources.options.mode is not SimulationMode.SAMPLED:
         body.activities(activity.activities)
     else:
         _in_any_order(body, activity.activities)
     if not activity.interruptible:
-        body.code.add(operations.UNMASK)
+        body.code.add(layout.UNMASK)
         body.masks -= 1
 
 
@@ -203,14 +203,14 @@ def _in_any_order(body: Body, activities: Sequence[Activity]) -> None:
     ordered, _ = image.items([0] * total)
     parts, _ = image.items([0] * total)
     record = image.record(layout.GROUP_SIZE, {layout.ORDERED_PARTS: ordered, layout.PARTS: parts, layout.PARTS_TOTAL: total})
-    body.code.add(operations.SHUFFLE, record, body.resources.order(f"{body.place()} order"))
+    body.code.add(layout.SHUFFLE, record, body.resources.order(f"{body.place()} order"))
     following = body.code.here()
-    body.code.add(operations.NEXT, record, done)
+    body.code.add(layout.NEXT, record, done)
     labels = []
     for activity in activities:
         labels.append(body.code.here())
         body.activities([activity])
-        body.code.add(operations.JUMP, following)
+        body.code.add(layout.JUMP, following)
     body.code.tables.append(JumpTable(labels, ordered))
     body.code.mark(done)
 
@@ -223,16 +223,16 @@ def choose(body: Body, activity: ProbabilitySwitch) -> None:
     labels, done, jump = [], JumpLabel(), JumpLabel()
     only = _extreme_branch(body, activity)
     if only is not None:
-        body.code.add(operations.JUMP, jump)
+        body.code.add(layout.JUMP, jump)
     else:
         weights = [branch.weight for branch in activity.branches]
-        body.code.add(operations.CHOOSE, body.resources.choice(weights, f"{body.place()} branch"), table)
+        body.code.add(layout.CHOOSE, body.resources.choice(weights, f"{body.place()} branch"), table)
     for index, branch in enumerate(activity.branches):
         labels.append(body.code.here())
         if index == only:
             body.code.mark(jump)
         body.activities(branch.activities)
-        body.code.add(operations.JUMP, done)
+        body.code.add(layout.JUMP, done)
     body.code.tables.append(JumpTable(labels, table))
     body.code.mark(done)
 
@@ -259,7 +259,7 @@ def switch(body: Body, activity: Switch) -> None:
             raise UnknownError("a branch of a switch has no condition")
         following = body.tested(case.condition)
         body.activities(case.activities)
-        body.code.add(operations.JUMP, done)
+        body.code.add(layout.JUMP, done)
         body.mark(following)
     body.activities(activity.default or ())
     body.code.mark(done)
@@ -272,15 +272,15 @@ def loop(body: Body, activity: Loop) -> None:
     start = body.code.here()
     done = body.tested(activity.condition)
     body.activities(activity.activities)
-    body.code.add(operations.JUMP, start)
+    body.code.add(layout.JUMP, start)
     body.mark(done)
 
 
 def terminate(body: Body, activity: Terminate) -> None:
     """The end of the job, also within groups that cannot be interrupted."""
     for _ in range(body.masks):
-        body.code.add(operations.UNMASK)
-    body.code.add(operations.JUMP, body.end)
+        body.code.add(layout.UNMASK)
+    body.code.add(layout.JUMP, body.end)
 
 
 # Accesses to labels, channels and mode labels.
@@ -311,14 +311,14 @@ def _access_label(
     # In traces, schedulers do not access labels.
     if body.resources.is_noted and body.process is not None and label in body.context.system.labels:
         event = EventKind.READ if kind is AccessKind.READ else EventKind.WRITE
-        body.code.add(operations.NOTE, int(event), body.resources.entities.number(EntityKind.LABEL, label))
+        body.code.add(layout.NOTE, int(event), body.resources.entities.number(EntityKind.LABEL, label))
     body.observe(LabelEvent, label, LabelChange(kind), communication)
 
 
 def send(body: Body, activity: Send) -> None:
     """Elements to a channel."""
     body.access(activity.channel, AccessKind.WRITE, max(1, activity.elements))
-    body.code.add(operations.SEND, body.resources.modes.channel(activity.channel), activity.elements)
+    body.code.add(layout.SEND, body.resources.modes.channel(activity.channel), activity.elements)
     body.observe(ChannelEvent, activity.channel, ChannelChange.SEND)
 
 
@@ -328,7 +328,7 @@ def receive(body: Body, activity: Receive) -> None:
     least = min(activity.at_least, most)
     body.access(activity.channel, AccessKind.READ, Count(least=least, mean=most, most=most))
     takes = activity.operation is not None and "take" in activity.operation
-    body.code.add(operations.RECEIVE, body.resources.modes.channel(activity.channel), activity.elements if takes else 0)
+    body.code.add(layout.RECEIVE, body.resources.modes.channel(activity.channel), activity.elements if takes else 0)
     body.observe(ChannelEvent, activity.channel, ChannelChange.RECEIVE)
 
 
@@ -344,14 +344,14 @@ def _change_mode(body: Body, access: ModeAccess) -> None:
     if access.operation is ModeOperation.SET:
         if access.value is None:
             raise UnknownError(f"it sets the mode label {access.label!r} to nothing")
-        body.code.add(operations.SET_MODE, label, body.resources.modes.value(access.label, access.value))
+        body.code.add(layout.SET_MODE, label, body.resources.modes.value(access.label, access.value))
     else:
-        body.code.add(operations.STEP_MODE, label, access.step if access.operation is ModeOperation.INCREMENT else -access.step)
+        body.code.add(layout.STEP_MODE, label, access.step if access.operation is ModeOperation.INCREMENT else -access.step)
 
 
 # Semaphores, events of the operating system, and what activates others.
 
-_OPERATIONS = {SetEvent: operations.SET_EVENT, ClearEvent: operations.CLEAR_EVENT, WaitEvent: operations.WAIT_EVENT}
+_OPERATIONS = {SetEvent: layout.SET_EVENT, ClearEvent: layout.CLEAR_EVENT, WaitEvent: layout.WAIT_EVENT}
 
 
 def semaphore(body: Body, access: SemaphoreAccess) -> None:
@@ -360,13 +360,13 @@ def semaphore(body: Body, access: SemaphoreAccess) -> None:
     if record is None:
         raise UnknownError(f"the semaphore {access.semaphore!r} is not defined in the model")
     if access.operation is SemaphoreOperation.RELEASE:
-        body.code.add(operations.UNLOCK, record)
+        body.code.add(layout.UNLOCK, record)
         body.observe(SemaphoreEvent, access.semaphore, SemaphoreChange.UNLOCK)
         return
-    flags = operations.EXCLUSIVE if access.operation is SemaphoreOperation.EXCLUSIVE else 0
+    flags = layout.EXCLUSIVE if access.operation is SemaphoreOperation.EXCLUSIVE else 0
     if waits_actively(access, spinlocks_of(body.context.system)):
-        flags |= operations.ACTIVE
-    body.code.add(operations.REQUEST, record, flags)
+        flags |= layout.ACTIVE
+    body.code.add(layout.REQUEST, record, flags)
     body.observe(SemaphoreEvent, access.semaphore, SemaphoreChange.LOCK)
 
 
@@ -379,7 +379,7 @@ def trigger(body: Body, activity: Trigger) -> None:
     """An occurrence of a stimulus."""
     if activity.stimulus not in body.resources.stimuli:
         raise UnknownError(f"the stimulus {activity.stimulus!r} is not defined in the model")
-    body.code.add(operations.FIRE, body.resources.stimuli[activity.stimulus])
+    body.code.add(layout.FIRE, body.resources.stimuli[activity.stimulus])
 
 
 def raise_event(body: Body, activity: RaiseEvent) -> None:
@@ -389,7 +389,7 @@ def raise_event(body: Body, activity: RaiseEvent) -> None:
 
 def schedule_point(body: Body, activity: SchedulePoint) -> None:
     """Where other tasks can go first."""
-    body.code.add(operations.POINT)
+    body.code.add(layout.POINT)
 
 
 def execute(body: Body, activity: Execute) -> None:

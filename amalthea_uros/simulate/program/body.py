@@ -15,7 +15,7 @@ from amalthea_uros.perf.events import Event
 from amalthea_uros.perf.os import Scheduler
 from amalthea_uros.perf.software import Isr, Preemption, Process
 from amalthea_uros.perf.stimuli import Counter
-from amalthea_uros.simulate.kernel import operations
+from amalthea_uros.simulate.kernel import layout
 from amalthea_uros.simulate.program.activities import compile_activity
 from amalthea_uros.simulate.program.image import Code, JumpLabel, Operation, ProgramHooks
 from amalthea_uros.simulate.program.resources import Resources
@@ -116,7 +116,7 @@ class Body:
     def _return(self) -> None:
         """After a call, other cooperative tasks can go first."""
         if getattr(self.process, "preemption", None) is Preemption.COOPERATIVE and not self.in_group:
-            self.code.add(operations.POINT)
+            self.code.add(layout.POINT)
 
     def _skips(self, activity: Activity) -> list[JumpLabel | None]:
         """Labels to which a job goes if an activity does not take effect: then it is no event of a chain, either."""
@@ -138,7 +138,7 @@ class Body:
         if not place:
             return None
         label = JumpLabel()
-        self.code.add(operations.TEST_MESSAGE if queue else operations.COUNT, place, label)
+        self.code.add(layout.TEST_MESSAGE if queue else layout.COUNT, place, label)
         return label
 
     # Time.
@@ -147,9 +147,9 @@ class Body:
         """Hold the core for times of a stream."""
         only = stream.constant
         if only is None:
-            self.code.add(operations.DRAW, self.resources.stream(stream))
+            self.code.add(layout.DRAW, self.resources.stream(stream))
         elif only > 0:
-            self.code.add(operations.EXECUTE, only)
+            self.code.add(layout.EXECUTE, only)
 
     def demand(self, demand: Demand | None) -> None:
         """Hold the core for a demand."""
@@ -184,7 +184,7 @@ class Body:
         if condition is None:
             return None
         label = JumpLabel()
-        self.code.add(operations.TEST, self.resources.modes.condition(condition), label)
+        self.code.add(layout.TEST, self.resources.modes.condition(condition), label)
         return label
 
     def observe(
@@ -195,7 +195,7 @@ class Body:
             source = EventSource(kind, name, change, self.above[-1] if self.above else None, self.process.name, communication)
             number = self.resources.watches.number(source)
             if number is not None:
-                self.code.add(operations.OBSERVE, number)
+                self.code.add(layout.OBSERVE, number)
 
 
 def _too_many_activities() -> UnknownError:
@@ -243,7 +243,7 @@ def _process_code(body: Body, process: Process, scheduler: Scheduler | None) -> 
         for activity in scheduler.overhead:
             compile_activity(body, activity)
     body.add_all(body.hooks.end)
-    body.code.add(operations.END)
+    body.code.add(layout.END)
     return body.code
 
 
@@ -252,6 +252,6 @@ def decision_code(resources: Resources, scheduler: Scheduler, core: str) -> Code
     body = Body(resources, None, core, ProgramHooks(), in_group=False)
     body.activities(scheduler.overhead)
     if resources.is_noted:
-        body.code.add(operations.NOTE, int(EventKind.SCHEDULE), resources.entities.number(EntityKind.SCHEDULER, scheduler.name))
-    body.code.add(operations.END)
+        body.code.add(layout.NOTE, int(EventKind.SCHEDULE), resources.entities.number(EntityKind.SCHEDULER, scheduler.name))
+    body.code.add(layout.END)
     return body.code

@@ -9,13 +9,12 @@ from math import lcm
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.simulate.arrivals import StimulusOccurrences
 from amalthea_uros.simulate.kernel import layout
-from amalthea_uros.simulate.kernel.operations import PUT
+from amalthea_uros.simulate.kernel.layout import PUT
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.program.chains import ChainCompiler, FollowedRoute
-from amalthea_uros.simulate.program.hardware import HardwareRecords
 from amalthea_uros.simulate.program.image import Image
 from amalthea_uros.simulate.program.modes import ModeRecords
-from amalthea_uros.simulate.program.process_records import PLACES_AT_FIRST, ProcessRecords
+from amalthea_uros.simulate.program.process_records import PLACES_AT_FIRST, HardwareRecords, ProcessRecords
 from amalthea_uros.simulate.program.resources import Resources
 from amalthea_uros.simulate.program.scheduling import Dispatching
 from amalthea_uros.simulate.program.stimulus_records import Messages, StimulusRecords, hook_firings

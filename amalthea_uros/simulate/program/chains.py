@@ -9,7 +9,7 @@ from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import Communication, Trigger
 from amalthea_uros.perf.events import EventChain
 from amalthea_uros.perf.software import Process
-from amalthea_uros.simulate.kernel import layout, operations
+from amalthea_uros.simulate.kernel import layout
 from amalthea_uros.simulate.program.image import Operation, ProgramHooks
 from amalthea_uros.simulate.program.resources import Resources
 from amalthea_uros.timing.dataflow.chains import unfold
@@ -124,7 +124,7 @@ class ChainCompiler:
         hooks = self.hooks.setdefault(stage.process.name, ProgramHooks())
         self._enter(stage, record, hooks)
         for index, position in enumerate(self._positions(stage)):
-            hooks.before.setdefault(position.number, []).append((operations.REACH, record, 1 << index))
+            hooks.before.setdefault(position.number, []).append((layout.REACH, record, 1 << index))
         if isinstance(stage.enter, At):
             self._begin(stage.enter, record, hooks)
         self._leave(stage, record, hooks)
@@ -140,26 +140,26 @@ class ChainCompiler:
             case Pass():
                 position = stage.positions[0] if stage.positions else None
         is_first = isinstance(stage.enter, At)
-        hooks.start.append((operations.ENTER, record, int(position is None and not is_first)))
+        hooks.start.append((layout.ENTER, record, int(position is None and not is_first)))
         if is_captured:
             captures = self.captures.setdefault(stage.process.name, [])
             words = self.resources.image.words
             words[record + layout.CAPTURE] = len(captures)
             captures.append(words[record + layout.BEFORE_STAGE] + layout.LINK)
         if position is not None:
-            hooks.before.setdefault(position.number, []).append((operations.TAKE, record, int(has_snapshot)))
+            hooks.before.setdefault(position.number, []).append((layout.TAKE, record, int(has_snapshot)))
 
     def _begin(self, at: At, record: int, hooks: ProgramHooks) -> None:
         """Where the stimulus of the chain occurs."""
         when, position = at.occurrence.when, at.occurrence.position
         if at.communication is Communication.LET or when is JobPhase.ACTIVATION:
-            hooks.start.append((operations.MARK, record, 1))
+            hooks.start.append((layout.MARK, record, 1))
         elif when is JobPhase.START:
-            hooks.start.append((operations.MARK, record, 0))
+            hooks.start.append((layout.MARK, record, 0))
         elif position is None:
-            hooks.end.append((operations.MARK, record, 0))
+            hooks.end.append((layout.MARK, record, 0))
         else:
-            self._at(when, position, hooks).append((operations.MARK, record, 0))
+            self._at(when, position, hooks).append((layout.MARK, record, 0))
 
     def _leave(self, stage: Stage, record: int, hooks: ProgramHooks) -> None:
         """Where a stage passes on what it has, or responds."""
@@ -167,28 +167,28 @@ class ChainCompiler:
             case Write(communication=Communication.LET):
                 self._publish(stage.process, record, hooks)
             case Write(communication=Communication.EXPLICIT, position=ActivityPosition() as position):
-                hooks.after.setdefault(position.number, []).append((operations.PUT, record, 0))
+                hooks.after.setdefault(position.number, []).append((layout.PUT, record, 0))
             case Pass() if stage.positions:
-                hooks.after.setdefault(stage.positions[-1].number, []).append((operations.PUT, record, 0))
+                hooks.after.setdefault(stage.positions[-1].number, []).append((layout.PUT, record, 0))
             case Write() | Fire(position=None) | Pass():
-                hooks.end.append((operations.LEAVE, record, 0))
+                hooks.end.append((layout.LEAVE, record, 0))
             case Fire(position=ActivityPosition() as position, is_before=is_before):
                 # Before the operation that fires: a trigger fires at its own operation, an event when its activity ends.
                 side = hooks.before if is_before or not _raises_event(position) else hooks.after
-                side.setdefault(position.number, []).append((operations.PUT, record, 0))
+                side.setdefault(position.number, []).append((layout.PUT, record, 0))
             case At(communication=Communication.LET):
                 self._publish(stage.process, record, hooks)
             case At(occurrence=occurrence):
                 if occurrence.position is not None:
-                    self._at(occurrence.when, occurrence.position, hooks).append((operations.RESPOND, record, 0))
+                    self._at(occurrence.when, occurrence.position, hooks).append((layout.RESPOND, record, 0))
                 else:
                     # Only at its end is it known which job has taken part.
-                    hooks.end.append((operations.RESPOND, record, _RESPONSE_TIMES[occurrence.when]))
+                    hooks.end.append((layout.RESPOND, record, _RESPONSE_TIMES[occurrence.when]))
             case boundary:
                 raise UnknownError(f"it leaves a process in a way that is not followed: {type(boundary).__name__}")
 
     def _publish(self, process: Process, record: int, hooks: ProgramHooks) -> None:
-        hooks.end.append((operations.PUBLISH, record, 0))
+        hooks.end.append((layout.PUBLISH, record, 0))
         self.let_stages.setdefault(process.name, []).append(record)
 
     def _at(self, when: JobPhase, position: ActivityPosition, hooks: ProgramHooks) -> list[Operation]:

@@ -13,7 +13,7 @@ from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Arrivals, Counter, EventTriggered, InterProcess, Periodic, Stimulus
 from amalthea_uros.simulate.arrivals import StimulusOccurrences, occurrences
 from amalthea_uros.simulate.kernel import layout
-from amalthea_uros.simulate.kernel.operations import FIRE, TAKE_MESSAGE
+from amalthea_uros.simulate.kernel.layout import FIRE, TAKE_MESSAGE
 from amalthea_uros.simulate.options import SimulationMode
 from amalthea_uros.simulate.program.chains import ChainCompiler
 from amalthea_uros.simulate.program.image import ProgramHooks

@@ -12,7 +12,7 @@ from typing import TypeAlias, cast
 import numpy as np
 
 from amalthea_uros._internal.arrays import Numbers
-from amalthea_uros.simulate.kernel import layout, machine_code, operations
+from amalthea_uros.simulate.kernel import layout, machine_code
 from amalthea_uros.simulate.kernel.layout import Memory
 from amalthea_uros.simulate.kernel.loop import run_kernel
 from amalthea_uros.simulate.program.build import KernelProgram
@@ -112,14 +112,14 @@ class KernelDriver:
     def _run_window(self, until: int) -> None:
         kernel = machine_code.compiled() if self.is_compiled else run_kernel
         self.memory[layout.UNTIL] = until
-        while (code := kernel(self.memory)) != operations.WINDOW:
-            if code == operations.STREAM_EMPTY:
+        while (code := kernel(self.memory)) != layout.WINDOW:
+            if code == layout.STREAM_EMPTY:
                 self._refill(int(self.memory[layout.CAUSE]))
-            elif code == operations.ROWS_FULL:
+            elif code == layout.ROWS_FULL:
                 self._take_rows()
-            elif code == operations.QUEUE_FULL:
+            elif code == layout.QUEUE_FULL:
                 self._grow_queues()
-            elif code == operations.ENDLESS:
+            elif code == layout.ENDLESS:
                 # What was observed up to here counts.
                 self.endless = int(self.memory[layout.CAUSE])
                 return

@@ -11,7 +11,7 @@ from amalthea_uros._internal.plural import counted
 from amalthea_uros.judge.limits import Deadline, deadline_of
 from amalthea_uros.perf.software import Isr
 from amalthea_uros.simulate.kernel import layout
-from amalthea_uros.simulate.kernel.operations import POLLING, RUNNING
+from amalthea_uros.simulate.kernel.layout import POLLING, RUNNING
 from amalthea_uros.simulate.metrics.chains import chain_observation
 from amalthea_uros.simulate.metrics.jobs import JobMetrics
 from amalthea_uros.simulate.observations import (

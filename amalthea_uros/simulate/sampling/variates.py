@@ -26,17 +26,18 @@ from amalthea_uros.perf.distributions import (
     highest,
     lowest,
 )
-from amalthea_uros.simulate.sampling.quantile_table import (
+from amalthea_uros.simulate.sampling.words import (
+    LOWER_HALF,
     NEGLIGIBLE,
     POINTS,
     QuantileTable,
     beta_table,
     quantiles_of_density,
     root,
+    scaled,
     tabulated,
     weibull_table,
 )
-from amalthea_uros.simulate.sampling.words import LOWER_HALF, scaled
 from amalthea_uros.timing.demand.means import mean
 
 

@@ -14,8 +14,7 @@ import numpy as np
 from amalthea_uros._internal.arrays import Flags, Numbers
 from amalthea_uros._internal.limits import TRACE_LINE
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.trace.can.candump_blocks import CandumpLines, read_lines
-from amalthea_uros.trace.can.candump_lines import CandumpLine, parse
+from amalthea_uros.trace.can.candump_lines import CandumpLine, CandumpLines, parse, read_lines
 from amalthea_uros.trace.can.frames import UNKNOWN, FrameKind, FrameTable, is_receive_overflow, report_error, report_lost
 from amalthea_uros.trace.can.logs import CanLog
 from amalthea_uros.trace.files import LINE_TOO_LONG, TracePlace, UnreadableError, opened_bytes
