@@ -1,4 +1,12 @@
-"""Latencies of chains, from markers in a log or from the steps that a trace has of them."""
+"""Latencies of chains, from markers in a log or from the steps that a trace has; `timing.observed.chain_latencies` defines them.
+
+Where the markers have the number of the stimulus, each response shows the stimulus with its number. Where they have none, each
+response is taken to show the latest stimulus before it: no chain is faster, so the times are the shortest that are possible.
+
+In a trace, a chain begins with the activation of the job that makes its first step, or with its start if that is known of the chain; if
+the trace does not have that, with the step. Where the chain of a model begins later in that job, the measured latencies are longer than
+those of the model. It ends with the last step.
+"""
 
 from __future__ import annotations
 

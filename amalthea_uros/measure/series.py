@@ -226,6 +226,9 @@ class Measurement(Shown):
 
 
 # How much two samples differ in distribution: equal means can hide different ones.
+#
+# The distance is that of the two-sample test of Kolmogorov and Smirnov: the greatest difference between the shares of values that do
+# not exceed a time (N. Smirnov, Annals of Mathematical Statistics 19, 1948). Quantiles are values that occurred (nearest rank).
 
 
 #: How often a greater distance than the critical one occurs by chance, for independent samples of one distribution.

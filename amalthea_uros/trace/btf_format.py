@@ -1,4 +1,8 @@
-"""Best Trace Format (BTF): read in versions 2.1, 2.2 and 2.3, and written in 2.3.0."""
+"""Best Trace Format (BTF): read in versions 2.1, 2.2 and 2.3, and written in 2.3.0.
+
+BTF knows no quotes: what would end a field or a line is written as a percent sign and two digits. That is a comma, a control character,
+a blank at either end, which readers drop, and a percent sign before two digits.
+"""
 
 from __future__ import annotations
 
@@ -140,7 +144,7 @@ class BtfHeader:
                     self._known[second] = index
 
 
-# Reads BTF files of versions 2.1, 2.2 and 2.3, with names or numbers, old spellings, and blanks around fields.
+# Reading: with names or numbers, old spellings, and blanks around fields.
 
 
 #: Types and events of older versions and of descriptions of the system, which say nothing about its timing.
@@ -284,7 +288,7 @@ def _is_number(field: str) -> bool:
     return True
 
 
-# Traces as BTF 2.3.0 (Best Trace Format), with names or with numbers for entities; events of chains are left out.
+# Writing: with names or with numbers for entities; events of chains are left out.
 
 
 #: The types in files, at the places of their numbers.

@@ -71,7 +71,7 @@ class TraceProblems:
         )
 
 
-# The files of traces: their bytes and lines, plain or packed with gzip, and the folders of CTF traces.
+# Bytes and lines.
 
 
 #: What a packed file that is damaged raises while it is read.

@@ -1,4 +1,8 @@
-"""What occurs in plays of a system, whatever the reading of what is open."""
+"""What occurs in plays of a system, whatever the reading of what is open.
+
+Latencies of a chain are those of Guenzel, Chen, Ueter, Chen (ECRTS 2023). Each job reads once and writes once. The forward job chain of
+a job continues with the first job that reads at or after a write, the backward one with the last job that wrote at or before a read.
+"""
 
 from __future__ import annotations
 
@@ -92,7 +96,7 @@ def _backward(stages: list[Stage], number: int) -> int | None:
     return number
 
 
-# What occurs in plays of a system, whatever the reading of what is open.
+# Plays under all readings.
 
 
 @dataclass(frozen=True, slots=True)

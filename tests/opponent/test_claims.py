@@ -1,4 +1,7 @@
-"""Whatever the analysis claims about random and published systems, no play of them shows the contrary."""
+"""Whatever the analysis claims about random and published systems, no play of them shows the contrary.
+
+`python -m opponent.hunt` with `tests` on the path looks through more systems, and prints the smallest ones that fail.
+"""
 
 import pytest
 from effort import every

@@ -103,7 +103,7 @@ class HardwareRecords:
         return server == outer
 
 
-# Processes as records: how they are scheduled, and what they execute.
+# Processes, and decisions of schedulers.
 
 
 #: Places for activations of each process to begin with.

@@ -20,8 +20,7 @@ from amalthea_uros.simulate.program.image import ProgramHooks
 from amalthea_uros.simulate.program.resources import Resources
 from amalthea_uros.simulate.program.watches import EventSource
 from amalthea_uros.simulate.sampling.words import RandomSource
-from amalthea_uros.timing.activation.releases import nominal_period, own_counters
-from amalthea_uros.timing.activation.releases import known_releases
+from amalthea_uros.timing.activation.releases import known_releases, nominal_period, own_counters
 from amalthea_uros.timing.jobs.counters import first_effect
 from amalthea_uros.trace.table import EntityKind
 from amalthea_uros.units import Time

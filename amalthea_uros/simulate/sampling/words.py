@@ -70,6 +70,9 @@ def scaled(fractions: Words, factor: int | Words, dither: Words | None = None) -
 
 
 # Quantile functions as tables of whole numbers.
+#
+# The last bit of `exp` or `log` depends on the machine. A table holds the quantiles as whole numbers, rounded so coarsely that such
+# differences vanish, and values are drawn from it by integer arithmetic: the same on every machine.
 
 
 #: Gives the quantiles of probabilities, as fractions of the range of the values.

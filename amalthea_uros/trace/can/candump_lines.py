@@ -1,4 +1,8 @@
-"""Lines of candump: the usual form many at a time, by columns of characters, and one line of any form."""
+"""Lines of candump: the usual form many at a time, by columns of characters, and one line of any form.
+
+After `candump.c` and `lib.c` of can-utils. Frames of log files have no blank between identifier and data, such as `123#1122`; those of
+the console look like `123   [2]  11 22`.
+"""
 
 from __future__ import annotations
 
@@ -182,7 +186,8 @@ def _bytes(text: str, limit: int) -> bytes:
     return data
 
 
-# Many lines of candump at a time: the usual form `(1436509052.249713) can0 123#11223344`, by columns of characters.
+# Many lines at a time, of the usual form `(1436509052.249713) can0 123#11223344`; the others are left to `parse`, and what both accept,
+# they read alike.
 
 
 #: An element of an array.
