@@ -9,6 +9,7 @@ import re
 
 import pytest
 from support import MODEL, SHARED
+from test_rules import model
 
 from amalthea_uros import check, load
 from amalthea_uros.diagnostics import Severity
@@ -668,15 +669,9 @@ CASES = [
 ]
 
 
-def of(excerpt, folder, version="3.3.0"):
-    path = folder / "model.amxmi"
-    path.write_text(MODEL.format(excerpt).replace("amalthea/3.3.0", f"amalthea/{version}"))
-    return load(path)
-
-
 @pytest.mark.parametrize(("rule", "times", "excerpt"), CASES, ids=[f"{rule}-{i}" for i, (rule, *_) in enumerate(CASES)])
 def test_a_case(rule, times, excerpt, tmp_path):
-    assert len(check(of(excerpt, tmp_path), [rule])) == times
+    assert len(check(model(excerpt, tmp_path), [rule])) == times
 
 
 NOTHING = '<events xsi:type="am:EventSet" name="set"/>'
@@ -750,18 +745,18 @@ def allocated(attributes):
     ],
 )
 def test_a_severity(rule, severities, excerpt, tmp_path):
-    assert [finding.severity.value for finding in check(of(excerpt, tmp_path), [rule])] == severities
+    assert [finding.severity.value for finding in check(model(excerpt, tmp_path), [rule])] == severities
 
 
 @pytest.mark.parametrize(("version", "severity"), [("0.9.6", "error"), ("0.9.7", "warning"), ("1.1.0", "warning")])
 def test_files_before_the_oldest_metamodel(version, severity, tmp_path):
-    (finding,) = check(of("<swModel/>", tmp_path, version), ["INC-IO-VERSION"])
+    (finding,) = check(model("<swModel/>", tmp_path, version), ["INC-IO-VERSION"])
     assert finding.severity.value == severity
 
 
 def test_no_object_is_called_none(tmp_path):
     nameless = "<swModel><tasks/><isrs/><runnables/><labels/></swModel><mappingModel><taskAllocation/></mappingModel>"
-    found = check(of(nameless, tmp_path), RULES)
+    found = check(model(nameless, tmp_path), RULES)
     assert "'' is not allocated" in {finding.message for finding in found}
     assert not [finding for finding in found if "None" in finding.message]
 
@@ -802,7 +797,7 @@ OLD_LESS = LESS.replace("Switch", "ModeSwitch")
     ],
 )
 def test_a_version(rule, version, times, excerpt, tmp_path):
-    assert len(check(of(excerpt, tmp_path, version), [rule])) == times
+    assert len(check(model(excerpt, tmp_path, version), [rule])) == times
 
 
 CALL = '<items xsi:type="am:RunnableCall" runnable="{}?type=Runnable"/>'
@@ -839,7 +834,7 @@ OF_TASK, OF_LABEL = ID.format("T?type=Task"), ID.format("T/l?type=LocalModeLabel
     ],
 )
 def test_ids_are_missed_where_names_do_not_do(excerpt, found, tmp_path):
-    findings = check(of(excerpt, tmp_path), ["INC-IO-XMIID", "INC-IO-REF"])
+    findings = check(model(excerpt, tmp_path), ["INC-IO-XMIID", "INC-IO-REF"])
     assert {finding.rule for finding in findings} == found
     assert len(findings) == len(found)
 
@@ -852,7 +847,7 @@ ENCODED = [("my task", "my+task"), ("E/E", "E%2FE"), ("is on?", "is+on%3F"), ("Z
 def test_encoded_names_are_not_found_without_an_id(name, written, tmp_path):
     def severities(identifier, call):
         calls = f'<tasks name="T"><activityGraph>{CALL.format(call)}</activityGraph></tasks>'
-        read = of(f'<swModel>{calls}<runnables {identifier} name="{name}"/></swModel>', tmp_path)
+        read = model(f'<swModel>{calls}<runnables {identifier} name="{name}"/></swModel>', tmp_path)
         return [finding.severity for finding in check(read, ["INC-IO-XMIID", "INC-IO-REF"])]
 
     assert severities("", written) == [Severity.ERROR]
@@ -862,7 +857,7 @@ def test_encoded_names_are_not_found_without_an_id(name, written, tmp_path):
 
 def test_an_encoded_name_that_is_not_needed_is_lost(tmp_path):
     mapped_task = allocated('task="T?type=Task" scheduler="S+1?type=TaskScheduler"').replace('name="S"', 'name="S 1"')
-    (finding,) = check(of(mapped_task, tmp_path), ["INC-IO-XMIID"])
+    (finding,) = check(model(mapped_task, tmp_path), ["INC-IO-XMIID"])
     assert (finding.severity, "'S+1?type=TaskScheduler'" in finding.message) == (Severity.WARNING, True)
 
 
@@ -911,7 +906,7 @@ def two_systems(second, more=""):
 
 @pytest.mark.parametrize(("second", "shared"), [("P", ["C", "D"]), ("S", [])])
 def test_runnables_are_shared_through_calls(second, shared, tmp_path):
-    found = check(of(two_systems(second), tmp_path), ["INC-MAP-SHAREDRUN"])
+    found = check(model(two_systems(second), tmp_path), ["INC-MAP-SHAREDRUN"])
     assert [finding.object for finding in found] == shared
 
 
@@ -924,16 +919,16 @@ def test_stimuli_behind_one_that_is_not_converted(stimuli, late, tmp_path):
     declared = "".join(f'<stimuli xsi:type="am:{kind}" name="{name}"/>' for name, kind in kinds.items())
     used = " ".join(f"{name}?type={kinds[name]}" for name in stimuli)
     excerpt = f'<stimuliModel>{declared}</stimuliModel><swModel><isrs name="I" stimuli="{used}"/></swModel>'
-    found = check(of(excerpt, tmp_path), ["INC-ST-ORDER"])
+    found = check(model(excerpt, tmp_path), ["INC-ST-ORDER"])
     assert [finding.message.split("'")[1] for finding in found] == late
 
 
 def test_a_chain_of_many_chains_is_followed(tmp_path):
     """Far deeper than Python recurses, and with far more ways through it than could be followed one by one."""
     chains = "".join(chain("ab", reference(f"C{i + 1}"), reference(f"C{i + 1}"), name=f"C{i}") for i in range(3000))
-    model = of(events(chains + chain(("a", ""), name="C3000") + LATENCY.replace("C?", "C0?")), tmp_path)
-    assert check(model, ["INC-EC-CYCLE"]) == []
-    assert len(check(model, ["INC-LC-SCOPE"])) == 1
+    read = model(events(chains + chain(("a", ""), name="C3000") + LATENCY.replace("C?", "C0?")), tmp_path)
+    assert check(read, ["INC-EC-CYCLE"]) == []
+    assert len(check(read, ["INC-LC-SCOPE"])) == 1
 
 
 CLASSES = [cls for cls in vars(am).values() if isinstance(cls, type) and issubclass(cls, Element) and not cls.is_abstract]

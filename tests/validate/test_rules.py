@@ -29,6 +29,11 @@ def model(excerpt, folder, version="3.3.0", beside=None):
     return load(path)
 
 
+def found(rule, excerpt, folder, version="3.3.0"):
+    """What a rule says of an excerpt of a model."""
+    return [finding.message for finding in check(model(excerpt, folder, version), [rule])]
+
+
 @pytest.mark.parametrize("identifier", IDS)
 def test_a_rule(identifier, tmp_path):
     rule = registry.kind(identifier)

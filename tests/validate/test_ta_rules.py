@@ -1,15 +1,7 @@
 """The rules of APP4MC's TA profile, by what the reference says of them beyond their examples."""
 
 import pytest
-from test_rules import model
-
-from amalthea_uros import check
-
-
-def found(rule, excerpt, folder, version="3.3.0"):
-    """What a rule says of an excerpt of a model."""
-    return [finding.message for finding in check(model(excerpt, folder, version), [rule])]
-
+from test_rules import found
 
 # Gauss distributions
 

@@ -3,17 +3,12 @@
 import pytest
 from effort import every
 from support import corpus, hand_written
-from test_rules import model
+from test_rules import found
 
 from amalthea_uros import check, extract, load
 from amalthea_uros.errors import ReadError
 from amalthea_uros.perf.activities import AccessKind, LabelAccess
 from amalthea_uros.timing.dataflow.links import Dataflow
-
-
-def found(rule, excerpt, folder, version="3.3.0"):
-    """What a rule says of an excerpt of a model."""
-    return [finding.message for finding in check(model(excerpt, folder, version), [rule])]
 
 
 def graph(*items):
