@@ -26,7 +26,7 @@ LINES = {
     "design": 4723,
     "diagnostics": 34,
     "difference": 790,
-    "editor": 507,
+    "editor": 508,
     "errors": 13,
     "executors": 1412,
     "findings": 495,
@@ -36,7 +36,7 @@ LINES = {
     "names": 17,
     "perf": 1578,
     "platforms": 0,
-    "report": 8400,
+    "report": 7850,
     "services": 2962,
     "simulate": 5794,
     "source": 1887,
@@ -52,7 +52,6 @@ LINES = {
 #: Files may import from this many modules at most; those of the table do so still, and none more.
 IMPORTS = 25
 MORE_IMPORTS = {
-    "report/documents/worst_cases.py": 26,
     "report/records.py": 31,
     "services/analyze.py": 31,
     "services/calibrate.py": 26,
@@ -71,9 +70,7 @@ WITHOUT_LIMIT = {f"{PACKAGE}/__init__.py"}
 LANGUAGES = (f"{PACKAGE}/metamodel/classes",)
 
 #: Rooms whose folders still import each other.
-CIRCULAR = {
-    "report",
-}
+CIRCULAR: set[str] = set()
 
 #: Class names that still have several owners, without an underscore at the beginning.
 SHARED_NAMES = {

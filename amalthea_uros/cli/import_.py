@@ -11,10 +11,8 @@ from amalthea_uros._internal.files import is_stream
 from amalthea_uros._internal.resources import known_platforms
 from amalthea_uros.cli.files import INPUT, OUTPUT_FILE
 from amalthea_uros.cli.init import Offer
-from amalthea_uros.cli.output import show_findings
+from amalthea_uros.cli.output import show_findings, show_text
 from amalthea_uros.diagnostics import Severity, worst
-from amalthea_uros.report.text.import_result import write
-from amalthea_uros.report.writers.terminal import Terminal
 from amalthea_uros.services.import_code import import_code
 
 
@@ -32,6 +30,6 @@ def command(sources: tuple[Path, ...], target: Path, board: str | None, force: b
     result = import_code(sources, target, board=board, force=force)
     show_findings(result.findings)
     if not is_stream(target):
-        write(result, Terminal(sys.stdout))
+        show_text(result)
     if worst(result.findings) is Severity.ERROR:
         sys.exit(1)

@@ -31,7 +31,7 @@ from amalthea_uros.design.optimize.choices import DEFAULT, Vary
 from amalthea_uros.design.optimize.goals import GOALS
 from amalthea_uros.design.optimize.judged import INTERRUPTED as ENDED_BY_USER
 from amalthea_uros.design.optimize.quantities import LIMIT_EXAMPLE, LIMIT_FORM, Limit, parse_limit
-from amalthea_uros.report.optimized import closing_line, is_met
+from amalthea_uros.report.documents.search import is_met, optimization_line
 from amalthea_uros.services.optimize import MOST_DESIGNS, MOST_PROPOSALS, Optimization, optimize
 from amalthea_uros.services.optimized_model import write_proposal
 from amalthea_uros.timing.basics.settings import Settings
@@ -158,7 +158,7 @@ def command(
         write_proposal(result, number, target)
         show_line(f"wrote proposal {number} to {target}")
     if not is_met(result) and not shows_text(outputs):
-        show_line(closing_line(result))
+        show_line(optimization_line(result))
     sys.exit(INTERRUPTED if result.search.ended == ENDED_BY_USER else 0 if is_met(result) else 1)
 
 

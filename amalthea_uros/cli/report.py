@@ -21,13 +21,13 @@ from amalthea_uros.cli.output import (
 from amalthea_uros.cli.parsed import Parsed
 from amalthea_uros.cli.settings_options import analysis_options, set_option
 from amalthea_uros.design.changes.change import Change
-from amalthea_uros.report.suffixes import FORMATS, format_of
+from amalthea_uros.report.formats import SUFFIXES, format_of
 from amalthea_uros.report.wording.closing_line import closing_line
 from amalthea_uros.services.report import compile_report
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import Time, parse_duration
 
-_SUFFIXES = ", ".join(FORMATS)
+_SUFFIXES = ", ".join(SUFFIXES)
 
 
 @click.command("report")
@@ -41,7 +41,7 @@ _SUFFIXES = ", ".join(FORMATS)
     metavar="FILE",
     help=f"File to write; its suffix says the format: {_SUFFIXES}. May be repeated; '-' is standard output.",
 )
-@click.option("--format", "standard_format", type=click.Choice(list(FORMATS.values())), help="Format of standard output.")
+@click.option("--format", "standard_format", type=click.Choice(list(SUFFIXES.values())), help="Format of standard output.")
 @click.option("--title", help="Title of the report; default: the names of the files.")
 @click.option(
     "--date", default="", help="Date, or any other text, shown below the title; without it the output is reproducible."

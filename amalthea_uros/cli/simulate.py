@@ -256,7 +256,7 @@ def _campaign(
 
 
 def _show_campaign(result: CampaignResult, table: Path | None, outputs: Sequence[Output]) -> None:
-    from amalthea_uros.report.text.campaign_result import closing_line
+    from amalthea_uros.report.documents.simulation import campaign_line
 
     show_findings(result.findings)
     show_differences(result.differences)
@@ -264,7 +264,7 @@ def _show_campaign(result: CampaignResult, table: Path | None, outputs: Sequence
         write_table(table, result.rows)
     write_outputs(outputs, result)
     if result.is_failed and not shows_text(outputs):
-        show_line(closing_line(result))
+        show_line(campaign_line(result))
     if not result.is_complete:
         click.echo(f"interrupted: {len(result.outcomes):,} of {counted(result.planned, 'run')} finished", err=True)
 

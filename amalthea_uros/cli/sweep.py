@@ -129,9 +129,9 @@ def command(
     _draw(result, pictures)
     write_outputs(outputs, result)
     if not shows_text(outputs) and len(result.schedulable) < len(plan.runs):
-        from amalthea_uros.report.text.sweep_result import closing_line
+        from amalthea_uros.report.documents.search import sweep_line
 
-        show_line(closing_line(result))
+        show_line(sweep_line(result))
     sys.exit(_code(result, fail_on))
 
 

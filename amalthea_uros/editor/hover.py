@@ -10,8 +10,9 @@ from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.processes import ProcessResult
 from amalthea_uros.editor.document import TextDocument
 from amalthea_uros.errors import AmurosError
-from amalthea_uros.report.text.explanation import write
+from amalthea_uros.report.documents.explanation import explanation_document
 from amalthea_uros.report.writers.terminal import Terminal
+from amalthea_uros.report.writers.text import write_document
 from amalthea_uros.services.analyze import AnalysisResult, analyze_files
 from amalthea_uros.services.explain import explain
 from amalthea_uros.timing.response import Response
@@ -79,7 +80,7 @@ def _explained(result: AnalysisResult, name: str) -> Iterator[str]:
     system = result.system
     if name in system.processes or name in system.chains:
         stream = StringIO()
-        write(explain(result, name), Terminal(stream))
+        write_document(explanation_document(explain(result, name)), Terminal(stream))
         yield from _code(stream.getvalue().splitlines())
 
 

@@ -9,7 +9,6 @@ from pathlib import Path
 
 from amalthea_uros._internal.paths import StrPath
 from amalthea_uros.report import formats
-from amalthea_uros.report.suffixes import format_of
 from amalthea_uros.services.report import ReportContent, compile_report, save_text
 from amalthea_uros.services.simulate import time_of
 from amalthea_uros.services.subject import Subject
@@ -47,7 +46,7 @@ class Report:
         InvalidArgumentError : another suffix.
         WriteError : the file cannot be written.
         """
-        save_text(path, self._text(format_of(Path(path))))
+        save_text(path, self._text(formats.format_of(Path(path))))
 
     def _text(self, name: str) -> str:
         stream = StringIO()

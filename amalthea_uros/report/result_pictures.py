@@ -20,12 +20,12 @@ from amalthea_uros.report.documents.comparison import (
     closing_line,
     deviation_text,
     prediction_groups,
-    quantity_text,
     worst_of,
 )
 from amalthea_uros.report.pictures.compared_times import ComparedQuantity, DrawnInterval, compared_times
-from amalthea_uros.report.pictures.histogram import HistogramPicture, HistogramSeries, Mark, MarkKind, histogram
+from amalthea_uros.report.pictures.histogram import HistogramPicture, Mark, MarkKind, histogram
 from amalthea_uros.report.pictures.swept import SweptPicture, draw_swept
+from amalthea_uros.report.wording.cells import words
 from amalthea_uros.services.sweep import SweepResult
 from amalthea_uros.units import Time, time_text
 
@@ -55,7 +55,7 @@ def histogram_picture(measurement: Measurement, name: str) -> str:
     edges = tuple(map(int, found.edges))
     things = "jobs" if series.kind is MeasuredKind.PROCESS else "values"
     title = f"{measurement.source}: {words} of {series.name}"
-    return histogram(HistogramPicture(title, edges, (HistogramSeries("measured", found.counts),), tuple(marks), words, things))
+    return histogram(HistogramPicture(title, edges, "measured", found.counts, tuple(marks), words, things))
 
 
 def _named_series(measurement: Measurement, name: str) -> Series:
@@ -97,7 +97,7 @@ def _quantity(rows: Sequence[ComparisonRow]) -> ComparedQuantity:
     worst = worst_of(rows)
     return ComparedQuantity(
         name=rows[0].object,
-        quantity=quantity_text(rows[0].quantity),
+        quantity=words(rows[0].quantity),
         measured=DrawnInterval(measured.get(Statistic.MIN), measured.get(Statistic.MAX), measured.get(Statistic.MEAN)),
         values=_measured_values(rows[0]),
         simulated=_simulated(simulated) if simulated else None,

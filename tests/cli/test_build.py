@@ -71,7 +71,7 @@ def test_what_was_decided_is_shown(advanced):
         "Message_Factor    every 20 ms         1  Core_0  longest available period that keeps up with messages every 20 ms"
         in run.stdout
     )
-    assert "factor  in            20 ms          16 B       3            1.62 ms" in run.stdout
+    assert "factor  received      20 ms          16 B       3      common            1.62 ms     8.1 %" in run.stdout
     assert run.stderr == ""
     assert advanced.with_suffix(".amxmi").exists()
 

@@ -11,7 +11,7 @@ from support import ROOT
 from amalthea_uros.design.campaign import executors
 from amalthea_uros.design.optimize.parallel_evaluation import EvaluationJob, evaluated_by
 from amalthea_uros.design.optimize.space import designs_with
-from amalthea_uros.report.formats.json import content
+from amalthea_uros.report.writers.json import content
 from amalthea_uros.services.optimize import optimize, plan_optimization
 
 SMALL = """

@@ -1,8 +1,7 @@
-"""Formats are found by their presence, and each result can be shown."""
+"""Each format has its writer, and each result can be shown."""
 
 from dataclasses import is_dataclass
 from importlib import import_module
-from io import StringIO
 from pkgutil import iter_modules
 
 import pytest
@@ -10,8 +9,8 @@ import pytest
 from amalthea_uros import services
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.diagnostics import Finding, Severity
-from amalthea_uros.findings.presentation import present
 from amalthea_uros.report import formats
+from amalthea_uros.report.documents import DOCUMENTS
 from amalthea_uros.report.wording.findings import findings_text
 from amalthea_uros.services.check import CheckResult
 from amalthea_uros.services.info import InfoResult
@@ -35,16 +34,16 @@ def test_a_command_offers_the_formats_that_can_write_its_result():
     assert formats.formats_for(InfoResult) == ["text", "json"]
 
 
-def test_a_new_format_is_one_file(tmp_path, monkeypatch):
-    (tmp_path / "lines.py").write_text(
-        "RENDERS = ('CheckResult',)\n\ndef write(result, stream):\n    stream.write(f'{len(result.findings)} lines')\n"
-    )
-    monkeypatch.setattr(formats, "__path__", [*formats.__path__, str(tmp_path)])
-    assert formats.formats_for(CheckResult) == ["text", "github", "json", "junit", "lines", "sarif"]
-    stream = StringIO()
-    result = CheckResult(paths=(), findings=(), presentation=present(()), fail_on=Severity.ERROR, is_readable=True, rules=())
-    formats.write("lines", result, stream)
-    assert stream.getvalue() == "0 lines"
+@pytest.mark.parametrize(("name", "function"), [(name, function) for name, (function, _) in formats.FORMATS.items()])
+def test_every_format_has_its_writer(name, function):
+    module, _, function = function.partition(".")
+    assert callable(getattr(import_module(f"amalthea_uros.report.writers.{module}"), function))
+
+
+@pytest.mark.parametrize("made_by", sorted(DOCUMENTS.values()))
+def test_every_result_has_its_document(made_by):
+    module, _, function = made_by.partition(".")
+    assert callable(getattr(import_module(f"amalthea_uros.report.documents.{module}"), function))
 
 
 def test_numbers_in_sentences():

@@ -5,7 +5,7 @@ from support import ROOT
 import amalthea_uros as amuros
 from amalthea_uros.analyze.results.chains import LatencyQuantity
 from amalthea_uros.judge.verdict import Verdict
-from amalthea_uros.report.documents.judged import decisive_quantity, judged_rows, requirements_of
+from amalthea_uros.report.documents.judged import decisive_quantity, limits_table, requirements_of
 
 #: Reactions from 1.016 to 20.029 ms over all phases, which are met with a limit of 25 ms; of 15 ms of jitter, that is unknown.
 TEXT = (ROOT / "samples" / "bodas-test-advanced.yaml").read_text().replace("reaction: 25 ms", "reaction: 25 ms, jitter: 15 ms")
@@ -20,6 +20,6 @@ def test_a_chain_is_not_met_if_its_jitter_is_unknown():
 
 
 def test_the_jitter_of_an_exact_latency_can_be_a_bound():
-    rows = {row.what: row.claim for row in judged_rows(amuros.analyze(TEXT))}
+    rows = {row[2]: row[7] for row in limits_table(amuros.analyze(TEXT)).rows}
     assert rows["reaction of factor-to-output"] == "exact"
     assert rows["reaction jitter of factor-to-output"] == "bound"

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.report.basics.escape import visible
-from amalthea_uros.report.pictures.axes import TimeAxis, count_label, count_ticks, default_window, multiples, nice_step, unit_of
+from amalthea_uros.report.pictures.axes import TimeAxis, count_ticks, default_window, multiples, nice_step, unit_of
 from amalthea_uros.report.pictures.svg import element, elided, text, text_width
 from amalthea_uros.units import MICROSECOND, MILLISECOND, NANOSECOND, SECOND
 
@@ -69,11 +69,6 @@ def test_counts_have_at_most_seven_labels_up_to_the_highest(highest):
     assert ticks[0] == 0
     assert ticks[-1] >= max(highest, 1)
     assert 2 <= len(ticks) <= 8
-
-
-def test_counts_have_separators_and_shares_are_percentages():
-    assert count_label(10_000, is_share=False) == "10,000"
-    assert count_label(25_000, is_share=True) == "2.5 %"
 
 
 def test_a_window_has_a_tenth_on_both_sides_and_round_ends():

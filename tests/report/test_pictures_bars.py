@@ -13,8 +13,8 @@ from amalthea_uros._internal.by_name import Results
 from amalthea_uros.analyze.results.processes import ProcessorResult
 from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.report.pictures.load_bars import MOST_CORES, draw_loads
+from amalthea_uros.report.pictures.page import embedded
 from amalthea_uros.report.pictures.response_bars import MOST_ROWS, draw_responses
-from amalthea_uros.report.pictures.svg import embedded
 from amalthea_uros.timing.response import Response
 from amalthea_uros.units import MILLISECOND, SECOND
 

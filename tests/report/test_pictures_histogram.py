@@ -6,14 +6,7 @@ from hypothesis import strategies as st
 from svg_reading import SVG, assert_readable, parsed, rectangles, scale, texts
 
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.report.pictures.histogram import (
-    HistogramPicture,
-    HistogramSeries,
-    Mark,
-    MarkKind,
-    histogram,
-    short_time_text,
-)
+from amalthea_uros.report.pictures.histogram import HistogramPicture, Mark, MarkKind, histogram, short_time_text
 from amalthea_uros.units import MICROSECOND, MILLISECOND, parse_time
 
 US, MS = MICROSECOND, MILLISECOND
@@ -21,9 +14,8 @@ EDGES = tuple(number * US for number in range(10, 31))
 COUNTS = (*range(10), *range(10, 0, -1))
 
 
-def drawn(counts=COUNTS, *others, edges=EDGES, marks=(), is_share=False):
-    series = tuple(HistogramSeries(f"series {number}", given) for number, given in enumerate((counts, *others)))
-    return histogram(HistogramPicture("Response time", edges, series, tuple(marks), is_share=is_share))
+def drawn(counts=COUNTS, edges=EDGES, marks=()):
+    return histogram(HistogramPicture("Response time", edges, "simulated", counts, tuple(marks)))
 
 
 def contents(picture):
@@ -83,19 +75,8 @@ def test_a_mark_that_is_far_away_is_at_the_edge_and_does_not_flatten_the_rest():
 
 def test_the_legend_tells_observations_limits_and_bounds():
     picture = drawn(marks=[Mark("max", 30 * US), Mark("WCRT", 31 * US, MarkKind.BOUND)])
-    assert {"series 0", "observed", "bound"} <= set(contents(picture))
+    assert {"simulated", "observed", "bound"} <= set(contents(picture))
     assert "limit" not in contents(picture)
-
-
-def test_two_series_are_compared_as_shares():
-    # Halves of 2 jobs, three quarters and a quarter of 40.
-    picture = drawn((1, 1), (30, 10), edges=(0, US, 2 * US), is_share=True)
-    assert {"series 0", "series 1", "series 0: 2 jobs, series 1: 40 jobs"} <= set(contents(picture))
-    path = next(node.get("d") for node in parsed(picture).iter(f"{SVG}path") if "steps" in node.get("class", ""))
-    first, second, base = (float(step.split("H")[0]) for step in path.split("V")[1:])
-    half = bars(picture)[0]["height"]
-    assert base - first == pytest.approx(1.5 * half, abs=0.02)
-    assert base - second == pytest.approx(0.5 * half, abs=0.02)
 
 
 def test_many_bins_are_put_together_without_losing_values():
@@ -133,19 +114,17 @@ def test_a_single_value_is_no_wall():
 
 
 @pytest.mark.parametrize(
-    ("edges", "series", "message"),
+    ("edges", "counts", "message"),
     [
-        ((1,), [()], "at least two edges"),
-        ((1, 1), [(0,)], "greater than the one before"),
-        ((1, 2), [], "not 0"),
-        ((1, 2), [(1,), (1,), (1,)], "not 3"),
-        ((1, 2, 3), [(1,)], "needs 2 counts"),
-        ((1, 2), [(-1,)], "at least 0"),
+        ((1,), (), "at least two edges"),
+        ((1, 1), (0,), "greater than the one before"),
+        ((1, 2, 3), (1,), "needs 2 counts"),
+        ((1, 2), (-1,), "at least 0"),
     ],
 )
-def test_what_is_no_histogram_is_refused(edges, series, message):
+def test_what_is_no_histogram_is_refused(edges, counts, message):
     with pytest.raises(InvalidArgumentError, match=message):
-        HistogramPicture("wrong", edges, tuple(HistogramSeries("s", counts) for counts in series))
+        HistogramPicture("wrong", edges, "s", counts)
 
 
 @pytest.mark.parametrize(("time", "shown"), [(0, "0 s"), (123, "123 ps"), (16_654_321, "16.65 us"), (99_999_999, "100 us")])
@@ -156,13 +135,9 @@ def test_times_of_labels_have_four_significant_digits(time, shown):
 MARKS = st.builds(Mark, st.text(max_size=40), st.integers(0, 80 * US), st.sampled_from(MarkKind))
 
 
-@given(
-    st.lists(st.integers(0, 10**9), min_size=20, max_size=20),
-    st.lists(MARKS, max_size=9),
-    st.booleans(),
-)
-def test_every_histogram_is_well_formed_and_its_text_is_readable(counts, marks, is_share):
-    assert_readable(drawn(tuple(counts), COUNTS, marks=marks, is_share=is_share))
+@given(st.lists(st.integers(0, 10**9), min_size=20, max_size=20), st.lists(MARKS, max_size=9))
+def test_every_histogram_is_well_formed_and_its_text_is_readable(counts, marks):
+    assert_readable(drawn(tuple(counts), marks=marks))
 
 
 def test_equal_values_have_a_bin_that_the_axis_can_name():

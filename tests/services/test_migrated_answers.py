@@ -9,7 +9,7 @@ from migration import model
 from support import SHARED
 
 from amalthea_uros import analyze_files
-from amalthea_uros.report.formats.json import content
+from amalthea_uros.report.writers.json import content
 from amalthea_uros.services.format import format_files
 from amalthea_uros.services.migrate import migrate_files
 from amalthea_uros.services.simulate import plan_simulation, simulate_plan

@@ -5,7 +5,7 @@ The modules in `documents` build it from results, and do not know the writers.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import TypeAlias
@@ -116,10 +116,26 @@ class Figure:
 
 
 @dataclass(frozen=True, slots=True)
-class Sentences:
-    """Sentences, as a list if there are several."""
+class Lead:
+    """A line that begins with a marked term: the name of a file or object, or what was added or removed."""
 
-    sentences: Sequence[str]
+    term: str
+    rest: str = ""
+    tone: Tone = Tone.NEUTRAL
+
+    def __str__(self) -> str:
+        return self.term + self.rest
+
+
+Line: TypeAlias = str | Lead
+
+
+@dataclass(frozen=True, slots=True)
+class Sentences:
+    """Sentences, as a list if there are several; `indent` is their distance from the margin of a terminal."""
+
+    sentences: Sequence[Line]
+    indent: int = 2
     kind: str = "sentences"
 
     def __bool__(self) -> bool:
@@ -153,7 +169,21 @@ class Folded:
     kind: str = "folded"
 
 
-Block: TypeAlias = Table | Figure | Sentences | Heading | Listing | Folded
+@dataclass(frozen=True, slots=True)
+class ShownFinding:
+    """A finding with its source line, and notes below it, each with its name."""
+
+    finding: Finding
+    notes: Mapping[str, str]
+    kind: str = "flaw"
+
+
+Block: TypeAlias = Table | Figure | Sentences | Heading | Listing | Folded | ShownFinding
+
+
+def lines(*sentences: Line) -> Sentences:
+    """Lines at the margin, without those in which there is nothing."""
+    return Sentences([each for each in sentences if each], indent=0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,6 +205,11 @@ class Section:
     is_detail: bool = False
 
 
+def flaws(findings: Iterable[Finding]) -> Section:
+    """Findings above what they are about."""
+    return section("", *(ShownFinding(finding, {}) for finding in findings))
+
+
 def section(title: str, *blocks: Block, lead: str = "", anchor: str = "", is_detail: bool = False) -> Section:
     """A section with the blocks in which there is something."""
     return Section(anchor, title, lead, [block for block in blocks if block], is_detail)
@@ -189,6 +224,7 @@ class Document:
     closing : the outcome in one line
     title, opening : what the document is about: a few words, and a line
     findings : what is wrong with the input; commands show it on their own
+    kept : what is shown before the closing line where the user wants no more than the outcome
     """
 
     sections: Sequence[Section]
@@ -196,10 +232,16 @@ class Document:
     title: str = ""
     opening: str = ""
     findings: Sequence[Finding] = ()
+    kept: Sequence[Block] = ()
 
 
 def document(
-    sections: Iterable[Section], closing: str = "", title: str = "", opening: str = "", findings: Sequence[Finding] = ()
+    sections: Iterable[Section],
+    closing: str = "",
+    title: str = "",
+    opening: str = "",
+    findings: Sequence[Finding] = (),
+    kept: Sequence[Block] = (),
 ) -> Document:
     """A document with the sections in which there is something."""
-    return Document([each for each in sections if each.blocks], closing, title, opening, findings)
+    return Document([each for each in sections if each.blocks], closing, title, opening, findings, kept)

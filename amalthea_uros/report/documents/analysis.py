@@ -24,6 +24,8 @@ from amalthea_uros.report.basics.document import (
     Table,
     Tone,
     document,
+    flaws,
+    lines,
     section,
     table,
 )
@@ -44,11 +46,13 @@ from amalthea_uros.report.wording.chains import CHAINS_HEADING, LATENCY_COLUMNS,
 from amalthea_uros.report.wording.chains import MESSAGE_COLUMNS as MESSAGE_COLUMNS
 from amalthea_uros.report.wording.closing_line import closing_line
 from amalthea_uros.report.wording.impact import impact_cells, unchanged_text
-from amalthea_uros.services.analyze import AnalysisResult
+from amalthea_uros.services.analyze import AnalysisResult, analysis_result
+from amalthea_uros.services.what_if import WhatIf
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.units import Rounding, Time, frequency_text, percent_text, time_text
 
 BAR = 20
+_CALLBACKS = "Callbacks (from the activation of the process to the end of the callback)"
 _EFFECTS = {Effect.BETTER: Tone.GOOD, Effect.WORSE: Tone.BAD, Effect.UNKNOWN: Tone.UNKNOWN}
 
 
@@ -60,7 +64,7 @@ def analysis_document(result: AnalysisResult) -> Document:
             *_message_chains(analysis),
             section("Load", _loads(analysis)),
             section("Response times", response_times(analysis)),
-            section("Callbacks (from the activation of the process to the end of the callback)", callbacks(analysis)),
+            section(_CALLBACKS, callbacks(analysis.of_periodic_executors)),
             *map(_executor, analysis.executors),
             *(map(_metrics, analysis.processes) if result.with_metrics else ()),
             section(CHAINS_HEADING, _chains(analysis.chains)),
@@ -77,6 +81,22 @@ def analysis_document(result: AnalysisResult) -> Document:
         ),
         closing_line(analysis.summary),
     )
+
+
+def analysis_alone(analysis: Analysis) -> Document:
+    """The same of something that is not in files, after what is wrong with it."""
+    alone = analysis_document(analysis_result(analysis))
+    return document((flaws(analysis.findings), *alone.sections), alone.closing)
+
+
+def what_if_document(result: WhatIf) -> Document:
+    """What was changed, and what that does to the results."""
+    return document((section("", lines(*map(str, result.differences))), impact_section(result.impact)))
+
+
+def proposal_document(proposal: Proposal) -> Document:
+    """Better priorities for the tasks of a scheduler, or why there are none."""
+    return document([priorities_section(proposal)])
 
 
 def _message_chains(analysis: Analysis) -> Iterator[Section]:
@@ -183,11 +203,11 @@ def _remarks(process: ProcessResult, is_detailed: bool) -> tuple[str, ...]:
     return (str(response.claim) if response is not None and response.worst is not None else "", why(process))
 
 
-def callbacks(analysis: Analysis) -> Table:
+def callbacks(results: Iterable[CallbackResult]) -> Table:
     """The response times of the callbacks of periodic executors."""
     columns = ("callback", "process", ">best", ">mean", ">worst", ">deadline", "")
     title = "Callbacks, from the activation of the process to the end of the callback"
-    return table(title, columns, map(_callback_row, analysis.of_periodic_executors))
+    return table(title, columns, map(_callback_row, results))
 
 
 def _callback_row(callback: CallbackResult) -> tuple[str, ...]:

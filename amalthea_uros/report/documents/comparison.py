@@ -16,9 +16,10 @@ from amalthea_uros.compare.results import (
     Statistic,
     is_bound,
 )
-from amalthea_uros.measure.series import MeasuredKind, Measurement
+from amalthea_uros.measure.series import MeasuredKind
 from amalthea_uros.report.basics.document import Document, Sentences, document, section, table
 from amalthea_uros.report.documents.simulation import duration_text
+from amalthea_uros.report.wording.cells import words
 from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
 from amalthea_uros.units import Rounding, rounded_time_text, time_text
 
@@ -143,23 +144,24 @@ def bound_tests(result: Comparison) -> list[BoundTest]:
     return [test for test in found if test.verdict is Agreement.REFUTED or test.reason or _is_shown(result, test.rows[0])]
 
 
-def missing_rows(result: Comparison) -> list[ComparisonRow]:
+def _missing_rows(result: Comparison) -> list[ComparisonRow]:
     """What is not compared and shown: of what has no prediction, the most important quantities, and times that are none of them."""
-    return [row for row in result.not_compared if _is_telling(result, row)]
+    return [
+        row
+        for row in result.not_compared
+        if row.verdict is not Agreement.NOT_PREDICTED
+        or row.quantity not in (*JobMetric, *ChainQuantity)
+        or _is_shown(result, row)
+    ]
 
 
-def _is_telling(result: Comparison, row: ComparisonRow) -> bool:
-    is_usual = row.quantity in (*JobMetric, *ChainQuantity)
-    return row.verdict is not Agreement.NOT_PREDICTED or not is_usual or _is_shown(result, row)
-
-
-def hidden_missing(result: Comparison) -> str:
+def _hidden_missing(result: Comparison) -> str:
     """How many quantities without a prediction are not shown, "" if all are."""
-    rest = len(result.not_compared) - len(missing_rows(result))
+    rest = len(result.not_compared) - len(_missing_rows(result))
     return f"{counted(rest, 'other quantity')} not predicted; --all shows them" if rest else ""
 
 
-def hidden(result: Comparison) -> str:
+def _hidden(result: Comparison) -> str:
     """How many comparisons are not shown, "" if all are."""
     shown = [*(row for each in prediction_groups(result) for row in each.rows)]
     shown += [row for each in bound_tests(result) for row in each.rows]
@@ -177,17 +179,14 @@ def _is_shown(result: Comparison, row: ComparisonRow) -> bool:
     return row.quantity in _IMPORTANT and not (has_others and row.kind is MeasuredKind.RUNNABLE)
 
 
-def subject_line(result: Comparison) -> str:
+def _subject_line(result: Comparison) -> str:
     """What is compared with what, and how."""
     measurement = result.measurement
     of_model = f" of {result.model}" if result.model else ""
     run = "" if result.duration is None else f", simulation of {duration_text(result.duration)} with seed {result.seed}"
-    return f"Comparison{of_model} with {_source(measurement)}: tolerance {percent(result.tolerance)} of the measurement{run}"
-
-
-def _source(measurement: Measurement) -> str:
     duration = duration_text(measurement.duration) if measurement.duration else ""
-    return f"{measurement.source} ({', '.join(filter(None, (measurement.format, duration)))})"
+    source = f"{measurement.source} ({', '.join(filter(None, (measurement.format, duration)))})"
+    return f"Comparison{of_model} with {source}: tolerance {_percent(result.tolerance)} of the measurement{run}"
 
 
 def closing_line(result: Comparison) -> str:
@@ -200,10 +199,10 @@ def _outcome(result: Comparison) -> str:
     outside = [row for row in result.rows if row.verdict is Agreement.OUTSIDE]
     if refuted:
         others = f"; {counted(len(refuted) - 1, 'other bound')} exceeded" if refuted[1:] else ""
-        return f"Model refuted: {what(refuted[0])} is {time_text(refuted[0].measured or 0)}, {refuted[0].reason}{others}"
+        return f"Model refuted: {_what(refuted[0])} is {time_text(refuted[0].measured or 0)}, {refuted[0].reason}{others}"
     if not result.compared:
         return "Nothing compared: no measured quantity is predicted"
-    tolerance = f"{percent(result.tolerance)} of the measurement"
+    tolerance = f"{_percent(result.tolerance)} of the measurement"
     number, within = len(result.compared), [row for row in result.compared if row.verdict is Agreement.WITHIN]
     if outside:
         return f"Model does not hold: {len(outside)} of {counted(number, 'comparison')} outside {tolerance}{_largest(outside)}"
@@ -230,7 +229,7 @@ def _scarce(result: Comparison) -> str:
     fewest = min(result.compared, key=lambda row: row.samples)
     if fewest.samples >= _FEW:
         return ""
-    return f"; only {counted(fewest.samples, 'value')} of the {quantity_text(fewest.quantity)} of {fewest.object}"
+    return f"; only {counted(fewest.samples, 'value')} of the {words(fewest.quantity)} of {fewest.object}"
 
 
 #: Smaller deviations are shown as none.
@@ -242,7 +241,7 @@ def _largest(rows: Sequence[ComparisonRow]) -> str:
     tolerated = (row for row in rows if not is_bound(row.claim, row.statistic))
     deviations = [row for row in tolerated if _size(row) >= _SMALLEST]
     worst = max(deviations, key=_size, default=None)
-    return "" if worst is None else f"; largest deviation {deviation_text(worst)} ({what(worst)})"
+    return "" if worst is None else f"; largest deviation {deviation_text(worst)} ({_what(worst)})"
 
 
 def _missed(limits: Sequence[MeasuredLimit]) -> str:
@@ -251,20 +250,15 @@ def _missed(limits: Sequence[MeasuredLimit]) -> str:
     first = limits[0]
     others = f", and {counted(len(limits) - 1, 'other limit')}" if limits[1:] else ""
     value = f" is {_time(first.value)}," if first.value is not None and first.is_time else ""
-    return f"limit missed: {first.quantity} of {first.object}{value} {limit_text(first)}{others}"
+    return f"limit missed: {first.quantity} of {first.object}{value} {_limit_text(first)}{others}"
 
 
-def what(row: ComparisonRow) -> str:
+def _what(row: ComparisonRow) -> str:
     """What a row compares: "mean response time of Control_Function"."""
-    return f"{row.statistic} {quantity_text(row.quantity)} of {row.object}"
+    return f"{row.statistic} {words(row.quantity)} of {row.object}"
 
 
-def quantity_text(quantity: str) -> str:
-    """The name of a quantity in words."""
-    return quantity.replace("_", " ")
-
-
-def percent(share: Fraction) -> str:
+def _percent(share: Fraction) -> str:
     """A share in percent, with three digits."""
     return f"{float(share * 100):.3g} %"
 
@@ -280,7 +274,7 @@ def _size(row: ComparisonRow) -> Fraction:
     return abs(row.deviation or Fraction(0))
 
 
-def limit_text(limit: MeasuredLimit) -> str:
+def _limit_text(limit: MeasuredLimit) -> str:
     """The limit, such as "at most 1 ms"."""
     if limit.limit is None:
         return "-"
@@ -288,7 +282,7 @@ def limit_text(limit: MeasuredLimit) -> str:
     return f"at {'most' if limit.is_upper else 'least'} {value}"
 
 
-def distribution_rows(result: Comparison) -> Iterator[tuple[str, ...]]:
+def _distribution_rows(result: Comparison) -> Iterator[tuple[str, ...]]:
     """The cells of the distributions that are shown: the distance, and both medians and 99 % quantiles."""
     for row in result.distributions:
         if not (result.with_all or row.is_hidden):
@@ -297,7 +291,7 @@ def distribution_rows(result: Comparison) -> Iterator[tuple[str, ...]]:
         median, high = (between.quantiles[share] for share in (Fraction(50, 100), Fraction(99, 100)))
         yield (
             row.object,
-            quantity_text(row.quantity),
+            words(row.quantity),
             f"{float(between.value):.3f}",
             f"{between.critical:.3f}",
             *(_time(Fraction(value)) for value in (*median, *high)),
@@ -305,20 +299,16 @@ def distribution_rows(result: Comparison) -> Iterator[tuple[str, ...]]:
         )
 
 
-#: The headings of `distribution_rows`.
-DISTRIBUTIONS = ("object", "quantity", ">distance", ">critical", ">p50", ">simulated p50", ">p99", ">simulated p99", "")
-
-
 def _time(value: Fraction | None) -> str:
     return "-" if value is None else rounded_time_text(value, Rounding.NEAREST)
 
 
-def prediction_cells(group: PredictionGroup) -> tuple[str, ...]:
+def _prediction_cells(group: PredictionGroup) -> tuple[str, ...]:
     """The cells of the predictions of a quantity."""
     first, distance = group.rows[0], group.distance
     return (
         first.object,
-        quantity_text(first.quantity),
+        words(first.quantity),
         f"{first.samples:,}",
         group.times(is_measured=True),
         group.times(is_measured=False),
@@ -335,16 +325,12 @@ def _depends_on_phase(row: ComparisonRow) -> bool:
     return high - low > _SMALLEST * abs(high)
 
 
-#: The headings of `prediction_cells`.
-PREDICTIONS = ("object", "quantity", ">values", ">measured", ">predicted", "claim", ">deviation", ">distance", "verdict", "")
-
-
-def bound_cells(test: BoundTest) -> tuple[str, ...]:
+def _bound_cells(test: BoundTest) -> tuple[str, ...]:
     """The cells of a test of bounds: minimum, maximum, and by how much they are on the safe side."""
     lower, upper = test.lower, test.upper
     return (
         test.rows[0].object,
-        quantity_text(test.rows[0].quantity),
+        words(test.rows[0].quantity),
         "-" if lower is None else _time(lower.predicted),
         "-" if lower is None else _time(lower.measured),
         "-" if upper is None else _time(upper.measured),
@@ -356,61 +342,37 @@ def bound_cells(test: BoundTest) -> tuple[str, ...]:
     )
 
 
-#: The headings of `bound_cells`.
-BOUNDS = ("object", "quantity", ">lower bound", ">min", ">max", ">upper bound", ">margin", "claim", "verdict", "")
-
-
-def limit_cells(limit: MeasuredLimit) -> tuple[str, ...]:
+def _limit_cells(limit: MeasuredLimit) -> tuple[str, ...]:
     """The cells of a limit."""
-    is_known = limit.value is not None and limit.is_time
+    rounding = Rounding.UP if limit.is_upper else Rounding.DOWN
     return (
         limit.name,
         f"{limit.quantity} of {limit.object}" if limit.object else limit.quantity,
-        limit_text(limit),
-        _rounded(limit) if is_known else "-",
+        _limit_text(limit),
+        rounded_time_text(limit.value, rounding, limit.limit) if limit.is_time and limit.value is not None else "-",
         f"{limit.samples:,}",
-        limit.verdict.replace("_", " "),
+        words(limit.verdict),
         limit.reason,
     )
-
-
-def _rounded(limit: MeasuredLimit) -> str:
-    rounding = Rounding.UP if limit.is_upper else Rounding.DOWN
-    return rounded_time_text(limit.value or 0, rounding, limit.limit)
-
-
-#: The headings of `limit_cells`.
-LIMITS = ("requirement", "what", "limit", ">measured", ">values", "verdict", "")
-
-
-def missing_cells(row: ComparisonRow) -> tuple[str, ...]:
-    """The cells of what is not compared."""
-    return (row.object, quantity_text(row.quantity), str(row.verdict), row.reason)
-
-
-#: The headings of `missing_cells`.
-MISSING = ("object", "quantity", "", "reason")
 
 
 def comparison_document(result: Comparison) -> Document:
     """Tables of predictions, bounds, distributions and limits, what was not compared, and whether the model holds."""
     predictions = "Predictions (min / mean / max; deviation: of the measurement, positive if more was measured than predicted)"
+    predicted = ("object", "quantity", ">values", ">measured", ">predicted", "claim", ">deviation", ">distance", "verdict", "")
     bounds = "Bounds of the analysis (nothing may be measured beyond them, without tolerance)"
+    bounded = ("object", "quantity", ">lower bound", ">min", ">max", ">upper bound", ">margin", "claim", "verdict", "")
     distance = "Distributions (Kolmogorov-Smirnov distance from the simulated values, and its critical value at 5 %)"
+    distributed = ("object", "quantity", ">distance", ">critical", ">p50", ">simulated p50", ">p99", ">simulated p99", "")
+    limited = ("requirement", "what", "limit", ">measured", ">values", "verdict", "")
+    missing = [(row.object, words(row.quantity), str(row.verdict), row.reason) for row in _missing_rows(result)]
+    not_shown, not_predicted = (Sentences([text] if text else []) for text in (_hidden(result), _hidden_missing(result)))
     sections = (
-        section(predictions, table("", PREDICTIONS, map(prediction_cells, prediction_groups(result)))),
-        section(bounds, table("", BOUNDS, map(bound_cells, bound_tests(result))), _sentence(hidden(result))),
-        section(distance, table("", DISTRIBUTIONS, distribution_rows(result))),
-        section("Limits, as measured", table("", LIMITS, map(limit_cells, result.limits))),
-        section(
-            "Not compared",
-            table("", MISSING, map(missing_cells, missing_rows(result))),
-            _sentence(hidden_missing(result)),
-        ),
+        section(predictions, table("", predicted, map(_prediction_cells, prediction_groups(result)))),
+        section(bounds, table("", bounded, map(_bound_cells, bound_tests(result))), not_shown),
+        section(distance, table("", distributed, _distribution_rows(result))),
+        section("Limits, as measured", table("", limited, map(_limit_cells, result.limits))),
+        section("Not compared", table("", ("object", "quantity", "", "reason"), missing), not_predicted),
         section("Assumptions", Sentences(result.assumptions)),
     )
-    return document(sections, closing_line(result), "Comparison with a measurement", subject_line(result))
-
-
-def _sentence(text: str) -> Sentences:
-    return Sentences([text] if text else [])
+    return document(sections, closing_line(result), "Comparison with a measurement", _subject_line(result))

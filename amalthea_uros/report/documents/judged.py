@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from math import inf
 from typing import TypeAlias
@@ -14,9 +13,11 @@ from amalthea_uros.analyze.results.processes import ProcessResult, RequirementRe
 from amalthea_uros.judge.causes import quantity_of
 from amalthea_uros.judge.summary import urgency
 from amalthea_uros.judge.verdict import FAILURES, WORST_FIRST, Verdict
+from amalthea_uros.report.basics.document import Cell, Table, table
+from amalthea_uros.report.wording.cells import UNKNOWN, at_least, at_most, load_text, verdict_badge
 from amalthea_uros.timing.basics.quantities import jitter_name
 from amalthea_uros.timing.response import Claim
-from amalthea_uros.units import Rounding, Time, number_text, rounded, rounded_time_text, time_text
+from amalthea_uros.units import Rounding, Time, time_text
 
 #: Sorts the worst first.
 _Rank: TypeAlias = tuple[int, Fraction | float]
@@ -27,28 +28,10 @@ LIMITED = {"reaction": LatencyQuantity.MAX_REDUCED_REACTION_TIME, "data age": La
 _CONCERNED = LIMITED | {jitter_name(name): quantity for name, quantity in LIMITED.items()}
 
 
-@dataclass(frozen=True, slots=True)
-class JudgedRow:
-    """A deadline, requirement or constraint, as it is shown.
-
-    Attributes
-    ----------
-    used : the value as part of the limit, such as "3.2 %"
-    """
-
-    item: Judged
-    what: str
-    value: str
-    limit: str
-    margin: str
-    used: str
-    claim: str
-
-
-def judged_rows(analysis: Analysis) -> list[JudgedRow]:
+def judged_items(analysis: Analysis) -> list[Judged]:
     """All deadlines, requirements and constraints, the worst first: what fails, what is unknown, then what uses most of its limit.
 
-    A deadline that is also stated as a requirement is shown once, unless its process fails in another way: by lost activations.
+    A deadline that is also stated as a requirement is there once, unless its process fails in another way: by lost activations.
     """
     stated = {(quantity_of(each), each.limit): each.verdict for each in analysis.requirements}
     processes = (
@@ -57,55 +40,51 @@ def judged_rows(analysis: Analysis) -> list[JudgedRow]:
         if each.verdict is not None
         and (each.is_implicit or _is_worse(each.verdict, stated.get((quantity_of(each), each.limit))))
     )
-    items: list[Judged] = [*processes, *analysis.requirements]
-    claims = _claims(analysis)
-    return [_row(item, claims) for item in sorted(items, key=urgency)]
-
-
-def _claims(analysis: Analysis) -> Mapping[tuple[str, str], str]:
-    """The claims of the results that requirements may limit, by object and quantity."""
-    values = ((chain.name, name, chain.value(quantity)) for chain in analysis.chains for name, quantity in LIMITED.items())
-    return {
-        **{(each.name, "response time"): _claim(each) for each in analysis.processes},
-        **{(chain, name): str(value.claim) for chain, name, value in values if value is not None},
-    }
+    return sorted([*processes, *analysis.requirements], key=urgency)
 
 
 def _is_worse(verdict: Verdict, stated: Verdict | None) -> bool:
     return stated is None or (stated not in FAILURES and WORST_FIRST.index(verdict) < WORST_FIRST.index(stated))
 
 
-def _row(item: Judged, claims: Mapping[tuple[str, str], str]) -> JudgedRow:
+def concerned(item: Judged) -> str:
+    """The process or chain of which a deadline or requirement is."""
+    return item.name if isinstance(item, ProcessResult) else item.object
+
+
+def limits_table(analysis: Analysis) -> Table:
+    """All deadlines, requirements and constraints with their values, and how much of their limits these use."""
+    values = ((chain.name, name, chain.value(quantity)) for chain in analysis.chains for name, quantity in LIMITED.items())
+    # The claims of the results that requirements may limit, by object and quantity.
+    claims = {
+        **{(each.name, "response time"): _claim(each) for each in analysis.processes},
+        **{(chain, name): str(value.claim) for chain, name, value in values if value is not None},
+    }
+    columns = ("requirement", "verdict", "what", ">value", ">limit", ">used", ">margin", "claim", "why")
+    rows = (_row(item, claims) for item in judged_items(analysis))
+    return table("Deadlines, requirements and constraints", columns, rows)
+
+
+def _row(item: Judged, claims: Mapping[tuple[str, str], str]) -> tuple[Cell, ...]:
     if isinstance(item, ProcessResult):
         what = "response time, period" if item.is_implicit else "response time, deadline"
-        value = item.response.worst if item.response is not None else None
-        return _of(item, what, value, value, item.deadline, _claim(item))
-    what = f"{item.quantity} of {item.object}" if item.object else item.quantity
-    lower, upper = item.lower, item.upper
-    return _of(item, what, lower, upper, item.limit, _requirement_claim(item, claims))
+        lower = upper = item.response.worst if item.response is not None else None
+        claim = _claim(item)
+    else:
+        what = f"{item.quantity} of {item.object}" if item.object else item.quantity
+        lower, upper, claim = item.lower, item.upper, _requirement_claim(item, claims)
+    value, used = _value_text(item, lower, upper), _used(upper, item) if item.is_upper else "-"
+    return (item.name, verdict_badge(item), what, value, limit_text(item), used, margin_text(item), claim, why(item))
 
 
-def _of(item: Judged, what: str, lower: Time | None, upper: Time | None, limit: Time | None, claim: str) -> JudgedRow:
-    is_upper = item.is_upper
-    return JudgedRow(
-        item=item,
-        what=what,
-        value=_value_text(item, lower, upper, limit, is_upper),
-        limit=limit_text(item),
-        margin=margin_text(item),
-        used=_used(upper, limit, item.verdict) if is_upper else "-",
-        claim=claim,
-    )
-
-
-def _value_text(item: Judged, lower: Time | None, upper: Time | None, limit: Time | None, is_upper: bool) -> str:
+def _value_text(item: Judged, lower: Time | None, upper: Time | None) -> str:
     """The safe end; both ends where the verdict depends on where between them the value is."""
-    safe = upper if is_upper else lower
     if item.verdict is Verdict.MET or lower == upper or lower is None or upper is None:
+        safe = upper if item.is_upper else lower
         if safe is None:
-            return "no bound" if item.verdict in FAILURES else "unknown"
-        return rounded_time_text(safe, Rounding.UP if is_upper else Rounding.DOWN, limit)
-    return f"{rounded_time_text(lower, Rounding.DOWN, limit)} to {rounded_time_text(upper, Rounding.UP, limit)}"
+            return "no bound" if item.verdict in FAILURES else UNKNOWN
+        return (at_most if item.is_upper else at_least)(safe, item.limit)
+    return f"{at_least(lower, item.limit)} to {at_most(upper, item.limit)}"
 
 
 def limit_text(item: Judged) -> str:
@@ -117,15 +96,15 @@ def margin_text(item: Judged) -> str:
     """The distance from the limit, where it is certain."""
     if item.margin is None or item.verdict is Verdict.UNKNOWN:
         return "-"
-    return rounded_time_text(item.margin, Rounding.DOWN)
+    return at_least(item.margin)
 
 
-def _used(value: Time | None, limit: Time | None, verdict: Verdict | None) -> str:
+def _used(value: Time | None, item: Judged) -> str:
     """The share of the limit; where the verdict is unknown, the value is anywhere below its bound."""
-    if value is None or not limit:
+    if value is None or not item.limit:
         return "-"
-    share = f"{number_text(rounded(Fraction(value * 100, limit), Rounding.UP, 100))} %"
-    return f"up to {share}" if verdict is Verdict.UNKNOWN else share
+    share = load_text(Fraction(value, item.limit), Rounding.UP)
+    return f"up to {share}" if item.verdict is Verdict.UNKNOWN else share
 
 
 def _claim(process: ProcessResult) -> str:
@@ -147,7 +126,7 @@ def why(item: Judged) -> str:
         return item.reason
     if item.margin >= 0:
         return ""
-    return f"{'exceeds' if item.is_upper else 'falls short of'} its limit by {rounded_time_text(-item.margin, Rounding.UP)}"
+    return f"{'exceeds' if item.is_upper else 'falls short of'} its limit by {at_most(-item.margin)}"
 
 
 def worst_chains(analysis: Analysis) -> list[ChainResult]:

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from fractions import Fraction
 from math import floor
 
 from amalthea_uros._internal.plural import counted
+from amalthea_uros.compare.calibration.values import CalibratedValue, Outcome
 from amalthea_uros.measure.series import Counts, Measurement, Series
 from amalthea_uros.report.basics.document import Document, Sentences, document, section, table
 from amalthea_uros.report.documents.simulation import duration_text
+from amalthea_uros.report.wording.cells import shortened
+from amalthea_uros.services.calibrate import Calibration
 from amalthea_uros.simulate.observations import TimeHistogram
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.units import Rounding, Time, rounded_time_text, time_text
@@ -168,4 +172,39 @@ def measurement_document(measurement: Measurement) -> Document:
     title = f"Measurement of {measurement.source}"
     return document(
         sections, closing_line(measurement), title, f"Measurement of {trace_text(measurement)}", measurement.findings
+    )
+
+
+#: A longer value, such as a histogram, is shown by its beginning.
+_LONGEST = 32
+
+
+def calibration_document(calibration: Calibration) -> Document:
+    """A row for each measured value, and how many are written into the description."""
+    titles = ("value", ">samples", ">min", ">mean", ">max", "described", "now", "")
+    values = table("", titles, map(_calibrated, calibration.values))
+    return document([section("Measured values and the description", values)], calibration_line(calibration))
+
+
+def calibration_line(calibration: Calibration) -> str:
+    """How many values are written, and how many the measurement refutes."""
+    values = calibration.values
+    numbers = Counter(str(value.outcome) for value in values)
+    parts = [f"{numbers[outcome]} {outcome}" for outcome in Outcome if numbers[outcome]]
+    refuted = sum(bool(value.refuted) for value in values)
+    doubt = f"; the measurement refutes {counted(refuted, 'value')} of the description" if refuted else ""
+    return f"{counted(len(values), 'measured value')}: {', '.join(parts) or 'none'}{doubt}"
+
+
+def _calibrated(value: CalibratedValue) -> tuple[str, ...]:
+    statistics = value.statistics
+    return (
+        value.target,
+        f"{statistics.count:,}",
+        time_text(statistics.min),
+        rounded_time_text(statistics.mean, Rounding.NEAREST),
+        time_text(statistics.max),
+        shortened(value.before, _LONGEST),
+        shortened(value.after, _LONGEST),
+        f"{value.outcome}, refuted" if value.refuted else str(value.outcome),
     )

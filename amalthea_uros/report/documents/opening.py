@@ -10,7 +10,7 @@ from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.report.basics.document import (
     Tone,
 )
-from amalthea_uros.report.documents.judged import judged_rows, why
+from amalthea_uros.report.documents.judged import judged_items, why
 from amalthea_uros.report.wording.cells import tone_of, verdict_badge
 from amalthea_uros.report.wording.closing_line import closing_line
 from amalthea_uros.services.report import ReportContent
@@ -48,7 +48,7 @@ def facts(content: ReportContent) -> str:
     system = content.system
     numbers = {"core": len(system.cores), "task": len(system.software.tasks), "interrupt": len(system.software.isrs)}
     numbers |= {"runnable": len(system.software.runnables), "event chain": len(system.chains)}
-    numbers |= {"limit": len(judged_rows(content.analysis))}
+    numbers |= {"limit": len(judged_items(content.analysis))}
     return ", ".join(counted(number, noun) for noun, number in numbers.items() if number)
 
 
@@ -68,7 +68,7 @@ def opening(content: ReportContent) -> Opening:
     summary = content.analysis.summary
     tone = tone_of(summary.schedulable)
     overloads = [(core.name, "the core is overloaded") for core in summary.overloaded]
-    rows = (row.item for row in judged_rows(content.analysis) if row.item.verdict is not Verdict.MET)
+    rows = (item for item in judged_items(content.analysis) if item.verdict is not Verdict.MET)
     others = _together((item.name, ": ".join(filter(None, (verdict_badge(item).word, why(item))))) for item in rows)
     warnings = [(each.rule, each.message) for each in content.warnings]
     reasons = list(dict.fromkeys((*overloads, *others, *warnings)))

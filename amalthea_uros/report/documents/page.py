@@ -10,8 +10,7 @@ from amalthea_uros.analyze.impact import impact
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import ChainResult, LatencyQuantity
 from amalthea_uros.analyze.results.explanations import ProcessExplanation
-from amalthea_uros.analyze.results.processes import ProcessorResult, ProcessResult
-from amalthea_uros.executors.results import HandleResult
+from amalthea_uros.analyze.results.processes import ProcessorResult
 from amalthea_uros.report.basics.document import (
     Badge,
     Block,
@@ -34,19 +33,29 @@ from amalthea_uros.report.documents.analysis import (
     methods,
     response_times,
 )
-from amalthea_uros.report.documents.application import bus_section, pools_section
+from amalthea_uros.report.documents.descriptions import bus_section, pools_section
+from amalthea_uros.report.documents.explanation import interference, message_hops, terms_of
 from amalthea_uros.report.documents.findings import findings_section
-from amalthea_uros.report.documents.judged import judged_rows, limit_text, margin_text, requirements_of, why, worst_chains
+from amalthea_uros.report.documents.judged import (
+    concerned,
+    judged_items,
+    limit_text,
+    limits_table,
+    margin_text,
+    requirements_of,
+    why,
+    worst_chains,
+)
 from amalthea_uros.report.documents.observed import observed_section
 from amalthea_uros.report.documents.worst_cases import gantt_section, histogram_section, hops_section
 from amalthea_uros.report.pictures.load_bars import draw_loads
 from amalthea_uros.report.pictures.response_bars import draw_responses
 from amalthea_uros.report.pictures.system_picture import draw_system
-from amalthea_uros.report.wording.cells import UNKNOWN, at_least, at_most, badge, exactly, load_text, share_text, verdict_badge
+from amalthea_uros.report.wording.cells import UNKNOWN, badge, load_text, verdict_badge
 from amalthea_uros.report.wording.chains import value_text
 from amalthea_uros.report.wording.closing_line import closing_line
 from amalthea_uros.services.report import ReportContent
-from amalthea_uros.units import Rounding, frequency_text, time_text
+from amalthea_uros.units import Rounding, frequency_text
 
 
 def _changes_section(content: ReportContent) -> Section | None:
@@ -64,16 +73,6 @@ def _changes_section(content: ReportContent) -> Section | None:
             Sentences([f"Before the changes: {closing_line(content.before.summary)}"]),
         ),
     )
-
-
-def limits_table(analysis: Analysis) -> Table:
-    """All deadlines, requirements and constraints: what is missed or unknown comes first, then what uses most of its limit."""
-    rows = [
-        (row.item.name, verdict_badge(row.item), row.what, row.value, row.limit, row.used, row.margin, row.claim, why(row.item))
-        for row in judged_rows(analysis)
-    ]
-    columns = ("requirement", "verdict", "what", ">value", ">limit", ">used", ">margin", "claim", "why")
-    return table("Deadlines, requirements and constraints", columns, rows)
 
 
 def chains_table(analysis: Analysis) -> Table:
@@ -120,16 +119,9 @@ def _message_chains_section(content: ReportContent) -> Section | None:
 
 
 def _hops(chain: ChainResult) -> Folded:
-    rows: list[tuple[Cell, ...]] = []
-    for hop in chain.hops:
-        note = hop.reason or hop.source
-        rows.append((f"{hop.kind}: {hop.name}", at_least(hop.best), at_most(hop.worst), share_text(hop.share), note))
-        rows += [(f"- {part.name}", "", exactly(part.most, UNKNOWN), "", part.why) for part in hop.parts]
-    blocks: list[Block] = [table(f"Hops of {chain.name}", ("hop", ">best", ">worst", ">share", "why"), rows)]
     remarks = [*(hop.remedy for hop in chain.hops if hop.worst is None and hop.remedy), *chain.assumptions]
-    if remarks:
-        blocks.append(Sentences(list(dict.fromkeys(remarks))))
-    return Folded(f"Where the latency of {chain.name} comes from", blocks)
+    found = section("", message_hops(chain), Sentences(list(dict.fromkeys(remarks))))
+    return Folded(f"Where the latency of {chain.name} comes from", found.blocks)
 
 
 def _system_section(content: ReportContent) -> Section | None:
@@ -195,8 +187,8 @@ def _response_times_section(content: ReportContent) -> Section | None:
     simulation = content.simulation.simulation if content.simulation is not None else None
     blocks: list[Block] = [Figure("responses", draw_responses(analysis, simulation))]
     blocks.append(response_times(analysis, is_detailed=True))
-    blocks += [_explained(each) for each in _tightest(content)]
-    blocks += filter(None, [callbacks(analysis)])
+    blocks += [Folded(f"What delays {each.process.name}", [interference(each)]) for each in _tightest(content)]
+    blocks += filter(None, [callbacks(analysis.of_periodic_executors)])
     lead = "From the activation of a task to its end: the worst case is the sum of its own execution and of what delays it."
     return Section("response-times", "Response times", lead, blocks)
 
@@ -204,18 +196,11 @@ def _response_times_section(content: ReportContent) -> Section | None:
 def _tightest(content: ReportContent) -> list[ProcessExplanation]:
     """The explanations of the processes with the tightest response times."""
     analysis = content.analysis
-    names = [row.item.name if isinstance(row.item, ProcessResult) else row.item.object for row in judged_rows(analysis)]
-    found = [analysis.processes[name] for name in dict.fromkeys(names) if name in content.system.processes]
+    names = dict.fromkeys(map(concerned, judged_items(analysis)))
+    found = [analysis.processes[name] for name in names if name in content.system.processes]
     known = [each.name for each in found if each.response is not None and each.response.worst is not None]
     explained = (explain_process(analysis, name) for name in known)
     return [each for _, each in zip(range(_MOST_EXPLAINED), (each for each in explained if each.shares), strict=False)]
-
-
-def _explained(explanation: ProcessExplanation) -> Folded:
-    name = explanation.process.name
-    rows = [(share.name, f"{share.jobs:,}", time_text(share.time)) for share in explanation.shares]
-    shares = table(f"Interference in the worst case of {name}", ("by", ">jobs", ">time"), rows)
-    return Folded(f"What delays {name}", [shares])
 
 
 def _executors_section(content: ReportContent) -> Section | None:
@@ -226,15 +211,9 @@ def _executors_section(content: ReportContent) -> Section | None:
     blocks: list[Block] = []
     for executor in executors:
         blocks.append(handles(executor, is_detailed=True))
-        blocks += [_terms(handle) for handle in executor.handles if handle.terms]
+        blocks += [Folded(f"What {each.name} waits for", [terms_of(each)]) for each in executor.handles if each.terms]
     lead = "From the arrival of a message at the controller, or from when a timer is due, to the end of the callback."
     return Section("executors", "Executors", lead, blocks)
-
-
-def _terms(handle: HandleResult) -> Folded:
-    rows = [(term.name, exactly(term.most, UNKNOWN), term.why) for term in handle.terms]
-    terms = table(f"Worst response time of {handle.name}, in the order of time", ("part", ">time", "why"), rows)
-    return Folded(f"What {handle.name} waits for", [terms])
 
 
 def _methods_section(content: ReportContent) -> Section | None:

@@ -2,23 +2,33 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Iterable, Iterator
 from fractions import Fraction
 from math import ceil, floor
-from pathlib import Path
-from typing import Protocol
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.analyze.impact import Impact
-from amalthea_uros.design.changes.apply import Difference
-from amalthea_uros.diagnostics import Finding
+from amalthea_uros.design.campaign.run import RunOutcome
 from amalthea_uros.judge.causes import distinct
 from amalthea_uros.judge.verdict import WORST_OBSERVED_FIRST, ObservedVerdict
-from amalthea_uros.report.basics.document import Cell, Document, Section, Sentences, Table, document, section, table
+from amalthea_uros.report.basics.document import (
+    Cell,
+    Document,
+    Section,
+    Sentences,
+    Table,
+    document,
+    flaws,
+    lines,
+    section,
+    table,
+)
 from amalthea_uros.report.documents.analysis import impact_section
 from amalthea_uros.report.wording.cells import badge, by_core_and_priority, deadline_text, observed, words
 from amalthea_uros.report.wording.chains import CHAINS_HEADING
 from amalthea_uros.report.wording.closing_line import left_text
 from amalthea_uros.report.wording.findings import joined
+from amalthea_uros.services.simulate import KEPT, MISSED, NOT_OBSERVED, CampaignResult, SimulationResult, judged_in
 from amalthea_uros.simulate.observations import ChainObservation, ProcessObservation, RequirementObservation
 from amalthea_uros.simulate.results import IDLE, Judged, Simulation
 from amalthea_uros.simulate.runs.not_simulated import LIMITED_PROCESS_LEFT_OUT, consequence_of
@@ -27,34 +37,6 @@ from amalthea_uros.units import NANOSECOND, SECOND, Rounding, Time, number_text,
 
 _MINUTE = 60 * SECOND
 REMINDER = "Observed values are no bounds; for bounds use `amuros analyze`."
-
-
-class SimulationShown(Protocol):
-    """The result of a simulation of some files."""
-
-    @property
-    def paths(self) -> tuple[Path, ...]:
-        """The files."""
-
-    @property
-    def simulation(self) -> Simulation:
-        """What was observed."""
-
-    @property
-    def findings(self) -> tuple[Finding, ...]:
-        """Problems found while reading the files, and what the simulation does not take into account."""
-
-    @property
-    def with_metrics(self) -> bool:
-        """Whether the metrics of all processes are shown."""
-
-    @property
-    def differences(self) -> tuple[Difference, ...]:
-        """What changes did before the run."""
-
-    @property
-    def impact(self) -> Impact | None:
-        """What the changes do to what is observed; None without changes."""
 
 
 def duration_text(duration: Time) -> str:
@@ -132,25 +114,37 @@ def _not_observed(simulation: Simulation) -> str:
     return f"{count}, because of {others[0].name!r}: {others[0].reason}" if others else count
 
 
-def simulation_document(result: SimulationShown) -> Document:
+def simulation_document(result: SimulationResult) -> Document:
     """Tables of loads, response times, chains and requirements, with assumptions and what was observed."""
     simulation = result.simulation
-    run = f"{duration_text(simulation.duration)}, seed {simulation.seed}, mode {simulation.mode}"
     of_files = f" of {joined(result.paths)}" if result.paths else ""
+    changed = [] if result.impact is None else [impact_section(result.impact, f"observed with seed {simulation.seed}")]
+    metrics = [_metrics(process) for process in simulation.processes] if result.with_metrics else []
+    opening = f"Simulation{of_files}: {_run_text(simulation)}"
+    return document(_sections(simulation, metrics, changed), closing_line(simulation), opening=opening)
+
+
+def simulation_alone(simulation: Simulation) -> Document:
+    """The same of something that is not in files, after what the simulation does not take into account."""
+    sections = (flaws(simulation.findings), section("", lines(f"Simulation: {_run_text(simulation)}")), *_sections(simulation))
+    return document(sections, closing_line(simulation))
+
+
+def _run_text(simulation: Simulation) -> str:
+    return f"{duration_text(simulation.duration)}, seed {simulation.seed}, mode {simulation.mode}"
+
+
+def _sections(simulation: Simulation, metrics: Iterable[Section] = (), changed: Iterable[Section] = ()) -> Iterator[Section]:
     loads = [(core.name, _percent(core.load)) for core in simulation.cores if core.load]
-    remark = f"observed with seed {simulation.seed}"
-    sections = (
-        section("Load", table("", ("core", ">load"), loads)),
-        section("Observed response times", _processes(simulation)),
-        *(map(_metrics, simulation.processes) if result.with_metrics else ()),
-        section(CHAINS_HEADING, _chains(simulation)),
-        section("Runnables with requirements", _runnables(simulation)),
-        section("Labels", _labels(simulation)),
-        section("Requirements", _requirements(simulation)),
-        *([] if result.impact is None else [impact_section(result.impact, remark)]),
-        section("Assumptions", Sentences(simulation.assumptions)),
-    )
-    return document(sections, closing_line(simulation), opening=f"Simulation{of_files}: {run}")
+    yield section("Load", table("", ("core", ">load"), loads))
+    yield section("Observed response times", _processes(simulation))
+    yield from metrics
+    yield section(CHAINS_HEADING, _chains(simulation))
+    yield section("Runnables with requirements", _runnables(simulation))
+    yield section("Labels", _labels(simulation))
+    yield section("Requirements", _requirements(simulation))
+    yield from changed
+    yield section("Assumptions", Sentences(simulation.assumptions))
 
 
 def _percent(load: Fraction) -> str:
@@ -269,3 +263,59 @@ def _remark(requirement: RequirementObservation) -> str:
     is_missed = requirement.verdict is ObservedVerdict.MISSED and requirement.at is not None
     when = f"at {time_text(round(requirement.at or 0))}" if is_missed else ""
     return ", ".join(filter(None, (requirement.reason, when)))
+
+
+#: More runs are for a table in a file.
+_MOST_RUNS = 50
+
+
+def campaign_document(result: CampaignResult) -> Document:
+    """The runs with what was observed in them, and how many of them missed something or failed."""
+    shown = result.outcomes[:_MOST_RUNS]
+    targets = list(dict.fromkeys(change.target for outcome in shown for change in outcome.run.changes))
+    rows = []
+    for outcome in shown:
+        values = {change.target: change.value for change in outcome.run.changes}
+        given = (values.get(target, "") for target in targets)
+        rows.append((f"{outcome.run.number}", f"{outcome.run.seed}", *given, _observed_in(outcome)))
+    more = len(result.outcomes) - len(shown)
+    rest = [f"{counted(more, 'more run')} not shown; write all to a file with --table FILE"] if more else []
+    runs = table("", (">run", ">seed", *(f">{target}" for target in targets), "observed"), rows)
+    return document([section("", runs, Sentences(rest))], campaign_line(result))
+
+
+def _observed_in(outcome: RunOutcome) -> str:
+    if outcome.error:
+        return f"failed: {outcome.error}"
+    lost = outcome.record.get("lost_activations")
+    missed, unseen, kept = (judged_in(outcome.record, verdict) for verdict in (MISSED, NOT_OBSERVED, KEPT))
+    texts = [str(errors)] if (errors := outcome.record.get("errors")) else []
+    texts += [f"missed: {', '.join(missed)}"] if missed else ["nothing missed"] if kept else []
+    texts += [f"lost: {counted(lost, 'activation')}"] if isinstance(lost, int) and lost else []
+    texts += [f"not observed: {len(unseen):,}"] if unseen else []
+    return "; ".join(texts) or "nothing to judge"
+
+
+def campaign_line(result: CampaignResult) -> str:
+    """In how many runs something was missed, or that nothing was; how many failed, and in how many not everything was observed."""
+    finished = len(result.outcomes)
+    runs = counted(finished, "run") if result.is_complete else f"{finished:,} of {counted(result.planned, 'run')}"
+    parts = [_missed_in(result)] if result.missed or result.is_anything_kept else []
+    if result.failed:
+        parts.append(f"{counted(len(result.failed), 'run')} failed: {result.failed[0].error}")
+    if result.incomplete:
+        parts.append(f"not everything was simulated in {len(result.incomplete):,}: {result.incomplete[0].record['errors']}")
+    if result.not_observed:
+        parts.append(f"limits not observed in {len(result.not_observed):,}")
+    found = "; ".join(parts) or "no deadline, requirement or constraint to judge"
+    return f"Observed in {runs} of {time_text(result.options.duration)} each: {found}; what was not observed can still occur"
+
+
+def _missed_in(result: CampaignResult) -> str:
+    """In how many runs something was missed, and what is missed in most of them."""
+    numbers = Counter(name for outcome in result.missed for name in judged_in(outcome.record, MISSED))
+    if not numbers:
+        return "nothing missed"
+    ((name, number),) = numbers.most_common(1)
+    what = name if len(numbers) == 1 else f"most often {name}, in {number:,}"
+    return f"limits missed or activations lost in {len(result.missed):,} ({what})"

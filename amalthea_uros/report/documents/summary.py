@@ -9,7 +9,8 @@ from amalthea_uros.analyze.impact import impact
 from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.report.basics.document import Block, Document, Section, Sentences, Table, document, section, table
 from amalthea_uros.report.documents.analysis import impact_section, latencies_of_messages
-from amalthea_uros.report.documents.page import chains_table, limits_table
+from amalthea_uros.report.documents.judged import limits_table
+from amalthea_uros.report.documents.page import chains_table
 from amalthea_uros.report.documents.simulation import REMINDER
 from amalthea_uros.report.documents.simulation import closing_line as observed_line
 from amalthea_uros.report.wording.closing_line import closing_line

@@ -3,22 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from functools import partial
 
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.analyze.explanations.chains import explain_chain
 from amalthea_uros.analyze.results.chains import LatencyQuantity
-from amalthea_uros.analyze.results.explanations import ChainExplanation, ProcessHop
-from amalthea_uros.analyze.results.processes import ProcessResult
-from amalthea_uros.design.improvements import Improvement
+from amalthea_uros.analyze.results.explanations import ChainExplanation
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.report.basics.document import Block, Cell, Figure, Folded, Heading, Section, Sentences, table
-from amalthea_uros.report.documents.judged import LIMITED, decisive_quantity, judged_rows, requirements_of, worst_chains
+from amalthea_uros.report.basics.document import Block, Figure, Folded, Heading, Section, Sentences
+from amalthea_uros.report.documents.explanation import changes, hops, tried
+from amalthea_uros.report.documents.judged import (
+    LIMITED,
+    concerned,
+    decisive_quantity,
+    judged_items,
+    requirements_of,
+    worst_chains,
+)
 from amalthea_uros.report.pictures.chain_hops import draw_hops
 from amalthea_uros.report.pictures.histogram import Mark, MarkKind
 from amalthea_uros.report.pictures.simulation import gantt_picture, histogram_picture
-from amalthea_uros.report.wording.cells import at_least, at_most
+from amalthea_uros.report.wording.cells import at_least, at_most, words
 from amalthea_uros.report.wording.chains import value_text
 from amalthea_uros.services.analyze import AnalysisResult
 from amalthea_uros.services.explain import improvements
@@ -27,7 +32,7 @@ from amalthea_uros.services.simulate import SimulationResult
 from amalthea_uros.simulate.observations import MetricObservation
 from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
 from amalthea_uros.timing.response import Claim
-from amalthea_uros.units import Time, time_text
+from amalthea_uros.units import Time
 
 #: Chains that are explained, the worst first, and those of them that are seen at once.
 MOST_CHAINS, _SHOWN_OF_HOPS = 6, 2
@@ -63,16 +68,12 @@ def _blocks(explanation: ChainExplanation, limit: Time | None, name: str) -> lis
     value = explanation.value
     if not explanation.hops or value is None or value.value is None:
         return [Sentences([f"Its single hops are not known: {explanation.reason}."])]
-    rows = [_row_of_hops(hop) for hop in explanation.hops]
-    if explanation.overwritten:
-        rows.append(("until overwritten", "", "", "", "", "", time_text(explanation.overwritten), ""))
-    titles = ("process", ">job", ">release", ">start", ">read", ">write", ">wait", ">run")
     notes = [f"{explanation.route}.", f"{value.claim}: {value.method} ({value.source})."]
     if value.claim is Claim.BOUND:
         notes.append("Each read is as early and each write as late as possible, which need not occur in one run.")
     return [
         Figure(name, draw_hops(explanation, limit)),
-        table(f"Hops of {explanation.chain.name}; times are relative to the first read", titles, rows),
+        hops(explanation),
         Sentences(notes),
     ]
 
@@ -85,20 +86,6 @@ def _limit(chain: str, quantity: LatencyQuantity, content: ReportContent) -> Tim
     return min((each.limit for each in limits if each.limit is not None), default=None)
 
 
-def _row_of_hops(hop: ProcessHop) -> tuple[str, ...]:
-    return (
-        hop.process,
-        "-" if hop.job is None else f"{hop.job:,}",
-        *(_time(time) for time in (hop.release, hop.start, hop.read, hop.write, hop.wait, hop.run)),
-    )
-
-
-def _time(time: Time | None) -> str:
-    return "-" if time is None else time_text(time)
-
-
-#: Further changes shorten the latency less.
-_MOST = 5
 #: Each change is analysed: in larger systems that takes longer than the rest of the report.
 MOST_RUNNABLES, MOST_PROCESSES = 300, 100
 
@@ -109,15 +96,9 @@ def _shortened(content: ReportContent, chain: str, quantity: LatencyQuantity) ->
     if len(software.runnables) > MOST_RUNNABLES or len(content.system.processes) > MOST_PROCESSES:
         return Sentences([f"The system is large; amuros analyze --explain {chain} also tries what would shorten the latency."])
     found = improvements(_analyzed(content), chain, quantity)
-    tried = f"{counted(found.tried, 'change')} analysed, one at a time"
-    if found.untried:
-        tried += f"; {found.untried:,} more were not tried"
-    rows = [_row_of_changes(each) for each in found.best(_MOST)]
-    if not rows:
-        return Sentences([f"No single change shortens it: {tried}."])
-    titles = ("change", ">before", ">after", "claim", "what gets worse")
-    changes = table(f"Changes that shorten the latency of {chain}", titles, rows)
-    return Folded("What would shorten it", [changes, Sentences([f"{tried}."])])
+    if not found.found:
+        return Sentences([f"No single change shortens it: {tried(found)}."])
+    return Folded("What would shorten it", [changes(found), Sentences([f"{tried(found)}."])])
 
 
 def _analyzed(content: ReportContent) -> AnalysisResult:
@@ -126,11 +107,6 @@ def _analyzed(content: ReportContent) -> AnalysisResult:
     return AnalysisResult(
         paths=(), task_periods=periods, system=system, settings=settings, analysis=content.analysis, findings=()
     )
-
-
-def _row_of_changes(improvement: Improvement) -> tuple[Cell, ...]:
-    worse = "; ".join(f"{each.name}: {each.before} to {each.after}" for each in improvement.drawbacks)
-    return (improvement.change.text, at_most(improvement.before), at_most(improvement.after), str(improvement.claim), worse)
 
 
 #: Chains whose ways are drawn, rows of a chart, and charts that are seen at once.
@@ -170,42 +146,31 @@ def _charts(content: ReportContent) -> Iterator[Callable[[], str]]:
 _MOST_CHAINS_OF_HISTOGRAMS, _MOST_PROCESSES = 3, 3
 
 
-@dataclass(frozen=True, slots=True)
-class _Distribution:
-    """Observed values of a process or chain, and what they are compared with."""
-
-    of: str
-    quantity: str
-    observed: MetricObservation
-    marks: Sequence[Mark]
-
-
 def histogram_section(content: ReportContent) -> Section | None:
     """Those of the worst chains; those of the tightest tasks are folded if there are chains."""
     if content.simulation is None:
         return None
     simulation = content.simulation
-    chains = [_block(simulation, each, f"histogram-{number}") for number, each in enumerate(_chains(content))]
-    tasks = [_block(simulation, each, f"histogram-of-task-{number}") for number, each in enumerate(_processes(content))]
+    chains = [_block(simulation, f"histogram-{number}", *each) for number, each in enumerate(_chains(content))]
+    tasks = [_block(simulation, f"histogram-of-task-{number}", *each) for number, each in enumerate(_processes(content))]
     title = "Response times of the tasks that are closest to their limits"
     blocks = [*chains, Folded(title, tasks)] if chains and tasks else [*chains, *tasks]
     lead = "How often each time was observed; the bound of the analysis is never exceeded, the limit must not be."
     return Section("histograms", "Distributions of observed times", lead, blocks) if blocks else None
 
 
-def _block(simulation: SimulationResult, shown: _Distribution, name: str) -> Block:
+def _block(
+    simulation: SimulationResult, name: str, of: str, quantity: str, observed: MetricObservation, marks: Sequence[Mark]
+) -> Block:
     """A histogram; a sentence for values that are all in the same bin."""
-    observed = shown.observed
     if observed.histogram is not None and sum(count > 0 for count in observed.histogram.counts) > 1:
-        return Figure(name, histogram_picture(simulation, f"{shown.of}.{shown.quantity}", shown.marks))
+        return Figure(name, histogram_picture(simulation, f"{of}.{quantity}", marks))
     least, most = at_least(observed.min), at_most(observed.max)
     values = least if least == most else f"{least} to {most}"
-    return Sentences(
-        [f"The {shown.quantity.replace('_', ' ')} of {shown.of} was {values} in all {observed.count:,} observations."]
-    )
+    return Sentences([f"The {words(quantity)} of {of} was {values} in all {observed.count:,} observations."])
 
 
-def _chains(content: ReportContent) -> Iterator[_Distribution]:
+def _chains(content: ReportContent) -> Iterator[tuple[str, str, MetricObservation, Sequence[Mark]]]:
     assert content.simulation is not None
     quantity = ChainQuantity.REDUCED_REACTION_TIME
     observed = content.simulation.simulation.chains
@@ -219,18 +184,18 @@ def _chains(content: ReportContent) -> Iterator[_Distribution]:
         value = chain.value(LatencyQuantity.MAX_REDUCED_REACTION_TIME)
         if value is not None and value.value is not None:
             marks.append(Mark("worst case", value.value, MarkKind.BOUND))
-        yield _Distribution(chain.name, quantity, observed[chain.name].quantities[quantity], marks)
+        yield chain.name, quantity, observed[chain.name].quantities[quantity], marks
 
 
-def _processes(content: ReportContent) -> Iterator[_Distribution]:
+def _processes(content: ReportContent) -> Iterator[tuple[str, str, MetricObservation, Sequence[Mark]]]:
     assert content.simulation is not None
     # Without those that are not simulated.
     simulated = {each.name: each for each in content.simulation.simulation.processes}
-    names = [row.item.name if isinstance(row.item, ProcessResult) else row.item.object for row in judged_rows(content.analysis)]
-    found = [simulated[name] for name in dict.fromkeys(names) if name in simulated]
+    names = dict.fromkeys(map(concerned, judged_items(content.analysis)))
+    found = [simulated[name] for name in names if name in simulated]
     for each in [each for each in found if each.response_time is not None][:_MOST_PROCESSES]:
         assert each.response_time is not None
         response = content.analysis.processes[each.name].response
         worst = response.worst if response is not None else None
         marks = [] if worst is None else [Mark("worst case", worst, MarkKind.BOUND)]
-        yield _Distribution(each.name, JobMetric.RESPONSE_TIME, each.response_time, marks)
+        yield each.name, JobMetric.RESPONSE_TIME, each.response_time, marks

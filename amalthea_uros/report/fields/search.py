@@ -10,10 +10,9 @@ from amalthea_uros.design.optimize.problem import DesignEvaluation, Goal
 from amalthea_uros.design.optimize.quantities import Amount, AmountKind, Range, dimension
 from amalthea_uros.design.proposals import DesignProposal, LimitRow
 from amalthea_uros.judge.summary import Schedulable
-from amalthea_uros.report import optimized
+from amalthea_uros.report.documents.search import optimization_line, sweep_line
 from amalthea_uros.report.fields.analysis import summary_json
 from amalthea_uros.report.fields.declaration import ALSO, declare, json_of
-from amalthea_uros.report.text.sweep_result import closing_line
 from amalthea_uros.report.wording.findings import joined
 from amalthea_uros.services.optimize import Optimization
 from amalthea_uros.services.sweep import SweepResult
@@ -129,7 +128,7 @@ declare(
     ("not_allowed", "search.broken"),
     ("feasible", lambda result: len(result.search.best)),
     ("undecided", "search.undecided"),
-    ("text", optimized.closing_line),
+    ("text", optimization_line),
 )
 declare(
     LimitRow,
@@ -162,7 +161,7 @@ declare(
             "not_schedulable": len(result.with_verdict(Schedulable.NO)),
             "unknown": len(result.with_verdict(Schedulable.UNKNOWN)),
             "failed": len(result.failed),
-            "text": closing_line(result),
+            "text": sweep_line(result),
         },
     ),
 )

@@ -5,10 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from amalthea_uros.judge.causes import distinct
-from amalthea_uros.report.documents.simulation import closing_line
+from amalthea_uros.report.documents.simulation import campaign_line, closing_line
 from amalthea_uros.report.fields.changes import CHANGED
 from amalthea_uros.report.fields.declaration import ALSO, declare, fields_of, given, json_of
-from amalthea_uros.report.text.campaign_result import closing_line as closing_line_of_runs
 from amalthea_uros.report.wording.findings import joined
 from amalthea_uros.services.simulate import CampaignResult, SimulationResult
 from amalthea_uros.simulate.observations import (
@@ -131,7 +130,7 @@ declare(
             "failed": len(result.failed),
             "incomplete": len(result.incomplete),
             "not_observed": len(result.not_observed),
-            "text": closing_line_of_runs(result),
+            "text": campaign_line(result),
         },
     ),
 )

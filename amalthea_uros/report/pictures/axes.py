@@ -8,7 +8,19 @@ from fractions import Fraction
 from itertools import count
 
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.report.pictures.svg import MARGIN, SMALL_SIZE, Markup, element, joined, number, text, text_width
+from amalthea_uros.report.pictures.page import levels, turned
+from amalthea_uros.report.pictures.svg import (
+    SMALL_SIZE,
+    Markup,
+    element,
+    horizontal,
+    joined,
+    number,
+    path_of,
+    text_at,
+    text_width,
+    vertical,
+)
 from amalthea_uros.units import MICROSECOND, MILLISECOND, NANOSECOND, PICOSECOND, SECOND, Time, number_text, time_text
 
 _UNITS = (("s", SECOND), ("ms", MILLISECOND), ("us", MICROSECOND), ("ns", NANOSECOND), ("ps", PICOSECOND))
@@ -141,25 +153,23 @@ class TimeAxis:
 
 def draw_grid(axis: TimeAxis, top: float, bottom: float) -> Markup:
     """Vertical lines at the ticks."""
-    lines = "".join(f"M{number(axis.x(time))} {number(top)}V{number(bottom)}" for time in axis.ticks)
-    return element("path", class_="grid", d=lines)
+    lines = "".join(vertical(axis.x(time), top, bottom) for time in axis.ticks)
+    return path_of("grid", lines)
 
 
 def draw_time_axis(axis: TimeAxis, y: float, quantity: str) -> Markup:
     """The line, its ticks and labels, and below them what they are."""
-    parts = [element("path", class_="rule", d=f"M{number(axis.left)} {number(y)}H{number(axis.right)}")]
+    parts = [path_of("rule", horizontal(axis.left, axis.right, y))]
     for time in axis.ticks:
         x = axis.x(time)
         parts.append(element("line", class_="rule", x1=x, x2=x, y1=y, y2=y + _TICK))
-        parts.append(element("text", text(axis.label(time)), class_="small", x=x, y=y + 17, text_anchor="middle"))
+        parts.append(text_at(axis.label(time), x, y + 17, "small", anchor="middle"))
     middle = axis.left + axis.width / 2
-    parts.append(element("text", text(axis.caption(quantity)), class_="small muted", x=middle, y=y + 34, text_anchor="middle"))
+    parts.append(text_at(axis.caption(quantity), middle, y + 34, "small muted", anchor="middle"))
     return joined(parts)
 
 
 _MOST_COUNTS = 6
-#: Shares are drawn in parts of a millionth.
-MILLION = 10**6
 
 
 def count_ticks(highest: int) -> range:
@@ -168,54 +178,28 @@ def count_ticks(highest: int) -> range:
     return multiples(step, 0, -(-max(highest, 1) // step) * step)
 
 
-def count_label(count: int, *, is_share: bool) -> str:
-    """A number with separators of thousands, or a percentage."""
-    return f"{number_text(Fraction(100 * count, MILLION))} %" if is_share else f"{count:,}"
-
-
-def width_of_labels(highest: int, *, is_share: bool) -> float:
-    """The pixels that the widest label takes."""
-    return max(text_width(count_label(tick, is_share=is_share), SMALL_SIZE) for tick in count_ticks(highest))
+def width_of_counts(highest: int) -> float:
+    """The pixels that the widest label of an axis of counts takes."""
+    return max(text_width(f"{tick:,}", SMALL_SIZE) for tick in count_ticks(highest))
 
 
 @dataclass(frozen=True, slots=True)
 class CountAxis:
-    """Whole numbers from 0 to at least `highest` in the pixels from `bottom` up to `top`.
-
-    Attributes
-    ----------
-    is_share : they are millionths, and labelled as percentages
-    """
+    """Whole numbers from 0 to at least `highest` in the pixels from `bottom` up to `top`."""
 
     highest: int
     top: float
     bottom: float
-    is_share: bool
-
-    @property
-    def ticks(self) -> range:
-        """Where it has labels."""
-        return count_ticks(self.highest)
 
     def y(self, count: float) -> float:
         """The pixel of a number."""
-        return self.bottom - count / self.ticks[-1] * (self.bottom - self.top)
+        return self.bottom - count / count_ticks(self.highest)[-1] * (self.bottom - self.top)
 
 
 def draw_count_axis(axis: CountAxis, left: float, right: float, quantity: str) -> Markup:
     """Horizontal lines at the ticks, their labels, and beside these what they are."""
-    parts = []
-    for tick in axis.ticks:
-        y = axis.y(tick)
-        parts.append(element("path", class_="grid", d=f"M{number(left)} {number(y)}H{number(right)}"))
-        parts.append(
-            element(
-                "text", text(count_label(tick, is_share=axis.is_share)), class_="small", x=left - 8, y=y + 4, text_anchor="end"
-            )
-        )
-    place = f"translate({MARGIN + SMALL_SIZE} {number((axis.top + axis.bottom) / 2)}) rotate(-90)"
-    parts.append(element("text", text(quantity), class_="small muted", transform=place, text_anchor="middle"))
-    return joined(parts)
+    ticks = ((axis.y(tick), f"{tick:,}") for tick in count_ticks(axis.highest))
+    return joined((*levels(ticks, left, right), turned(quantity, axis.top, axis.bottom)))
 
 
 _CLIP = "amuros-plot"

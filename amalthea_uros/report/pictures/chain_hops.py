@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -10,25 +10,31 @@ from amalthea_uros._internal.plural import counted
 from amalthea_uros.analyze.results.explanations import ChainExplanation, ProcessHop
 from amalthea_uros.report.pictures.axes import HEIGHT, TimeAxis, draw_grid, draw_time_axis
 from amalthea_uros.report.pictures.job_rows import arrows_at, draw_activations
-from amalthea_uros.report.pictures.svg import (
+from amalthea_uros.report.pictures.page import (
     ARROW_END,
+    LIMIT,
     MARGIN,
     PALETTE,
-    SMALL_SIZE,
-    TEXT_SIZE,
     TOP,
     WIDTH,
-    LegendEntry,
+    Entry,
+    limit_line,
+    picture_of,
+    swatch,
+)
+from amalthea_uros.report.pictures.svg import (
+    SMALL_SIZE,
+    TEXT_SIZE,
     Markup,
-    document,
-    draw_legend,
-    element,
     elided,
+    horizontal,
     joined,
-    number,
-    text,
+    path_of,
+    rect_at,
+    text_at,
     text_width,
-    tooltip,
+    tipped,
+    vertical,
 )
 from amalthea_uros.timing.response import Claim
 from amalthea_uros.units import Time, time_text
@@ -71,7 +77,6 @@ def draw_hops(explanation: ChainExplanation, limit: Time | None = None) -> Marku
     lanes = _lanes(hops)
     axis = _axis(explanation, lanes, limit)
     bottom = lanes[-1].top + _LANE + (_LANE if explanation.overwritten else 0) + _GAP
-    legend, height = draw_legend(_legend(explanation, lanes, limit), _notes(explanation), bottom + HEIGHT + _GAP)
     body = (
         draw_grid(axis, TOP + _HEAD, bottom),
         *(_labels(lane, axis) for lane in lanes),
@@ -80,9 +85,9 @@ def draw_hops(explanation: ChainExplanation, limit: Time | None = None) -> Marku
         _overwriting(explanation.overwritten, lanes[-1], axis),
         _total(explanation.value.value, limit, lanes[0].begin, axis, bottom),
         draw_time_axis(axis, bottom, "time since the first read"),
-        legend,
     )
-    return document(title, _subtitle(explanation, explanation.value.value, limit), body, height + MARGIN)
+    subtitle = _subtitle(explanation, explanation.value.value, limit)
+    return picture_of(title, subtitle, body, bottom + HEIGHT + _GAP, _legend(lanes, explanation, limit), _notes(explanation))
 
 
 def _lanes(hops: Sequence[ProcessHop]) -> list[_Lane]:
@@ -113,11 +118,9 @@ def _details(hop: ProcessHop) -> str:
 
 def _labels(lane: _Lane, axis: TimeAxis) -> Markup:
     room = axis.left - MARGIN - _GAP
-    name = element("text", text(elided(lane.hop.process, TEXT_SIZE, room)), x=MARGIN, y=lane.base - 15)
+    name = text_at(lane.hop.process, MARGIN, lane.base - 15, room=room)
     details = elided(_details(lane.hop), SMALL_SIZE, room)
-    return element(
-        "g", tooltip(_description(lane.hop)), name, element("text", text(details), class_="small muted", x=MARGIN, y=lane.base)
-    )
+    return tipped(_description(lane.hop), name, text_at(details, MARGIN, lane.base, "small muted"))
 
 
 def _description(hop: ProcessHop) -> str:
@@ -137,25 +140,23 @@ def _boxes(lane: _Lane, axis: TimeAxis) -> Markup:
     hop, top = lane.hop, lane.base - _BOX
     wait = (axis.x(lane.begin), axis.x(hop.read))
     run = (axis.x(min(hop.read, hop.write)), axis.x(max(hop.read, hop.write)))
-    line = element("path", class_="rule", d=f"M{number(axis.left)} {number(lane.base)}H{number(axis.right)}")
+    line = path_of("rule", horizontal(axis.left, axis.right, lane.base))
     parts = [line, draw_activations(arrows_at([hop.release], axis), top - 14, top)]
     if hop.wait > 0:
         parts.append(_box(*wait, top + 4, _BOX - 4, lane.colour, is_pale=True))
     parts.append(_box(run[0], max(run[1], run[0] + _NARROWEST), top, _BOX, lane.colour, is_pale=False))
-    return element("g", tooltip(_description(hop)), joined(parts))
+    return tipped(_description(hop), joined(parts))
 
 
 def _box(left: float, right: float, top: float, height: float, colour: int, *, is_pale: bool) -> Markup:
     look = {"fill_opacity": ".22"} if is_pale else {}
-    return element("rect", class_=f"c{colour}", x=left, y=top, width=right - left, height=height, **look)
+    return rect_at(f"c{colour}", left, top, right - left, height, **look)
 
 
 def _passing_on(before: _Lane, lane: _Lane, axis: TimeAxis) -> Markup:
     """An arrow from the write of a job to the lane of the job that reads it."""
     x = axis.x(before.hop.write)
-    return element(
-        "path", class_="line", d=f"M{number(x)} {number(before.base)}V{number(lane.base - _BOX + 3)}", marker_end=ARROW_END
-    )
+    return path_of("line", vertical(x, before.base, lane.base - _BOX + 3), marker_end=ARROW_END)
 
 
 def _overwriting(overwritten: Time, last: _Lane, axis: TimeAxis) -> Markup:
@@ -163,8 +164,8 @@ def _overwriting(overwritten: Time, last: _Lane, axis: TimeAxis) -> Markup:
         return Markup("")
     left, right = axis.x(last.hop.write), axis.x(last.hop.write + overwritten)
     base = last.base + _LANE
-    shown = elided(f"output is overwritten after {time_text(overwritten)}", SMALL_SIZE, axis.left - MARGIN - _GAP)
-    label = element("text", text(shown), class_="small muted", x=MARGIN, y=base)
+    sentence = f"output is overwritten after {time_text(overwritten)}"
+    label = text_at(sentence, MARGIN, base, "small muted", room=axis.left - MARGIN - _GAP)
     return joined((label, _box(left, right, base - _BOX + 4, _BOX - 4, last.colour, is_pale=True)))
 
 
@@ -172,40 +173,27 @@ def _total(value: Time, limit: Time | None, begin: Time, axis: TimeAxis, bottom:
     """The latency as a dimension line above all lanes, and the limit as a line through them."""
     y = TOP + 20
     left, right = axis.x(begin), axis.x(begin + value)
-    ends = "".join(f"M{number(x)} {y - 5}V{number(bottom)}" for x in (left, right))
     label = time_text(value)
     half = text_width(label, TEXT_SIZE) / 2
     middle = min(max((left + right) / 2, axis.left + half), axis.right - half)
     parts = [
-        element("path", class_="instant", d=ends),
-        element("path", class_="line", d=f"M{number(left)} {y}H{number(right)}"),
-        element("text", text(label), class_="header", x=middle, y=y - 7, text_anchor="middle"),
+        path_of("instant", vertical(left, y - 5, bottom) + vertical(right, y - 5, bottom)),
+        path_of("line", horizontal(left, right, y)),
+        text_at(label, middle, y - 7, "header", anchor="middle"),
     ]
     if limit is not None:
-        x = axis.x(begin + limit)
-        parts.append(element("path", class_="alert", stroke_dasharray="6 3", d=f"M{number(x)} {y + 4}V{number(bottom)}"))
+        parts.append(limit_line(vertical(axis.x(begin + limit), y + 4, bottom)))
     return joined(parts)
 
 
-def _legend(explanation: ChainExplanation, lanes: Sequence[_Lane], limit: Time | None) -> list[LegendEntry]:
-    waits = any(lane.hop.wait > 0 for lane in lanes) or bool(explanation.overwritten)
-    key = element("path", class_="line", d="M-6 -8V8", marker_end=ARROW_END)
-    entries = (
-        (waits, element("rect", class_="c0", fill_opacity=".22", x=-9, y=-5, width=18, height=10), "data wait"),
-        (True, element("rect", class_="c0", x=-9, y=-6, width=18, height=12), "from the read to the write of a job"),
-        (len(lanes) > 1, key, "data are passed on"),
-        (
-            any(lane.hop.release is not None for lane in lanes),
-            draw_activations(arrows_at([0], TimeAxis(-1, 1, -1, 2)), -7, 7),
-            "release of the job",
-        ),
-        (
-            limit is not None,
-            element("path", class_="alert", stroke_dasharray="6 3", d="M-9 0H9"),
-            f"limit {time_text(limit or 0)}",
-        ),
-    )
-    return [LegendEntry(drawn, meaning) for is_shown, drawn, meaning in entries if is_shown]
+def _legend(lanes: Sequence[_Lane], explanation: ChainExplanation, limit: Time | None) -> Iterator[Entry]:
+    is_waiting = any(lane.hop.wait > 0 for lane in lanes) or explanation.overwritten
+    yield is_waiting, swatch("c0", 10, fill_opacity=".22"), "data wait"
+    yield True, swatch("c0"), "from the read to the write of a job"
+    yield len(lanes) > 1, path_of("line", "M-6 -8V8", marker_end=ARROW_END), "data are passed on"
+    is_released = any(lane.hop.release is not None for lane in lanes)
+    yield is_released, draw_activations(arrows_at([0], TimeAxis(-1, 1, -1, 2)), -7, 7), "release of the job"
+    yield limit is not None, LIMIT, f"limit {time_text(limit or 0)}"
 
 
 def _notes(explanation: ChainExplanation) -> list[str]:
@@ -230,6 +218,5 @@ def _nothing(title: str, explanation: ChainExplanation) -> Markup:
     """A picture that says why there are no hops."""
     value = explanation.value
     total = "unknown" if value is None or value.value is None else f"{time_text(value.value)} ({value.claim})"
-    reason = elided(f"no single hops: {explanation.reason}", TEXT_SIZE, WIDTH - 2 * MARGIN)
-    body = (element("text", tooltip(explanation.reason), text(reason), class_="muted", x=MARGIN, y=TOP + 20),)
-    return document(title, total, body, TOP + 40)
+    reason = text_at(f"no single hops: {explanation.reason}", MARGIN, TOP + 20, "muted", room=WIDTH - 2 * MARGIN)
+    return picture_of(title, total, [tipped(explanation.reason, reason)], TOP + 24)

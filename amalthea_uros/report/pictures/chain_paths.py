@@ -8,17 +8,20 @@ from itertools import pairwise
 from math import hypot
 
 from amalthea_uros.report.pictures.axes import TimeAxis
+from amalthea_uros.report.pictures.page import ARROW_END
 from amalthea_uros.report.pictures.svg import (
-    ARROW_END,
     TEXT_SIZE,
     Markup,
     element,
     elided,
+    horizontal,
     joined,
     number,
-    text,
+    path_of,
+    text_at,
     text_width,
-    tooltip,
+    tipped,
+    vertical,
 )
 from amalthea_uros.units import Time, time_text
 
@@ -80,14 +83,10 @@ def draw_path(path: DrawnPath, index: int, axis: TimeAxis, lane: float, middles:
         for time, point in zip((start, end), (points[:1] + points[-1:]), strict=False)
         if axis.has(time)
     ]
-    parts = [_extension(x, y - _TICK, bottom) for x, bottom in extensions]
+    parts = [path_of("rule", vertical(x, y - _TICK, bottom), stroke_dasharray="1.5 3") for x, bottom in extensions]
     parts += [_segment(*ends, dash) for ends in pairwise(points)]
     parts += [element("circle", class_="line paper", cx=x, cy=height, r=_RADIUS) for x, height in points]
-    return element("g", tooltip(_description(path)), joined(parts), _dimension(path, axis, y, dash))
-
-
-def _extension(x: float, top: float, bottom: float) -> Markup:
-    return element("path", class_="rule", stroke_dasharray="1.5 3", d=f"M{number(x)} {number(top)}V{number(bottom)}")
+    return tipped(_description(path), joined(parts), _dimension(path, axis, y, dash))
 
 
 def _segment(begin: tuple[float, float], end: tuple[float, float], dash: str) -> Markup:
@@ -97,26 +96,21 @@ def _segment(begin: tuple[float, float], end: tuple[float, float], dash: str) ->
         return Markup("")
     inset_x, inset_y = ((end[axis] - begin[axis]) * (_RADIUS + 1) / length for axis in (0, 1))
     ends = f"M{number(begin[0] + inset_x)} {number(begin[1] + inset_y)}L{number(end[0] - inset_x)} {number(end[1] - inset_y)}"
-    line = element("path", class_="line", d=ends, stroke_dasharray=dash, marker_end=ARROW_END)
-    return joined((element("path", class_="halo", d=ends), line))
+    line = path_of("line", ends, stroke_dasharray=dash, marker_end=ARROW_END)
+    return joined((path_of("halo", ends), line))
 
 
 def _dimension(path: DrawnPath, axis: TimeAxis, y: float, dash: str) -> Markup:
     start, end = path.ends
     left, right = axis.x(axis.clipped(start)), axis.x(axis.clipped(end))
-    ticks = "".join(f"M{number(axis.x(time))} {number(y - _TICK)}v{2 * _TICK}" for time in (start, end) if axis.has(time))
+    ticks = "".join(vertical(axis.x(time), y - _TICK, y + _TICK) for time in (start, end) if axis.has(time))
     latency = time_text(end - start)
     name = elided(path.name, TEXT_SIZE, axis.width - text_width(f": {latency}", TEXT_SIZE))
     label = f"{name}: {latency}"
     half = text_width(label, TEXT_SIZE) / 2
     middle = min(max((left + right) / 2, axis.left + half), axis.right - half)
-    return joined(
-        (
-            element("path", class_="line", d=f"M{number(left)} {number(y)}H{number(right)}", stroke_dasharray=dash),
-            element("path", class_="line", d=ticks),
-            element("text", text(label), x=middle, y=y - 9, text_anchor="middle"),
-        )
-    )
+    line = path_of("line", horizontal(left, right, y), stroke_dasharray=dash)
+    return joined((line, path_of("line", ticks), text_at(label, middle, y - 9, anchor="middle")))
 
 
 def _description(path: DrawnPath) -> str:

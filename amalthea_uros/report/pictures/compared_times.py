@@ -9,22 +9,18 @@ from math import ceil, floor
 
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.report.pictures.axes import TimeAxis, draw_time_axis
+from amalthea_uros.report.pictures.page import MARGIN, TOP, WIDTH, Entry, nothing, picture_of, swatch
 from amalthea_uros.report.pictures.svg import (
-    MARGIN,
-    SMALL_SIZE,
-    TEXT_SIZE,
-    TOP,
-    WIDTH,
-    LegendEntry,
     Markup,
-    document,
-    draw_legend,
     element,
-    elided,
+    horizontal,
     joined,
     number,
-    text,
-    tooltip,
+    path_of,
+    rect_at,
+    text_at,
+    tipped,
+    vertical,
 )
 from amalthea_uros.units import MICROSECOND, Time, time_text
 
@@ -81,11 +77,9 @@ def compared_times(title: str, subtitle: str, quantities: Sequence[ComparedQuant
     hidden : number of quantities that are not drawn
     """
     bottom = TOP + _ROW * max(len(quantities), 1)
-    nothing = element("text", text("nothing was compared"), class_="muted", x=MARGIN, y=TOP + 20)
     notes = [f"{counted(hidden, 'other quantity')} not shown."] if hidden else []
-    legend, height = draw_legend(_legend(quantities), notes, bottom + _GAP)
-    rows = [_row(each, TOP + _ROW * index) for index, each in enumerate(quantities)] or [nothing]
-    return document(title, subtitle, (*rows, legend), height + MARGIN)
+    rows = [_row(each, TOP + _ROW * index) for index, each in enumerate(quantities)] or [nothing("nothing was compared")]
+    return picture_of(title, subtitle, rows, bottom + _GAP, _legend(quantities), notes)
 
 
 def _row(shown: ComparedQuantity, top: float) -> Markup:
@@ -101,12 +95,11 @@ def _row(shown: ComparedQuantity, top: float) -> Markup:
         if interval is not None:
             brackets.append(_bracket(interval, style, axis, y))
             y += _LANE
-    return element(
-        "g",
-        tooltip(_description(shown)),
-        element("rect", class_="band", x=MARGIN, y=top + 1, width=WIDTH - 2 * MARGIN, height=_ROW - 4),
-        element("text", text(elided(shown.name, TEXT_SIZE, _NAME, is_bold=True)), class_="header", x=MARGIN + 6, y=top + 24),
-        element("text", text(elided(shown.quantity, SMALL_SIZE, _NAME)), class_="small muted", x=MARGIN + 6, y=top + 42),
+    return tipped(
+        _description(shown),
+        rect_at("band", MARGIN, top + 1, WIDTH - 2 * MARGIN, _ROW - 4),
+        text_at(shown.name, MARGIN + 6, top + 24, "header", room=_NAME),
+        text_at(shown.quantity, MARGIN + 6, top + 42, "small muted", room=_NAME),
         _bars(shown, axis, top + 6, base),
         *brackets,
         draw_time_axis(axis, top + _ROW - 46, shown.quantity),
@@ -138,7 +131,7 @@ def _bars(shown: ComparedQuantity, axis: TimeAxis, top: float, base: float) -> M
         height = max(count / highest * (base - top), 1.5)
         left, right = axis.x(axis.start + place * width), axis.x(axis.start + (place + 1) * width)
         bars.append(element("rect", x=left, y=base - height, width=right - left, height=height))
-    line = element("path", class_="grid", d=f"M{number(axis.left)} {number(base)}H{number(axis.right)}")
+    line = path_of("grid", horizontal(axis.left, axis.right, base))
     return joined((line, element("g", joined(bars), class_="c0 bars")))
 
 
@@ -146,34 +139,27 @@ def _bracket(interval: DrawnInterval, style: str, axis: TimeAxis, y: float) -> M
     """A line from the least to the greatest value with ticks at both, and a dot at the mean; arrows where it goes on."""
     left = axis.left if interval.low is None else max(axis.x(interval.low), axis.left)
     right = axis.right if interval.high is None else min(axis.x(interval.high), axis.right)
-    parts = [f"M{number(left)} {number(y)}H{number(right)}"]
     is_open_left = interval.low is None or interval.low < axis.start
     is_open_right = interval.high is None or interval.high > axis.end
-    parts.append(_end(left, y, is_open_left, 1))
-    parts.append(_end(right, y, is_open_right, -1))
+    line = horizontal(left, right, y) + _end(left, y, is_open_left, 1) + _end(right, y, is_open_right, -1)
     mean = Markup("")
     if interval.middle is not None:
         mean = element("circle", class_=style.replace(" steps", ""), cx=axis.x(interval.middle), cy=y, r=3, fill="none")
-    return element("g", element("path", class_=style, d="".join(parts)), mean)
+    return element("g", path_of(style, line), mean)
 
 
 def _end(x: float, y: float, is_open: bool, inward: int) -> str:
     if is_open:
         return f"M{number(x + 5 * inward)} {number(y - _TICK)}L{number(x)} {number(y)}L{number(x + 5 * inward)} {number(y + _TICK)}"
-    return f"M{number(x)} {number(y - _TICK)}v{2 * _TICK}"
+    return vertical(x, y - _TICK, y + _TICK)
 
 
 def _verdict(shown: ComparedQuantity, top: float) -> Markup:
     x = _RIGHT + _GAP
     style = "good" if shown.agrees else "alert"
     mark = f"M{number(x)} {number(top + 20)}l4 4l7 -9" if shown.agrees else f"M{number(x)} {number(top + 15)}l9 9m0 -9l-9 9"
-    return joined(
-        (
-            element("path", class_=style, d=mark),
-            element("text", text(elided(shown.verdict, TEXT_SIZE, _VERDICT - 20)), x=x + 17, y=top + 24),
-            element("text", text(elided(shown.remark, SMALL_SIZE, _VERDICT)), class_="small muted", x=x, y=top + 42),
-        )
-    )
+    verdict = text_at(shown.verdict, x + 17, top + 24, room=_VERDICT - 20)
+    return joined((path_of(style, mark), verdict, text_at(shown.remark, x, top + 42, "small muted", room=_VERDICT)))
 
 
 def _description(shown: ComparedQuantity) -> str:
@@ -188,16 +174,11 @@ def _interval_text(interval: DrawnInterval) -> str:
     return f"{low} to {high}"
 
 
-def _legend(quantities: Sequence[ComparedQuantity]) -> list[LegendEntry]:
+def _legend(quantities: Sequence[ComparedQuantity]) -> list[Entry]:
     bracket = "M-9 0H9M-9 -4v8M9 -4v8"
-    entries = (
-        (
-            any(each.values for each in quantities),
-            element("rect", class_="c0 bars", x=-9, y=-6, width=18, height=12),
-            "measured",
-        ),
-        (any(not each.values for each in quantities), element("path", class_="mark", d=bracket), "measured, min to max"),
-        (any(each.simulated for each in quantities), element("path", class_="t1 steps", d=bracket), "simulated, with mean"),
-        (any(each.bounds for each in quantities), element("path", class_="bound", d=bracket), "bounds of the analysis"),
-    )
-    return [LegendEntry(key, meaning) for is_shown, key, meaning in entries if is_shown]
+    return [
+        (any(each.values for each in quantities), swatch("c0 bars"), "measured"),
+        (any(not each.values for each in quantities), path_of("mark", bracket), "measured, min to max"),
+        (any(each.simulated for each in quantities), path_of("t1 steps", bracket), "simulated, with mean"),
+        (any(each.bounds for each in quantities), path_of("bound", bracket), "bounds of the analysis"),
+    ]

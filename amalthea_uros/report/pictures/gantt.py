@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -36,24 +36,19 @@ from amalthea_uros.report.pictures.job_rows import (
     lay_out,
 )
 from amalthea_uros.report.pictures.jobs import CoreRows, ProcessRow, State
+from amalthea_uros.report.pictures.page import ARROW_END, MARGIN, TOP, WIDTH, Entry, nothing, picture_of, state_look, swatch
 from amalthea_uros.report.pictures.svg import (
-    ARROW_END,
-    MARGIN,
     TEXT_SIZE,
-    TOP,
-    WIDTH,
-    LegendEntry,
     Markup,
-    document,
-    draw_legend,
     element,
-    elided,
+    horizontal,
     joined,
-    number,
-    state_look,
-    text,
+    path_of,
+    rect_at,
+    text_at,
     text_width,
-    tooltip,
+    tipped,
+    vertical,
 )
 from amalthea_uros.units import Time, time_text
 
@@ -70,55 +65,34 @@ _ONE = Arrows(((0.0, 1),))
 _LOWER, _UPPER = 7, -7
 
 
-def legend_entries(rows: Sequence[DrawnRow], *, has_chains: bool) -> list[LegendEntry]:
+def _legend(rows: Sequence[DrawnRow], has_chains: bool = False) -> Iterator[Entry]:
     """Entries of what the rows show."""
-    return [*state_entries({state for row in rows for state, boxes in row.boxes.items() if boxes}), *_marks(rows, has_chains)]
+    for state, meaning in _MEANINGS.items():
+        height = _HEIGHTS.get(state, 9)
+        key = element("rect", x=-9, y=6 - height, width=18, height=height, **state_look(state, 0))
+        yield any(row.boxes[state] for row in rows), key, meaning
+    yield any(row.activations.places for row in rows), draw_activations(_ONE, _UPPER, _LOWER), "activation"
+    yield any(row.deadlines.places for row in rows), draw_deadlines(_ONE, _UPPER, _LOWER, are_missed=False), "deadline"
+    yield any(row.missed.places for row in rows), draw_deadlines(_ONE, _UPPER, _LOWER, are_missed=True), "missed deadline"
+    yield any(row.late for row in rows), swatch("late", 4), "late, after the deadline"
+    yield any(row.lost.places for row in rows), draw_lost(_ONE, _UPPER, _LOWER), "lost activation"
+    runnable = element("rect", x=-9, y=-6, width=18, height=12, **state_look(State.RUNNING, 0))
+    yield any(row.runnables for row in rows), Markup(runnable + rect_at("label", -6, -3, 12, 6, rx=2)), "runnable"
+    path = path_of("line", "M-5 0H9", marker_end=ARROW_END) + element("circle", class_="line paper", cx=-6, cy=0, r=3)
+    yield has_chains, Markup(path), "way of a chain, and its latency"
 
 
-def state_entries(states: set[State]) -> list[LegendEntry]:
-    """Entries of the states."""
-    return [LegendEntry(_state_key(state), meaning) for state, meaning in _MEANINGS.items() if state in states]
-
-
-def _state_key(state: State) -> Markup:
-    height = _HEIGHTS.get(state, 9)
-    return element("rect", x=-9, y=6 - height, width=18, height=height, **state_look(state, 0))
-
-
-def _marks(rows: Sequence[DrawnRow], has_chains: bool) -> Iterable[LegendEntry]:
-    if any(row.activations.places for row in rows):
-        yield LegendEntry(draw_activations(_ONE, _UPPER, _LOWER), "activation")
-    if any(row.deadlines.places for row in rows):
-        yield LegendEntry(draw_deadlines(_ONE, _UPPER, _LOWER, are_missed=False), "deadline")
-    if any(row.missed.places for row in rows):
-        yield LegendEntry(draw_deadlines(_ONE, _UPPER, _LOWER, are_missed=True), "missed deadline")
-    if any(row.late for row in rows):
-        yield LegendEntry(element("rect", class_="late", x=-9, y=-2, width=18, height=4), "late, after the deadline")
-    if any(row.lost.places for row in rows):
-        yield LegendEntry(draw_lost(_ONE, _UPPER, _LOWER), "lost activation")
-    if any(row.runnables for row in rows):
-        ground = element("rect", x=-9, y=-6, width=18, height=12, **state_look(State.RUNNING, 0))
-        yield LegendEntry(Markup(ground + element("rect", class_="label", x=-6, y=-3, width=12, height=6, rx=2)), "runnable")
-    if has_chains:
-        line = element("path", class_="line", d="M-5 0H9", marker_end=ARROW_END)
-        yield LegendEntry(
-            Markup(line + element("circle", class_="line paper", cx=-6, cy=0, r=3)), "way of a chain, and its latency"
-        )
-
-
-def legend_notes(rows: Sequence[DrawnRow], axis: TimeAxis) -> list[str]:
+def _notes(rows: Sequence[DrawnRow], axis: TimeAxis) -> list[str]:
     """What is left out for lack of room."""
     notes = []
     if any(box.count > 1 for row in rows for boxes in row.boxes.values() for box in boxes):
-        notes.append(
-            f"Boxes of less than {pixels_text(axis, NARROW)} ({NARROW} pixels) with no visible gap between them are merged, and pale."
-        )
+        narrow = f"{pixels_text(axis, NARROW)} ({NARROW} pixels)"
+        notes.append(f"Boxes of less than {narrow} with no visible gap between them are merged, and pale.")
     if any(arrows.are_merged for row in rows for arrows in (row.activations, row.deadlines, row.missed, row.lost)):
         notes.append(f"Arrows less than {pixels_text(axis, NEAR)} ({NEAR:g} pixels) apart are drawn as one.")
     if any(row.omits_runnables for row in rows):
-        notes.append(
-            f"Runnables of less than {pixels_text(axis, NARROWEST_RUNNABLE)} ({NARROWEST_RUNNABLE:g} pixels) are not shown."
-        )
+        narrow = f"{pixels_text(axis, NARROWEST_RUNNABLE)} ({NARROWEST_RUNNABLE:g} pixels)"
+        notes.append(f"Runnables of less than {narrow} are not shown.")
     return notes
 
 
@@ -130,7 +104,7 @@ def pixels_text(axis: TimeAxis, pixels: float) -> str:
 
 
 #: Pixels.
-_HEADER, _GAP_GANTT, _INDENT, _NARROWEST, _WIDEST, _RIGHT_GANTT = 26, 8, 12, 60, 230, 34
+_HEADER, _GAP, _INDENT, _NARROWEST, _WIDEST, _RIGHT = 26, 8, 12, 60, 230, 34
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,37 +135,38 @@ class GanttChart:
 def gantt(chart: GanttChart) -> str:
     """The chart as SVG."""
     axis = _axis(chart)
-    lanes = TOP
-    top = lanes + LANE * len(chart.chains)
+    top = TOP + LANE * len(chart.chains)
     headers, rows, bottom = _lay_out_rows(chart, axis, top)
     has_tooltips = sum(row.number_of_boxes for row in rows) <= MOST_TOOLTIPS
     middles = {row.row.name: row.middle for row in reversed(rows)}
-    legend, height = draw_legend(
-        legend_entries(rows, has_chains=bool(chart.chains)), legend_notes(rows, axis), bottom + HEIGHT + _GAP_GANTT
+    times = (
+        draw_grid(axis, top, bottom),
+        *(draw_row(row, axis, has_tooltips=has_tooltips) for row in rows),
+        *(draw_path(path, index, axis, TOP + LANE * index, middles) for index, path in enumerate(chart.chains)),
     )
     body = (
-        *(_band(row, axis) for row in rows[::2]),
+        *(rect_at("band", MARGIN, row.top, axis.right - MARGIN, ROW) for row in rows[::2]),
         *headers,
         *(_label(row, axis) for row in rows),
-        *drawn_times(
-            axis,
-            bottom,
-            (
-                draw_grid(axis, top, bottom),
-                *(draw_row(row, axis, has_tooltips=has_tooltips) for row in rows),
-                *(draw_path(way, index, axis, lanes + LANE * index, middles) for index, way in enumerate(chart.chains)),
-            ),
-        ),
-        legend,
+        *drawn_times(axis, bottom, times),
     )
-    return document(chart.title, _subtitle(chart, axis), body, height + MARGIN, WIDTH, **zoom_attributes(axis, bottom))
+    return picture_of(
+        chart.title,
+        _subtitle(chart, axis),
+        body,
+        bottom + HEIGHT + _GAP,
+        _legend(rows, bool(chart.chains)),
+        _notes(rows, axis),
+        WIDTH,
+        **zoom_attributes(axis, bottom),
+    )
 
 
 def _axis(chart: GanttChart) -> TimeAxis:
     names = [row.name for core in chart.cores for row in core.rows]
     widest = max((text_width(name, TEXT_SIZE) for name in names), default=0)
-    left = MARGIN + _INDENT + min(max(widest, _NARROWEST), _WIDEST) + _GAP_GANTT
-    return TimeAxis(chart.start, chart.end, left, WIDTH - _RIGHT_GANTT - left)
+    left = MARGIN + _INDENT + min(max(widest, _NARROWEST), _WIDEST) + _GAP
+    return TimeAxis(chart.start, chart.end, left, WIDTH - _RIGHT - left)
 
 
 def _lay_out_rows(chart: GanttChart, axis: TimeAxis, top: float) -> tuple[list[Markup], list[DrawnRow], float]:
@@ -200,26 +175,21 @@ def _lay_out_rows(chart: GanttChart, axis: TimeAxis, top: float) -> tuple[list[M
     rows: list[DrawnRow] = []
     y = top
     for core in chart.cores:
-        name = elided(core.name, TEXT_SIZE, WIDTH - 2 * MARGIN, is_bold=True)
-        headers.append(element("text", tooltip(core.name), text(name), class_="header", x=MARGIN, y=y + _HEADER - 8))
+        header = text_at(core.name, MARGIN, y + _HEADER - 8, "header", room=WIDTH - 2 * MARGIN)
+        headers.append(tipped(core.name, header))
         y += _HEADER
         for row in core.rows:
             rows.append(lay_out(row, len(rows), y, axis))
             y += ROW
     if not rows:
-        message = element("text", text("no process in this window"), class_="muted", x=MARGIN, y=y + BASE)
-        headers, y = [*headers, message], y + ROW
-    return headers, rows, y + _GAP_GANTT
-
-
-def _band(row: DrawnRow, axis: TimeAxis) -> Markup:
-    return element("rect", class_="band", x=MARGIN, y=row.top, width=axis.right - MARGIN, height=ROW)
+        headers, y = [*headers, nothing("no process in this window", y + BASE)], y + ROW
+    return headers, rows, y + _GAP
 
 
 def _label(row: DrawnRow, axis: TimeAxis) -> Markup:
     name = row.row.name
-    shown = elided(name, TEXT_SIZE, axis.left - MARGIN - _INDENT - _GAP_GANTT)
-    return element("text", tooltip(name), text(shown), x=MARGIN + _INDENT, y=row.top + BASE - 6)
+    room = axis.left - MARGIN - _INDENT - _GAP
+    return tipped(name, text_at(name, MARGIN + _INDENT, row.top + BASE - 6, room=room))
 
 
 def _subtitle(chart: GanttChart, axis: TimeAxis) -> str:
@@ -236,7 +206,7 @@ def _subtitle(chart: GanttChart, axis: TimeAxis) -> str:
 
 
 #: Pixels.
-_TIMELINE_LEFT, _TIMELINE_RIGHT, _ARROWS, _LINE, _BOX, _GAP = 110, 90, 24, 28, 16, 8
+_TIMELINE_LEFT, _TIMELINE_RIGHT, _ARROWS, _LINE, _BOX = 110, 90, 24, 28, 16
 
 
 @dataclass(frozen=True, slots=True)
@@ -265,60 +235,46 @@ def state_timeline(timeline: StateTimeline) -> str:
     tops = {state: TOP + _ARROWS + _LINE * index for index, state in enumerate(states)}
     bottom = TOP + _ARROWS + _LINE * max(len(states), 1) + _GAP
     has_tooltips = row.number_of_boxes <= MOST_TOOLTIPS
-    legend, height = draw_legend(legend_entries([row], has_chains=False), legend_notes([row], axis), bottom + HEIGHT + _GAP)
+    arrows = TOP, TOP + _ARROWS - 4
+    none = text_at("no job in this window", _TIMELINE_LEFT + _GAP, TOP + _ARROWS + 18, "muted")
     body = (
         draw_grid(axis, TOP + _ARROWS, bottom),
-        _timeline_heading(axis) if states else _no_job(),
+        text_at("of window", WIDTH - MARGIN, TOP + _ARROWS - 6, "small muted", anchor="end") if states else none,
         draw_instants((row.activations, row.deadlines), TOP + _ARROWS, bottom),
         _transitions(timeline.process, axis, tops) if has_tooltips else Markup(""),
         *(_state_line(row, state, top, axis, has_tooltips) for state, top in tops.items()),
-        draw_deadlines(row.deadlines, TOP, TOP + _ARROWS - 4, are_missed=False),
-        draw_activations(row.activations, TOP, TOP + _ARROWS - 4),
-        draw_deadlines(row.missed, TOP, TOP + _ARROWS - 4, are_missed=True),
-        draw_lost(row.lost, TOP, TOP + _ARROWS - 4),
+        draw_deadlines(row.deadlines, *arrows, are_missed=False),
+        draw_activations(row.activations, *arrows),
+        draw_deadlines(row.missed, *arrows, are_missed=True),
+        draw_lost(row.lost, *arrows),
         draw_time_axis(axis, bottom, "time"),
-        legend,
     )
     jobs = counted(sum(job.is_in(axis.start, axis.end) for job in timeline.process.jobs), "job")
     subtitle = f"{timeline.process.name}: {time_text(timeline.start)} to {time_text(timeline.end)}, {jobs}"
-    return document(timeline.title, subtitle, body, height + MARGIN)
-
-
-def _timeline_heading(axis: TimeAxis) -> Markup:
-    x = axis.right + _TIMELINE_RIGHT - MARGIN
-    return element("text", text("of window"), class_="small muted", x=x, y=TOP + _ARROWS - 6, text_anchor="end")
-
-
-def _no_job() -> Markup:
-    return element("text", text("no job in this window"), class_="muted", x=_TIMELINE_LEFT + _GAP, y=TOP + _ARROWS + 18)
+    return picture_of(timeline.title, subtitle, body, bottom + HEIGHT + _GAP, _legend([row]), _notes([row], axis))
 
 
 def _state_line(row: DrawnRow, state: State, top: float, axis: TimeAxis, has_tooltips: bool) -> Markup:
     base = top + (_LINE + _BOX) / 2
-    share = _time_in(row.row, state, axis) / (axis.end - axis.start)
+    spans = (span for job in row.row.jobs for span in job.spans if span.state is state)
+    share = sum(axis.clipped(span.end) - axis.clipped(span.start) for span in spans) / (axis.end - axis.start)
     return joined(
         (
-            element("path", class_="grid", d=f"M{number(axis.left)} {number(base)}H{number(axis.right)}"),
-            element("text", text(state), x=MARGIN, y=base - 4),
+            path_of("grid", horizontal(axis.left, axis.right, base)),
+            text_at(state, MARGIN, base - 4),
             draw_boxes(row.boxes[state], row.row.name, row.colour, base - _BOX, _BOX, has_tooltips=has_tooltips),
             draw_borders(row.boxes[state], base - _BOX, _BOX) if state is State.RUNNING else Markup(""),
-            element("text", text(f"{100 * share:.2f} %"), class_="small", x=WIDTH - MARGIN, y=base - 4, text_anchor="end"),
+            text_at(f"{100 * share:.2f} %", WIDTH - MARGIN, base - 4, "small", anchor="end"),
         )
-    )
-
-
-def _time_in(process: ProcessRow, state: State, axis: TimeAxis) -> Time:
-    return sum(
-        axis.clipped(span.end) - axis.clipped(span.start) for job in process.jobs for span in job.spans if span.state is state
     )
 
 
 def _transitions(process: ProcessRow, axis: TimeAxis, tops: Mapping[State, float]) -> Markup:
     """Vertical lines from each state of a job to the next."""
     path = "".join(
-        f"M{number(axis.x(after.start))} {number(tops[before.state] + _LINE / 2)}V{number(tops[after.state] + _LINE / 2)}"
+        vertical(axis.x(after.start), tops[before.state] + _LINE / 2, tops[after.state] + _LINE / 2)
         for job in process.jobs
         for before, after in pairwise(job.spans)
         if before.end == after.start and axis.has(after.start) and before.state in tops and after.state in tops
     )
-    return element("path", class_="rule", d=path) if path else Markup("")
+    return path_of("rule", path)

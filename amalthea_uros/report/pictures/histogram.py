@@ -10,31 +10,20 @@ from itertools import pairwise
 from math import ceil, floor
 
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.report.pictures.axes import (
-    HEIGHT,
-    MILLION,
-    CountAxis,
-    TimeAxis,
-    draw_count_axis,
-    draw_time_axis,
-    width_of_labels,
-)
+from amalthea_uros.report.pictures.axes import HEIGHT, CountAxis, TimeAxis, draw_count_axis, draw_time_axis, width_of_counts
+from amalthea_uros.report.pictures.page import MARGIN, TOP, WIDTH, Entry, picture_of, swatch
 from amalthea_uros.report.pictures.svg import (
-    MARGIN,
     SMALL_SIZE,
-    TOP,
-    WIDTH,
-    LegendEntry,
     Markup,
-    document,
-    draw_legend,
     element,
     elided,
     joined,
-    number,
-    text,
+    path_of,
+    text_at,
     text_width,
+    tipped,
     tooltip,
+    vertical,
 )
 from amalthea_uros.units import Time, time_text
 
@@ -116,9 +105,9 @@ def _width(label: str) -> float:
 def _drawn(flag: _Flag, top: float, bottom: float) -> Markup:
     style, dash = LINES[flag.mark.kind]
     y = top - LANE * flag.lane
-    line = element("path", class_=style, stroke_dasharray=dash, d=f"M{number(flag.x)} {number(y + 2)}V{number(bottom)}")
-    tip = tooltip(f"{flag.mark.label}: {time_text(flag.mark.time)}")
-    return element("g", tip, line, element("text", text(flag.label), class_="small", x=flag.x + _OFFSET, y=y + 12))
+    line = path_of(style, vertical(flag.x, y + 2, bottom), stroke_dasharray=dash)
+    tip = f"{flag.mark.label}: {time_text(flag.mark.time)}"
+    return tipped(tip, line, text_at(flag.label, flag.x + _OFFSET, y + 12, "small"))
 
 
 def short_time_text(time: Time | Fraction) -> str:
@@ -147,83 +136,65 @@ _MARGIN, _FEWEST_BINS = 25, 12
 
 
 @dataclass(frozen=True, slots=True)
-class HistogramSeries:
-    """How many values are in each bin; `name` says of what, such as "simulated" or "measured"."""
-
-    name: str
-    counts: tuple[int, ...]
-
-
-@dataclass(frozen=True, slots=True)
 class HistogramPicture:
     """A histogram.
 
     Attributes
     ----------
     edges : of the bins, rising; a bin has its lower edge, and the last one its upper edge as well
-    series : one, or two to compare
+    name, counts : how many values are in each bin, and of what, such as "simulated" or "measured"
     quantity : what the values are, such as "response time"
     things : what is counted, such as "jobs"
-    is_share : the bins are drawn as shares of all values of their series, to compare series of different sizes
 
     Raises
     ------
-    InvalidArgumentError : edges that do not rise, counts that do not fit to them, not one or two series.
+    InvalidArgumentError : edges that do not rise, counts that do not fit to them.
     """
 
     title: str
     edges: tuple[Time, ...]
-    series: tuple[HistogramSeries, ...]
+    name: str
+    counts: tuple[int, ...]
     marks: tuple[Mark, ...] = ()
     quantity: str = "response time"
     things: str = "jobs"
-    is_share: bool = False
 
     def __post_init__(self) -> None:
         if len(self.edges) < 2 or any(low >= high for low, high in pairwise(self.edges)):
             raise InvalidArgumentError("a histogram needs at least two edges, each greater than the one before")
-        if not 1 <= len(self.series) <= 2:
-            raise InvalidArgumentError(f"a histogram shows one or two series, not {len(self.series)}")
-        for series in self.series:
-            if len(series.counts) != len(self.edges) - 1 or min(series.counts) < 0:
-                raise InvalidArgumentError(
-                    f"{series.name!r} needs {len(self.edges) - 1} counts of at least 0, one for each bin"
-                )
+        if len(self.counts) != len(self.edges) - 1 or min(self.counts) < 0:
+            raise InvalidArgumentError(f"{self.name!r} needs {len(self.edges) - 1} counts of at least 0, one for each bin")
 
 
 def histogram(histogram: HistogramPicture) -> str:
     """The histogram as SVG; marks that are far from all values are at the edge, with an arrow."""
     drawn = _coarsened(_trimmed(histogram))
-    heights = [_heights(series, drawn.is_share) for series in drawn.series]
-    highest = max(map(max, heights))
-    left = MARGIN + SMALL_SIZE + 2 * _GAP + width_of_labels(highest, is_share=drawn.is_share)
+    highest = max(drawn.counts)
+    left = MARGIN + SMALL_SIZE + 2 * _GAP + width_of_counts(highest)
     axis = _axis(drawn, left)
     top = TOP + LANE * lanes_of(drawn.marks, axis) + _GAP
-    counts = CountAxis(highest, top, top + _PLOT, drawn.is_share)
-    legend, height = draw_legend(_legend(drawn), [], counts.bottom + HEIGHT + _GAP)
+    counts = CountAxis(highest, top, top + _PLOT)
     body = (
         draw_count_axis(counts, axis.left, axis.right, _caption(drawn)),
-        Markup("") if any(map(any, heights)) else _nothing(axis, counts),
-        _bars(drawn, heights[0], axis, counts),
-        *(_outline(drawn, other, axis, counts) for other in heights[1:]),
+        Markup("") if any(drawn.counts) else _nothing(axis, counts),
+        _bars(drawn, axis, counts),
         draw_marks(drawn.marks, axis, top - _GAP, counts.bottom),
         draw_time_axis(axis, counts.bottom, drawn.quantity),
-        legend,
     )
-    subtitle = ", ".join(f"{series.name}: {sum(series.counts):,} {drawn.things}" for series in drawn.series)
-    return document(drawn.title, subtitle, body, height + MARGIN)
+    used = {mark.kind for mark in drawn.marks}
+    entries: list[Entry] = [(True, swatch("c0 bars"), drawn.name)]
+    entries += [(kind in used, path_of(look, "M-9 0H9", stroke_dasharray=dash), kind) for kind, (look, dash) in LINES.items()]
+    subtitle = f"{drawn.name}: {sum(drawn.counts):,} {drawn.things}"
+    return picture_of(drawn.title, subtitle, body, counts.bottom + HEIGHT + _GAP, entries)
 
 
 def _trimmed(histogram: HistogramPicture) -> HistogramPicture:
     """Without empty bins at its ends."""
-    used = [
-        index for index, counts in enumerate(zip(*(series.counts for series in histogram.series), strict=True)) if any(counts)
-    ]
+    used = [index for index, count in enumerate(histogram.counts) if count]
     if not used:
         return histogram
     first, after = used[0], used[-1] + 1
-    series = tuple(HistogramSeries(series.name, series.counts[first:after]) for series in histogram.series)
-    return replace(histogram, edges=histogram.edges[first : after + 1], series=series)
+    return replace(histogram, edges=histogram.edges[first : after + 1], counts=histogram.counts[first:after])
 
 
 def _coarsened(histogram: HistogramPicture) -> HistogramPicture:
@@ -234,14 +205,10 @@ def _coarsened(histogram: HistogramPicture) -> HistogramPicture:
     before = edges[0] // (edges[1] - edges[0]) % size
     after = -(before + len(edges) - 1) % size
     start, end = edges[0] - before * (edges[1] - edges[0]), edges[-1] + after * (edges[-1] - edges[-2])
-    merged = tuple(_grouped(series, size, before) for series in histogram.series)
-    return replace(histogram, edges=(start, *edges[size - before : -1 : size], end), series=merged)
-
-
-def _grouped(series: HistogramSeries, size: int, before: int) -> HistogramSeries:
-    """Groups of so many bins; the first one begins with some that are not there."""
-    firsts = range(-before, len(series.counts), size)
-    return HistogramSeries(series.name, tuple(sum(series.counts[max(first, 0) : first + size]) for first in firsts))
+    # The first group begins with bins that are not there.
+    firsts = range(-before, len(histogram.counts), size)
+    merged = tuple(sum(histogram.counts[max(first, 0) : first + size]) for first in firsts)
+    return replace(histogram, edges=(start, *edges[size - before : -1 : size], end), counts=merged)
 
 
 def _window(histogram: HistogramPicture) -> tuple[Time, Time]:
@@ -259,40 +226,20 @@ def _axis(histogram: HistogramPicture, left: float) -> TimeAxis:
     return TimeAxis(*_window(histogram), left, WIDTH - max(_RIGHT, MARGIN + label_room(histogram.marks)) - left)
 
 
-def _heights(series: HistogramSeries, is_share: bool) -> Sequence[int]:
-    """Counts, or shares in millionths."""
-    return [count * MILLION // max(sum(series.counts), 1) for count in series.counts] if is_share else series.counts
-
-
-def _top_of(height: int, count: int, axis: CountAxis) -> float:
-    """A bin that has values is seen, however few."""
-    return min(axis.y(height), axis.bottom - _LOWEST) if count else axis.bottom
-
-
-def _bars(histogram: HistogramPicture, heights: Sequence[int], axis: TimeAxis, counts: CountAxis) -> Markup:
+def _bars(histogram: HistogramPicture, axis: TimeAxis, counts: CountAxis) -> Markup:
+    """A bar for each bin that has values; it is seen, however few these are."""
     bars = []
-    series = histogram.series[0]
-    for (low, high), count, height in zip(pairwise(histogram.edges), series.counts, heights, strict=True):
+    for (low, high), count in zip(pairwise(histogram.edges), histogram.counts, strict=True):
         if count:
-            left, right, top = axis.x(low), axis.x(high), _top_of(height, count, counts)
+            left, right, top = axis.x(low), axis.x(high), min(counts.y(count), counts.bottom - _LOWEST)
             tip = tooltip(f"{time_text(low)} to {time_text(high)}: {count:,} {histogram.things}")
             bars.append(element("rect", tip, x=left, y=top, width=right - left, height=counts.bottom - top))
     return element("g", joined(bars), class_="c0 bars")
 
 
-def _outline(histogram: HistogramPicture, heights: Sequence[int], axis: TimeAxis, counts: CountAxis) -> Markup:
-    """The second series as a line of steps around its bins."""
-    steps = "".join(
-        f"V{number(_top_of(height, count, counts))}H{number(axis.x(high))}"
-        for high, count, height in zip(histogram.edges[1:], histogram.series[1].counts, heights, strict=True)
-    )
-    begin = f"M{number(axis.x(histogram.edges[0]))} {number(counts.bottom)}"
-    return element("path", class_="t1 steps", d=f"{begin}{steps}V{number(counts.bottom)}")
-
-
 def _nothing(axis: TimeAxis, counts: CountAxis) -> Markup:
     x, y = axis.left + axis.width / 2, (counts.top + counts.bottom) / 2
-    return element("text", text("no values"), class_="muted", x=x, y=y, text_anchor="middle")
+    return text_at("no values", x, y, "muted", anchor="middle")
 
 
 def _caption(histogram: HistogramPicture) -> str:
@@ -302,21 +249,4 @@ def _caption(histogram: HistogramPicture) -> str:
         for low, high in pairwise(histogram.edges[:-1] if len(histogram.edges) > 2 else histogram.edges)
     }
     bins = f"bin of {widths.pop()}" if len(widths) == 1 else "bin"
-    return f"{'share of ' if histogram.is_share else ''}{histogram.things} per {bins}"
-
-
-def _legend(histogram: HistogramPicture) -> list[LegendEntry]:
-    keys = (
-        element("rect", class_="c0 bars", x=-9, y=-6, width=18, height=12),
-        element("path", class_="t1 steps", d="M-9 6V0H0V-5H9V6"),
-    )
-    used = {mark.kind for mark in histogram.marks}
-    return [
-        *(LegendEntry(key, series.name) for key, series in zip(keys, histogram.series, strict=False)),
-        *(LegendEntry(_line_key(kind), kind) for kind in MarkKind if kind in used),
-    ]
-
-
-def _line_key(kind: MarkKind) -> Markup:
-    style, dash = LINES[kind]
-    return element("path", class_=style, stroke_dasharray=dash, d="M-9 0H9")
+    return f"{histogram.things} per {bins}"

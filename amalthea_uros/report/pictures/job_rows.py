@@ -2,25 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from amalthea_uros.report.pictures.axes import TimeAxis
 from amalthea_uros.report.pictures.jobs import Job, ProcessRow, RunnableSpan, State, StateSpan
+from amalthea_uros.report.pictures.page import PALETTE, WIDTH, state_look
 from amalthea_uros.report.pictures.svg import (
-    PALETTE,
     SMALL_SIZE,
-    WIDTH,
     Markup,
     element,
     elided,
+    horizontal,
     joined,
     number,
-    state_look,
-    text,
+    path_of,
+    rect_at,
+    text_at,
     text_width,
+    tipped,
     tooltip,
+    vertical,
 )
 from amalthea_uros.units import Time, time_text
 
@@ -73,47 +76,40 @@ def boxes_of(row: ProcessRow, state: State, axis: TimeAxis) -> list[StateBox]:
     return found
 
 
-def _all_boxes(row: ProcessRow, state: State, axis: TimeAxis) -> Iterable[StateBox]:
+def _all_boxes(row: ProcessRow, state: State, axis: TimeAxis) -> Iterator[StateBox]:
+    """Of what shares more than an end with the window, or has no length and is in it."""
     for job in row.jobs:
         for span in job.spans:
-            if span.state is state and _is_seen(span, axis):
-                yield StateBox(axis.x(axis.clipped(span.start)), axis.x(axis.clipped(span.end)), job, span)
-
-
-def _is_seen(span: StateSpan, axis: TimeAxis) -> bool:
-    """Whether it shares more than an end with the window, or has no length and is in it."""
-    start, end = axis.clipped(span.start), axis.clipped(span.end)
-    return start < end or (span.start == span.end and axis.has(span.start))
+            start, end = axis.clipped(span.start), axis.clipped(span.end)
+            if span.state is state and (start < end or (span.start == span.end and axis.has(span.start))):
+                yield StateBox(axis.x(start), axis.x(end), job, span)
 
 
 def draw_boxes(boxes: Sequence[StateBox], process: str, colour: int, y: float, height: float, *, has_tooltips: bool) -> Markup:
     """Boxes of one state, with their upper edge at `y`; those of several spans are paler, because gaps between these are not seen."""
-    single, merged = [box for box in boxes if box.count == 1], [box for box in boxes if box.count > 1]
-    return joined(
-        (_boxes_with_tooltips(group, process, y, height, look) if has_tooltips else _plain_boxes(group, y, height, look))
-        for group, paleness in ((single, {}), (merged, {"opacity": _PALE}))
-        if group
-        for look in (state_look(group[0].span.state, colour) | paleness,)
-    )
-
-
-def _plain_boxes(boxes: Sequence[StateBox], y: float, height: float, look: Mapping[str, str]) -> Markup:
-    path = "".join(f"M{number(box.left)} {number(y)}h{number(box.width)}v{number(height)}H{number(box.left)}z" for box in boxes)
-    return element("path", **look, d=path)
-
-
-def _boxes_with_tooltips(boxes: Sequence[StateBox], process: str, y: float, height: float, look: Mapping[str, str]) -> Markup:
-    drawn = (
-        element("rect", tooltip(_description(box, process)), x=box.left, y=y, width=box.width, height=height) for box in boxes
-    )
-    return element("g", joined(drawn), **look)
+    parts = []
+    for is_merged, paleness in ((False, {}), (True, {"opacity": _PALE})):
+        found = [box for box in boxes if (box.count > 1) is is_merged]
+        if not found:
+            continue
+        look = state_look(found[0].span.state, colour) | paleness
+        if has_tooltips:
+            rects = (
+                element("rect", tooltip(_description(box, process)), x=box.left, y=y, width=box.width, height=height)
+                for box in found
+            )
+            parts.append(element("g", joined(rects), **look))
+        else:
+            ends = ((number(box.left), number(box.width)) for box in found)
+            d = "".join(f"M{left} {number(y)}h{width}v{number(height)}H{left}z" for left, width in ends)
+            parts.append(element("path", **look, d=d))
+    return joined(parts)
 
 
 def draw_borders(boxes: Sequence[StateBox], y: float, height: float) -> Markup:
     """Gaps between jobs that follow each other at once."""
     touching = [after.left for before, after in pairwise(boxes) if before.right == after.left and before.job is not after.job]
-    path = "".join(f"M{number(x)} {number(y)}v{number(height)}" for x in touching)
-    return element("path", class_="gap", d=path) if path else Markup("")
+    return path_of("gap", "".join(vertical(x, y, y + height) for x in touching))
 
 
 def _description(box: StateBox, process: str) -> str:
@@ -133,32 +129,24 @@ _INSET, _TEXT_SIZE, _SHORTEST_NAME = 4.0, 10, 3
 def shown_runnables(jobs: Sequence[Job], axis: TimeAxis) -> tuple[list[RunnableSpan], bool]:
     """Those in the window that are wide enough, and whether there are others."""
     found = [span for job in jobs for span in job.runnables if span.start < axis.end and span.end > axis.start]
-    wide = [span for span in found if _right_of(span, axis) - _left_of(span, axis) >= NARROWEST_RUNNABLE]
+    ends = [(span, *_ends(span, axis)) for span in found]
+    wide = [span for span, left, right in ends if right - left >= NARROWEST_RUNNABLE]
     return wide, len(wide) < len(found)
 
 
-def draw_runnables(spans: Sequence[RunnableSpan], axis: TimeAxis, y: float, height: float) -> Markup:
-    """Boxes with their names, within boxes that begin at `y`."""
-    return joined(_runnable_box(span, axis, y + _INSET, height - 2 * _INSET) for span in spans)
-
-
-def _left_of(span: RunnableSpan, axis: TimeAxis) -> float:
-    return axis.x(axis.clipped(span.start))
-
-
-def _right_of(span: RunnableSpan, axis: TimeAxis) -> float:
-    return axis.x(axis.clipped(span.end))
+def _ends(span: RunnableSpan, axis: TimeAxis) -> tuple[float, float]:
+    return axis.x(axis.clipped(span.start)), axis.x(axis.clipped(span.end))
 
 
 def _runnable_box(span: RunnableSpan, axis: TimeAxis, y: float, height: float) -> Markup:
-    left, right = _left_of(span, axis), _right_of(span, axis)
-    tip = tooltip(f"{span.name}: {time_text(span.end - span.start)} from {time_text(span.start)} on")
-    box = element("rect", class_="label", x=left + 0.5, y=y, width=right - left - 1, height=height, rx=2)
+    """A box with its name, if this has room."""
+    left, right = _ends(span, axis)
+    tip = f"{span.name}: {time_text(span.end - span.start)} from {time_text(span.start)} on"
+    box = rect_at("label", left + 0.5, y, right - left - 1, height, rx=2)
     name = elided(span.name, _TEXT_SIZE, right - left - 6)
     if len(name) < min(_SHORTEST_NAME, len(span.name)):
-        return element("g", tip, box)
-    label = element("text", text(name), font_size=_TEXT_SIZE, x=(left + right) / 2, y=y + height - 3, text_anchor="middle")
-    return element("g", tip, box, label)
+        return tipped(tip, box)
+    return tipped(tip, box, text_at(name, (left + right) / 2, y + height - 3, anchor="middle", font_size=_TEXT_SIZE))
 
 
 #: Arrows that are nearer to each other, in pixels, are drawn as one.
@@ -197,37 +185,28 @@ def arrows_at(times: Iterable[Time | None], axis: TimeAxis) -> Arrows:
 def draw_instants(kinds: Iterable[Arrows], top: float, bottom: float) -> Markup:
     """Fine lines that lead arrows to the base line, if there are few enough to follow them."""
     places = [x for arrows in kinds if not arrows.are_merged for x, _ in arrows.places]
-    path = "".join(f"M{number(x)} {number(top)}V{number(bottom)}" for x in places)
-    return element("path", class_="instant", d=path) if path else Markup("")
+    return path_of("instant", "".join(vertical(x, top, bottom) for x in places))
 
 
 def draw_activations(arrows: Arrows, top: float, bottom: float) -> Markup:
     """Arrows up from `bottom` to `top`; where several meet, their number if it has room."""
-    if not arrows.places:
-        return Markup("")
-    stems = "".join(f"M{number(x)} {number(bottom)}V{number(top + _HEAD)}" for x, _ in arrows.places)
+    stems = "".join(vertical(x, bottom, top + _HEAD) for x, _ in arrows.places)
     heads = "".join(f"M{number(x)} {number(top)}l{_HALF} {_HEAD}h{-2 * _HALF}z" for x, _ in arrows.places)
-    return joined((element("path", class_="mark", d=stems), element("path", class_="head", d=heads), _counts(arrows, top)))
+    return joined((path_of("mark", stems), path_of("head", heads), _counts(arrows, top)))
 
 
 def draw_deadlines(arrows: Arrows, top: float, bottom: float, *, are_missed: bool) -> Markup:
     """Arrows down from `top` to `bottom`, with empty heads if they are kept."""
-    if not arrows.places:
-        return Markup("")
-    stems = "".join(f"M{number(x)} {number(top)}V{number(bottom - _HEAD)}" for x, _ in arrows.places)
+    stems = "".join(vertical(x, top, bottom - _HEAD) for x, _ in arrows.places)
     heads = "".join(f"M{number(x)} {number(bottom)}l{-_HALF} {-_HEAD}h{2 * _HALF}z" for x, _ in arrows.places)
     line, head = ("alert", "late") if are_missed else ("mark", "mark paper")
-    return joined((element("path", class_=line, d=stems), element("path", class_=head, d=heads)))
+    return joined((path_of(line, stems), path_of(head, heads)))
 
 
 def draw_lost(arrows: Arrows, top: float, bottom: float) -> Markup:
     """Crossed stems, for activations that have no job."""
-    if not arrows.places:
-        return Markup("")
-    marks = "".join(
-        f"M{number(x)} {number(bottom)}V{number(top + 4)}M{number(x - 4)} {number(top)}l8 8m0 -8l-8 8" for x, _ in arrows.places
-    )
-    return element("path", class_="alert", d=marks)
+    crosses = (f"{vertical(x, bottom, top + 4)}M{number(x - 4)} {number(top)}l8 8m0 -8l-8 8" for x, _ in arrows.places)
+    return path_of("alert", "".join(crosses))
 
 
 def _counts(arrows: Arrows, top: float) -> Markup:
@@ -236,10 +215,10 @@ def _counts(arrows: Arrows, top: float) -> Markup:
         return Markup("")
     ends = [*(x for x, _ in arrows.places[1:]), WIDTH]
     parts = []
-    for (x, count), following in zip(arrows.places, ends, strict=True):
+    for (x, count), following in zip(arrows.places, ends, strict=False):
         label = f"\N{MULTIPLICATION SIGN}{count}"
         if count > 1 and x + _HALF + 2 + text_width(label, SMALL_SIZE) < following - _HALF:
-            parts.append(element("text", text(label), class_="small halo", x=x + _HALF + 2, y=top + 7))
+            parts.append(text_at(label, x + _HALF + 2, top + 7, "small halo"))
     return joined(parts)
 
 
@@ -328,42 +307,33 @@ def draw_row(drawn: DrawnRow, axis: TimeAxis, *, has_tooltips: bool) -> Markup:
     """Boxes on the base line, and arrows above them, so that neither hides the other."""
     base, top = drawn.top + BASE, drawn.top + _ARROW_TOP
     foot = base - FULL
+    late = "".join(f"{horizontal(begin, end, base + 1)}v{_LATE}H{number(begin)}z" for begin, end in drawn.late)
     boxes = [
         draw_boxes(found, drawn.row.name, drawn.colour, base - height, height, has_tooltips=has_tooltips)
         for state, found in drawn.boxes.items()
         for height in (HEIGHTS.get(state, _OFF_CORE),)
     ]
     return joined(
-        part
-        for part in (
-            element("path", class_="rule", d=f"M{number(axis.left)} {number(base)}H{number(axis.right)}"),
+        (
+            path_of("rule", horizontal(axis.left, axis.right, base)),
             draw_instants((drawn.activations, drawn.deadlines), foot, base),
             *boxes,
             draw_borders(drawn.boxes[State.RUNNING], foot, FULL),
-            draw_runnables(drawn.runnables, axis, foot, FULL),
-            Markup("") if drawn.runnables else _job_numbers(drawn, base),
-            _late_bars(drawn, base),
+            *(_runnable_box(span, axis, foot + _INSET, FULL - 2 * _INSET) for span in drawn.runnables),
+            *([] if drawn.runnables else _job_numbers(drawn, base)),
+            path_of("late", late),
             draw_deadlines(drawn.deadlines, top, foot, are_missed=False),
             draw_activations(drawn.activations, top, foot),
             draw_deadlines(drawn.missed, top, foot, are_missed=True),
             draw_lost(drawn.lost, top, base),
         )
-        if part
     )
 
 
-def _late_bars(drawn: DrawnRow, base: float) -> Markup:
-    path = "".join(f"M{number(begin)} {number(base + 1)}H{number(end)}v{_LATE}H{number(begin)}z" for begin, end in drawn.late)
-    return element("path", class_="late", d=path) if path else Markup("")
-
-
-def _job_numbers(drawn: DrawnRow, base: float) -> Markup:
+def _job_numbers(drawn: DrawnRow, base: float) -> Iterator[Markup]:
     """The number of the job in each box that is wide enough."""
-    parts = []
+    look = f"small on{drawn.colour % len(PALETTE)}"
     for box in drawn.boxes[State.RUNNING]:
         label = str(box.job.instance)
         if box.count == 1 and text_width(label, SMALL_SIZE) + _NUMBER_MARGIN <= box.width:
-            middle = (box.left + box.right) / 2
-            look = f"small on{drawn.colour % len(PALETTE)}"
-            parts.append(element("text", text(label), class_=look, x=middle, y=base - 6, text_anchor="middle"))
-    return joined(parts)
+            yield text_at(label, (box.left + box.right) / 2, base - 6, look, anchor="middle")

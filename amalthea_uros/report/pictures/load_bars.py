@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -10,23 +10,30 @@ from amalthea_uros._internal.plural import counted
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.processes import ProcessorResult
 from amalthea_uros.report.pictures.axes import multiples, nice_step
-from amalthea_uros.report.pictures.svg import (
+from amalthea_uros.report.pictures.page import (
+    LIMIT,
     MARGIN,
-    TEXT_SIZE,
     TOP,
-    UNKNOWN,
     WIDTH,
-    LegendEntry,
+    Entry,
+    columns,
+    limit_line,
+    nothing,
+    picture_of,
+    swatch,
+    unknown,
+)
+from amalthea_uros.report.pictures.svg import (
+    TEXT_SIZE,
     Markup,
-    document,
-    draw_legend,
-    element,
-    elided,
+    horizontal,
     joined,
-    number,
-    text,
+    path_of,
+    rect_at,
+    text_at,
     text_width,
-    tooltip,
+    tipped,
+    vertical,
 )
 from amalthea_uros.report.wording.cells import load_text
 from amalthea_uros.units import Rounding
@@ -41,7 +48,7 @@ _LOWEST = 1.0
 
 
 @dataclass(frozen=True, slots=True)
-class _Scale:
+class _LoadScale:
     """Loads from 0 to `end` percent in the pixels from `left` to `right`."""
 
     end: int
@@ -57,14 +64,13 @@ def draw_loads(analysis: Analysis) -> Markup:
     """The loads of all cores; if there are more than can be drawn, those with the highest ones."""
     cores = _shown(analysis.processors)
     if not cores:
-        nothing = element("text", text("the model has no core"), class_="muted", x=MARGIN, y=TOP + 20)
-        return document("Load of the cores", "no cores", (nothing,), TOP + 40)
+        return picture_of("Load of the cores", "no cores", [nothing("the model has no core")], TOP + 24)
     scale = _scale(cores)
     bottom = TOP + _ROW * len(cores)
     rows = [_row(core, TOP + _ROW * index, scale) for index, core in enumerate(cores)]
-    legend, height = draw_legend(_legend(cores), _notes(analysis.processors), bottom + _AXIS + _GAP)
-    body = (_grid(scale, bottom), *rows, _full(scale, bottom), legend)
-    return document("Load of the cores", _subtitle(analysis.processors), body, height + MARGIN)
+    body = (*_grid(scale, bottom), *rows, limit_line(vertical(scale.x(1), TOP - 4, bottom)))
+    subtitle, notes = _subtitle(analysis.processors), _notes(analysis.processors)
+    return picture_of("Load of the cores", subtitle, body, bottom + _AXIS + _GAP, _legend(cores), notes)
 
 
 def _shown(cores: Sequence[ProcessorResult]) -> list[ProcessorResult]:
@@ -72,36 +78,35 @@ def _shown(cores: Sequence[ProcessorResult]) -> list[ProcessorResult]:
     return [core for core in cores if core.name in kept]
 
 
-def _scale(cores: Sequence[ProcessorResult]) -> _Scale:
+def _scale(cores: Sequence[ProcessorResult]) -> _LoadScale:
     highest = max((float(100 * core.at_least) for core in cores), default=0)
     step = nice_step(_SHORTEST, _PARTS)
     end = min(max(_SHORTEST, -(-round(highest + 1) // step) * step), _LONGEST)
     widest = max((text_width(core.name, TEXT_SIZE) for core in cores), default=0)
-    return _Scale(end, MARGIN + min(max(widest, _NARROWEST), _WIDEST) + _GAP, WIDTH - MARGIN - _TEXT)
+    return _LoadScale(end, MARGIN + min(max(widest, _NARROWEST), _WIDEST) + _GAP, WIDTH - MARGIN - _TEXT)
 
 
-def _row(core: ProcessorResult, top: float, scale: _Scale) -> Markup:
-    name = element("text", text(elided(core.name, TEXT_SIZE, scale.left - MARGIN - _GAP)), x=MARGIN, y=top + 21)
-    values = element("text", text(_values(core)), class_="small", x=scale.right + _GAP, y=top + 21)
-    return element("g", tooltip(f"{core.name}: {_values(core)}"), name, _bars(core, top + (_ROW - _BAR) / 2, scale), values)
+def _row(core: ProcessorResult, top: float, scale: _LoadScale) -> Markup:
+    name = text_at(core.name, MARGIN, top + 21, room=scale.left - MARGIN - _GAP)
+    values = text_at(_values(core), scale.right + _GAP, top + 21, "small")
+    return tipped(f"{core.name}: {_values(core)}", name, _bars(core, top + (_ROW - _BAR) / 2, scale), values)
 
 
-def _bars(core: ProcessorResult, top: float, scale: _Scale) -> Markup:
+def _bars(core: ProcessorResult, top: float, scale: _LoadScale) -> Markup:
     """The worst case pale, the best case full, a line at the mean, and what is unknown hatched."""
     end = scale.x(core.at_least)
-    look = "late" if core.is_overloaded else "c0"
-    parts = [_bar(scale.left, end, top, class_=look, fill_opacity=0.3)] if core.at_least else []
+    parts = []
+    if core.at_least:
+        look = "late" if core.is_overloaded else "c0"
+        parts.append(rect_at(look, scale.left, top, max(end - scale.left, _LOWEST), _BAR, fill_opacity=0.3))
     if core.best:
-        parts.append(_bar(scale.left, scale.x(core.best), top + _BAR / 4, _BAR / 2, class_="c0"))
-    if core.mean is not None and core.mean:
-        parts.append(element("path", class_="line", d=f"M{number(scale.x(core.mean))} {number(top)}v{_BAR}"))
+        width = max(scale.x(core.best) - scale.left, _LOWEST)
+        parts.append(rect_at("c0", scale.left, top + _BAR / 4, width, _BAR / 2))
+    if core.mean:
+        parts.append(path_of("line", vertical(scale.x(core.mean), top, top + _BAR)))
     if core.worst is None:
-        parts.append(_bar(end, scale.right, top, fill=UNKNOWN))
+        parts.append(unknown(end, top, max(scale.right - end, _LOWEST), _BAR))
     return joined(parts)
-
-
-def _bar(left: float, right: float, top: float, height: float = _BAR, **look: str | float) -> Markup:
-    return element("rect", x=left, y=top, width=max(right - left, _LOWEST), height=height, **look)
 
 
 def _values(core: ProcessorResult) -> str:
@@ -110,35 +115,22 @@ def _values(core: ProcessorResult) -> str:
     return ", ".join(texts if core.worst is not None else (f"at least {load_text(core.at_least, Rounding.DOWN)}", *texts))
 
 
-def _grid(scale: _Scale, bottom: float) -> Markup:
-    parts: list[Markup] = []
-    for percent in multiples(nice_step(scale.end, _PARTS), 0, scale.end):
-        x = scale.x(Fraction(percent, 100))
-        parts.append(element("path", class_="grid", d=f"M{number(x)} {TOP}V{number(bottom)}"))
-        parts.append(element("text", text(f"{percent}"), class_="small", x=x, y=bottom + 17, text_anchor="middle"))
-    middle = (scale.left + scale.right) / 2
-    caption = element("text", text("load in %"), class_="small muted", x=middle, y=bottom + 34, text_anchor="middle")
-    return joined((*parts, element("path", class_="rule", d=f"M{number(scale.left)} {bottom}H{number(scale.right)}"), caption))
+def _grid(scale: _LoadScale, bottom: float) -> Iterator[Markup]:
+    percents = multiples(nice_step(scale.end, _PARTS), 0, scale.end)
+    yield from columns(((scale.x(Fraction(percent, 100)), f"{percent}") for percent in percents), TOP, bottom)
+    yield path_of("rule", horizontal(scale.left, scale.right, bottom))
+    yield text_at("load in %", (scale.left + scale.right) / 2, bottom + 34, "small muted", anchor="middle")
 
 
-def _full(scale: _Scale, bottom: float) -> Markup:
-    return element("path", class_="alert", stroke_dasharray="6 3", d=f"M{number(scale.x(1))} {TOP - 4}V{number(bottom)}")
-
-
-def _legend(cores: Sequence[ProcessorResult]) -> list[LegendEntry]:
-    entries = [
-        (any(core.at_least for core in cores), _key(-6, 12, class_="c0", fill_opacity=0.3), "worst case"),
-        (any(core.best for core in cores), _key(-3, 6, class_="c0"), "best case"),
-        (any(core.mean for core in cores), element("path", class_="line", d="M0 -7V7"), "mean"),
-        (any(core.worst is None for core in cores), _key(-6, 12, fill=UNKNOWN), "unknown part of the worst case"),
-        (any(core.is_overloaded for core in cores), _key(-6, 12, class_="late"), "overload"),
-        (True, element("path", class_="alert", stroke_dasharray="6 3", d="M-9 0H9"), "100 %"),
+def _legend(cores: Sequence[ProcessorResult]) -> list[Entry]:
+    return [
+        (any(core.at_least for core in cores), swatch("c0", fill_opacity=0.3), "worst case"),
+        (any(core.best for core in cores), swatch("c0", 6), "best case"),
+        (any(core.mean for core in cores), path_of("line", "M0 -7V7"), "mean"),
+        (any(core.worst is None for core in cores), unknown(-9, -6, 18, 12), "unknown part of the worst case"),
+        (any(core.is_overloaded for core in cores), swatch("late"), "overload"),
+        (True, LIMIT, "100 %"),
     ]
-    return [LegendEntry(key, meaning) for is_shown, key, meaning in entries if is_shown]
-
-
-def _key(top: float, height: float, **look: str | float) -> Markup:
-    return element("rect", x=-9, y=top, width=18, height=height, **look)
 
 
 def _notes(cores: Sequence[ProcessorResult]) -> list[str]:

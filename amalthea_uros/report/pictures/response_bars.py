@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -11,27 +11,22 @@ from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.processes import ProcessResult
 from amalthea_uros.judge.summary import urgency
 from amalthea_uros.judge.verdict import Verdict
-from amalthea_uros.report.pictures.svg import (
+from amalthea_uros.report.pictures.page import (
+    LIMIT,
     MARGIN,
     MARK,
-    SMALL_SIZE,
-    TEXT_SIZE,
     TOP,
-    UNKNOWN,
     WIDTH,
-    LegendEntry,
-    Markup,
-    document,
-    draw_legend,
+    Entry,
     draw_verdict,
-    element,
-    elided,
-    joined,
-    number,
-    text,
-    tooltip,
+    limit_line,
+    nothing,
+    picture_of,
+    swatch,
+    unknown,
     verdict_entries,
 )
+from amalthea_uros.report.pictures.svg import Markup, horizontal, joined, path_of, rect_at, text_at, tipped, tooltip, vertical
 from amalthea_uros.simulate.observations import MetricObservation
 from amalthea_uros.simulate.results import Simulation
 from amalthea_uros.units import Rounding, Time, rounded_time_text, time_text
@@ -53,7 +48,7 @@ _OTHER = 3
 
 
 @dataclass(frozen=True, slots=True)
-class _Row:
+class _ResponseRow:
     """A process, its observed response times, and its upper edge."""
 
     process: ProcessResult
@@ -85,21 +80,21 @@ def draw_responses(analysis: Analysis, simulation: Simulation | None = None) -> 
     processes = sorted(analysis.processes, key=urgency)
     rows = _rows(processes[:MOST_ROWS], simulation)
     bottom = TOP + _HEADER + _ROW * max(len(rows), 1)
-    nothing = element("text", text("the model has no processes"), class_="muted", x=MARGIN, y=TOP + _HEADER + 20)
-    legend, height = draw_legend(_legend(rows), _notes(len(processes), rows), bottom + _GAP)
+    deadline = _SHARE + float(1 / _LONGEST) * (_SHARE_END - _SHARE)
     body = (
-        _headers() if rows else nothing,
-        _deadline_line(bottom) if any(row.process.deadline for row in rows) else Markup(""),
-        *(_drawn(row) for row in rows),
-        legend,
+        _headers() if rows else nothing("the model has no processes", TOP + _HEADER + 20),
+        *([limit_line(vertical(deadline, TOP + _HEADER - 4, bottom))] if any(row.process.deadline for row in rows) else []),
+        *map(_drawn, rows),
     )
-    return document("Response times", _subtitle(processes, simulation), body, height + MARGIN)
+    hidden = len(processes) - len(rows)
+    notes = [f"{counted(hidden, 'process')} farther from the deadline not shown."] if hidden else []
+    return picture_of("Response times", _subtitle(processes, simulation), body, bottom + _GAP, _legend(rows), notes)
 
 
-def _rows(processes: Sequence[ProcessResult], simulation: Simulation | None) -> list[_Row]:
+def _rows(processes: Sequence[ProcessResult], simulation: Simulation | None) -> list[_ResponseRow]:
     observed = {} if simulation is None else {each.name: each.response_time for each in simulation.processes}
     top = TOP + _HEADER
-    return [_Row(process, observed.get(process.name), top + _ROW * index) for index, process in enumerate(processes)]
+    return [_ResponseRow(process, observed.get(process.name), top + _ROW * index) for index, process in enumerate(processes)]
 
 
 def _share(process: ProcessResult) -> Fraction | None:
@@ -115,35 +110,24 @@ def _headers() -> Markup:
         (_SHARE, "share of deadline"),
         (_TERMS, "worst case is made of"),
     )
-    return joined(element("text", text(name), class_="header small", x=x, y=TOP + 12) for x, name in columns)
+    return joined(text_at(name, x, TOP + 12, "header small") for x, name in columns)
 
 
-def _deadline_x() -> float:
-    return _SHARE + float(1 / _LONGEST) * (_SHARE_END - _SHARE)
-
-
-def _deadline_line(bottom: float) -> Markup:
-    d = f"M{number(_deadline_x())} {TOP + _HEADER - 4}V{number(bottom)}"
-    return element("path", class_="alert", stroke_dasharray="6 3", d=d)
-
-
-def _drawn(row: _Row) -> Markup:
+def _drawn(row: _ResponseRow) -> Markup:
     process = row.process
-    shown = elided(process.name, TEXT_SIZE, _NAME)
     base = row.top + 18
-    return element(
-        "g",
-        tooltip(_description(row)),
-        element("rect", class_="band", x=MARGIN, y=row.top + 1, width=WIDTH - 2 * MARGIN, height=_ROW - 2),
-        element("text", text(shown), x=MARGIN, y=base),
+    return tipped(
+        _description(row),
+        rect_at("band", MARGIN, row.top + 1, WIDTH - 2 * MARGIN, _ROW - 2),
+        text_at(process.name, MARGIN, base, room=_NAME),
         draw_verdict(process.verdict, _TIMES - MARK, base - 4),
-        element("text", text(elided(_times(row), SMALL_SIZE, _SHARE - _TIMES - _GAP)), class_="small", x=_TIMES, y=base),
+        text_at(_times(row), _TIMES, base, "small", room=_SHARE - _TIMES - _GAP),
         _share_bar(process, row.top + 6),
         _terms(row),
     )
 
 
-def _times(row: _Row) -> str:
+def _times(row: _ResponseRow) -> str:
     if row.worst is None:
         return "unbounded" if row.process.response is not None and row.process.response.is_overload else "unknown"
     worst = rounded_time_text(row.worst, Rounding.UP, row.process.deadline)
@@ -155,10 +139,10 @@ def _share_bar(process: ProcessResult, top: float) -> Markup:
     if process.deadline is None:
         return Markup("")
     if share is None:
-        return element("rect", x=_SHARE, y=top, width=_SHARE_END - _SHARE, height=_BAR, fill=UNKNOWN)
+        return unknown(_SHARE, top, _SHARE_END - _SHARE, _BAR)
     width = float(min(share, _LONGEST) / _LONGEST) * (_SHARE_END - _SHARE)
-    bar = element("rect", class_="late" if share > 1 else "c0", x=_SHARE, y=top, width=max(width, _NARROWEST), height=_BAR)
-    label = element("text", text(_percent(share)), class_="small", x=_SHARE_END + 4, y=top + 12)
+    bar = rect_at("late" if share > 1 else "c0", _SHARE, top, max(width, _NARROWEST), _BAR)
+    label = text_at(_percent(share), _SHARE_END + 4, top + 12, "small")
     return joined((bar, label))
 
 
@@ -167,12 +151,11 @@ def _percent(share: Fraction) -> str:
     return "> 100 %" if 1 < share < Fraction(1005, 1000) else f"{float(100 * share):.3g} %"
 
 
-def _terms(row: _Row) -> Markup:
+def _terms(row: _ResponseRow) -> Markup:
     """The parts of the worst case one after the other; below them the response times that were observed."""
     if row.worst is None:
         reason = row.process.reason or (row.process.response.reason if row.process.response is not None else "")
-        shown = elided(reason, SMALL_SIZE, _TERMS_END - _TERMS)
-        return element("text", text(shown), class_="small muted", x=_TERMS, y=row.top + 18)
+        return text_at(reason, _TERMS, row.top + 18, "small muted", room=_TERMS_END - _TERMS)
     start = -row.earlier
     end = max(row.worst, 0 if row.observed is None else row.observed.max, start + 1)
 
@@ -183,11 +166,7 @@ def _terms(row: _Row) -> Markup:
     for term, length in row.terms:
         colour = _COLOURS.get(term, _OTHER)
         tip = tooltip(f"{row.process.name}: {term} {time_text(length)}")
-        parts.append(
-            element(
-                "rect", tip, class_=f"c{colour}", x=x(now), y=top, width=max(x(now + length) - x(now), _NARROWEST), height=_BAR
-            )
-        )
+        parts.append(rect_at(f"c{colour}", x(now), top, max(x(now + length) - x(now), _NARROWEST), _BAR, tip))
         now += length
     if row.process.response is not None:
         parts.append(_tick(x(row.process.response.best), top, "line"))
@@ -199,20 +178,19 @@ def _terms(row: _Row) -> Markup:
 
 
 def _tick(x: float, top: float, style: str) -> Markup:
-    return element("path", class_=style, d=f"M{number(x)} {number(top - 3)}v{_BAR + 6}")
+    return path_of(style, vertical(x, top - 3, top + _BAR + 3))
 
 
 def _observed(left: float, right: float, y: float, observed: MetricObservation) -> Markup:
-    tip = tooltip(f"observed {_observed_text(observed)}")
-    d = f"M{number(left)} {number(y - 3)}v6M{number(left)} {number(y)}H{number(right)}M{number(right)} {number(y - 3)}v6"
-    return element("g", tip, element("path", class_="mark", d=d))
+    d = vertical(left, y - 3, y + 3) + horizontal(left, right, y) + vertical(right, y - 3, y + 3)
+    return tipped(f"observed {_observed_text(observed)}", path_of("mark", d))
 
 
 def _observed_text(observed: MetricObservation) -> str:
     return f"{rounded_time_text(observed.min, Rounding.DOWN)} to {rounded_time_text(observed.max, Rounding.UP)}"
 
 
-def _description(row: _Row) -> str:
+def _description(row: _ResponseRow) -> str:
     response = row.process.response
     parts = [f"{row.process.name}: {_times(row)}"]
     if response is not None and row.worst is not None:
@@ -224,36 +202,16 @@ def _description(row: _Row) -> str:
     return ", ".join((*parts, *([row.process.reason] if row.process.reason else [])))
 
 
-def _legend(rows: Sequence[_Row]) -> list[LegendEntry]:
+def _legend(rows: Sequence[_ResponseRow]) -> Iterator[Entry]:
     drawn = [row for row in rows if row.worst is not None]
-    terms = dict.fromkeys(term for row in drawn for term, _ in row.terms)
-    entries = [LegendEntry(_key(class_=f"c{_COLOURS.get(term, _OTHER)}"), _meaning(term)) for term in terms]
-    marks: Iterable[tuple[bool, Markup, str]] = (
-        (bool(drawn), element("path", class_="line", d="M0 -8V8"), "best case"),
-        (any(row.earlier for row in drawn), element("path", class_="instant", d="M0 -8V8"), "activation in the busy window"),
-        (any(row.observed for row in drawn), element("path", class_="mark", d="M-9 -3v6M-9 0H9M9 -3v6"), "observed"),
-        (
-            any(row.process.deadline for row in rows),
-            element("path", class_="alert", stroke_dasharray="6 3", d="M-9 0H9"),
-            "deadline",
-        ),
-        (any(row.process.deadline and row.worst is None for row in rows), _key(fill=UNKNOWN), "no bound"),
-    )
-    entries += [LegendEntry(key, meaning) for is_shown, key, meaning in marks if is_shown]
-    return entries + verdict_entries({row.process.verdict for row in rows})
-
-
-def _meaning(term: str) -> str:
-    return "own execution" if term == "own" else term
-
-
-def _key(**look: str) -> Markup:
-    return element("rect", x=-9, y=-6, width=18, height=12, **look)
-
-
-def _notes(number_of_processes: int, rows: Sequence[_Row]) -> list[str]:
-    hidden = number_of_processes - len(rows)
-    return [f"{counted(hidden, 'process')} farther from the deadline not shown."] if hidden else []
+    for term in dict.fromkeys(term for row in drawn for term, _ in row.terms):
+        yield True, swatch(f"c{_COLOURS.get(term, _OTHER)}"), "own execution" if term == "own" else term
+    yield drawn, path_of("line", "M0 -8V8"), "best case"
+    yield any(row.earlier for row in drawn), path_of("instant", "M0 -8V8"), "activation in the busy window"
+    yield any(row.observed for row in drawn), path_of("mark", "M-9 -3v6M-9 0H9M9 -3v6"), "observed"
+    yield any(row.process.deadline for row in rows), LIMIT, "deadline"
+    yield any(row.process.deadline and row.worst is None for row in rows), unknown(-9, -6, 18, 12), "no bound"
+    yield from verdict_entries({row.process.verdict for row in rows})
 
 
 def _subtitle(processes: Sequence[ProcessResult], simulation: Simulation | None) -> str:

@@ -17,7 +17,7 @@ from amalthea_uros.report.pictures.axes import default_window
 from amalthea_uros.report.pictures.chain_paths import DrawnPath
 from amalthea_uros.report.pictures.from_events import chain_path, jobs_of
 from amalthea_uros.report.pictures.gantt import GanttChart, StateTimeline, gantt, state_timeline
-from amalthea_uros.report.pictures.histogram import HistogramPicture, HistogramSeries, Mark, MarkKind, histogram
+from amalthea_uros.report.pictures.histogram import HistogramPicture, Mark, MarkKind, histogram
 from amalthea_uros.report.pictures.jobs import CoreRows, ProcessRow
 from amalthea_uros.services.simulate import SimulationResult
 from amalthea_uros.simulate.observations import (
@@ -219,9 +219,7 @@ def _histogram_of(result: SimulationResult, name: str, quantity: str, observed: 
     marks += more
     things = "jobs" if quantity in tuple(JobMetric) else "observations"
     title = _titled(result, f"{words} of {name}")
-    chart = HistogramPicture(
-        title, edges, (HistogramSeries("simulated", observed.histogram.counts),), tuple(marks), words, things
-    )
+    chart = HistogramPicture(title, edges, "simulated", observed.histogram.counts, tuple(marks), words, things)
     return histogram(chart)
 
 

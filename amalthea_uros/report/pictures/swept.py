@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import TypeAlias
@@ -10,27 +10,19 @@ from typing import TypeAlias
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.report.pictures.axes import multiples, nice_step, unit_of
-from amalthea_uros.report.pictures.svg import (
+from amalthea_uros.report.pictures.page import (
     MARGIN,
     PALETTE,
-    SMALL_SIZE,
     TOP,
-    UNKNOWN,
     WIDTH,
-    LegendEntry,
-    Markup,
-    document,
-    draw_legend,
     draw_verdict,
-    element,
-    elided,
-    joined,
-    number,
-    text,
-    text_width,
-    tooltip,
+    levels,
+    picture_of,
+    turned,
+    unknown,
     verdict_entries,
 )
+from amalthea_uros.report.pictures.svg import SMALL_SIZE, Markup, element, number, path_of, rect_at, text_at, text_width, tipped
 from amalthea_uros.units import number_text, time_text
 
 #: Pixels.
@@ -106,34 +98,14 @@ def _line(picture: SweptPicture) -> Markup:
         return bottom - float(value * scale / ticks[-1]) * _PLOT
 
     xs = _places(len(keys), left, right)
-    grid = [
-        joined(
-            (
-                element("path", class_="grid", d=f"M{number(left)} {number(y(Fraction(tick, scale)))}H{number(right)}"),
-                element(
-                    "text",
-                    text(label),
-                    class_="small",
-                    x=left - 8,
-                    y=y(Fraction(tick, scale)) + 4,
-                    text_anchor="end",
-                ),
-            )
-        )
-        for tick, label in zip(ticks, labels, strict=True)
-    ]
-    turned = f"translate({MARGIN + SMALL_SIZE} {number((TOP + bottom) / 2)}) rotate(-90)"
-    legend, height = _legend(picture, bottom + 4 * SMALL_SIZE + _GAP)
     body = (
-        *grid,
-        element("text", text(unit and f"in {unit}"), class_="small muted", transform=turned, text_anchor="middle"),
-        element("path", class_="t0 steps", d=_way(picture, keys, xs, y)),
+        *levels(((y(Fraction(tick, scale)), label) for tick, label in zip(ticks, labels, strict=True)), left, right),
+        turned(unit and f"in {unit}", TOP, bottom),
+        path_of("t0 steps", _way(picture, keys, xs, y)),
         *(_point(picture, key, x, y, bottom) for key, x in zip(keys, xs, strict=True)),
-        _labels(picture.axes[0], xs, bottom),
-        _caption(picture.targets[0], (left + right) / 2, bottom + 3 * SMALL_SIZE),
-        legend,
+        *_labels(picture.axes[0], xs, bottom, picture.targets[0], (left + right) / 2),
     )
-    return document(picture.quantity, f"for {len(keys)} values of {picture.targets[0]}", body, height + MARGIN)
+    return _drawn(picture, f"for {len(keys)} values of {picture.targets[0]}", body, bottom)
 
 
 def _places(count: int, left: float, right: float) -> list[float]:
@@ -158,22 +130,16 @@ def _point(picture: SweptPicture, key: tuple[str, ...], x: float, y: _Height, bo
     verdict = picture.verdicts.get(key)
     height = bottom - _GAP if value is None else y(value)
     dot = element("circle", class_="c0", cx=x, cy=height, r=3.5) if value is not None else Markup("")
-    return element("g", tooltip(_told(picture, key)), dot, draw_verdict(verdict, x, max(height - 12, TOP - 8)))
+    return tipped(_description(picture, key), dot, draw_verdict(verdict, x, max(height - 12, TOP - 8)))
 
 
-def _labels(texts: Sequence[str], xs: Sequence[float], bottom: float) -> Markup:
-    """As many of the values as have room."""
+def _labels(texts: Sequence[str], xs: Sequence[float], bottom: float, target: str, middle: float) -> Iterator[Markup]:
+    """As many of the values as have room, and what they are."""
     widest = max(text_width(each, SMALL_SIZE) for each in texts) + _GAP
     every = 1 if len(xs) < 2 else int(widest // (xs[1] - xs[0])) + 1
-    return joined(
-        element("text", text(each), class_="small", x=x, y=bottom + 16, text_anchor="middle")
-        for index, (each, x) in enumerate(zip(texts, xs, strict=True))
-        if index % every == 0
-    )
-
-
-def _caption(content: str, x: float, y: float) -> Markup:
-    return element("text", text(content), class_="small muted", x=x, y=y, text_anchor="middle")
+    for each, x in list(zip(texts, xs, strict=True))[::every]:
+        yield text_at(each, x, bottom + 16, "small", anchor="middle")
+    yield text_at(target, middle, bottom + 3 * SMALL_SIZE, "small muted", anchor="middle")
 
 
 # Two swept values
@@ -191,13 +157,6 @@ def _map(picture: SweptPicture) -> Markup:
     width = min((WIDTH - MARGIN - left) / len(columns), 4 * _NARROWEST)
     bottom = TOP + _ROW * len(rows)
     right = left + width * len(columns)
-    turned = f"translate({MARGIN + SMALL_SIZE} {number((TOP + bottom) / 2)}) rotate(-90)"
-    shown = elided(picture.targets[0], SMALL_SIZE, max(bottom - TOP, 2 * _LABELS))
-    names = joined(
-        element("text", text(each), class_="small", x=left - 8, y=TOP + _ROW * (index + 0.5) + 4, text_anchor="end")
-        for index, each in enumerate(rows)
-    )
-    legend, height = _legend(picture, bottom + 4 * SMALL_SIZE + _GAP)
     known = [value for value in picture.values.values() if value is not None]
     ends = (min(known), max(known)) if known else (Fraction(0), Fraction(1))
     cells = (
@@ -206,40 +165,38 @@ def _map(picture: SweptPicture) -> Markup:
         for across, column in enumerate(columns)
     )
     body = (
-        element("text", text(shown), class_="small muted", transform=turned, text_anchor="middle"),
-        names,
+        turned(picture.targets[0], TOP, bottom, max(bottom - TOP, 2 * _LABELS)),
+        *(text_at(each, left - 8, TOP + _ROW * (index + 0.5) + 4, "small", anchor="end") for index, each in enumerate(rows)),
         *cells,
-        _labels(columns, _places(len(columns), left, right), bottom),
-        _caption(picture.targets[1], (left + right) / 2, bottom + 3 * SMALL_SIZE),
-        legend,
+        *_labels(columns, _places(len(columns), left, right), bottom, picture.targets[1], (left + right) / 2),
     )
     subtitle = f"for {len(rows)} values of {picture.targets[0]} and {len(columns)} of {picture.targets[1]}"
-    return document(picture.quantity, subtitle, body, height + MARGIN)
+    return _drawn(picture, subtitle, body, bottom)
 
 
 def _cell(
     picture: SweptPicture, key: tuple[str, ...], ends: tuple[Fraction, Fraction], x: float, y: float, width: float
 ) -> Markup:
-    tip = tooltip(_told(picture, key))
+    tip = _description(picture, key)
     if key not in picture.values:
-        return element("g", tip, element("rect", class_="frame", x=x, y=y, width=width - 1, height=_ROW - 1))
+        return tipped(tip, rect_at("frame", x, y, width - 1, _ROW - 1))
     value = picture.values[key]
     low, high = ends
     if value is None:
-        box = element("rect", x=x, y=y, width=width - 1, height=_ROW - 1, fill=UNKNOWN)
+        box = unknown(x, y, width - 1, _ROW - 1)
     else:
         share = float((value - low) / (high - low)) if high > low else 0.0
         opacity = _PALE + share * (_DARK - _PALE)
         box = element("rect", x=x, y=y, width=width - 1, height=_ROW - 1, fill=PALETTE[3][0], fill_opacity=round(opacity, 3))
-    shown = "" if value is None else elided(picture.label(value), SMALL_SIZE, width - 4)
-    label = element("text", text(shown), class_="small", x=x + width / 2, y=y + _ROW - 7, text_anchor="middle")
-    return element("g", tip, box, label, draw_verdict(picture.verdicts.get(key), x + width / 2, y + 11))
+    shown = "" if value is None else picture.label(value)
+    label = text_at(shown, x + width / 2, y + _ROW - 7, "small", anchor="middle", room=width - 4)
+    return tipped(tip, box, label, draw_verdict(picture.verdicts.get(key), x + width / 2, y + 11))
 
 
 # Both
 
 
-def _told(picture: SweptPicture, key: tuple[str, ...]) -> str:
+def _description(picture: SweptPicture, key: tuple[str, ...]) -> str:
     where = ", ".join(f"{target} {value}" for target, value in zip(picture.targets, key, strict=True))
     if key not in picture.values:
         return f"{where}: not tried"
@@ -247,9 +204,8 @@ def _told(picture: SweptPicture, key: tuple[str, ...]) -> str:
     return f"{where}: {'unknown' if value is None else picture.label(value)}"
 
 
-def _legend(picture: SweptPicture, y: float) -> tuple[Markup, float]:
-    entries = verdict_entries(set(picture.verdicts.values()))
-    notes = ["The marks say whether everything is met for certain with these values."] if entries else []
-    if any(value is None for value in picture.values.values()):
-        entries.append(LegendEntry(element("rect", x=-9, y=-6, width=18, height=12, fill=UNKNOWN), "no value"))
-    return draw_legend(entries, notes, y)
+def _drawn(picture: SweptPicture, subtitle: str, body: Iterable[Markup], bottom: float) -> Markup:
+    notes = ["The marks say whether everything is met for certain with these values."] if picture.verdicts else []
+    is_unknown = any(value is None for value in picture.values.values())
+    entries = [*verdict_entries(set(picture.verdicts.values())), (is_unknown, unknown(-9, -6, 18, 12), "no value")]
+    return picture_of(picture.quantity, subtitle, body, bottom + 4 * SMALL_SIZE + _GAP, entries, notes)

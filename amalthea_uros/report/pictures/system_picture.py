@@ -3,38 +3,31 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import pairwise
 
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.analyze.results.analysis import Analysis
-from amalthea_uros.analyze.results.processes import ProcessorResult
 from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.perf.software import Isr, Process
 from amalthea_uros.perf.system import System
 from amalthea_uros.report.pictures.flows import ChainPath, Flow, SystemFlows
-from amalthea_uros.report.pictures.svg import (
+from amalthea_uros.report.pictures.page import (
     MARGIN,
     MARK,
     PALETTE,
-    SMALL_SIZE,
-    TEXT_SIZE,
     TOP,
     WIDTH,
-    LegendEntry,
-    Markup,
-    document,
-    draw_legend,
+    Entry,
     draw_verdict,
-    element,
-    elided,
-    number,
-    text,
-    tooltip,
+    nothing,
+    picture_of,
+    swatch,
     verdict_entries,
 )
+from amalthea_uros.report.pictures.svg import Markup, element, number, path_of, rect_at, text_at, tipped
 from amalthea_uros.report.pictures.system_layout import BOX, DrawnWire, Layout, LayoutWire, Point, lay_out
 from amalthea_uros.report.wording.cells import load_text
 from amalthea_uros.timing.activation.load import activation_rates, loads
@@ -125,7 +118,7 @@ def _of_processes(shown: SystemFlows, analysis: Analysis | None) -> _Content:
         for core, processes in shown.cores.items()
     )
     is_dense = len(shown.flows) > MOST_FLOWS
-    flows = _united(shown.flows) if is_dense else shown.flows
+    flows = list(_united(shown.flows)) if is_dense else shown.flows
     wires = [LayoutWire(flow.source, flow.targets, _names(flow, is_dense)) for flow in flows]
     outer = [LayoutWire(source.name, source.targets, source.name, is_outer=True) for source in shown.sources]
     kinds = [
@@ -169,105 +162,72 @@ def _percent(load: Fraction) -> str:
 
 
 def _core_text(core: str | None, analysis: Analysis | None) -> str:
-    load = "" if core is None else _core_load(core, analysis)
-    return f"{core or _NO_CORE}{load and ', '}{load}"
-
-
-def _core_load(core: str, analysis: Analysis | None) -> str:
-    result = next((each for each in _processors(analysis) if each.name == core), None)
-    if result is None:
-        return ""
-    return (
-        f"load {_percent(result.worst)}"
-        if result.worst is not None
-        else f"load at least {load_text(result.at_least, Rounding.DOWN)}"
-    )
-
-
-def _processors(analysis: Analysis | None) -> Iterable[ProcessorResult]:
-    return () if analysis is None else analysis.processors
+    """A core with its load, as far as it is known."""
+    found = (each for each in (analysis.processors if analysis is not None else ()) if each.name == core)
+    for result in found:
+        least = f"at least {load_text(result.at_least, Rounding.DOWN)}"
+        return f"{core}, load {least if result.worst is None else _percent(result.worst)}"
+    return core or _NO_CORE
 
 
 def _of_cores(shown: SystemFlows, analysis: Analysis | None) -> _Content:
     """One box for each core, and the numbers of flows between them."""
     cores = sorted(shown.cores.items(), key=lambda item: -len(item[1]))[:MOST_CORES]
-    core_of = {process.name: _name(core) for core, processes in shown.cores.items() for process in processes}
+    core_of = {process.name: core or _NO_CORE for core, processes in shown.cores.items() for process in processes}
     between = Counter(
         (core_of[flow.source], core_of[target]) for flow in shown.flows for target in flow.targets for _ in flow.names
     )
-    drawn = {_name(core) for core, _ in cores}
+    drawn = {core or _NO_CORE for core, _ in cores}
     most = [ends for ends, _ in between.most_common() if ends[0] != ends[1] and drawn.issuperset(ends)]
-    wires = tuple(LayoutWire(*_one_target(ends), f"{between[ends]:,}") for ends in sorted(most[:MOST_CORE_FLOWS]))
-    bands = tuple(_Band(_core_text(core, analysis), (_core_node(_name(core), own, between),)) for core, own in cores)
+    wires = tuple(
+        LayoutWire(source, (target,), f"{between[source, target]:,}") for source, target in sorted(most[:MOST_CORE_FLOWS])
+    )
+    bands = tuple(_Band(_core_text(core, analysis), (_core_node(core or _NO_CORE, own, between),)) for core, own in cores)
     notes = [
-        f"Only cores are shown: there are {counted(len(shown.system.processes), 'process')}. Numbers at arrows count flows.",
-        *(
-            [f"{counted(len(shown.cores) - len(cores), 'core')} with fewer processes not shown."]
-            if len(shown.cores) > len(cores)
-            else []
-        ),
-        *(
-            [f"{counted(len(most) - len(wires), 'connection')} of cores with fewer flows not shown."]
-            if len(most) > len(wires)
-            else []
-        ),
-        *_problems(shown),
+        f"Only cores are shown: there are {counted(len(shown.system.processes), 'process')}. Numbers at arrows count flows."
     ]
-    return _Content(bands, wires, (LinkKind.DATA,) * len(wires), tuple(notes))
+    if len(shown.cores) > len(cores):
+        notes.append(f"{counted(len(shown.cores) - len(cores), 'core')} with fewer processes not shown.")
+    if len(most) > len(wires):
+        notes.append(f"{counted(len(most) - len(wires), 'connection')} of cores with fewer flows not shown.")
+    return _Content(bands, wires, (LinkKind.DATA,) * len(wires), (*notes, *_problems(shown)))
 
 
 def _core_node(core: str, processes: Sequence[Process], between: Counter[tuple[str, str]]) -> _Node:
-    return _Node(core, (_counts(processes), f"{counted(between[core, core], 'flow')} within"))
-
-
-def _name(core: str | None) -> str:
-    return core or _NO_CORE
-
-
-def _one_target(ends: tuple[str, str]) -> tuple[str, tuple[str, ...]]:
-    return ends[0], (ends[1],)
-
-
-def _counts(processes: Sequence[Process]) -> str:
     isrs = sum(isinstance(process, Isr) for process in processes)
-    parts = ((len(processes) - isrs, "task"), (isrs, "ISR"))
-    return ", ".join(counted(count, noun) for count, noun in parts if count)
+    numbers = _counts((len(processes) - isrs, "task"), (isrs, "ISR"))
+    return _Node(core, (numbers, f"{counted(between[core, core], 'flow')} within"))
 
 
-def _united(flows: Iterable[Flow]) -> list[Flow]:
+def _counts(*numbers: tuple[int, str]) -> str:
+    return ", ".join(counted(count, noun) for count, noun in numbers if count)
+
+
+def _united(flows: Iterable[Flow]) -> Iterator[Flow]:
     """One flow for all of a kind that come from the same process."""
     found: dict[tuple[LinkKind, str], list[Flow]] = {}
     for flow in flows:
         found.setdefault((flow.kind, flow.source), []).append(flow)
-    return [
-        Flow(
-            kind,
-            source,
-            tuple(name for flow in own for name in flow.names),
-            tuple({to: None for flow in own for to in flow.targets}),
-        )
-        for (kind, source), own in found.items()
-    ]
+    for (kind, source), own in found.items():
+        names = tuple(name for flow in own for name in flow.names)
+        yield Flow(kind, source, names, tuple(dict.fromkeys(to for flow in own for to in flow.targets)))
 
 
 def _names(flow: Flow, is_dense: bool) -> str:
     return f"{len(flow.names):,}" if is_dense and len(flow.names) > 1 else ", ".join(flow.names)
 
 
-def _notes(shown: SystemFlows, is_dense: bool) -> list[str]:
-    empty = [core for core in shown.system.cores if core not in shown.cores]
-    left_out = sum(bool(chain.processes) for chain in shown.chains) - MOST_CHAINS
-    return [
-        *(
-            ["Data of a process are drawn as one line, with their number: not each target reads all of them."]
-            if is_dense
-            else []
-        ),
-        *([f"Without processes: {', '.join(empty)}."] if empty else []),
-        *([f"{counted(left_out, 'event chain')} not shown."] if left_out > 0 else []),
-        *(f"Event chain {chain.name} not shown: {chain.reason}." for chain in shown.chains[:MOST_CHAINS] if chain.reason),
-        *_problems(shown),
-    ]
+def _notes(shown: SystemFlows, is_dense: bool) -> Iterator[str]:
+    if is_dense:
+        yield "Data of a process are drawn as one line, with their number: not each target reads all of them."
+    if empty := [core for core in shown.system.cores if core not in shown.cores]:
+        yield f"Without processes: {', '.join(empty)}."
+    if (left_out := sum(bool(chain.processes) for chain in shown.chains) - MOST_CHAINS) > 0:
+        yield f"{counted(left_out, 'event chain')} not shown."
+    for chain in shown.chains[:MOST_CHAINS]:
+        if chain.reason:
+            yield f"Event chain {chain.name} not shown: {chain.reason}."
+    yield from _problems(shown)
 
 
 def _problems(shown: SystemFlows) -> list[str]:
@@ -276,14 +236,9 @@ def _problems(shown: SystemFlows) -> list[str]:
 
 def _subtitle(shown: SystemFlows) -> str:
     system = shown.system
-    parts = (
-        (len(system.cores), "core"),
-        (len(system.software.tasks), "task"),
-        (len(system.software.isrs), "ISR"),
-        (len(shown.flows), "flow"),
-        (len(system.chains), "event chain"),
-    )
-    return ", ".join(counted(count, noun) for count, noun in parts if count) or "no processes"
+    tasks, isrs = (len(system.software.tasks), "task"), (len(system.software.isrs), "ISR")
+    flows, chains = (len(shown.flows), "flow"), (len(system.chains), "event chain")
+    return _counts((len(system.cores), "core"), tasks, isrs, flows, chains) or "no processes"
 
 
 # Drawing
@@ -293,8 +248,6 @@ def _drawn(content: _Content, subtitle: str) -> Markup:
     bands = [[node.name for node in band.nodes] for band in content.bands]
     layout = lay_out(bands, content.wires, MARGIN, TOP)
     width = max(WIDTH, layout.right + MARGIN)
-    legend, height = draw_legend(_legend(content), content.notes, layout.bottom + _GAP, width)
-    nothing = element("text", text("the model has no processes"), class_="muted", x=MARGIN, y=TOP + 20)
     by_ends = {
         (wire.wire.source, target): way for wire in layout.wires if not wire.wire.is_outer for target, way in wire.ways.items()
     }
@@ -303,37 +256,33 @@ def _drawn(content: _Content, subtitle: str) -> Markup:
         *(_chain(chain, index, content.chains[:index], by_ends) for index, chain in enumerate(content.chains)),
         *(_wire(wire, kind) for wire, kind in zip(layout.wires, content.kinds, strict=True)),
         *(_box(node, layout) for band in content.bands for node in band.nodes),
-        *(() if content.bands else (nothing,)),
-        legend,
+        *(() if content.bands else (nothing("the model has no processes"),)),
     )
-    return document("System", subtitle, body, height + MARGIN + (0 if content.bands else 30), width)
+    bottom = layout.bottom + _GAP + (0 if content.bands else 30)
+    return picture_of("System", subtitle, body, bottom, _legend(content), content.notes, width)
 
 
 def _frame(band: _Band, top: float, height: float, width: float) -> Markup:
-    frame = element("rect", class_="frame", x=MARGIN, y=top, width=width - 2 * MARGIN, height=height, rx=6)
-    header = elided(band.header, TEXT_SIZE, width - 4 * MARGIN, is_bold=True)
-    return element(
-        "g", tooltip(band.header), frame, element("text", text(header), class_="header", x=MARGIN + _INSET, y=top + 17)
-    )
+    frame = rect_at("frame", MARGIN, top, width - 2 * MARGIN, height, rx=6)
+    return tipped(band.header, frame, text_at(band.header, MARGIN + _INSET, top + 17, "header", room=width - 4 * MARGIN))
 
 
 def _box(node: _Node, layout: Layout) -> Markup:
     """A box with its lines; ISRs have round ends."""
     box = layout.boxes[node.name]
-    outline = element("rect", class_="box", x=box.left, y=box.top, width=BOX, height=box.height, rx=16 if node.is_round else 3)
+    outline = rect_at("box", box.left, box.top, BOX, box.height, rx=16 if node.is_round else 3)
     room = BOX - 2 * _INSET
-    name = elided(node.name, TEXT_SIZE, room - (MARK + 4 if node.verdict else 0), is_bold=True)
-    parts = [element("text", text(name), class_="header", x=box.left + _INSET, y=box.top + 17)]
+    left, for_name = box.left + _INSET, room - (MARK + 4 if node.verdict else 0)
+    parts = [text_at(node.name, left, box.top + 17, "header", room=for_name)]
     for line, content in enumerate(filter(None, node.lines)):
-        shown = elided(content, SMALL_SIZE, room)
-        parts.append(element("text", text(shown), class_="small muted", x=box.left + _INSET, y=box.top + 31 + 13 * line))
+        parts.append(text_at(content, left, box.top + 31 + 13 * line, "small muted", room=room))
     parts += [
         element("circle", class_=f"c{chain}", cx=box.right - 12 - 11 * place, cy=box.top + box.height, r=_CHIP)
         for place, chain in enumerate(reversed(node.chains))
     ]
     mark = draw_verdict(node.verdict, box.right - MARK, box.top + 13)
     tip = ", ".join(filter(None, (node.name, *node.lines, str(node.verdict or ""))))
-    return element("g", tooltip(tip), outline, *parts, mark)
+    return tipped(tip, outline, *parts, mark)
 
 
 def _wire(drawn: DrawnWire, kind: LinkKind) -> Markup:
@@ -341,15 +290,12 @@ def _wire(drawn: DrawnWire, kind: LinkKind) -> Markup:
     way = "".join(_path(points) for points in drawn.ways.values())
     heads = "".join(_head(*points[-2:]) for points in drawn.ways.values())
     (x, y), wire = drawn.start, drawn.wire
-    label = element("text", text(elided(wire.label, SMALL_SIZE, drawn.room - 6)), class_="small", x=x + 5, y=y - 3)
-    tip = (
-        f"{wire.source} to {', '.join(wire.targets)}: {wire.label}"
-        if not wire.is_outer
-        else f"{wire.label}, to {', '.join(wire.targets)}"
-    )
+    label = text_at(wire.label, x + 5, y - 3, "small", room=drawn.room - 6)
+    to = f"to {', '.join(wire.targets)}"
+    tip = f"{wire.label}, {to}" if wire.is_outer else f"{wire.source} {to}: {wire.label}"
     start = [element("circle", class_="head", cx=x, cy=y, r=3)] if wire.is_outer else []
-    line = element("path", class_="flow", stroke_dasharray=_DASHES.get(kind, "none"), d=way)
-    return element("g", tooltip(tip), line, element("path", class_="head", d=heads), *start, label)
+    line = path_of("flow", way, stroke_dasharray=_DASHES.get(kind, "none"))
+    return tipped(tip, line, path_of("head", heads), *start, label)
 
 
 def _path(points: Sequence[Point]) -> str:
@@ -370,8 +316,8 @@ def _chain(
     used = Counter(ends for other in before for ends in set(pairwise(other.processes)))
     ways = (_beside(by_ends[ends], _SHIFT * used[ends]) for ends in pairwise(chain.processes) if ends in by_ends)
     path = "".join(map(_path, ways))
-    line = element("path", class_=f"t{index} way", d=path)
-    return element("g", tooltip(_chain_text(chain)), line) if path else Markup("")
+    line = path_of(f"t{index} way", path)
+    return tipped(_chain_text(chain), line) if path else Markup("")
 
 
 def _beside(way: Sequence[Point], shift: float) -> list[Point]:
@@ -384,22 +330,13 @@ def _chain_text(chain: ChainPath) -> str:
     return f"event chain {chain.name}: {', '.join(chain.processes)}"
 
 
-def _legend(content: _Content) -> list[LegendEntry]:
-    entries = [LegendEntry(_line_key(kind), _MEANINGS[kind]) for kind in dict.fromkeys(content.kinds)]
-    entries += [
-        LegendEntry(_chain_key(chain, index), f"event chain {chain.name}") for index, chain in enumerate(content.chains)
-    ]
+def _legend(content: _Content) -> Iterator[Entry]:
+    for kind in dict.fromkeys(content.kinds):
+        line = path_of("flow", "M-10 0H9", stroke_dasharray=_DASHES.get(kind, "none"))
+        yield True, Markup(line + path_of("head", "M9 0l-6 -3.2v6.4z")), _MEANINGS[kind]
+    for index, chain in enumerate(content.chains):
+        key = path_of(f"t{index} way", "M-9 0H9"), element("circle", class_=f"c{index}", r=_CHIP)
+        yield True, tipped(_chain_text(chain), *key), f"event chain {chain.name}"
     nodes = [node for band in content.bands for node in band.nodes]
-    if any(node.is_round for node in nodes):
-        entries.append(LegendEntry(element("rect", class_="box", x=-9, y=-6, width=18, height=12, rx=6), "ISR"))
-    return entries + verdict_entries({node.verdict for node in nodes})
-
-
-def _line_key(kind: LinkKind) -> Markup:
-    line = element("path", class_="flow", stroke_dasharray=_DASHES.get(kind, "none"), d="M-10 0H9")
-    return Markup(line + element("path", class_="head", d="M9 0l-6 -3.2v6.4z"))
-
-
-def _chain_key(chain: ChainPath, index: int) -> Markup:
-    line = element("path", class_=f"t{index} way", d="M-9 0H9")
-    return element("g", tooltip(_chain_text(chain)), line, element("circle", class_=f"c{index}", r=_CHIP))
+    yield any(node.is_round for node in nodes), swatch("box", rx=6), "ISR"
+    yield from verdict_entries({node.verdict for node in nodes})

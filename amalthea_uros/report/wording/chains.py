@@ -7,8 +7,6 @@ from collections.abc import Iterable, Iterator
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.analyze.results.chains import ChainResult, LatencyQuantity, LatencyValue
 from amalthea_uros.analyze.results.explanations import CauseKind, LatencyCause, ProcessHop
-from amalthea_uros.report.wording.cells import share_text
-from amalthea_uros.report.writers.terminal import Terminal
 from amalthea_uros.units import Rounding, Time, rounded_time_text, time_text
 
 #: The headline quantities: `reaction` and `data age` are what the limits of these names are compared with.
@@ -87,27 +85,6 @@ def _largest_parts(chain: ChainResult) -> Iterator[tuple[str, Time]]:
         owner = f"{hop.kind} {hop.name}"
         named = [(f"{part.name} ({owner})", part.most) for part in hop.parts if part.most is not None and part.most > 0]
         yield from named or [(owner, hop.worst or 0)]
-
-
-def write_hops_of_chain(chain: ChainResult, terminal: Terminal) -> None:
-    """Write the hops of a chain with their parts; the columns best and worst add up to the latency."""
-    rows: list[tuple[str, ...]] = []
-    for hop in chain.hops:
-        note = hop.reason or hop.source
-        rows.append((f"{hop.kind}: {hop.name}", time_text(hop.best), _exact(hop.worst), share_text(hop.share), note))
-        rows += [(f"  {part.name}", "", _exact(part.most), "", part.why) for part in hop.parts]
-    rows.append(("sum", time_text(chain.best or 0), _exact(chain.worst_if_not_lost), "", ""))
-    terminal.table(("hop", "best", "worst", "share", ""), rows, right=(1, 2, 3))
-    terminal.line("  the latency is the sum of the bounds of its hops, which need not occur in one run")
-    if chain.loss:
-        terminal.line(f"  the sum only holds for messages that are not lost: {chain.loss}")
-    for hop in chain.hops:
-        if hop.worst is None and hop.remedy:
-            terminal.line(f"  {hop.remedy}")
-
-
-def _exact(value: Time | None) -> str:
-    return "unknown" if value is None else time_text(value)
 
 
 def _rounded_or_unknown(value: Time | None, rounding: Rounding) -> str:

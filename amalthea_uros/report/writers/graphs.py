@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from typing import IO
+
 from amalthea_uros.perf.software import Isr
 from amalthea_uros.perf.system import System
 from amalthea_uros.report.basics.escape import visible
 from amalthea_uros.report.pictures.flows import Flow, SystemFlows
+from amalthea_uros.services.report import ReportContent
 from amalthea_uros.timing.dataflow.links import LinkKind
 
 #: More names at an arrow are counted.
@@ -14,6 +17,16 @@ _NO_CORE = "no core, or several ones"
 # Mermaid decodes numeric entities in quoted texts, and otherwise takes quotes, markup, Markdown and these entities for syntax.
 # See "Entity codes to escape characters", https://mermaid.js.org/syntax/flowchart.html.
 _PLAIN = frozenset("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789 ,.:_")
+
+
+def write_mermaid(content: ReportContent, stream: IO[str]) -> None:
+    """Write the graph of a report for Mermaid."""
+    stream.write(mermaid(content.system))
+
+
+def write_dot(content: ReportContent, stream: IO[str]) -> None:
+    """Write the graph of a report for Graphviz."""
+    stream.write(dot(content.system))
 
 
 def mermaid(system: System) -> str:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import IO
+
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
@@ -12,14 +14,14 @@ from amalthea_uros.report.basics.document import Figure
 from amalthea_uros.report.basics.escape import visible
 from amalthea_uros.report.documents.opening import facts, opening
 from amalthea_uros.report.documents.page import page_sections
-from amalthea_uros.report.pictures.svg import embedded, style_sheet
+from amalthea_uros.report.pictures.page import embedded, style_sheet
 from amalthea_uros.services.report import ReportContent
 
 
-def render(content: ReportContent) -> str:
-    """The page."""
+def write(content: ReportContent, stream: IO[str]) -> None:
+    """Write the page of a report."""
     template = _environment().get_template("page.html.jinja")
-    return template.render(
+    page = template.render(
         title=content.title,
         date=content.date,
         facts=facts(content),
@@ -29,6 +31,7 @@ def render(content: ReportContent) -> str:
         version=__version__,
         documentation=DOCUMENTATION,
     )
+    stream.write(page)
 
 
 def _environment() -> Environment:

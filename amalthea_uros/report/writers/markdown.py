@@ -4,12 +4,30 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from typing import IO
 
 from amalthea_uros.report.basics.document import Block, Document, Sentences, Table, table
 from amalthea_uros.report.basics.escape import visible
+from amalthea_uros.report.documents import document_of
 
 #: Characters that may be markup; an underscore between letters never is.
 _SPECIAL = re.compile(r"[\\|<>*`\[\]~&]|(?<![^\W_])_|_(?![^\W_])")
+
+#: GitHub accepts 65,536 characters in a comment; names may be long.
+_MOST_CHARACTERS = 60_000
+_MOST_IN_CELL = 80
+
+
+def write(result: object, stream: IO[str]) -> None:
+    """Write the document of a result; the summary of a report is short enough for a comment."""
+    is_summary = type(result).__name__ == "ReportContent"
+    length = 0
+    for line in lines(document_of(result), 2, _MOST_IN_CELL) if is_summary else lines(document_of(result)):
+        length += len(line) + 1
+        if is_summary and length > _MOST_CHARACTERS:
+            stream.write("\nThe rest is left out, because comments have a limited length.\n")
+            return
+        stream.write(line + "\n")
 
 
 def lines(document: Document, level: int = 1, most_characters: int | None = None) -> Iterator[str]:
@@ -41,9 +59,9 @@ def block_lines(block: Block, most_characters: int | None) -> Iterator[str]:
         case Table():
             yield from table_lines(block.compact, most_characters)
         case Sentences(sentences=(sentence,)):
-            yield escaped(sentence)
+            yield escaped(str(sentence))
         case Sentences(sentences=sentences):
-            yield from (f"- {escaped(sentence)}" for sentence in sentences)
+            yield from (f"- {escaped(str(sentence))}" for sentence in sentences)
 
 
 def table_lines(table: Table, most_characters: int | None) -> Iterator[str]:

@@ -16,7 +16,7 @@ from amalthea_uros.report.basics.escape import output_line, visible
 GAP = 2
 
 #: What the columns of remarks are called.
-_REMARKS = ("", "reason")
+_REMARKS = ("", "reason", "how it is computed")
 
 #: Shorter remarks, such as claims, always stay in the table.
 _SHORT = 24

@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+import csv
 from collections.abc import Iterator, Sequence
 from itertools import repeat
+from typing import IO
 
 from amalthea_uros.measure.series import Measurement
 
 
-def rows(measurement: Measurement) -> Iterator[Sequence[object]]:
-    """A row for each value; series of which only statistics are known have none."""
+def write(measurement: Measurement, stream: IO[str]) -> None:
+    """Write a row for each value; series of which only statistics are known have none."""
+    csv.writer(stream, lineterminator="\n").writerows(_rows(measurement))
+
+
+def _rows(measurement: Measurement) -> Iterator[Sequence[object]]:
     yield ("object", "kind", "quantity", "time_ps", "value_ps")
     for series in measurement.series:
         if series.values is not None:

@@ -12,8 +12,6 @@ from amalthea_uros.report.wording.findings import joined, profile_name
 if TYPE_CHECKING:
     from amalthea_uros.services.check import CheckResult
 
-RENDERS = ("CheckResult",)
-
 
 def write(result: CheckResult, stream: IO[str]) -> None:
     """Write a test case for each rule that was checked or has findings; it fails if one of them is more than information."""

@@ -13,8 +13,6 @@ from amalthea_uros.report.wording.findings import relative
 if TYPE_CHECKING:
     from amalthea_uros.services.check import CheckResult
 
-RENDERS = ("CheckResult",)
-
 _COMMANDS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "notice"}
 
 

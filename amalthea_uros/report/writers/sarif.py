@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from amalthea_uros.findings.presentation import FindingEntry
     from amalthea_uros.services.check import CheckResult
 
-RENDERS = ("CheckResult",)
-
 _LEVELS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "note"}
 
 #: The base of relative paths; viewers replace it by the root of the repository.

@@ -7,23 +7,13 @@ from typing import IO, Any
 
 from amalthea_uros._version import __version__
 from amalthea_uros.report.basics.escape import write_json
+from amalthea_uros.report.fields import FIELDS
 from amalthea_uros.report.fields.declaration import json_of
-
-#: The modules that declare the fields of results.
-_MODULES = {
-    "analysis": ("AnalysisResult",),
-    "descriptions": ("BuildResult", "GenerateResult", "MetaCheck"),
-    "measurement": ("Calibration", "Comparison", "Measurement"),
-    "models": ("CheckResult", "DiffResult", "InfoResult", "MigrationResult", "RulesResult"),
-    "search": ("Optimization", "SweepResult"),
-    "simulation": ("CampaignResult", "SimulationResult"),
-}
-RENDERS = {name: module for module, names in _MODULES.items() for name in names}
 
 
 def content(result: object) -> dict[str, Any]:
     """The fields of a result."""
-    import_module(f"amalthea_uros.report.fields.{RENDERS[type(result).__name__]}")
+    import_module(f"amalthea_uros.report.fields.{FIELDS[type(result).__name__]}")
     found: dict[str, Any] = json_of(result)
     return found
 

@@ -1,0 +1,265 @@
+"""What becomes of a description as documents: the built model, generated files, new descriptions; and the sections of a report."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Iterator, Sequence
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from amalthea_uros._internal.plural import counted
+from amalthea_uros.report.basics.document import (
+    Badge,
+    Cell,
+    Document,
+    Lead,
+    Listing,
+    Section,
+    Sentences,
+    Table,
+    Tone,
+    document,
+    lines,
+    section,
+    table,
+)
+from amalthea_uros.report.wording.cells import activation_text, exactly, load_text
+from amalthea_uros.units import Rounding, time_text
+
+if TYPE_CHECKING:
+    from amalthea_uros.perf.executors import Executor
+    from amalthea_uros.services.build import BuildResult
+    from amalthea_uros.services.generate import GenerateResult
+    from amalthea_uros.services.import_code import ImportResult
+    from amalthea_uros.services.init import Catalogue, InitResult, Offered
+    from amalthea_uros.services.report import ReportContent
+    from amalthea_uros.uros.application.entities import Initialisation
+    from amalthea_uros.uros.assemble import Assembly
+    from amalthea_uros.uros.memory import MemoryDemand
+    from amalthea_uros.uros.middleware.options import Option
+
+
+def build_document(result: BuildResult) -> Document:
+    """Which file was written, with tables of tasks, interrupts, messages, and the start and the pools of the middleware."""
+    assembly = result.assembly
+    objects = counted(sum(1 for _ in result.model.walk()), "object")
+    rest = f": AMALTHEA {result.document.version}, {objects}, built from {result.description}"
+    written = lines(Lead(str(result.document.path or "unsaved"), rest))
+    tasks, isrs = _tasks(assembly), _isrs(assembly)
+    start = [] if assembly.initialisation is None else [_start_text(assembly.initialisation)]
+    sections = (
+        section("", written),
+        section(f"Tasks ({len(tasks.rows)})", tasks, Sentences([assembly.placement] if assembly.placement else [])),
+        section(f"Interrupt service routines ({len(isrs.rows)})", isrs),
+        _executors(assembly.system.executors),
+        section(f"Messages on the CAN bus (bus load at most {_bus_load(assembly)})", _messages(assembly)),
+        section("Initialisation of the middleware", Sentences(start)),
+        section("Static pools", _pools(assembly)),
+        section("Memory", _memory(assembly.memory)),
+    )
+    return document(sections, kept=[written])
+
+
+def _tasks(assembly: Assembly) -> Table:
+    system, reasons = assembly.system, {choice.task: choice.reason for choice in assembly.choices}
+    rows = [
+        (*_process(assembly, each.task), str(each.priority), ", ".join(system.schedulers[each.scheduler].cores), reason)
+        for each in system.mapping.tasks
+        for reason in (reasons.get(each.task, ""),)
+    ]
+    return table("", ("task", "activated", ">priority", "core", "reason"), rows)
+
+
+def _isrs(assembly: Assembly) -> Table:
+    system = assembly.system
+    rows = [
+        (*_process(assembly, each.isr), str(each.priority), ", ".join(system.interrupt_controllers[each.controller].cores))
+        for each in system.mapping.isrs
+    ]
+    return table("", ("ISR", "activated", ">priority", "core"), rows)
+
+
+def _process(assembly: Assembly, name: str) -> tuple[str, str]:
+    """A process, and when it is activated."""
+    system = assembly.system
+    return name, ", ".join(activation_text(system.stimuli_by_name[each]) for each in system.processes[name].stimuli)
+
+
+def _executors(executors: Sequence[Executor]) -> Section:
+    rows = [
+        (executor.name, str(number), handle.name, str(handle.kind), exactly(handle.interval), handle.runnable)
+        for executor in executors
+        for number, handle in enumerate(executor.handles, start=1)
+    ]
+    handles = table("", ("executor", ">order", "handle", "kind", ">interval", "calls"), rows)
+    loops = Sentences([f"{executor.name}: {_loop_text(executor)}" for executor in executors])
+    return section(f"Executors ({len(executors)})", loops, handles)
+
+
+def _loop_text(executor: Executor) -> str:
+    """How an executor spins, in words."""
+    loop = executor.loop
+    period = "" if loop.period is None else f", period {time_text(loop.period)}"
+    sleep = f", sleep {time_text(loop.sleep)}" if loop.sleep else ""
+    semantics = ", all messages are taken first (LET)" if executor.takes_first else ""
+    return (
+        f"{loop.kind}, timeout {time_text(loop.timeout)}{period}{sleep}; trigger condition {executor.trigger.kind}{semantics}"
+    )
+
+
+def _messages(assembly: Assembly) -> Table:
+    """What an `app.yaml` sends and receives, with headers and maximum bit stuffing."""
+    rows = [
+        (
+            each.message.topic,
+            "received" if each.message.is_incoming else "sent",
+            time_text(each.message.interval),
+            f"{each.length} B",
+            f"{each.frames}",
+            "common" if each.identifier is None else f"0x{each.identifier:X}",
+            time_text(each.transmission_time),
+            load_text(each.bus_load, Rounding.UP),
+        )
+        for each in assembly.messages
+    ]
+    titles = ("topic", "direction", ">interval", ">with headers", ">frames", ">identifier", ">transmission time", ">bus load")
+    return table("Messages of the application", titles, rows)
+
+
+def _bus_load(assembly: Assembly) -> str:
+    return load_text(sum((each.bus_load for each in assembly.messages), Fraction(0)), Rounding.UP)
+
+
+def _start_text(start: Initialisation) -> str:
+    """The initialisation of the middleware, in a sentence."""
+    count = f"{counted(len(start.entities), 'entity')}, created one after the other"
+    text = f"{count}: at least {counted(start.min_cycles, 'cycle')} ({time_text(start.min_time)})"
+    if start.max_cycles is None or start.max_time is None:
+        return text
+    return f"{text}, at most {counted(start.max_cycles, 'cycle')} ({time_text(start.max_time)})"
+
+
+def _pools(assembly: Assembly) -> Table:
+    """How many objects of the middleware are needed; how many messages wait depends on response times, which no model has."""
+    from amalthea_uros.uros.middleware.options import OptionRole
+
+    def row(pool: Option) -> tuple[Cell, ...]:
+        verdict = Badge("too small", Tone.BAD) if pool.is_exceeded else Badge("sufficient", Tone.GOOD)
+        needed = f"at least {pool.needed}" if pool.role is OptionRole.QUEUE else f"{pool.needed}"
+        return pool.name, needed, f"{pool.available}", "app.yaml" if pool.is_stated else "default", verdict
+
+    titles = ("option", ">needed", ">available", "set by", "verdict")
+    return table("Pools of the middleware", titles, (row(pool) for pool in assembly.pools if pool.needed))
+
+
+def _memory(memory: MemoryDemand) -> Table:
+    """The parts with sizes and remarks, then total, budget and memory of the board; empty without micro-ROS and stated stacks."""
+    stacks = memory.stacks
+    rows = [(use.name, f"{use.size} B" if use.is_bounded else "?", use.formula) for use in memory.uses]
+    if stacks.users:
+        parts = " + ".join(f"{user.size} B ({user.name})" for user in stacks.users if user.size)
+        how = f"longest chain of preemption: {parts}" if stacks.shared else parts
+        rows.append(("stack, shared" if stacks.shared else "stacks", f"{stacks.size} B", how))
+    if rows:
+        missing = f"without the stacks of {', '.join(stacks.unknown)}, which are not stated" if stacks.unknown else ""
+        rows.append(("total" if memory.is_complete else "total, at least", f"{memory.total} B", missing))
+        limits = {"budget": memory.budget, "memory of the board": memory.ram}
+        rows += [(name, f"{size} B", "") for name, size in limits.items() if size is not None]
+    return table("Memory", ("part", ">size", "how it is computed"), rows)
+
+
+def bus_section(content: ReportContent) -> Section | None:
+    """What an `app.yaml` sends and receives."""
+    if content.assembly is None or not content.assembly.messages:
+        return None
+    need = _bus_load(content.assembly)
+    lead = f"Each message with its headers and maximum bit stuffing; together they need at most {need} of the bus."
+    return Section("messages", "Messages on the CAN bus", lead, [_messages(content.assembly)])
+
+
+def pools_section(content: ReportContent) -> Section | None:
+    """The pools that the application needs, the files for a build with the right sizes, and the memory."""
+    from amalthea_uros.services.generate import texts_of
+
+    assembly = content.assembly
+    if assembly is None or not assembly.description.application.nodes:
+        return None
+    lead = "The middleware takes its objects from pools of fixed size; these files set those that the application needs in the build."
+    files = [Listing(name, text.splitlines()) for name, text in texts_of(assembly).items() if not name.endswith(".h")]
+    return Section("pools", "Static pools", lead, [_pools(assembly), _memory(assembly.memory), *files])
+
+
+def generate_document(result: GenerateResult) -> Document:
+    """The names of the files, the options in them, the memory of the description, and what to do next."""
+    from amalthea_uros.uros.generated_options import values_of
+
+    paths = (name if result.folder is None else str(result.folder / name) for name in result.texts)
+    written = lines(*(Lead(path, f": generated from {result.description}") for path in paths))
+    rows = [
+        (option.name, option.text(value), option.unit, option.text(option.available), option.counts)
+        for option, value in values_of(result.assembly.options)
+    ]
+    options = table("", ("option", ">generated", "", ">described", "what it counts"), rows)
+    saved = result.assembly.memory.total - result.memory.total
+    compared = f" ({saved} B less than described)" if saved > 0 else ""
+    rebuild = "The values are compiled into the library of the middleware: rebuild it from clean, or nothing changes."
+    sections = (
+        section("", written),
+        section("Build options", options or Sentences(["The defaults of the middleware hold."])),
+        section(f"Memory with these options{compared}", _memory(result.memory)),
+        section("", lines("" if result.folder is None else rebuild)),
+    )
+    return document(sections, kept=[written])
+
+
+#: Commands for a new description, with what they are good for.
+_NEXT = (
+    ("amuros check {}", "find mistakes"),
+    ("amuros analyze {}", "compute response times, latencies and verdicts"),
+    ("amuros report {} -o report.html", "show it to others"),
+    ("amuros build {}", "make the AMALTHEA model"),
+)
+#: With a measurement, a log and its markers.
+_NEXT_MEASURED = (
+    ("amuros measure {1} --markers {2}", "show what was measured"),
+    ("amuros calibrate {0} {1} --markers {2}", "put measured times into the description"),
+)
+
+
+def init_document(result: InitResult) -> Document:
+    """The names of the written files, and the next commands."""
+    written = lines(*_written(result))
+    files = [shlex.quote(str(path)) for path in (result.path, *result.measurement)]
+    following = (*_NEXT, *_NEXT_MEASURED) if result.measurement else _NEXT
+    commands = [(command.format(*files), f"# {purpose}") for command, purpose in following]
+    return document((section("", written), section("Next:", _in_columns(commands))), kept=[written])
+
+
+def _written(result: InitResult) -> Iterator[Lead]:
+    yield Lead(str(result.path), f": written from {result.origin}")
+    if result.database is not None:
+        yield Lead(str(result.database), ": the frames of others on its bus")
+    if result.measurement:
+        yield Lead(", ".join(map(str, result.measurement)), ": its measurement")
+
+
+def catalogue_document(catalogue: Catalogue) -> Document:
+    """A line for each board and each example that a description can begin with."""
+    offers = {"Boards (--board NAME)": catalogue.boards, "Examples (--example NAME)": catalogue.examples}
+    return document(section(title, _offers(offered)) for title, offered in offers.items())
+
+
+def _offers(offers: Sequence[Offered]) -> Sentences:
+    return _in_columns([(offer.name, offer.summary) for offer in offers])
+
+
+def _in_columns(pairs: Sequence[tuple[str, str]]) -> Sentences:
+    """Lines with what the first parts mean at the same distance from the margin."""
+    width = max(len(name) for name, _ in pairs)
+    return Sentences([f"{name:<{width}}  {meaning}" for name, meaning in pairs])
+
+
+def import_document(result: ImportResult) -> Document:
+    """The name of the description, and how many gaps are to be filled."""
+    written = "a description: made" if result.path is None else f"{result.path}: written"
+    return document([section("", lines(f"{written}, with {counted(result.gaps, 'gap')} to fill (TODO)"))])
