@@ -6,6 +6,7 @@ A change may raise a limit of a table below only on purpose: for a capability th
 import ast
 from collections import Counter, defaultdict
 from functools import cache
+from typing import NamedTuple
 
 import networkx as nx
 import pytest
@@ -114,71 +115,65 @@ def room_of_file(path):
     return path.relative_to(ROOT / PACKAGE).parts[0].removesuffix(".py")
 
 
-@cache
-def parsed(path):
-    return ast.parse(path.read_text(encoding="utf-8"))
+class Structure(NamedTuple):
+    """What the tests ask of a file; its tree would be kept for nothing."""
+
+    #: Those that are neither blank nor a comment nor part of a docstring.
+    lines: int
+    #: The modules from which it imports anywhere.
+    imports: frozenset[str]
+    #: Class -> its bases, of the classes that are in no other one.
+    classes: dict[str, list[str]]
 
 
 @cache
-def lines_of_code(path):
-    """The lines of a file that are neither blank nor a comment nor part of a docstring."""
-    without = {
-        number
-        for node in ast.walk(parsed(path))
-        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str)
-        for number in range(node.lineno, node.end_lineno + 1)
-    }
-    lines = path.read_text(encoding="utf-8").splitlines()
-    return sum(
-        1 for number, line in enumerate(lines, 1) if line.strip() and not line.strip().startswith("#") and number not in without
-    )
+def structure(path):
+    source = path.read_text(encoding="utf-8")
+    tree = ast.parse(source)
+    without, modules = set(), set()
+    for node in ast.walk(tree):
+        match node:
+            case ast.Expr(value=ast.Constant(value=str())):
+                without.update(range(node.lineno, node.end_lineno + 1))
+            case ast.ImportFrom(module=module):
+                modules.add(module)
+            case ast.Import(names=names):
+                modules.update(alias.name for alias in names)
+    lines = (line.strip() for number, line in enumerate(source.splitlines(), 1) if number not in without)
+    classes = {node.name: [ast.unparse(base) for base in node.bases] for node in tree.body if isinstance(node, ast.ClassDef)}
+    return Structure(sum(1 for line in lines if line and not line.startswith("#")), frozenset(modules), classes)
 
 
 def test_no_room_grows_unnoticed():
     counts = Counter()
     for path in files():
-        counts[room_of_file(path)] += lines_of_code(path)
+        counts[room_of_file(path)] += structure(path).lines
     assert {room: count for room, count in counts.items() if count > LINES.get(room, 0)} == {}
 
 
 @pytest.mark.parametrize("room", sorted({room_of_file(path) for path in files()}))
 def test_no_limit_is_far_above_what_a_room_has(room):
-    count = sum(lines_of_code(path) for path in files() if room_of_file(path) == room)
+    count = sum(structure(path).lines for path in files() if room_of_file(path) == room)
     assert LINES[room] <= count + max(40, count // 20)
 
 
 def test_no_file_imports_from_too_many_modules():
-    counts = {name_of(path): len({*imports(path)}) for path in files() if name_of(path) not in WITHOUT_LIMIT}
+    counts = {name_of(path): len(structure(path).imports) for path in files() if name_of(path) not in WITHOUT_LIMIT}
     allowed = {f"{PACKAGE}/{name}": count for name, count in MORE_IMPORTS.items()}
     assert {name: count for name, count in counts.items() if count > IMPORTS} == allowed
-
-
-def imports(path):
-    """The modules that a file imports from anywhere in it."""
-    for node in ast.walk(parsed(path)):
-        if isinstance(node, ast.ImportFrom):
-            yield node.module
-        elif isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names)
 
 
 def test_a_class_name_exists_once():
     owners = defaultdict(list)
     for path in files():
         if not name_of(path).startswith(LANGUAGES):
-            for node in parsed(path).body:
-                if isinstance(node, ast.ClassDef):
-                    owners[node.name.lstrip("_")].append(name_of(path))
+            for name in structure(path).classes:
+                owners[name.lstrip("_")].append(name_of(path))
     assert {name for name, paths in owners.items() if len(paths) > 1} == SHARED_NAMES
 
 
 def test_exceptions_are_few():
-    bases = {
-        node.name: [ast.unparse(base) for base in node.bases]
-        for path in files()
-        for node in parsed(path).body
-        if isinstance(node, ast.ClassDef)
-    }
+    bases = {name: parents for path in files() for name, parents in structure(path).classes.items()}
     found = set()
 
     def is_exception(name):

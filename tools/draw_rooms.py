@@ -88,7 +88,7 @@ def _imported(tree: ast.AST, files: Mapping[str, Path]) -> Iterator[str]:
             case ast.ImportFrom(module=str(module), names=names) if module in files:
                 found = (f"{module}.{name.name}" for name in names)
                 yield from (name if name in files else module for name in found)
-            case _:
+            case ast.stmt() | ast.ExceptHandler() | ast.match_case():  # an expression has no import
                 yield from _imported(node, files)
 
 
