@@ -109,7 +109,7 @@ def test_an_executor_needs_its_task():
         ("&quot;spin&quot;:&quot;Spin&quot;,", "", "Executor needs 'spin'"),
         ("&quot;spin&quot;:", "&quot;spun&quot;:1,&quot;spin&quot;:", "Executor has no 'spun'"),
         ("&quot;always&quot;:true", "&quot;always&quot;:1", "Handle.always is not of type bool"),
-        ("spin_some", "spin_more", "'spin_more' is not a value of Loop.kind"),
+        ("spin_some", "spin_more", "'spin_more' is not a value of ThreadLoop.kind"),
         ("[&quot;a&quot;,&quot;b&quot;]", "[[],&quot;b&quot;]", "TriggerCondition.sets is not of type str"),
         ("[&quot;a&quot;,&quot;b&quot;]", "3", "TriggerCondition.sets is not a list"),
         ("{&quot;name&quot;:&quot;Main loop", "{", "not valid JSON"),

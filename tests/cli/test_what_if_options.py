@@ -24,7 +24,7 @@ def test_analyze_shows_the_change_and_what_it_does():
     found = amuros("analyze", MODEL, *SET)
     assert found.stderr == "Executor_Task.priority: 3 -> 0\n"
     table = section(found.stdout, "Before and after the change")
-    assert table[0] == "object quantity before after effect"
+    assert table[0] == "object quantity before after effect claim"
     assert "Executor_Task worst response 12 us 18 us worse exact" in table
     assert "Control_Function worst response 16 us 4 us better exact" in table
     assert table[-1].endswith("other figures are unchanged")

@@ -106,7 +106,7 @@ def test_texts_for_people():
     lines = str(found).splitlines()
     assert lines[0] == "Control_Function.execution_time: 4 ticks -> 5 ticks"
     assert lines[2] == "Before and after the change"
-    assert lines[3].split() == ["object", "quantity", "before", "after", "effect"]
+    assert lines[3].split() == ["object", "quantity", "before", "after", "effect", "claim"]
     assert "Control_Function  worst response" in str(found)
     assert lines[-1].endswith("other figures are unchanged")
     assert "  nothing changed: " in str(amuros.what_if(MODEL, []))

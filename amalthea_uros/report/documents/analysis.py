@@ -327,7 +327,7 @@ def impact_table(impact: Impact) -> Table:
         (*found[:-2], Badge(found[-2], _EFFECTS.get(row.effect, Tone.NEUTRAL)), found[-1])
         for row, found in zip(impact.rows, impact_cells(impact), strict=True)
     ]
-    return table("Results before and after the change", ("object", "quantity", ">before", ">after", "effect", ""), rows)
+    return table("Results before and after the change", ("object", "quantity", ">before", ">after", "effect", "claim"), rows)
 
 
 def _factors(found: Sensitivity) -> Table:

@@ -26,7 +26,6 @@ from amalthea_uros.report.basics.document import (
     table,
 )
 from amalthea_uros.report.basics.escape import visible
-from amalthea_uros.report.wording.cells import badge
 from amalthea_uros.report.wording.findings import findings_text, joined, profile_name
 
 if TYPE_CHECKING:
@@ -168,6 +167,8 @@ def _total(content: ReportContent, found: Sequence[Finding]) -> str:
 
 
 def _folded(rule: str, findings: Sequence[Finding]) -> Folded:
+    # Only reports have these; `amuros check` does without analyses.
+    from amalthea_uros.report.wording.cells import badge
     from amalthea_uros.validate import registry
 
     kind = registry.kind(rule)

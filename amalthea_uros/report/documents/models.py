@@ -7,14 +7,13 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.design.changes.timing_changes import Happening, TimingChange
 from amalthea_uros.difference.comparison import ChangeKind, ModelChange
 from amalthea_uros.metamodel.features import features_of
 from amalthea_uros.metamodel.versions import spelled
 from amalthea_uros.report.basics.document import Document, Lead, Line, Section, Sentences, Tone, document, lines, section, table
-from amalthea_uros.report.wording.cells import words
 
 if TYPE_CHECKING:
+    from amalthea_uros.design.changes.timing_changes import TimingChange
     from amalthea_uros.metamodel.element import Element
     from amalthea_uros.metamodel.summary import ModelSummary
     from amalthea_uros.services.diff import DiffResult
@@ -151,6 +150,10 @@ def _summary(changes: Sequence[ModelChange]) -> str:
 
 def _timing_text(change: TimingChange) -> Line:
     """A process, core or stimulus that is added, removed, or has other values."""
+    # `amuros info` does without systems.
+    from amalthea_uros.design.changes.timing_changes import Happening
+    from amalthea_uros.report.wording.cells import words
+
     if change.happening is Happening.CHANGED:
         values = ", ".join(f"{words(each.key)} {each.before} -> {each.after}" for each in change.differences)
         return f"{change.object}: {values}"

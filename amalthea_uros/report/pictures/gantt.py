@@ -79,7 +79,7 @@ def _legend(rows: Sequence[DrawnRow], has_chains: bool = False) -> Iterator[Entr
     runnable = element("rect", x=-9, y=-6, width=18, height=12, **state_look(State.RUNNING, 0))
     yield any(row.runnables for row in rows), Markup(runnable + rect_at("label", -6, -3, 12, 6, rx=2)), "runnable"
     path = path_of("line", "M-5 0H9", marker_end=ARROW_END) + element("circle", class_="line paper", cx=-6, cy=0, r=3)
-    yield has_chains, Markup(path), "way of a chain, and its latency"
+    yield has_chains, Markup(path), "path of a chain, and its latency"
 
 
 def _notes(rows: Sequence[DrawnRow], axis: TimeAxis) -> list[str]:
