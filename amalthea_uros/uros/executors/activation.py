@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from amalthea_uros.executors.semantics.loops import is_paced, iterations_follow_at_once, timeout_of
+from amalthea_uros.executors.semantics.loops import is_paced, iterations_follow_at_once
 from amalthea_uros.perf.activities import Trigger, walk
 from amalthea_uros.perf.distributions import Boundaries, Uniform
 from amalthea_uros.perf.executors import Executor, HandleKind, ThreadLoop
@@ -61,8 +61,10 @@ def activation(executor: Executor, callbacks: Sequence[Callback], min_iteration:
     if loop.sleep:
         yield _after_sleeps(name, loop, min_iteration)
     elif loop.period is not None and is_paced(executor):
-        # An iteration executes when its wait ends.
-        yield Periodic(name=name, period=loop.period, offset=offset, jitter=Boundaries(lower=0, upper=timeout_of(executor)))
+        # An iteration executes when its wait ends. Versions of one middleware differ in whether they wait without anything that
+        # receives messages (micro-ROS/rmw_microxrcedds#305), so a wait that returns at once has a jitter, too.
+        latest = min(loop.timeout, loop.period)
+        yield Periodic(name=name, period=loop.period, offset=offset, jitter=Boundaries(lower=0, upper=latest))
     elif reason:
         unknown = Custom(name=name, description=f"{reason}, and the execution time of an iteration is not specified")
         yield _at_least(name, min_iteration) if min_iteration else unknown

@@ -7,6 +7,7 @@ from amalthea_uros.perf.activities import Call, ProbabilitySwitch
 from amalthea_uros.perf.stimuli import Custom, InterProcess, Periodic
 from amalthea_uros.units import MICROSECOND, MILLISECOND, SECOND
 
+TIMER = "\n      timers: [{name: Control, period: 40 ms, execution_time: 4 us}]"
 SLEEPING = "loop: {spin_some: 100 ms, sleep: 10 ms}"
 
 
@@ -105,6 +106,14 @@ def test_a_period_activates_rounds_if_the_wait_cannot_exceed_it():
     (stimulus,) = stimuli("loop: {spin_period: 20 ms, timeout: 5 ms}").values()
     assert isinstance(stimulus, Periodic)
     assert (stimulus.period, stimulus.jitter.upper) == (20 * MILLISECOND, 5 * MILLISECOND)
+
+
+@pytest.mark.parametrize(("timeout", "jitter"), [("", 20), (", timeout: 1 s", 20), (", timeout: 5 ms", 5)])
+def test_a_wait_that_may_return_at_once_has_a_jitter_too(timeout, jitter):
+    # micro-ROS/rmw_microxrcedds#305: some versions wait also where nothing receives messages.
+    found = stimuli(f"loop: {{spin_period: 20 ms{timeout}}}", TIMER)
+    (stimulus,) = found.values()
+    assert (stimulus.period, stimulus.jitter.upper) == (20 * MILLISECOND, jitter * MILLISECOND)
 
 
 @pytest.mark.parametrize("loop", ["{spin: 1 s}", "{spin_period: 20 ms}", "{spin_some: 1 s}"])
