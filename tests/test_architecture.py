@@ -168,6 +168,6 @@ def rooms_entered_from(origin, action):
 
 
 def room(frame):
-    """The room of the code of a frame; None for code of others."""
+    """The room of the code of a frame; None for code outside the package."""
     module = frame.f_globals.get("__name__", "")
     return room_of(module) if module.startswith(f"{PACKAGE}.") else None

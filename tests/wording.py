@@ -112,6 +112,12 @@ def modules():
     return [path for path in found if not any(path.is_relative_to(each) for each in exempt)]
 
 
+def catalogues():
+    """The texts of rules and other findings."""
+    folders = (ROOT / "amalthea_uros" / room for room in ("findings", "validate"))
+    return sorted(path for folder in folders for path in folder.rglob("*.yaml"))
+
+
 def place(use):
     """What a use is counted for: a page, or the package."""
     return use.path if use.path.endswith(".md") else "amalthea_uros"
@@ -120,6 +126,7 @@ def place(use):
 def all_uses():
     """Every use."""
     yield from (use for path in pages() for use in uses_in_page(path))
+    yield from (use for path in catalogues() for use in uses_in_page(path))
     yield from (use for path in modules() for use in uses_in_module(path))
 
 

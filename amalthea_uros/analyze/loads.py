@@ -140,4 +140,4 @@ def _note_regular_frames(solution: Solution) -> None:
     ]
     if regular:
         names = ", ".join(regular)
-        solution.context.notes.assume(f"frames of others without a stated jitter never come earlier than their period: {names}")
+        solution.context.notes.assume(f"foreign frames without a stated jitter never come earlier than their period: {names}")

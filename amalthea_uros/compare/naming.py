@@ -127,7 +127,7 @@ def _targets(measurement: Measurement, names: Names, system: System) -> Iterator
 
 
 def _baselines(measurement: Measurement) -> set[str]:
-    """The objects whose times were subtracted from those of others."""
+    """The objects whose times were subtracted from those of other objects."""
     subtracted = [series.baseline for series in measurement.series if series.baseline is not None]
     return {series.name for series in measurement.series if series.statistics in subtracted}
 

@@ -323,7 +323,7 @@ def _latency(analysis: Analysis, chain: str, quantity: LatencyQuantity) -> Time 
 def _drawbacks(
     chain: str, latencies: Mapping[LatencyQuantity, tuple[Time | None, Time | None]], before: Analysis, after: Analysis
 ) -> Iterator[Drawback]:
-    """What gets worse: verdicts, cores that are overloaded now, and latencies of the chain and of others."""
+    """What gets worse: verdicts, cores that are overloaded now, and latencies of this chain and other chains."""
     worse = [row for row in impact(before, after).rows if row.effect is Effect.WORSE]
     for row in worse:
         if row.part in (ResultPart.PROCESS, ResultPart.REQUIREMENT) and row.figure.unit is FigureUnit.VERDICT:

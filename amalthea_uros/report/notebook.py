@@ -25,7 +25,7 @@ def records(result: object, full: bool) -> list[Record]:
 
 
 def text(result: object) -> str:
-    """What the command line prints of a result; of others, what `repr` gives."""
+    """The text that the command line prints of a result; of other objects, their `repr`."""
     if type(result).__name__ not in DOCUMENTS:
         return repr(result)
     stream = StringIO()
@@ -34,7 +34,7 @@ def text(result: object) -> str:
 
 
 def html(result: object) -> str:
-    """The tables that the command line prints of a result; of others, a table of its records."""
+    """The tables that the command line prints of a result; of other objects, a table of their records."""
     return html_of(document_of(result)) if type(result).__name__ in DOCUMENTS else _table(lean_records(result))
 
 

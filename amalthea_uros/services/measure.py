@@ -205,7 +205,7 @@ def _digest(path: Path) -> str:
 
 
 def _net(found: Measurement, empty: Measurement, baselines: Mapping[str, str]) -> Measurement:
-    """A measurement with the times of the empty objects subtracted from those of others; a missing one is reported."""
+    """A measurement with the times of the empty objects subtracted from those of the other objects; a missing one is reported."""
     subtracted = Baselines(baselines, empty.series)
     series = tuple(map(subtracted.net, found.series))
     place = Location(Path(empty.source))
@@ -213,7 +213,7 @@ def _net(found: Measurement, empty: Measurement, baselines: Mapping[str, str]) -
         Finding(
             "MEA012",
             Severity.ERROR,
-            f"{name!r} was not measured; nothing is subtracted from the times of others",
+            f"{name!r} was not measured; nothing is subtracted from the times of other objects",
             place,
             _ADVICE,
         )

@@ -88,7 +88,7 @@ def assemble(
     ----------
     hardware : of the description, completed by its platform
     platform : the name that execution times use for the hardware; None if it has none
-    database : frames of others on the CAN bus, from the DBC file that the description names
+    database : foreign frames on the CAN bus, from the DBC file that the description names
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""The build options to generate for an application, and a file of others compared with them."""
+"""The build options to generate for an application, and an existing file compared with them."""
 
 from __future__ import annotations
 

@@ -99,7 +99,7 @@ class _StackLevel:
     ----------
     rank : interrupt service routines are above all tasks
     threshold : rank that something needs to exceed to preempt it
-    is_cooperative, yields : whether it runs cooperatively, and then lets others run between two of its functions
+    is_cooperative, yields : whether it runs cooperatively, and then yields to other tasks between two of its functions
     """
 
     name: str

@@ -16,7 +16,7 @@ SAMPLES = sorted((ROOT / "samples").glob("*.yaml"))
 
 
 #: What the importer does not take over of what the descriptions ask for: requirements, costs of accesses, a policy, statistics of
-#: execution times, a semaphore with a ceiling; least distances of messages, points at which frames of others are sent, curves of
+#: execution times, a semaphore with a ceiling; least distances of messages, points at which foreign frames are sent, curves of
 #: arrivals, and where a label is written.
 WISHES = {
     "bodas-test-advanced": {"INC-CO-KIND"},

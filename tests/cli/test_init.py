@@ -91,7 +91,7 @@ def test_standard_output_has_no_measurement(tmp_path):
 def test_examples_share_the_database_of_their_bus(tmp_path):
     for name in ("drive", "lift"):
         run = amuros("init", f"{name}.yaml", "--example", f"two-controllers-{name}", cwd=tmp_path)
-        assert (run.returncode, "two-controllers.dbc: the frames of others on its bus\n" in run.stdout) == (0, True)
+        assert (run.returncode, "two-controllers.dbc: foreign frames on its bus\n" in run.stdout) == (0, True)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["drive.yaml", "lift.yaml", "two-controllers.dbc"]
     (tmp_path / "two-controllers.dbc").write_text("mine")
     run = amuros("init", "again.yaml", "--example", "two-controllers-lift", cwd=tmp_path)

@@ -124,7 +124,7 @@ def _call_earlier(model: Model) -> None:
     items.insert(0, items.pop(3))
 
 
-#: What is done to a model -> the changes that are told: kind, class, name, feature, old, new.
+#: What is done to a model -> the changes that are reported: kind, class, name, feature, old, new.
 TOLD = {
     "an attribute": (
         lambda model: setattr(task(model), "preemption", am.Preemption.COOPERATIVE),

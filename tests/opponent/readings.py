@@ -20,7 +20,7 @@ class Instant(StrEnum):
 
 
 class Points(StrEnum):
-    """Where a cooperative task lets others go first."""
+    """Where a cooperative task yields."""
 
     SCHEDULE_POINTS = "schedule points"
     TOP_CALLS = "also after calls at the top of its body"

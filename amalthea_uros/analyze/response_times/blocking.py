@@ -210,7 +210,7 @@ class Blocking:
         return (name for name in self.protection[other.name].semaphores if self._ceilings[name] >= above.lowest)
 
     def _longest_stretch(self, other: ScheduledProcess, above: _Above, semaphores: Iterable[str]) -> Time:
-        """The longest stretch of a process in which it keeps off one of others, among others by semaphores."""
+        """The longest region of a process in which it blocks one of some processes, by semaphores and otherwise."""
         if not self.keeps_off_others(other):
             return 0
         if preemption(other) is Preemption.NON_PREEMPTIVE and self._throughout(other, above):
@@ -227,7 +227,7 @@ class Blocking:
         return self._of(other, kept_off).longest
 
     def _throughout(self, other: ScheduledProcess, above: _Above) -> bool:
-        """Whether a process keeps off one of others everywhere, apart from points at which it yields."""
+        """Whether a process blocks one of some processes everywhere, apart from points at which it yields."""
         if other.group is not None and above.lowest <= self._ceilings[other.group]:
             return True
         match preemption(other):

@@ -32,7 +32,7 @@ MAX_JOBS = 50_000
 
 
 def solve(context: TimingContext) -> Solution:
-    """All response times, computed until they no longer change the activations of others."""
+    """All response times, computed until they no longer change activations."""
     solution = Solution(context, reasons=dict(context.reasons))
     diverging: set[str] = set()
     while True:

@@ -238,7 +238,7 @@ def init_document(result: InitResult) -> Document:
 def _written(result: InitResult) -> Iterator[Lead]:
     yield Lead(str(result.path), f": written from {result.origin}")
     if result.database is not None:
-        yield Lead(str(result.database), ": the frames of others on its bus")
+        yield Lead(str(result.database), ": foreign frames on its bus")
     if result.measurement:
         yield Lead(", ".join(map(str, result.measurement)), ": its measurement")
 

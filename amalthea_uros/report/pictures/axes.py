@@ -53,7 +53,7 @@ _SHORTEST = MICROSECOND
 
 
 def default_window(start: Time, end: Time) -> tuple[Time, Time]:
-    """A window around a job, from its activation to its end, or around the way of a chain: with a margin and round ends.
+    """A window around a job, from its activation to its end, or around the path of a chain: with a margin, its ends rounded.
 
     Raises
     ------

@@ -14,7 +14,7 @@ from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.judge.verdict import Failure
 from amalthea_uros.units import Rounding, number_text, rounded, rounded_time_text, time_text
 
-#: Reasons that are only consequences of others end like this.
+#: Reasons that are only consequences of other reasons end like this.
 _CONSEQUENCE = "could not be analysed"
 
 
@@ -109,7 +109,7 @@ def _unknown(summary: SystemSummary) -> str:
 
 
 def _causes(unknown: Iterable[Judged]) -> Counter[str]:
-    """The reasons of unknown verdicts with their numbers; without consequences of others if there is anything else."""
+    """The reasons of unknown verdicts with their numbers; without mere consequences if there is anything else."""
     reasons = Counter(item.reason for item in unknown if item.reason)
     roots = Counter({reason: number for reason, number in reasons.items() if not reason.endswith(_CONSEQUENCE)})
     return roots or reasons

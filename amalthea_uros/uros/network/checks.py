@@ -186,7 +186,7 @@ def _bytes_in(time: Time, queued: Queued) -> int:
 
 
 def check_foreign(frames: Iterable[ForeignFrame], notes: Notes) -> None:
-    """Report frames of others of which it is not known how often they come."""
+    """Report foreign frames whose rate is not known."""
     for frame in frames:
         if frame.period is None:
             text = f"{frame.name!r} has no cycle time, so that the waiting of all messages of lower priority is unknown"

@@ -25,7 +25,7 @@ class PlannedNetwork:
 
     Attributes
     ----------
-    foreign : frames of others on a bus
+    foreign : frames on a bus that other devices send
     """
 
     line: Line
@@ -45,7 +45,7 @@ def planned_network(
     Parameters
     ----------
     wakes : the stimuli of the rounds of executors that wait for messages
-    database : frames of others from a database
+    database : foreign frames from a database
     """
     description = context.description
     check_transport(description, context.notes)
@@ -61,7 +61,7 @@ def planned_network(
 
 
 def foreign_frames(section: Can | CanFd, database: Sequence[ForeignFrame]) -> tuple[ForeignFrame, ...]:
-    """The frames of others: those that are described, then those of a database with other names."""
+    """The foreign frames: those that are described, then those of a database with other names."""
     described = tuple(described_frames(section))
     names = {frame.name for frame in described}
     return (*described, *without_own([frame for frame in database if frame.name not in names], section))

@@ -57,7 +57,7 @@ class Queued:
     interval : minimum time between two of them in the long run; None if it is not known
     times : how many there are in that interval; 0 for what is only sent when others are late
     channel : of the identifier; "" for none of its own
-    frame : a frame of others, instead of parts
+    frame : a foreign frame, instead of parts
     """
 
     transmission: Transmission

@@ -139,7 +139,7 @@ def arbitration_rank(identifier: int, *, extended: bool) -> int:
 
 
 def described_frames(bus: Can | CanFd) -> Iterator[ForeignFrame]:
-    """The frames of others in a description."""
+    """The foreign frames of a description."""
     for frame in bus.foreign:
         yield ForeignFrame(
             name=frame.name,

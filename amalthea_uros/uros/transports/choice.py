@@ -30,7 +30,7 @@ def line_of(description: Description) -> Line | None:
 def is_in_system(description: Description) -> bool:
     """Whether the wire is a part of the system.
 
-    A classic CAN bus is one only where something asks for it: an executor that loops, a latency of the agent, frames of others, or a
+    A classic CAN bus is one only where something asks for it: an executor that loops, a latency of the agent, foreign frames, or a
     chain with a topic.
     """
     middleware = description.middleware

@@ -222,7 +222,7 @@ class NetworkLine(DrivenLine):
 
     @property
     def link(self) -> Span:
-        """The time in the network behind the link."""
+        """The time in the network after the link."""
         return span_of(self.section.latency)
 
     @property

@@ -244,7 +244,7 @@ BA_ "GenMsgCycleTime" BO_ 16 10;
 def test_frames_without_a_jitter_are_assumed_to_be_on_time(author):
     foreign = "{name: Brake, identifier: 1, period: 10 ms}, {name: Door, identifier: 2, period: 10 ms, jitter: 1 ms}"
     text = app(f"can: {{bitrate: 500 kbit/s, foreign: [{foreign}]}}", imu="best-effort").replace("312 B", "32 B")
-    sentence = "frames of others without a stated jitter never come earlier than their period: Brake"
+    sentence = "foreign frames without a stated jitter never come earlier than their period: Brake"
     assert sentence in analyze_system(author.describe(text).system).assumptions
 
 
