@@ -8,6 +8,8 @@ from functools import cache
 from importlib.resources import files
 from typing import NamedTuple
 
+from amalthea_uros._internal.resources import parsed_yaml
+
 _LENGTHS = {
     **dict.fromkeys(("bool", "byte", "char", "int8", "uint8"), 1),
     **dict.fromkeys(("int16", "uint16"), 2),
@@ -57,9 +59,7 @@ def length_of(kind: MessageType) -> Length | None:
 
 @cache
 def _types() -> dict[str, str]:
-    import yaml
-
-    packages = yaml.safe_load(files(__package__).joinpath("messages.yaml").read_text(encoding="utf-8"))
+    packages = parsed_yaml(files(__package__).joinpath("messages.yaml").read_text(encoding="utf-8"))
     return {f"{package}/{name}": fields for package, types in packages.items() for name, fields in types.items()}
 
 

@@ -9,6 +9,7 @@ from functools import cache
 from importlib import resources
 from typing import Any, Self
 
+from amalthea_uros._internal.resources import parsed_yaml
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.spec.middleware import Middleware, PoolSizes
@@ -138,8 +139,6 @@ def option_rows(folder: str) -> Mapping[str, OptionRow]:
     ----------
     folder : the package with its `options.yaml`
     """
-    import yaml
-
     text = resources.files(folder).joinpath("options.yaml").read_text(encoding="utf-8")
     return {
         row["name"]: OptionRow(
@@ -152,7 +151,7 @@ def option_rows(folder: str) -> Mapping[str, OptionRow]:
                 }
             )
         )
-        for group in yaml.safe_load(text)
+        for group in parsed_yaml(text)
         for row in group["options"]
     }
 
