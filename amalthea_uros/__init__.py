@@ -60,6 +60,7 @@ if TYPE_CHECKING:
     from amalthea_uros.bridge.build import build_model as build_model
     from amalthea_uros.bridge.extract import Extraction as Extraction
     from amalthea_uros.bridge.extract import extract as extract
+    from amalthea_uros.compare.calibration.calibration import Calibration as Calibration
     from amalthea_uros.compare.calibration.values import CalibratedValue as CalibratedValue
     from amalthea_uros.compare.naming import Meaning as Meaning
     from amalthea_uros.compare.naming import Names as Names
@@ -68,6 +69,8 @@ if TYPE_CHECKING:
     from amalthea_uros.compare.results import MeasuredLimit as MeasuredLimit
     from amalthea_uros.design.campaign.run import CampaignRun as CampaignRun
     from amalthea_uros.design.campaign.run import RunOutcome as RunOutcome
+    from amalthea_uros.design.campaign.simulations import CampaignResult as CampaignResult
+    from amalthea_uros.design.campaign.sweeps import SweepResult as SweepResult
     from amalthea_uros.design.campaign.tables import write_table as write_table
     from amalthea_uros.design.changes.change import Change as Change
     from amalthea_uros.design.changes.change import Sweep as Sweep
@@ -115,7 +118,6 @@ if TYPE_CHECKING:
     from amalthea_uros.services.build import BuildResult as BuildResult
     from amalthea_uros.services.build import build as build
     from amalthea_uros.services.build import describe as describe
-    from amalthea_uros.services.calibrate import Calibration as Calibration
     from amalthea_uros.services.calibrate import calibrate as calibrate
     from amalthea_uros.services.check import CheckResult as CheckResult
     from amalthea_uros.services.check import check as check
@@ -136,13 +138,10 @@ if TYPE_CHECKING:
     from amalthea_uros.services.migrate import migrate as migrate
     from amalthea_uros.services.optimize import Optimization as Optimization
     from amalthea_uros.services.optimize import optimize as optimize
-    from amalthea_uros.services.settings import CheckSettings as CheckSettings
-    from amalthea_uros.services.simulate import CampaignResult as CampaignResult
     from amalthea_uros.services.simulate import SimulationResult as SimulationResult
     from amalthea_uros.services.simulate import simulate as simulate
     from amalthea_uros.services.simulate import simulate_campaign as simulate_campaign
     from amalthea_uros.services.simulate import simulate_files as simulate_files
-    from amalthea_uros.services.sweep import SweepResult as SweepResult
     from amalthea_uros.services.sweep import sweep as sweep
     from amalthea_uros.services.what_if import WhatIf as WhatIf
     from amalthea_uros.services.what_if import what_if as what_if
@@ -162,6 +161,7 @@ if TYPE_CHECKING:
     from amalthea_uros.units import parse_time as parse_time
     from amalthea_uros.uros.assemble import Assembly as Assembly
     from amalthea_uros.uros.middleware.profile import Profile as Profile
+    from amalthea_uros.validate.settings import CheckSettings as CheckSettings
     from amalthea_uros.xmi.load import load as load
     from amalthea_uros.xmi.save import save as save
 
@@ -175,10 +175,13 @@ _NAMES = {
     "analyze.system": ("analyze_system",),
     "bridge.build": ("build_model",),
     "bridge.extract": ("Extraction", "extract"),
+    "compare.calibration.calibration": ("Calibration",),
     "compare.calibration.values": ("CalibratedValue",),
     "compare.naming": ("Meaning", "Names"),
     "compare.results": ("Comparison", "ComparisonRow", "MeasuredLimit"),
     "design.campaign.run": ("CampaignRun", "RunOutcome"),
+    "design.campaign.simulations": ("CampaignResult",),
+    "design.campaign.sweeps": ("SweepResult",),
     "design.campaign.tables": ("write_table",),
     "design.changes.change": ("Change", "Sweep", "parse_change", "parse_sweep"),
     "design.improvements": ("Improvement", "Improvements"),
@@ -199,7 +202,7 @@ _NAMES = {
     "report.library": ("Report", "report"),
     "services.analyze": ("AnalysisResult", "Explanation", "analyze", "analyze_files"),
     "services.build": ("BuildResult", "build", "describe"),
-    "services.calibrate": ("Calibration", "calibrate"),
+    "services.calibrate": ("calibrate",),
     "services.check": ("CheckResult", "check", "check_files"),
     "services.compare": ("compare",),
     "services.diff": ("DiffResult", "diff"),
@@ -209,9 +212,9 @@ _NAMES = {
     "services.measure": ("measure",),
     "services.migrate": ("MigrationResult", "migrate"),
     "services.optimize": ("Optimization", "optimize"),
-    "services.settings": ("CheckSettings",),
-    "services.simulate": ("CampaignResult", "SimulationResult", "simulate", "simulate_campaign", "simulate_files"),
-    "services.sweep": ("SweepResult", "sweep"),
+    "validate.settings": ("CheckSettings",),
+    "services.simulate": ("SimulationResult", "simulate", "simulate_campaign", "simulate_files"),
+    "services.sweep": ("sweep",),
     "services.what_if": ("WhatIf", "what_if"),
     "simulate.options": ("Mode", "Options"),
     "simulate.results": ("Simulation",),

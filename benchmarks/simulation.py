@@ -22,7 +22,7 @@ from amalthea_uros.perf.activities import Demand, Execute
 from amalthea_uros.perf.distributions import Constant
 from amalthea_uros.perf.hardware import Clock, Core, Hardware, Structure
 from amalthea_uros.perf.system import System
-from amalthea_uros.services.inputs import open_system
+from amalthea_uros.services.subject import open_system
 from amalthea_uros.simulate.kernel import machine_code
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.results import Simulation
@@ -204,7 +204,7 @@ def runs(system: System, repeat: int) -> None:
     from amalthea_uros.design.campaign.campaign import run_campaign
     from amalthea_uros.design.campaign.executors import processes, serial
     from amalthea_uros.design.campaign.run import plan_runs
-    from amalthea_uros.services.simulate import SimulationJob
+    from amalthea_uros.design.campaign.simulations import SimulationJob
 
     job, planned = SimulationJob(system, Options(duration=SECOND // 10)), plan_runs([], 1000, 1)
     cores = os.cpu_count() or 1

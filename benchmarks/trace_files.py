@@ -16,9 +16,9 @@ SUFFIXES = (".btf", ".btf.gz", ".csv", ".pftrace", ".json")
 
 _MEASURE = """
 import resource, sys, time
-from amalthea_uros.services.simulate import run_simulation
+from amalthea_uros.services.simulate import simulate
 began = time.perf_counter()
-run_simulation(sys.argv[1], sys.argv[2], trace_paths=sys.argv[3:])
+simulate(sys.argv[1], sys.argv[2], trace_paths=sys.argv[3:])
 print(time.perf_counter() - began, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
 """
 

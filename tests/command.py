@@ -12,11 +12,11 @@ import traceback
 from collections.abc import Sequence
 from contextlib import suppress
 from functools import cache
-from importlib import import_module
 from pathlib import Path
 from tempfile import TemporaryDirectory, TemporaryFile
 from typing import IO, NoReturn
 
+from click import Context
 from click.testing import CliRunner
 from effort import IS_THOROUGH
 
@@ -49,7 +49,7 @@ def warm_up() -> None:
     from amalthea_uros.cli.main import COMMANDS, cli
 
     for command in COMMANDS:
-        import_module(f"amalthea_uros.cli.{command}" if command != "import" else "amalthea_uros.cli.import_")
+        cli.get_command(Context(cli), command)
     with TemporaryDirectory() as folder:
         for words in ("analyze", f"build -o {folder}/app.amxmi", "check", "simulate --duration 10ms"):
             command, *options = words.split()

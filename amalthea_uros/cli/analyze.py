@@ -1,39 +1,29 @@
-"""`amuros analyze`: response times, loads, latencies and verdicts."""
+"""`amuros analyze` and `amuros chains`: response times, loads, latencies and verdicts; paths and their latencies."""
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
 import click
 
+from amalthea_uros._internal.files import is_standard_output
 from amalthea_uros.analyze.results.chains import EXPLAINED, LatencyQuantity
-from amalthea_uros.cli.failing import FAILING, fail_on_option
-from amalthea_uros.cli.files import INPUT, OUTPUT_FILE
-from amalthea_uros.cli.output import (
-    Output,
-    beside_files,
-    output_option,
-    refuse_input,
-    show_differences,
-    show_findings,
-    show_line,
-    shows_text,
-    write_outputs,
-)
-from amalthea_uros.cli.settings_options import analysis_options, set_option
+from amalthea_uros.cli.options import FAILING, analysis_options, fail_on_option, metrics_option, paths_argument, set_option
+from amalthea_uros.cli.output import Output, beside_files, output_option, refuse_input, show_findings, show_result, show_text
+from amalthea_uros.cli.parameters import INPUT, OUTPUT, OUTPUT_FILE
 from amalthea_uros.design.changes.change import EXAMPLE, Change
 from amalthea_uros.judge.summary import Schedulable
+from amalthea_uros.report.basics.escape import output_line
 from amalthea_uros.report.wording.closing_line import closing_line
-from amalthea_uros.services.analyze import AnalysisResult, analyze_files, chain_detail
+from amalthea_uros.services.analyze import analyze_files, chain_detail
 from amalthea_uros.services.changed_model import write_changed
 from amalthea_uros.timing.basics.settings import Settings
 
 
 @click.command("analyze")
-@click.argument("paths", nargs=-1, required=True, type=INPUT, metavar="MODEL_OR_YAML...")
+@paths_argument
 @set_option
 @click.option(
     "-o",
@@ -73,23 +63,20 @@ from amalthea_uros.timing.basics.settings import Settings
 )
 @fail_on_option
 @click.option("--assign-priorities", "with_priorities", is_flag=True, help="Propose priorities that meet all deadlines.")
-@click.option("--metrics", "with_metrics", is_flag=True, help="Show minimum, mean and maximum of all metrics of each process.")
-@output_option(AnalysisResult)
-def command(
+@metrics_option
+@output_option("AnalysisResult")
+def analyze(
     paths: tuple[Path, ...],
     changes: tuple[Change, ...],
     target: Path | None,
     settings: Settings,
-    with_bus: bool,
     chain: str | None,
     method: str,
     explained: str | None,
     quantity: str,
-    with_sensitivity: bool,
     fail_on: str,
-    with_priorities: bool,
-    with_metrics: bool,
     outputs: tuple[Output, ...],
+    **wanted: bool,
 ) -> None:
     """Compute response times, loads, end-to-end latencies of event chains, and verdicts.
 
@@ -98,17 +85,12 @@ def command(
     are met; the exit code is 1 if one of them is missed, an activation is lost, or a core is overloaded. With --set the system is
     changed first, and a table compares the results before and after.
     """
-    outputs = _with_target(outputs, target, changes)
-    result = analyze_files(
-        paths,
-        settings,
-        changes=changes,
-        with_sensitivity=with_sensitivity,
-        with_priorities=with_priorities,
-        all_methods=method == "all",
-        with_metrics=with_metrics,
-        with_bus=with_bus,
-    )
+    if target is not None:
+        if not changes:
+            raise click.UsageError(f"-o writes a changed model; add a change, e.g. --set {EXAMPLE}")
+        refuse_input(target, "-o")
+    outputs = beside_files(outputs, [("-o", target)])
+    result = analyze_files(paths, settings, changes=changes, all_methods=method == "all", **wanted)
     if explained is not None:
         from amalthea_uros.services.explain import explain
 
@@ -116,20 +98,36 @@ def command(
     as_text = result.explanation or (chain_detail(result, chain) if chain is not None else None)
     if target is not None:
         write_changed(paths, changes, settings, target)
+    summary = result.analysis.summary
+    show_result(result, outputs, as_text, "" if summary.schedulable is Schedulable.YES else closing_line(summary))
+    sys.exit(1 if summary.schedulable in FAILING[fail_on] else 0)
+
+
+@click.command("chains")
+@click.argument("model", type=INPUT, metavar="MODEL_OR_YAML")
+@click.option("--from", "start", required=True, metavar="NAME", help="Process, runnable or label where paths start.")
+@click.option("--to", "end", required=True, metavar="NAME", help="Process, runnable or label where paths end.")
+@click.option("--add", "name", metavar="CHAIN", help="Add a path to the model as an event chain with this name.")
+@click.option("--path", "number", type=int, default=1, show_default=True, help="Number of the path to add.")
+@click.option("-o", "output", type=OUTPUT, metavar="FILE", help="File to which the model with the event chain is written.")
+def chains(model: Path, start: str, end: str, name: str | None, number: int, output: Path | None) -> None:
+    """List the paths from one process, runnable or label to another, with their end-to-end latencies.
+
+    Each process of a path writes a label or channel that the next one reads, or triggers it. With --add, one of the paths is added
+    to the model as an event chain, and the model is written to another file. Exit code 1 if there is no path.
+    """
+    from amalthea_uros.services.chains import add_path, chosen_path, find_paths
+
+    if (name is None) != (output is None):
+        raise click.UsageError("--add CHAIN and -o FILE must be given together")
+    result = find_paths(model, start, end)
     show_findings(result.findings)
-    show_differences(result.differences)
-    write_outputs(outputs, result, as_text)
-    schedulable = result.analysis.summary.schedulable
-    if schedulable is not Schedulable.YES and (as_text is not None or not shows_text(outputs)):
-        show_line(closing_line(result.analysis.summary))
-    sys.exit(1 if schedulable in FAILING[fail_on] else 0)
-
-
-def _with_target(outputs: tuple[Output, ...], target: Path | None, changes: Sequence[Change]) -> tuple[Output, ...]:
-    """The outputs beside the file of the changed model, which is checked before the analysis."""
-    if target is None:
-        return outputs
-    if not changes:
-        raise click.UsageError(f"-o writes a changed model; add a change, e.g. --set {EXAMPLE}")
-    refuse_input(target, "-o")
-    return beside_files(outputs, [("-o", target)])
+    if not result.paths:
+        show_text(result)
+        sys.exit(1)
+    chosen_path(result, number)
+    is_piped = output is not None and is_standard_output(output)
+    show_text(result, on_error_stream=is_piped)
+    if name is not None and output is not None:
+        add_path(result, number, name, output)
+        click.echo(output_line(f"path {number} is now the chain {name} in {output}"), err=is_piped)

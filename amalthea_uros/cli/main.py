@@ -6,6 +6,7 @@ import errno
 import sys
 from functools import cache
 from importlib import import_module
+from keyword import iskeyword
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -45,8 +46,19 @@ COMMANDS = {
     "sweep": "Analyze the system with many values of its properties.",
 }
 
-#: Modules that cannot have the name of their command, because it is a word of Python.
-_MODULES = {"import": "import_"}
+#: The modules with several commands; the others have the name of their command.
+_MODULES = {
+    command: module
+    for module, commands in {
+        "analyze": ("chains",),
+        "check": ("rules", "explain"),
+        "compare": ("calibrate",),
+        "descriptions": ("init", "import", "build", "generate", "schema"),
+        "models": ("info", "diff", "fmt", "migrate"),
+        "shell": ("completion", "lsp"),
+    }.items()
+    for command in commands
+}
 
 
 class LazyGroup(click.Group):
@@ -104,7 +116,9 @@ def cli() -> None:
 def _load(name: str) -> click.Command:
     from amalthea_uros.cli.common_options import with_common_options
 
-    command: click.Command = import_module(f"amalthea_uros.cli.{_MODULES.get(name, name)}").command
+    module = import_module(f"amalthea_uros.cli.{_MODULES.get(name, name)}")
+    # The name of `import` is a word of Python.
+    command: click.Command = getattr(module, f"{name}_" if iskeyword(name) else name)
     return with_common_options(command)
 
 

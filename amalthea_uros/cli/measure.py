@@ -1,31 +1,87 @@
-"""`amuros measure`: statistics of the times in a trace."""
+"""`amuros measure`: statistics of the times in a trace, and the options that say how a trace is measured."""
 
 from __future__ import annotations
 
 import sys
-from collections import Counter
+from collections.abc import Callable
 from dataclasses import replace
+from functools import wraps
 from pathlib import Path
+from typing import Any
 
 import click
 
-from amalthea_uros.cli.files import INPUT, output_path
-from amalthea_uros.cli.measure_options import measure_options
-from amalthea_uros.cli.output import (
-    Output,
-    beside_files,
-    output_option,
-    refuse_input,
-    refuse_unwritable,
-    show_findings,
-    write_outputs,
-)
-from amalthea_uros.cli.settings_options import AssignmentType
+from amalthea_uros.cli.options import all_of
+from amalthea_uros.cli.output import Output, checked_outputs, output_option, show_findings, write_outputs
+from amalthea_uros.cli.parameters import INPUT, Parsed, assignment, output_path
 from amalthea_uros.compare.measured.events import chain_starts
+from amalthea_uros.compare.measured.measuring import MeasureOptions, measure_file
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.measure.series import Measurement
-from amalthea_uros.services.measure import MeasureOptions, measure_file
-from amalthea_uros.services.subject import system_of
+from amalthea_uros.measure.markers import FORM, parse_marker
+from amalthea_uros.measure.window import MeasurementWindow
+from amalthea_uros.services.files import save_text
+from amalthea_uros.services.subject import open_system
+from amalthea_uros.units import Time, parse_duration, parse_time
+
+_MARKER = Parsed(FORM, parse_marker)
+_TIME = Parsed("TIME", parse_time)
+
+_OPTIONS = all_of(
+    (
+        click.option("--start", type=_MARKER, help="Frame of a CAN log at the start of what is measured, e.g. 0x18000001."),
+        click.option(
+            "--end", type=_MARKER, help="Frame at its end, e.g. 0x18000002, or can0:123#01 for a bus and first bytes."
+        ),
+        click.option("--name", default="interval", show_default=True, help="Name of what --start and --end delimit."),
+        click.option(
+            "--counter", metavar="PLACE", help="Number of the job in the payload of both, e.g. 'byte 0' or Message.Signal."
+        ),
+        click.option(
+            "--markers", type=INPUT, metavar="FILE", help="YAML file with the frames of several objects by their names."
+        ),
+        click.option("--dbc", type=INPUT, metavar="FILE", help="DBC file with the signals that --markers or --counter name."),
+        click.option("--channel", metavar="BUS", help="Use only the frames of this bus of a CAN log, e.g. can0."),
+        click.option(
+            "--baseline",
+            "baselines",
+            multiple=True,
+            metavar="[OBJECT=]EMPTY",
+            help="Subtract the times of an empty object from those of all others, or of one; may be repeated.",
+        ),
+        click.option(
+            "--baseline-from", type=INPUT, metavar="TRACE", help="Trace with the empty objects; default: the same one."
+        ),
+        click.option(
+            "--period",
+            type=Parsed("TIME", parse_duration),
+            help="Standard period; shows the largest deviation of the distances from it.",
+        ),
+        click.option("--from", "start_time", type=_TIME, help="Measure from this time after the first event on, e.g. 10s."),
+        click.option("--to", "end_time", type=_TIME, help="Measure only what is before this time after the first event."),
+        click.option("--skip", type=_TIME, help="Leave out the start-up: the same as --from."),
+    )
+)
+#: The options that are passed on as they are.
+_AS_GIVEN = ("start", "end", "name", "counter", "markers", "dbc", "channel", "baseline_from", "period")
+
+
+def measure_options(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Give a command these options; it receives them as its parameter `reading`."""
+
+    @wraps(function)
+    def with_options(
+        *, baselines: tuple[str, ...], start_time: Time | None, end_time: Time | None, skip: Time | None, **others: Any
+    ) -> None:
+        if start_time is not None and skip is not None:
+            raise click.UsageError("--skip is the same as --from; use only one of them")
+        reading = MeasureOptions(
+            **{name: others.pop(name) for name in _AS_GIVEN},
+            baselines={name: empty for name, _, empty in (text.rpartition("=") for text in baselines)},
+            window=MeasurementWindow(start_time or skip or 0, end_time),
+        )
+        function(reading=reading, **others)
+
+    return _OPTIONS(with_options)
 
 
 @click.command("measure")
@@ -42,11 +98,11 @@ from amalthea_uros.services.subject import system_of
     "--histogram",
     "histograms",
     multiple=True,
-    type=AssignmentType("NAME=FILE", output_path),
+    type=assignment("NAME=FILE", output_path),
     help="Draw the times of an object, or another of its quantities, e.g. Task.start_to_start=period.svg; may be repeated.",
 )
-@output_option(Measurement)
-def command(
+@output_option("Measurement")
+def measure(
     trace: Path,
     reading: MeasureOptions,
     model: Path | None,
@@ -61,21 +117,14 @@ def command(
     .csv of measured values.
     The exit code is 1 if nothing was measured, or if a part of the trace is damaged.
     """
-    outputs = beside_files(outputs, [("--histogram", path) for _, path in histograms])
-    for path, number in Counter(path for _, path in histograms).items():
-        if number > 1:
-            raise click.UsageError(f"{path} is the file of {number} options; give each its own")
-        refuse_input(path, str(path))
-        refuse_unwritable(path)
-    starts = {} if model is None else chain_starts(system_of(model))
+    outputs = checked_outputs(outputs, [("--histogram", path) for _, path in histograms])
+    starts = {} if model is None else chain_starts(open_system(model).system)
     found = measure_file(trace, replace(reading, select=select, chain_starts=starts))
     show_findings(found.findings)
     if histograms:
         from amalthea_uros.report.result_pictures import histogram_picture
-        from amalthea_uros.xmi.emf.files import FileText, write_text
 
-        pictures = [(path, histogram_picture(found, name)) for name, path in histograms]
-        for path, picture in pictures:
-            write_text(path, FileText(picture))
+        for path, picture in [(path, histogram_picture(found, name)) for name, path in histograms]:
+            save_text(path, picture)
     write_outputs(outputs, found)
     sys.exit(1 if any(finding.severity is Severity.ERROR for finding in found.findings) else 0)

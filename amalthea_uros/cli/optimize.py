@@ -3,38 +3,25 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import click
 
 from amalthea_uros.cli.ends import INTERRUPTED
-from amalthea_uros.cli.files import INPUT, OUTPUT_FILE
-from amalthea_uros.cli.output import (
-    Output,
-    beside_files,
-    output_option,
-    refuse_input,
-    refuse_unwritable,
-    show_findings,
-    show_line,
-    shows_text,
-    write_outputs,
-)
-from amalthea_uros.cli.parsed import Parsed
-from amalthea_uros.cli.settings_options import settings_options
-from amalthea_uros.cli.workers_options import workers_options
-from amalthea_uros.design.changes.change import SWEEP_EXAMPLE, Sweep, parse_sweep
+from amalthea_uros.cli.options import paths_argument, seed_option, settings_options, workers_options
+from amalthea_uros.cli.output import Output, checked_outputs, output_option, progress, show_line, show_result
+from amalthea_uros.cli.parameters import OUTPUT_FILE, Parsed
+from amalthea_uros.design.changes.change import SWEEP_EXAMPLE, parse_sweep
 from amalthea_uros.design.optimize.choices import DEFAULT, Vary
 from amalthea_uros.design.optimize.goals import GOALS
 from amalthea_uros.design.optimize.judged import INTERRUPTED as ENDED_BY_USER
-from amalthea_uros.design.optimize.quantities import LIMIT_EXAMPLE, LIMIT_FORM, Limit, parse_limit
+from amalthea_uros.design.optimize.quantities import LIMIT_EXAMPLE, LIMIT_FORM, parse_limit
 from amalthea_uros.report.documents.search import is_met, optimization_line
-from amalthea_uros.services.optimize import MOST_DESIGNS, MOST_PROPOSALS, Optimization, optimize
-from amalthea_uros.services.optimized_model import write_proposal
-from amalthea_uros.timing.basics.settings import Settings
+from amalthea_uros.services import optimize as service
+from amalthea_uros.services.changed_model import write_proposal
+from amalthea_uros.services.files import save_text
+from amalthea_uros.services.optimize import MOST_DESIGNS, MOST_PROPOSALS
 
 
 def _vary(text: str) -> tuple[Vary, ...]:
@@ -45,7 +32,7 @@ def _vary(text: str) -> tuple[Vary, ...]:
 
 
 @click.command("optimize")
-@click.argument("paths", nargs=-1, required=True, type=INPUT, metavar="MODEL_OR_YAML...")
+@paths_argument
 @click.option(
     "--limit",
     "limits",
@@ -98,7 +85,7 @@ def _vary(text: str) -> tuple[Vary, ...]:
     metavar="SECONDS",
     help="End with the best design so far after this time; what is found then depends on the computer.",
 )
-@click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Seed of random choices.")
+@seed_option("Seed of random choices.")
 @workers_options("designs", "one for each core, if there are many")
 @click.option(
     "--proposals", type=click.IntRange(min=1), default=MOST_PROPOSALS, show_default=True, help="Show at most so many proposals."
@@ -108,21 +95,15 @@ def _vary(text: str) -> tuple[Vary, ...]:
 @click.option(
     "--proposal", "number", type=click.IntRange(min=1), default=1, show_default=True, help="With -o: the proposal to write."
 )
-@output_option(Optimization)
-def command(
+@output_option("Optimization")
+def optimize(
     paths: tuple[Path, ...],
-    limits: tuple[Limit, ...],
-    goals: tuple[str, ...],
-    vary: tuple[Vary, ...],
-    offers: tuple[Sweep, ...],
-    keep: tuple[str, ...],
-    settings: Settings,
     pareto: Path | None,
     is_complete: bool,
     target: Path | None,
     number: int,
     outputs: tuple[Output, ...],
-    **effort: Any,
+    **wishes: Any,
 ) -> None:
     """Search for changes with which all deadlines, requirements and limits are met, and then for the best ones.
 
@@ -131,46 +112,21 @@ def command(
     The exit code is 1 if no design was found that meets all limits. After Ctrl-C the best design so far is shown, and the exit code is
     130.
     """
-    outputs = beside_files(outputs, [("-o", target), ("--pareto", pareto)])
-    for path in (target, pareto):
-        if path is not None:
-            refuse_input(path, str(path))
-            refuse_unwritable(path)
-    effort["proposals"] = max(effort["proposals"], number if target is not None else 1)
-    with _progress(effort["designs"]) as progress:
-        result = optimize(
+    outputs = checked_outputs(outputs, [("-o", target), ("--pareto", pareto)])
+    wishes["proposals"] = max(wishes["proposals"], number if target is not None else 1)
+    with progress(wishes["designs"], "Judging designs") as bar:
+        result = service.optimize(
             paths,
-            limits=limits,
-            goals=goals,
-            vary=vary,
-            offers=offers,
-            keep=keep,
-            settings=settings,
             is_complete=is_complete or pareto is not None,
-            progress=progress,
-            **effort,
+            progress=lambda tried: bar.update(tried - bar.pos),
+            **wishes,
         )
-    show_findings(result.findings)
-    write_outputs(outputs, result)
     if pareto is not None:
-        _draw(result, pareto)
+        from amalthea_uros.report.pictures.pareto import draw_pareto
+
+        save_text(pareto, draw_pareto(result))
+    show_result(result, outputs, closing="" if is_met(result) else optimization_line(result))
     if target is not None:
         write_proposal(result, number, target)
         show_line(f"wrote proposal {number} to {target}")
-    if not is_met(result) and not shows_text(outputs):
-        show_line(optimization_line(result))
     sys.exit(INTERRUPTED if result.search.ended == ENDED_BY_USER else 0 if is_met(result) else 1)
-
-
-@contextmanager
-def _progress(designs: int) -> Iterator[Callable[[int], None]]:
-    """A progress bar on a terminal: the designs judged so far, of those that may be judged."""
-    with click.progressbar(length=designs, label="Judging designs", file=sys.stderr, hidden=not sys.stderr.isatty()) as bar:
-        yield lambda tried: bar.update(tried - bar.pos)
-
-
-def _draw(result: Optimization, path: Path) -> None:
-    from amalthea_uros.report.pictures.pareto import draw_pareto
-    from amalthea_uros.xmi.emf.files import FileText, write_text
-
-    write_text(path, FileText(draw_pareto(result)))

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import sys
+from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import AbstractContextManager
 from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -21,11 +23,12 @@ from amalthea_uros._internal.files import (
     is_stream,
     resolved,
 )
-from amalthea_uros.cli.files import INPUT, output_path, refuse_mixture
+from amalthea_uros.cli.parameters import INPUT, output_path
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.report import formats
 from amalthea_uros.report.basics.display import is_brief
 from amalthea_uros.report.writers.terminal import Terminal
+from amalthea_uros.services.files import save_text
 
 if TYPE_CHECKING:
     from amalthea_uros.design.changes.apply import Difference
@@ -70,8 +73,13 @@ class OutputType(click.ParamType[Output]):
         return [CompletionItem(name) for name in self.names if name.startswith(incomplete)]
 
 
-def output_option(result: type) -> Callable[[Any], Any]:
-    """The option for a command: its formats are those that can write its result."""
+def output_option(result: str) -> Callable[[Any], Any]:
+    """The option for a command: its formats are those that can write its result.
+
+    Parameters
+    ----------
+    result : the name of the class, which need not be imported to know that
+    """
     names = formats.formats_for(result)
     return click.option(
         "--output",
@@ -87,7 +95,7 @@ def output_option(result: type) -> Callable[[Any], Any]:
 
 
 def _without_mixture(_context: click.Context, _parameter: click.Parameter, outputs: tuple[Output, ...]) -> tuple[Output, ...]:
-    refuse_mixture((output.option, output.path) for output in outputs)
+    _refuse_mixture((output.option, output.path) for output in outputs)
     return outputs
 
 
@@ -102,13 +110,63 @@ def beside_files(outputs: tuple[Output, ...], files: Sequence[tuple[str, Path | 
     ------
     UsageError : what the user asked for explicitly would be mixed.
     """
-    refuse_mixture(files)
+    _refuse_mixture(files)
     if not any(path is not None and is_standard_output(path) for _, path in files):
         return outputs
     if click.get_current_context().get_parameter_source("outputs") is ParameterSource.DEFAULT:
         return tuple(Output(output.format, STANDARD_ERROR) for output in outputs)
-    refuse_mixture([*files, *((output.option, output.path) for output in outputs)])
+    _refuse_mixture([*files, *((output.option, output.path) for output in outputs)])
     return outputs
+
+
+def _refuse_mixture(uses: Iterable[tuple[str, Path | None]]) -> None:
+    """Refuse that several options write to standard output."""
+    options = [option for option, path in uses if path is not None and is_standard_output(path)]
+    if len(options) > 1:
+        raise click.UsageError(f"{' and '.join(options)} both write to standard output; give all but one of them a file.")
+
+
+def checked_outputs(
+    outputs: tuple[Output, ...], files: Iterable[tuple[str, Path | None]], streamed: Iterable[tuple[str, Path]] = ()
+) -> tuple[Output, ...]:
+    """The outputs beside files, as `beside_files`, each of which can be written: found out before work that may take long.
+
+    Parameters
+    ----------
+    streamed : files that are opened first, and written while the command works
+
+    Raises
+    ------
+    UsageError : two options name a file, or it is one of those that the command reads.
+    WriteError : a file cannot be written.
+    """
+    first = list(streamed)
+    given = [(option, path) for option, path in files if path is not None]
+    outputs = beside_files(outputs, [*first, *given])
+    late = [*given, *((output.option, output.path) for output in outputs)]
+    for path, number in Counter(path for _, path in (*first, *late)).items():
+        if number > 1:
+            raise click.UsageError(f"{path} is the file of {number} options; give each its own")
+    for option, path in (*first, *late):
+        refuse_input(path, option)
+    for _, path in late:
+        refuse_unwritable(path)
+    return outputs
+
+
+def show_result(result: Any, outputs: Sequence[Output], as_text: object | None = None, closing: str = "") -> None:
+    """Write a result, after its findings and what changes did on standard error.
+
+    Parameters
+    ----------
+    as_text : as for `write_outputs`
+    closing : a line for people who do not see it in the text of the result; "" for none
+    """
+    show_findings(result.findings)
+    show_differences(getattr(result, "differences", ()))
+    write_outputs(outputs, result, as_text)
+    if closing and not (as_text is None and shows_text(outputs)):
+        show_line(closing)
 
 
 def write_outputs(outputs: Iterable[Output], result: object, as_text: object | None = None) -> None:
@@ -179,16 +237,19 @@ def shows_text(outputs: Iterable[Output]) -> bool:
 
 
 def _write_file(path: Path, name: str, result: object) -> None:
-    from amalthea_uros.xmi.emf.files import FileText, write_text
-
     text = StringIO()
     formats.write(name, result, text)
-    write_text(path, FileText(text.getvalue()))
+    save_text(path, text.getvalue())
 
 
 def show_text(result: object, on_error_stream: bool = False) -> None:
     """Show a result to a person."""
     formats.write(formats.TEXT, result, sys.stderr if on_error_stream else sys.stdout)
+
+
+def progress(length: int, label: str) -> AbstractContextManager[Any]:
+    """A progress bar of click, which is only shown on a terminal."""
+    return click.progressbar(length=length, label=label, file=sys.stderr, hidden=not sys.stderr.isatty())
 
 
 def show_line(text: str) -> None:

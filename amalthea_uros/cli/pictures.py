@@ -12,7 +12,9 @@ from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
-    from amalthea_uros.services.simulate import SimulationPlan, SimulationResult
+    from amalthea_uros.perf.system import System
+    from amalthea_uros.services.simulate import SimulationResult
+    from amalthea_uros.simulate.options import Options
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +48,7 @@ class Pictures:
         timelines = (("--timeline", path) for _, path in self.timelines)
         return (*chart, *timelines, *(("--histogram", path) for _, path in self.histograms))
 
-    def check(self, plan: SimulationPlan) -> None:
+    def check(self, system: System, options: Options) -> None:
         """Refuse what cannot be drawn, before the simulation, which may take long.
 
         Raises
@@ -60,13 +62,13 @@ class Pictures:
         from amalthea_uros.names import require
         from amalthea_uros.report.pictures.simulation import check_window_of, quantity_of
 
-        require("process", (process for process, _ in self.timelines), plan.system.processes)
-        require("process", [self.gantt_of] if self.gantt_of is not None else [], plan.system.processes)
-        require("chain", [self.chain] if self.chain is not None else [], plan.system.chains)
+        require("process", (process for process, _ in self.timelines), system.processes)
+        require("process", [self.gantt_of] if self.gantt_of is not None else [], system.processes)
+        require("chain", [self.chain] if self.chain is not None else [], system.chains)
         for name, _ in self.histograms:
-            quantity_of(name, plan.system)
+            quantity_of(name, system)
         if self.window is not None:
-            check_window_of(plan.options, self.window)
+            check_window_of(options, self.window)
 
     def _check_choice(self) -> None:
         choices = {"--gantt-of": self.gantt_of, "--chain": self.chain}
@@ -91,10 +93,10 @@ class Pictures:
         """
         if not self.paths:
             return
-        from amalthea_uros.xmi.emf.files import FileText, write_text
+        from amalthea_uros.services.files import save_text
 
         for path, draw in self._drawings():
-            write_text(path, FileText(draw(result)))
+            save_text(path, draw(result))
 
     def _drawings(self) -> Iterator[tuple[Path, Callable[[SimulationResult], str]]]:
         from amalthea_uros.report.pictures.simulation import gantt_picture, histogram_picture, timeline_picture

@@ -4,12 +4,20 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import Any
 
 import click
 
 from amalthea_uros._internal.files import STANDARD_OUTPUT, is_standard_output
-from amalthea_uros.cli.failing import FAILING, fail_on_option
-from amalthea_uros.cli.files import INPUT, OUTPUT_FILE
+from amalthea_uros.cli.options import (
+    FAILING,
+    analysis_options,
+    duration_option,
+    fail_on_option,
+    paths_argument,
+    seed_option,
+    set_option,
+)
 from amalthea_uros.cli.output import (
     Output,
     refuse_input,
@@ -18,20 +26,18 @@ from amalthea_uros.cli.output import (
     show_line,
     write_outputs,
 )
-from amalthea_uros.cli.parsed import Parsed
-from amalthea_uros.cli.settings_options import analysis_options, set_option
+from amalthea_uros.cli.parameters import OUTPUT_FILE
 from amalthea_uros.design.changes.change import Change
 from amalthea_uros.report.formats import SUFFIXES, format_of
 from amalthea_uros.report.wording.closing_line import closing_line
 from amalthea_uros.services.report import compile_report
 from amalthea_uros.timing.basics.settings import Settings
-from amalthea_uros.units import Time, parse_duration
 
 _SUFFIXES = ", ".join(SUFFIXES)
 
 
 @click.command("report")
-@click.argument("paths", nargs=-1, required=True, type=INPUT, metavar="MODEL_OR_YAML...")
+@paths_argument
 @click.option(
     "-o",
     "files",
@@ -48,27 +54,19 @@ _SUFFIXES = ", ".join(SUFFIXES)
 )
 @set_option
 @analysis_options
-@click.option(
-    "--duration",
-    type=Parsed("TIME", parse_duration),
-    help="Model time of the simulation; default: up to 10 s.",
-)
-@click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Seed of the simulation.")
+@duration_option("Model time of the simulation; default: up to 10 s.")
+@seed_option()
 @click.option("--no-simulation", is_flag=True, help="Show the analysis only.")
 @fail_on_option
-def command(
+def report(
     paths: tuple[Path, ...],
     files: tuple[Path, ...],
     standard_format: str | None,
-    title: str | None,
-    date: str,
     changes: tuple[Change, ...],
     settings: Settings,
-    with_bus: bool,
-    duration: Time | None,
-    seed: int,
     no_simulation: bool,
     fail_on: str,
+    **options: Any,
 ) -> None:
     """Report on the timing of a system: one page with verdict, tightest requirements, pictures, findings and sources.
 
@@ -77,17 +75,7 @@ def command(
     if a deadline, requirement or constraint is missed, an activation is lost, or a core is overloaded.
     """
     outputs = _outputs(files, standard_format)
-    content = compile_report(
-        paths,
-        settings,
-        changes=changes,
-        with_bus=with_bus,
-        with_simulation=not no_simulation,
-        duration=duration,
-        seed=seed,
-        title=title,
-        date=date,
-    )
+    content = compile_report(paths, settings, changes=changes, with_simulation=not no_simulation, **options)
     show_differences(content.differences)
     write_outputs(outputs, content)
     show_line(closing_line(content.analysis.summary))

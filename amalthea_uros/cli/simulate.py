@@ -3,38 +3,38 @@
 from __future__ import annotations
 
 import sys
-from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import click
 
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.cli.ends import INTERRUPTED
-from amalthea_uros.cli.files import INPUT, OUTPUT_FILE, output_path
-from amalthea_uros.cli.output import (
-    Output,
-    beside_files,
-    output_option,
-    refuse_input,
-    refuse_unwritable,
-    show_differences,
-    show_findings,
-    show_line,
-    shows_text,
-    write_outputs,
+from amalthea_uros.cli.options import (
+    bus_option,
+    duration_option,
+    metrics_option,
+    paths_argument,
+    seed_option,
+    set_option,
+    settings_options,
+    sweep_option,
+    table_option,
+    workers_options,
 )
-from amalthea_uros.cli.parsed import Parsed
+from amalthea_uros.cli.output import Output, checked_outputs, output_option, progress, show_result
+from amalthea_uros.cli.parameters import OUTPUT_FILE, Parsed, assignment, output_path
 from amalthea_uros.cli.pictures import Pictures
-from amalthea_uros.cli.settings_options import AssignmentType, set_option, settings_options
-from amalthea_uros.cli.workers_options import workers_options
-from amalthea_uros.design.campaign.run import RunOutcome, count_runs
+from amalthea_uros.design.campaign.run import count_runs
+from amalthea_uros.design.campaign.simulations import CampaignResult
 from amalthea_uros.design.campaign.tables import table_format, write_table
-from amalthea_uros.design.changes.change import SWEEP_EXAMPLE, Change, Sweep, parse_sweep
-from amalthea_uros.services.simulate import CampaignResult, SimulationResult, plan_simulation, simulate_campaign, simulate_plan
+from amalthea_uros.design.changes.change import Change, Sweep
+from amalthea_uros.services.simulate import SimulationResult, simulate_campaign, simulate_changed
+from amalthea_uros.services.subject import open_changed
 from amalthea_uros.simulate.options import Options, SimulationMode
 from amalthea_uros.timing.basics.settings import Settings
-from amalthea_uros.units import Time, parse_duration, parse_time, time_text
+from amalthea_uros.units import Time, parse_time, time_text
 
 
 def _window(text: str) -> tuple[Time, Time]:
@@ -52,15 +52,9 @@ def _labels(text: str) -> tuple[str, ...]:
 
 
 @click.command("simulate")
-@click.argument("paths", nargs=-1, required=True, type=INPUT, metavar="MODEL_OR_YAML...")
-@click.option(
-    "--duration",
-    type=Parsed("TIME", parse_duration),
-    default="1 s",
-    show_default=True,
-    help="Model time of a run, e.g. 5min.",
-)
-@click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Seed of all random values.")
+@paths_argument
+@duration_option("Model time of a run, e.g. 5min.", default="1 s")
+@seed_option("Seed of all random values.")
 @click.option(
     "--mode",
     type=click.Choice([str(mode) for mode in SimulationMode]),
@@ -71,8 +65,8 @@ def _labels(text: str) -> tuple[str, ...]:
 )
 @set_option
 @settings_options
-@click.option("--bus", "with_bus", is_flag=True, help="Also simulate the messages on the CAN bus of an app.yaml.")
-@click.option("--metrics", "with_metrics", is_flag=True, help="Show minimum, mean and maximum of all metrics of each process.")
+@bus_option("simulate")
+@metrics_option
 @click.option(
     "--labels",
     type=Parsed("all|NAME,...", _labels),
@@ -101,14 +95,14 @@ def _labels(text: str) -> tuple[str, ...]:
     "--timeline",
     "timelines",
     multiple=True,
-    type=AssignmentType("PROCESS=FILE", output_path),
+    type=assignment("PROCESS=FILE", output_path),
     help="Draw the states of a process in a part of the run, as SVG; may be repeated.",
 )
 @click.option(
     "--histogram",
     "histograms",
     multiple=True,
-    type=AssignmentType("NAME=FILE", output_path),
+    type=assignment("NAME=FILE", output_path),
     help="Draw the response times of a process, the latencies of a chain, or another of its quantities, e.g. "
     "Task.net_execution_time=net.svg; may be repeated.",
 )
@@ -117,13 +111,7 @@ def _labels(text: str) -> tuple[str, ...]:
     type=Parsed("FROM..TO", _window),
     help="Part of the run for --gantt and --timeline; default: around the job that comes closest to its deadline.",
 )
-@click.option(
-    "--sweep",
-    "sweeps",
-    multiple=True,
-    type=Parsed("OBJECT.KEY=VALUES", parse_sweep),
-    help=f"Simulate with each of several values, a range or a list, e.g. {SWEEP_EXAMPLE}; if repeated, with all combinations.",
-)
+@sweep_option("Simulate")
 @click.option(
     "--runs",
     type=click.IntRange(min=1),
@@ -132,9 +120,9 @@ def _labels(text: str) -> tuple[str, ...]:
     help="Number of runs of each variant, with the seeds from --seed on.",
 )
 @workers_options("runs")
-@click.option("--table", type=OUTPUT_FILE, metavar="FILE", help="Write a row for each run to a .csv, .json or .parquet file.")
-@output_option(CampaignResult)
-def command(
+@table_option("Write a row for each run to a .csv, .json or .parquet file.")
+@output_option("CampaignResult")
+def simulate(
     paths: tuple[Path, ...],
     duration: Time,
     seed: int,
@@ -154,10 +142,9 @@ def command(
     window: tuple[Time, Time] | None,
     sweeps: tuple[Sweep, ...],
     runs: int,
-    workers: int | None,
-    cluster: str | None,
     table: Path | None,
     outputs: tuple[Output, ...],
+    **where: Any,
 ) -> None:
     """Simulate the system, and show what was observed: response times, loads, latencies, and missed limits.
 
@@ -173,25 +160,36 @@ def command(
         raise click.UsageError(
             "--metrics shows a single run, without --sweep and --runs; --table FILE has the metrics of all runs"
         )
-    if cluster is not None and not is_campaign:
+    if where["cluster"] is not None and not is_campaign:
         raise click.UsageError("--cluster executes the runs of --sweep or --runs; add one of them")
     if trace_window is not None and not traces:
         raise click.UsageError("--trace-window needs --trace FILE")
-    outputs = beside_files(outputs, [*(("--trace", path) for path in traces), *pictures.files, ("--table", table)])
-    _check_targets(traces, [*pictures.paths, *(path for _, path in outputs)], table)
+    streamed = [("--trace", path) for path in traces]
+    outputs = checked_outputs(outputs, [*pictures.files, ("--table", table)], streamed)
+    if table is not None:
+        table_format(table)
     traced = (trace_window or (0, duration)) if traces else None
     options = Options(duration=duration, seed=seed, mode=SimulationMode(mode), settings=settings, traced=traced, labels=labels)
     if is_campaign:
-        campaign = _campaign(paths, options, changes, sweeps, runs, with_bus, workers, cluster)
-        _show_campaign(campaign, table, outputs)
-        sys.exit(_campaign_code(campaign))
+        with progress(count_runs(sweeps, runs), "Simulating") as bar:
+            campaign = simulate_campaign(
+                paths,
+                options,
+                changes=changes,
+                sweeps=sweeps,
+                repetitions=runs,
+                with_bus=with_bus,
+                on_outcome=lambda _outcome: bar.update(1),
+                **where,
+            )
+        sys.exit(_show_campaign(campaign, table, outputs))
     if trace_window is not None and trace_window[0] >= duration:
         start, end = time_text(trace_window[0]), time_text(duration)
         raise click.UsageError(f"the window of the trace starts at {start}, but the run ends at {end}")
-    plan = plan_simulation(paths, options, changes, with_bus=with_bus)
-    pictures.check(plan)
+    changed = open_changed(paths, settings, changes, with_bus=with_bus)
+    pictures.check(changed.system, options)
     try:
-        result = simulate_plan(plan, traces, with_metrics=with_metrics)
+        result = simulate_changed(changed, options, traces, with_metrics=with_metrics)
         _show(result, table, outputs)
         pictures.write(result)
     except KeyboardInterrupt:
@@ -200,76 +198,22 @@ def command(
     sys.exit(1 if result.is_failed else 0)
 
 
-def _check_targets(traces: Sequence[Path], results: Sequence[Path], table: Path | None) -> None:
-    """Refuse files that cannot be written before the simulation, which may take long."""
-    late = [*results, *([table] if table is not None else [])]
-    for path, number in Counter([*traces, *late]).items():
-        if number > 1:
-            raise click.UsageError(f"{path} is the file of {number} options; give each its own")
-        refuse_input(path, str(path))
-    for path in late:
-        refuse_unwritable(path)
-    if table is not None:
-        table_format(table)
-
-
 def _show(result: SimulationResult, table: Path | None, outputs: Sequence[Output]) -> None:
     from amalthea_uros.report.documents.simulation import closing_line
 
-    show_findings(result.findings)
-    show_differences(result.differences)
     if table is not None:
         write_table(table, [result.simulation.record()])
-    write_outputs(outputs, result)
-    if result.is_failed and not shows_text(outputs):
-        show_line(closing_line(result.simulation))
+    show_result(result, outputs, closing=closing_line(result.simulation) if result.is_failed else "")
 
 
-def _campaign(
-    paths: Sequence[Path],
-    options: Options,
-    changes: Sequence[Change],
-    sweeps: Sequence[Sweep],
-    runs: int,
-    with_bus: bool,
-    workers: int | None,
-    cluster: str | None,
-) -> CampaignResult:
-    """Execute a campaign, with a progress bar on a terminal."""
-    is_hidden = not sys.stderr.isatty()
-    with click.progressbar(length=count_runs(sweeps, runs), label="Simulating", file=sys.stderr, hidden=is_hidden) as bar:
-
-        def advance(_outcome: RunOutcome) -> None:
-            bar.update(1)
-
-        return simulate_campaign(
-            paths,
-            options,
-            changes=changes,
-            sweeps=sweeps,
-            repetitions=runs,
-            with_bus=with_bus,
-            workers=workers,
-            cluster=cluster,
-            on_outcome=advance,
-        )
-
-
-def _show_campaign(result: CampaignResult, table: Path | None, outputs: Sequence[Output]) -> None:
+def _show_campaign(result: CampaignResult, table: Path | None, outputs: Sequence[Output]) -> int:
+    """Show and write the runs; the exit code."""
     from amalthea_uros.report.documents.simulation import campaign_line
 
-    show_findings(result.findings)
-    show_differences(result.differences)
     if table is not None:
         write_table(table, result.rows)
-    write_outputs(outputs, result)
-    if result.is_failed and not shows_text(outputs):
-        show_line(campaign_line(result))
-    if not result.is_complete:
-        click.echo(f"interrupted: {len(result.outcomes):,} of {counted(result.planned, 'run')} finished", err=True)
-
-
-def _campaign_code(result: CampaignResult) -> int:
-    if not result.is_complete:
-        return INTERRUPTED
-    return 1 if result.is_failed else 0
+    show_result(result, outputs, closing=campaign_line(result) if result.is_failed else "")
+    if result.is_complete:
+        return 1 if result.is_failed else 0
+    click.echo(f"interrupted: {len(result.outcomes):,} of {counted(result.planned, 'run')} finished", err=True)
+    return INTERRUPTED

@@ -6,22 +6,29 @@ the first one, whatever the one before left behind, and an error in it ends noth
 
 from __future__ import annotations
 
+import re
 import sys
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import wraps
 from pathlib import Path
 from typing import Any, NoReturn
 
 import click
 
-from amalthea_uros._internal.files import STANDARD_INPUT
+from amalthea_uros._internal.files import STANDARD_INPUT, FileError, is_directory, list_directory, read_bytes
+from amalthea_uros._internal.limits import DESCRIPTION_SIZE
+from amalthea_uros._internal.paths import is_description
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.cli.output import show_line
+from amalthea_uros.cli.parameters import INPUT
 
 _OPTION = "--watch"
 #: Seconds between two looks at the files. A change counts when it is the same twice, because editors write in several steps.
 _INTERVAL = 0.2
+
+#: A platform file that a description names. It is looked for as text, because it shall be found also while the rest is being edited.
+_PLATFORM = re.compile(rb"""\bplatform["']?[ \t]*:[ \t]*["']?([^\s"',}#]+\.ya?ml)\b""")
 
 #: What shows that a file changed, None for one that does not exist.
 State = Mapping[Path, tuple[int, int, int] | None]
@@ -59,8 +66,6 @@ def _inputs(context: click.Context) -> list[Path]:
     ------
     UsageError : one of them is standard input.
     """
-    from amalthea_uros.cli.files import INPUT
-
     read = (context.params[p.name] for p in context.command.params if p.type is INPUT and p.name in context.params)
     paths = [path for given in read for path in (given if isinstance(given, tuple) else (given,)) if path is not None]
     if STANDARD_INPUT in paths:
@@ -81,9 +86,26 @@ def _wait_for_change(inputs: list[Path], before: State) -> list[Path]:
 
 
 def _state(inputs: list[Path]) -> State:
-    from amalthea_uros.services.watched import watched_files
-
     return {path: _stamp(path) for path in watched_files(inputs)}
+
+
+def watched_files(paths: Iterable[Path]) -> frozenset[Path]:
+    """The files that paths name: themselves, the models of folders, and the platform files of descriptions."""
+    return frozenset(file for path in paths for file in _files(path))
+
+
+def _files(path: Path) -> Iterable[Path]:
+    from amalthea_uros.xmi.emf.files import is_model_name
+
+    try:
+        if is_directory(path):
+            return [file for file in list_directory(path) if is_model_name(file)]
+        if is_description(path):
+            named = _PLATFORM.findall(read_bytes(path, DESCRIPTION_SIZE))
+            return [path, *(path.parent / name.decode(errors="replace") for name in named)]
+    except FileError:
+        pass  # the command says what is wrong with it
+    return [path]
 
 
 def _stamp(path: Path) -> tuple[int, int, int] | None:

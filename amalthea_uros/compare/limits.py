@@ -7,9 +7,10 @@ whole time.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from fractions import Fraction
 
-from amalthea_uros.compare.agreement import LEAST
+from amalthea_uros.compare.agreement import LEAST, Rule
 from amalthea_uros.compare.naming import Target
 from amalthea_uros.compare.results import MeasuredLimit
 from amalthea_uros.judge.causes import quantity_of
@@ -24,7 +25,7 @@ from amalthea_uros.judge.limits import (
     stated_limits,
     without_number,
 )
-from amalthea_uros.judge.verdict import not_observed, observe
+from amalthea_uros.judge.verdict import ObservedVerdict, not_observed, observe
 from amalthea_uros.measure.baselines import with_baseline
 from amalthea_uros.measure.series import Series
 from amalthea_uros.perf.constraints import Requirement, TimeMetric
@@ -36,8 +37,12 @@ from amalthea_uros.timing.context import TimingContext
 _Measured = Mapping[tuple[str, str], Series]
 
 
-def judge_limits(system: System, settings: Settings, targets: Iterable[Target]) -> Iterator[MeasuredLimit]:
+def judge_limits(system: System, settings: Settings, targets: Iterable[Target], rule: Rule) -> Iterator[MeasuredLimit]:
     """The verdicts on all deadlines, requirements and constraints."""
+    return (_with_doubt(limit, rule) for limit in _judged_limits(system, settings, targets))
+
+
+def _judged_limits(system: System, settings: Settings, targets: Iterable[Target]) -> Iterator[MeasuredLimit]:
     measured = {
         (target.name, target.quantity): with_baseline(target.series)
         for target in targets
@@ -54,6 +59,14 @@ def judge_limits(system: System, settings: Settings, targets: Iterable[Target]) 
     for item, limits in stated:
         for limit in limits or [without_number(item)]:
             yield _judged(limit, measured, system)
+
+
+def _with_doubt(limit: MeasuredLimit, rule: Rule) -> MeasuredLimit:
+    """A limit that was kept, with the remark that it may have been missed if the measured time is wrong."""
+    is_near = limit.is_time and limit.margin is not None and limit.margin < rule.uncertainty
+    if limit.verdict is not ObservedVerdict.OK or not is_near:
+        return limit
+    return replace(limit, reason="the distance from the limit is within the uncertainty of the measurement")
 
 
 def _deadlines(context: TimingContext) -> Iterator[SystemLimit]:

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from amalthea_uros._internal.similar import did_you_mean
 from amalthea_uros.compare.results import Statistic
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.measure.baselines import with_baseline
+from amalthea_uros.measure.chains import BEGINS
 from amalthea_uros.measure.series import MeasuredKind, Measurement, Series, TimeStatistics
 from amalthea_uros.names import require
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
+from amalthea_uros.trace.table import EventKind
 
 #: How a meaning is written.
 FORM = "MEASURED=OBJECT.QUANTITY"
@@ -89,24 +91,60 @@ def parse_meaning(text: str) -> Meaning:
     return Meaning(measured.strip(), name, quantity)
 
 
-def targets(measurement: Measurement, names: Names, system: System, with_overhead: Collection[str]) -> Iterator[Target]:
+def targets(
+    measurement: Measurement,
+    names: Names,
+    system: System,
+    with_overhead: Collection[str],
+    starts: Mapping[str, EventKind | None],
+) -> tuple[Target, ...]:
     """What each measured series is compared with, first those of which the user says it.
 
     Parameters
     ----------
     with_overhead : the processes whose predicted times include an overhead, "" for all: what was subtracted as such is added again
+    starts : with which event of a job chains begin in the model; None: at one that traces do not tell apart
 
     Raises
     ------
-    InvalidArgumentError : the user names what the trace or the model does not have, or a sum or quantity that cannot be.
+    InvalidArgumentError : the user names what the trace or the model does not have, a sum or quantity that cannot be, or two series of
+        the same quantity.
     """
     _check(measurement, names, system)
+    found = []
     for target in _targets(measurement, names, system):
         is_included = bool({"", target.name} & set(with_overhead))
         if is_included and target.kind is MeasuredKind.PROCESS and target.series.baseline is not None:
-            yield replace(target, series=with_baseline(target.series), is_with_baseline=True)
-        else:
-            yield target
+            target = replace(target, series=with_baseline(target.series), is_with_baseline=True)
+        found.append(_of_same_begin(target, starts))
+    _refuse_twice(found)
+    return tuple(found)
+
+
+WITHIN_A_JOB = "it begins or ends within a job, at an event that is not in traces; measure it between markers"
+
+
+def _of_same_begin(target: Target, starts: Mapping[str, EventKind | None]) -> Target:
+    """The target; a chain that was measured from another event of a job on than in the model has no counterpart."""
+    measured, modelled = target.series.begin, starts.get(target.name, EventKind.ACTIVATE)
+    if not measured or target.reason or (modelled is not None and measured == BEGINS[modelled]):
+        return target
+    if modelled is None:
+        return replace(target, reason=WITHIN_A_JOB)
+    begins = f"it was measured from the {measured} of its first job on, and begins in the model with its {BEGINS[modelled]}"
+    return replace(target, reason=f"{begins}; measure it with the model")
+
+
+def _refuse_twice(found: Iterable[Target]) -> None:
+    """Refuse that two series are the same quantity: which of them is meant is not known."""
+    series: dict[tuple[MeasuredKind, str, str], list[str]] = {}
+    for target in found:
+        if not target.reason:
+            series.setdefault((target.kind, target.name, target.quantity), []).append(target.series.name)
+    for (_, name, quantity), names in series.items():
+        if len(names) > 1:
+            listed = " and ".join(map(repr, names))
+            raise InvalidArgumentError(f"{listed} of the trace are both {name}.{quantity}; leave one of them out")
 
 
 def _targets(measurement: Measurement, names: Names, system: System) -> Iterator[Target]:

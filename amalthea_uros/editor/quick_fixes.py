@@ -12,9 +12,9 @@ from amalthea_uros.editor.diagnostics import SOURCE
 from amalthea_uros.editor.document import TextDocument
 from amalthea_uros.errors import AmurosError
 from amalthea_uros.services.fix import fix_files
-from amalthea_uros.services.settings import CheckSettings
 from amalthea_uros.validate import registry
 from amalthea_uros.validate.rule import ModelCheck
+from amalthea_uros.validate.settings import CheckSettings
 
 FIX_ALL = f"{types.CodeActionKind.SourceFixAll.value}.{SOURCE}"
 

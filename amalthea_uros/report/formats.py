@@ -35,9 +35,9 @@ FORMATS: Mapping[str, tuple[str, Container[str]]] = {
 SUFFIXES = {".html": "html", ".md": "markdown", ".mmd": "mermaid", ".dot": "dot"}
 
 
-def formats_for(result: type) -> list[str]:
-    """The names of the formats that can write a result, text first."""
-    return [name for name, (_, results) in FORMATS.items() if result.__name__ in results]
+def formats_for(result: str) -> list[str]:
+    """The names of the formats that can write a result, by the name of its class, text first."""
+    return [name for name, (_, results) in FORMATS.items() if result in results]
 
 
 def write(name: str, result: object, stream: IO[str]) -> None:

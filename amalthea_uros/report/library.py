@@ -8,11 +8,11 @@ from io import StringIO
 from pathlib import Path
 
 from amalthea_uros._internal.paths import StrPath
+from amalthea_uros.design.changes.change import Changes
 from amalthea_uros.report import formats
-from amalthea_uros.services.report import ReportContent, compile_report, save_text
-from amalthea_uros.services.simulate import time_of
-from amalthea_uros.services.subject import Subject
-from amalthea_uros.services.what_if import Changes
+from amalthea_uros.services.files import save_text
+from amalthea_uros.services.report import ReportContent, compile_report
+from amalthea_uros.services.subject import Subject, time_of
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import Time
 

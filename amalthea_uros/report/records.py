@@ -14,7 +14,10 @@ from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import ChainResult
 from amalthea_uros.analyze.results.processes import CallbackResult, ProcessResult
 from amalthea_uros.analyze.sensitivity import Sensitivity
+from amalthea_uros.compare.calibration.calibration import Calibration
 from amalthea_uros.compare.results import Comparison
+from amalthea_uros.design.campaign.simulations import CampaignResult
+from amalthea_uros.design.campaign.sweeps import SweepResult
 from amalthea_uros.design.improvements import Improvements
 from amalthea_uros.design.proposals import DesignProposal
 from amalthea_uros.executors.results import ExecutorResult
@@ -23,14 +26,12 @@ from amalthea_uros.report.fields import analysis, descriptions, explanation, mea
 from amalthea_uros.report.fields.declaration import is_declared, json_of
 from amalthea_uros.services.analyze import AnalysisResult, Explanation
 from amalthea_uros.services.build import BuildResult
-from amalthea_uros.services.calibrate import Calibration
 from amalthea_uros.services.check import CheckResult
 from amalthea_uros.services.diff import DiffResult
 from amalthea_uros.services.generate import GenerateResult, MetaCheck
 from amalthea_uros.services.migrate import MigrationResult
 from amalthea_uros.services.optimize import Optimization
-from amalthea_uros.services.simulate import CampaignResult, SimulationResult
-from amalthea_uros.services.sweep import SweepResult
+from amalthea_uros.services.simulate import SimulationResult
 from amalthea_uros.services.what_if import WhatIf
 from amalthea_uros.simulate.observations import ChainObservation, ProcessObservation, RunnableObservation
 

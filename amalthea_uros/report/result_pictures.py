@@ -8,7 +8,7 @@ from fractions import Fraction
 import numpy as np
 
 from amalthea_uros.compare.results import Agreement, Comparison, ComparisonRow, PredictionClaim, Statistic, is_bound
-from amalthea_uros.design.campaign.sweeps import SCHEDULABLE
+from amalthea_uros.design.campaign.sweeps import SCHEDULABLE, SweepResult
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.judge.verdict import Verdict
@@ -26,7 +26,6 @@ from amalthea_uros.report.pictures.compared_times import ComparedQuantity, Drawn
 from amalthea_uros.report.pictures.histogram import HistogramPicture, Mark, MarkKind, histogram
 from amalthea_uros.report.pictures.swept import SweptPicture, draw_swept
 from amalthea_uros.report.wording.cells import words
-from amalthea_uros.services.sweep import SweepResult
 from amalthea_uros.units import Time, time_text
 
 

@@ -14,18 +14,14 @@ from amalthea_uros.analyze.response_times.kernel import report_machine_code
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import ChainResult
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.design.changes.apply import Difference, apply
-from amalthea_uros.design.changes.change import Change
-from amalthea_uros.design.changes.key import Configuration
-from amalthea_uros.design.changes.timing_changes import described
+from amalthea_uros.design.changes.apply import Difference
+from amalthea_uros.design.changes.change import Change, Changes
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.findings.accepted import unsuppressed
 from amalthea_uros.names import require
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.perf.system import System
-from amalthea_uros.services.inputs import as_paths, open_system
-from amalthea_uros.services.names import require_settings
-from amalthea_uros.services.subject import Subject, open_subject
+from amalthea_uros.services.subject import ChangedSystem, Subject, open_changed
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import Time
 
@@ -34,7 +30,6 @@ if TYPE_CHECKING:
     from amalthea_uros.analyze.results.explanations import CallbackExplanation, ChainExplanation, ProcessExplanation
     from amalthea_uros.analyze.sensitivity import Sensitivity
     from amalthea_uros.design.improvements import Improvements
-    from amalthea_uros.services.what_if import Changes
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -117,14 +112,7 @@ def analyze(subject: Subject, settings: Settings | None = None, *, changes: Chan
     InvalidArgumentError : the settings or changes name something that does not exist, or have values that cannot be.
     TypeError : the subject is something else; the text lists what is accepted.
     """
-    from amalthea_uros.services.what_if import as_changes
-
-    opened = open_subject(subject)
-    system, settings = apply(opened.system, settings or Settings(), as_changes(changes))
-    require_settings(settings, system)
-    analysis = analyze_system(system, settings)
-    report_machine_code()
-    return replace(analysis, findings=unsuppressed((*opened.findings, *analysis.findings)))
+    return _analyzed(open_changed(subject, settings, changes))
 
 
 def analyze_files(
@@ -155,41 +143,39 @@ def analyze_files(
     InvalidArgumentError : the changes or settings name what does not exist, or a phase in which no job is released; a value is wrong;
         there is no bus.
     """
-    files, settings = as_paths(paths), settings or Settings()
-    opened = open_system(files, with_bus=with_bus)
-    require_settings(settings, opened.system)
-    given = Configuration(opened.system, settings)
-    before = analyze_system(*given) if changes else None
-    differences = described(given, changes)
-    system, settings = apply(*given, changes)
-    analysis = analyze_system(system, settings)
-    report_machine_code()
+    changed = open_changed(paths, settings, changes, with_bus=with_bus)
+    before = analyze_system(*changed.given) if changed.changes else None
+    analysis = _analyzed(changed)
+    sensitivity, proposals = None, None
+    if with_sensitivity:
+        from amalthea_uros.analyze.sensitivity import sensitivity as sensitivity_of
+
+        sensitivity = sensitivity_of(analysis)
+    if with_priorities:
+        from amalthea_uros.analyze.priorities.assignment import propose_priorities
+
+        proposals = tuple(propose_priorities(analysis))
     return AnalysisResult(
-        paths=files,
-        task_periods=opened.task_periods,
-        system=system,
-        settings=settings,
+        paths=changed.opened.paths,
+        task_periods=changed.opened.task_periods,
+        system=changed.system,
+        settings=changed.settings,
         analysis=analysis,
-        findings=unsuppressed((*opened.findings, *analysis.findings)),
-        sensitivity=_sensitivity(analysis) if with_sensitivity else None,
-        proposals=_proposals(analysis) if with_priorities else None,
+        findings=analysis.findings,
+        sensitivity=sensitivity,
+        proposals=proposals,
         all_methods=all_methods,
         with_metrics=with_metrics,
-        differences=differences,
+        differences=changed.differences,
         impact=None if before is None else impact(before, analysis),
     )
 
 
-def _sensitivity(analysis: Analysis) -> Sensitivity:
-    from amalthea_uros.analyze.sensitivity import sensitivity
-
-    return sensitivity(analysis)
-
-
-def _proposals(analysis: Analysis) -> tuple[Proposal, ...]:
-    from amalthea_uros.analyze.priorities.assignment import propose_priorities
-
-    return tuple(propose_priorities(analysis))
+def _analyzed(changed: ChangedSystem) -> Analysis:
+    """The analysis, whose findings include those about the subject."""
+    analysis = analyze_system(changed.system, changed.settings)
+    report_machine_code()
+    return replace(analysis, findings=unsuppressed((*changed.opened.findings, *analysis.findings)))
 
 
 #: What can be explained: an analysis, or what can be analyzed.
@@ -202,9 +188,8 @@ def analysis_result(analyzed: Analyzed) -> AnalysisResult:
         return analyzed
     offered: tuple[Time, ...] = ()
     if not isinstance(analyzed, Analysis):
-        opened = open_subject(analyzed)
-        analysis, offered = analyze_system(opened.system), opened.task_periods
-        analyzed = replace(analysis, findings=unsuppressed((*opened.findings, *analysis.findings)))
+        changed = open_changed(analyzed)
+        analyzed, offered = _analyzed(changed), changed.opened.task_periods
     context = analyzed.solution.context
     return AnalysisResult(
         paths=(),

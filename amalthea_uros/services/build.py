@@ -10,10 +10,11 @@ from amalthea_uros._internal.files import STANDARD_INPUT, STANDARD_OUTPUT, is_fi
 from amalthea_uros._internal.garbage import paused_garbage_collection
 from amalthea_uros._internal.paths import StrPath
 from amalthea_uros._internal.shown import Shown
-from amalthea_uros.diagnostics import Finding, Location, Severity
-from amalthea_uros.errors import AmurosError, InvalidArgumentError, WriteError
+from amalthea_uros.diagnostics import Finding
+from amalthea_uros.errors import AmurosError, InvalidArgumentError
 from amalthea_uros.findings.accepted import unsuppressed
 from amalthea_uros.perf.named import Brief
+from amalthea_uros.services.files import refuse
 from amalthea_uros.uros.assemble import Assembly
 
 if TYPE_CHECKING:
@@ -147,9 +148,8 @@ def _beside(description: Path, force: bool) -> Path:
         return STANDARD_OUTPUT
     path = description.with_suffix(SUFFIX)
     if not force and is_file(path) and not _is_built(path):
-        message = "the file exists already, and it is not a model that `amuros build` wrote"
         advice = "Use --force to replace it, or write another file with -o."
-        raise WriteError([Finding("XMI101", Severity.ERROR, message, Location(path), advice)])
+        refuse([path], ", and it is not a model that `amuros build` wrote", advice)
     return path
 
 

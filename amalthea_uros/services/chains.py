@@ -12,7 +12,7 @@ from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError, UnknownError
 from amalthea_uros.findings.accepted import unsuppressed
 from amalthea_uros.names import require
-from amalthea_uros.services.inputs import open_system
+from amalthea_uros.services.subject import open_system
 from amalthea_uros.timing.dataflow.paths import Path as ProcessPath
 from amalthea_uros.timing.dataflow.paths import paths, with_chains
 
@@ -47,7 +47,7 @@ def find_paths(model: StrPath, start: str, end: str) -> PathsResult:
     ReadError : a file cannot be read, or something in a description is wrong.
     InvalidArgumentError : there is no process, runnable or label of a name.
     """
-    opened = open_system([model])
+    opened = open_system(model)
     system = opened.system
     require("process, runnable or label", [start, end], {**system.processes, **system.runnables, **system.labels})
     try:

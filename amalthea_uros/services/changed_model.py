@@ -1,4 +1,4 @@
-"""A changed system as an AMALTHEA model: of a model that was read, only the changed values differ."""
+"""A changed system, or a proposal for one, as a file: of what was read, only the changed values differ."""
 
 from __future__ import annotations
 
@@ -7,16 +7,20 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
+from amalthea_uros._internal.files import read_text
+from amalthea_uros._internal.limits import DESCRIPTION_SIZE
 from amalthea_uros._internal.paths import StrPath, is_description
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.design.changes.change import Change
 from amalthea_uros.design.changes.changed_model import changed_system, update_model
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.services.subject import Subject, paths_of, system_of
+from amalthea_uros.services.files import save_text
+from amalthea_uros.services.subject import Subject, as_model, open_system
 from amalthea_uros.timing.basics.settings import Settings
 
 if TYPE_CHECKING:
     from amalthea_uros.metamodel.model import Model
+    from amalthea_uros.services.optimize import Optimization
 
 
 def write_changed(subject: Subject, changes: Sequence[Change], settings: Settings, path: StrPath) -> None:
@@ -32,48 +36,41 @@ def write_changed(subject: Subject, changes: Sequence[Change], settings: Setting
     InvalidArgumentError : the model has several files, the path is not that of a model, or a change cannot be written.
     WriteError : the file cannot be written.
     """
-    from amalthea_uros.bridge.build import build_model
     from amalthea_uros.xmi.save import save
 
     if is_description(path):
         advice = "give a file with the suffix .amxmi, or change the values in the description itself"
         raise InvalidArgumentError(f"{path}: a changed system is written as an AMALTHEA model, not as a description; {advice}")
-    model = _read(subject)
+    given = as_model(subject)
+    opened = None if given is not None else open_system(subject)
+    model = given if opened is None else opened.model
     if model is None:
-        model = build_model(changed_system(system_of(subject), changes, settings))
-    else:
-        update_model(model, changes, settings)
-    save(model, path)
+        from amalthea_uros.bridge.build import build_model
 
-
-def _read(subject: Subject) -> Model | None:
-    """The AMALTHEA model of a subject, which may be changed; None for descriptions and systems."""
-    from amalthea_uros.metamodel.model import Model
-    from amalthea_uros.xmi.load import load
-    from amalthea_uros.xmi.save import save
-
-    if isinstance(subject, Model):
-        _refuse_several(subject)
-        # The caller keeps the model without the changes.
-        with TemporaryDirectory() as folder:
-            copy = Path(folder, "model.amxmi")
-            save(subject, copy)
-            return load(copy)
-    paths = paths_of(subject)
-    if paths is None or (len(paths) == 1 and is_description(paths[0])):
-        return None
-    model = load(*paths)
-    _refuse_several(model)
-    _refuse_migrated(model)
-    return model
-
-
-def _refuse_several(model: Model) -> None:
+        assert opened is not None
+        save(build_model(changed_system(opened.system, changes, settings)), path)
+        return
     if len(model.documents) > 1:
         number = counted(len(model.documents), "file")
         raise InvalidArgumentError(
             f"the model has {number}, but the changed model is written to one file; change the values in the files"
         )
+    if given is None:
+        _refuse_migrated(model)
+    else:
+        model = _copied(model)  # the caller keeps the model without the changes
+    update_model(model, changes, settings)
+    save(model, path)
+
+
+def _copied(model: Model) -> Model:
+    from amalthea_uros.xmi.load import load
+    from amalthea_uros.xmi.save import save
+
+    with TemporaryDirectory() as folder:
+        copy = Path(folder, "model.amxmi")
+        save(model, copy)
+        return load(copy)
 
 
 def _refuse_migrated(model: Model) -> None:
@@ -86,3 +83,39 @@ def _refuse_migrated(model: Model) -> None:
                 f"{document.path}: a model of {spelled(document.migrated_from)} is not written with other values; "
                 f"migrate it first: amuros migrate {document.path}"
             )
+
+
+def write_proposal(result: Optimization, number: int, path: StrPath) -> None:
+    """Write an app.yaml or the model of a proposal.
+
+    Parameters
+    ----------
+    number : of the proposal, from 1
+
+    Raises
+    ------
+    InvalidArgumentError : there is no such proposal, or a change cannot be written.
+    WriteError : the file cannot be written.
+    """
+    if number > len(result.proposals):
+        found = f"only {len(result.proposals)} were found" if result.proposals else "none was found"
+        raise InvalidArgumentError(f"there is no proposal {number} to write to {path}: {found}")
+    proposal = result.proposals[number - 1]
+    if is_description(path):
+        _write_description(result.paths, proposal.changes, path)
+    elif proposal.rebuilt is not None:
+        write_changed(proposal.rebuilt, proposal.value_changes, result.settings, path)
+    else:
+        write_changed(result.subject, proposal.changes, result.settings, path)
+
+
+def _write_description(paths: Sequence[Path], changes: Sequence[Change], path: StrPath) -> None:
+    """Write the description that was read with changes."""
+    from amalthea_uros.design.description.edit import edit_description
+
+    if len(paths) != 1 or not is_description(paths[0]):
+        raise InvalidArgumentError(
+            f"{path}: only a proposal for an app.yaml is written as one; give a file with the suffix .amxmi"
+        )
+    text = read_text(paths[0], DESCRIPTION_SIZE)
+    save_text(path, edit_description(text, paths[0], changes).text)

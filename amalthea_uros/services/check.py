@@ -10,21 +10,23 @@ from amalthea_uros._internal.garbage import paused_garbage_collection
 from amalthea_uros._internal.paths import StrPath, by_model, without_other_yaml
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.diagnostics import Finding, Severity, by_place
-from amalthea_uros.errors import InvalidArgumentError, ReadError
-from amalthea_uros.findings.accepted import baseline_text, fingerprint, is_suppressed, read_baseline
+from amalthea_uros.errors import ReadError
+from amalthea_uros.findings.accepted import baseline_text, is_suppressed
 from amalthea_uros.findings.catalogue import is_unreadable
-from amalthea_uros.findings.grouping import FindingGroup, group
+from amalthea_uros.findings.grouping import FindingGroup
 from amalthea_uros.findings.presentation import Presentation, present
-from amalthea_uros.findings.targets import TARGETS, TargetTool
+from amalthea_uros.findings.targets import TargetTool
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.perf.system import System
+from amalthea_uros.services.files import save_text
 from amalthea_uros.services.inputs import ModelInput, as_paths, open_model
-from amalthea_uros.services.settings import CheckSettings, project_settings
 from amalthea_uros.validate import registry
 from amalthea_uros.validate.engine import run, run_system
 from amalthea_uros.validate.rule import ModelCheck, RuleProfile, SystemCheck
 from amalthea_uros.validate.selection import Selection, select, unknown_rule
+from amalthea_uros.validate.settings import CheckSettings, project_settings
+from amalthea_uros.validate.shown_findings import accepted_by, not_suppressed, presented
 from amalthea_uros.validate.user_rules import rules_of_file
 
 
@@ -111,23 +113,23 @@ def check_files(
     files = as_paths(paths)
     settings = (settings or CheckSettings()).over(project_settings(files[0]))
     selection = selection_of(settings)
-    accepted = _accepted(settings.baseline)
+    accepted = accepted_by(settings)
     rules = selection.rules()
     found: list[Finding] = []
     is_readable = True
     is_checked = False
     for paths_of_model in by_model(without_other_yaml(files) if only_amuros else files, each):
         try:
-            found += _check_group(paths_of_model, rules)
+            found += _check_input(open_model(paths_of_model), rules)
             is_checked = True
         except ReadError as error:
             found += error.findings
             is_readable &= not is_unreadable(error.findings)
-    findings = _shown_findings(found, selection, accepted)
+    findings = not_suppressed(found, selection, accepted)
     return CheckResult(
         paths=files,
         findings=findings,
-        presentation=present(findings, _asked(selection, settings.targets)),
+        presentation=presented(findings, selection, settings),
         fail_on=settings.fail_on or Severity.ERROR,
         is_readable=is_readable,
         rules=tuple(rules) if is_checked else (),
@@ -145,14 +147,7 @@ def check_input(opened: ModelInput, folder: Path) -> Presentation:
     settings = CheckSettings().over(project_settings(folder))
     selection = selection_of(settings)
     found = _check_input(opened, selection.rules())
-    findings = _shown_findings(found, selection, _accepted(settings.baseline))
-    return present(findings, _asked(selection, settings.targets))
-
-
-def _shown_findings(found: Sequence[Finding], selection: Selection, accepted: Collection[str]) -> tuple[Finding, ...]:
-    """Those that are not suppressed in any way."""
-    findings = tuple(finding for finding in found if _is_shown(finding, selection, accepted))
-    return findings if len(findings) == len(found) else _without_repeated(findings, found)
+    return presented(not_suppressed(found, selection, accepted_by(settings)), selection, settings)
 
 
 def write_baseline(result: CheckResult, path: StrPath) -> None:
@@ -162,9 +157,7 @@ def write_baseline(result: CheckResult, path: StrPath) -> None:
     ------
     WriteError : the file cannot be written.
     """
-    from amalthea_uros.xmi.emf.files import FileText, write_text
-
-    write_text(Path(path), FileText(baseline_text(result.findings)))
+    save_text(path, baseline_text(result.findings))
 
 
 def add_rules(files: Iterable[StrPath]) -> None:
@@ -189,52 +182,8 @@ def summaries(model: Model, targets: Iterable[str]) -> Mapping[TargetTool, Seque
 
 
 def selection_of(settings: CheckSettings) -> Selection:
-    """The rules that settings select.
-
-    Raises
-    ------
-    InvalidArgumentError : a pattern matches no rule.
-    """
+    """The rules that settings select; InvalidArgumentError if a pattern matches no rule."""
     return select(map(RuleProfile, settings.profiles), settings.select, settings.ignore)
-
-
-def _accepted(baseline: Path | None) -> Collection[str]:
-    try:
-        return read_baseline(baseline) if baseline is not None else ()
-    except ValueError as error:
-        raise InvalidArgumentError(str(error)) from None
-
-
-def _is_shown(finding: Finding, selection: Selection, accepted: Collection[str]) -> bool:
-    """Whether a finding is not suppressed in any way."""
-    return not (finding.rule in selection.ignored or is_suppressed(finding) or fingerprint(finding) in accepted)
-
-
-def _without_repeated(findings: Sequence[Finding], found: Sequence[Finding]) -> tuple[Finding, ...]:
-    """The findings without those of reading whose flaw a suppressed rule reports too: it must not come back in general terms.
-
-    Parameters
-    ----------
-    findings : those of `found` that are not suppressed
-    """
-    kept = set(findings)
-    repeated: set[Finding] = set()
-    for flaw in group(found):
-        rules = [finding for finding in flaw.same if registry.profile_of(finding.rule) is not None]
-        if rules and kept.isdisjoint(rules):
-            repeated.update(flaw.same)
-    return tuple(finding for finding in findings if finding not in repeated)
-
-
-def _asked(selection: Selection, targets: Iterable[str]) -> set[str]:
-    """The target tools whose findings count: those of the settings and profiles, and those of which rules are selected."""
-    selected = TARGETS if selection.selected else ()
-    return {*targets, *map(str, selection.profiles), *(target.name for target in selected)}
-
-
-def _check_group(paths: Sequence[Path], rules: Collection[str]) -> list[Finding]:
-    """The findings about one model, those of reading and building it included."""
-    return _check_input(open_model(paths), rules)
 
 
 def _check_input(opened: ModelInput, rules: Collection[str]) -> list[Finding]:

@@ -9,12 +9,12 @@ from pathlib import Path
 from amalthea_uros._internal.paths import StrPath, by_model, is_description, without_other_yaml
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.services.check import selection_of
-from amalthea_uros.services.file_changes import FileChange
+from amalthea_uros.services.files import FileChange
 from amalthea_uros.services.inputs import as_paths
-from amalthea_uros.services.settings import CheckSettings, project_settings
 from amalthea_uros.validate import registry
 from amalthea_uros.validate.engine import repair
 from amalthea_uros.validate.rule import ModelCheck
+from amalthea_uros.validate.settings import CheckSettings, project_settings
 from amalthea_uros.xmi.load import load
 
 

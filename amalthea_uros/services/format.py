@@ -11,7 +11,7 @@ from amalthea_uros._internal.paths import StrPath
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError, WriteError
 from amalthea_uros.metamodel.versions import spelled
-from amalthea_uros.services.file_changes import FileChange
+from amalthea_uros.services.files import FileChange
 from amalthea_uros.services.inputs import as_paths, refuse_descriptions
 from amalthea_uros.xmi.emf.writer import document_text
 from amalthea_uros.xmi.load import load, model_files

@@ -2,41 +2,33 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
 from amalthea_uros._internal.files import FileError, is_file, read_text
 from amalthea_uros._internal.limits import SETTINGS_SIZE
 from amalthea_uros._internal.paths import StrPath, folder_of
-from amalthea_uros._internal.resources import resource_folder
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.diagnostics import Finding, Location, Severity
-from amalthea_uros.errors import ReadError, WriteError
+from amalthea_uros.errors import ReadError
 from amalthea_uros.findings.accepted import unsuppressed
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.services.build import describe
+from amalthea_uros.services.files import refuse, save_new
 from amalthea_uros.services.waiting_messages import waiting_messages, with_analysed_storage
-from amalthea_uros.spec.application import Application, NodeSection
 from amalthea_uros.spec.platforms import complete
 from amalthea_uros.spec.read import read_description
-from amalthea_uros.uros.application.entities import LIFECYCLE_SERVICES, PARAMETER_SERVICES
 from amalthea_uros.uros.assemble import Assembly, assemble
 from amalthea_uros.uros.colcon_meta import parse_meta
-from amalthea_uros.uros.generated_options import check_meta, values_of, with_generated_options
+from amalthea_uros.uros.generated_files import MARK, generated_memory, texts_of
+from amalthea_uros.uros.generated_options import check_meta
 from amalthea_uros.uros.memory import MemoryDemand
-from amalthea_uros.uros.middleware.options import Option, OptionRole
+from amalthea_uros.uros.middleware.options import OptionRole
 from amalthea_uros.uros.profiles import profile_of
 
-META, HEADER, CMAKE = "colcon.meta", "amuros_limits.h", "zenoh_options.cmake"
-#: In each file, by which it can be told from those that people wrote.
-_MARK = "Written by amuros generate"
 #: Findings about sizes, which the files set.
 _SOLVED = ("UR120", "UR127")
-#: Packages of options that the header of rmw_microxrcedds repeats.
-_WITH_HEADER = "rmw_microxrcedds"
-_MTU = re.compile(r"UCLIENT_(\w+_TRANSPORT_MTU)")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -102,7 +94,11 @@ def generate(path: StrPath, folder: StrPath | None = None, platform: str | None 
         description=Path(path), folder=target, assembly=assembly, texts=texts, memory=generated_memory(assembly)
     )
     if target is not None:
-        _write({target / name: text for name, text in result.texts.items()}, force)
+        files = {target / name: text for name, text in texts.items()}
+        if not force:
+            foreign = filter(_is_foreign, files)
+            refuse(foreign, ", and it is not one that amuros generate wrote", "Use --force to replace it.")
+        save_new(files, force=True)
     return result
 
 
@@ -130,15 +126,6 @@ def check_colcon_meta(path: StrPath, meta: StrPath, platform: str | None = None)
     return MetaCheck(description=Path(path), path=file, findings=findings)
 
 
-def generated_memory(assembly: Assembly) -> MemoryDemand:
-    """The memory with the options that are generated."""
-    application, profile = assembly.description.application, assembly.profile
-    described = profile.memory(application)
-    generated = with_generated_options(profile, assembly.options).memory(application)
-    rest = [use for use in assembly.memory.uses if use not in described]
-    return replace(assembly.memory, uses=(*generated, *rest))
-
-
 def _described(path: StrPath, platform: str | None) -> Assembly:
     """The system of a description; pools that are too small are no obstacle, as the files are to set others."""
     try:
@@ -154,110 +141,11 @@ def _described(path: StrPath, platform: str | None) -> Assembly:
     return assemble(whole, whole.hardware, name)
 
 
-def texts_of(assembly: Assembly) -> dict[str, str]:
-    """The contents of the files, by name."""
-    from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
-    loader = FileSystemLoader(resource_folder("templates/generate"))
-    environment = Environment(
-        loader=loader, undefined=StrictUndefined, keep_trailing_newline=True, trim_blocks=True, lstrip_blocks=True
-    )
-    values = values_of(assembly.options)
-    packages: dict[str, list[tuple[Option, int]]] = {}
-    for option, value in values:
-        packages.setdefault(option.package, []).append((option, value))
-    application = assembly.description.application
-    content = {
-        "mark": _MARK,
-        "name": _in_comment(assembly.description.name),
-        "packages": packages,
-        "values": values,
-        "checks": list(_checks(values)),
-        "handles": _constants("AMUROS_HANDLES", _handles(assembly)),
-        "sizes": _constants("AMUROS_SIZE", _sizes(application)),
-    }
-    is_xrce = _WITH_HEADER in packages
-    names = (META, HEADER) if is_xrce else (CMAKE, HEADER)
-    return {name: environment.get_template(f"{name}.j2").render(content) for name in names}
-
-
-def _checks(values: list[tuple[Option, int]]) -> Iterator[tuple[str, int, Option]]:
-    """What the compiler can check: the macros of the library that options became."""
-    for option, value in values:
-        if option.needed and (found := _MTU.fullmatch(option.name)):
-            yield f"UXR_CONFIG_{found[1]}", option.needed, option
-        elif option.needed and option.package == _WITH_HEADER and not option.is_power_of_two:
-            yield option.name, value, option
-
-
-def _handles(assembly: Assembly) -> dict[str, int]:
-    """The handles that `rclc_executor_init` needs, by executor."""
-    loops = {executor.name: len(executor.handles) for executor in assembly.system.executors}
-    if loops:
-        return loops
-    nodes = assembly.description.application.nodes
-    return {assembly.description.middleware.stated_executors[0].name: sum(map(_node_handles, nodes))}
-
-
-def _node_handles(node: NodeSection) -> int:
-    messages = len(node.subscriptions) + len(node.services) + len(node.clients)
-    others = len(node.timers) + len(node.guard_conditions) + len(node.action_servers) + len(node.action_clients)
-    parameters = PARAMETER_SERVICES if node.parameter_server is not None else 0
-    lifecycle = min(node.lifecycle.services, LIFECYCLE_SERVICES) if node.lifecycle is not None else 0
-    return messages + others + parameters + lifecycle
-
-
-def _sizes(application: Application) -> dict[str, int]:
-    """The longest message of each topic, in bytes."""
-    found: dict[str, int] = {}
-    for node in application.nodes:
-        sizes = [(subscription.topic, subscription.message_size) for subscription in node.subscriptions]
-        sizes += [(publisher.topic, publisher.message_size) for publisher in node.publishers]
-        for topic, size in sizes:
-            found[topic] = max(found.get(topic, 0), -(-size // 8))
-    return found
-
-
-def _constants(prefix: str, values: Mapping[str, int]) -> list[tuple[str, int, str]]:
-    """Names of C for values, each once, with what they are for."""
-    found: dict[str, tuple[int, str]] = {}
-    for name, value in values.items():
-        base = f"{prefix}_{re.sub('[^A-Za-z0-9]+', '_', name).strip('_').upper() or 'UNNAMED'}"
-        constant, count = base, 1
-        while constant in found:
-            count += 1
-            constant = f"{base}_{count}"
-        found[constant] = (value, _in_comment(name))
-    return [(constant, *rest) for constant, rest in found.items()]
-
-
-def _in_comment(text: str) -> str:
-    """A text that does not end the comment of C that it is in."""
-    return text.replace("*/", "* /").replace("\\", "/")
-
-
-def _write(texts: Mapping[Path, str], force: bool) -> None:
-    """Write all files, or none."""
-    from amalthea_uros.xmi.emf.files import FileText, write_texts
-
-    foreign = [path for path in texts if not force and _is_foreign(path)]
-    if foreign:
-        message, advice = "the file exists already, and it is not one that amuros generate wrote", "Use --force to replace it."
-        raise WriteError([Finding("XMI101", Severity.ERROR, message, Location(path), advice) for path in foreign])
-    for folder in {path.parent for path in texts}:
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-        except (OSError, ValueError) as error:
-            message = f"the folder cannot be created: {getattr(error, 'strerror', None) or error}"
-            raise WriteError([Finding("XMI101", Severity.ERROR, message, Location(folder), "Name another folder.")]) from None
-    write_texts({path: FileText(text) for path, text in texts.items()})
-
-
 def _is_foreign(path: Path) -> bool:
     """Whether somebody else wrote a file."""
     if not is_file(path):
         return path.exists()
     try:
-        return _MARK not in read_text(path, SETTINGS_SIZE)
+        return MARK not in read_text(path, SETTINGS_SIZE)
     except FileError:
         return True

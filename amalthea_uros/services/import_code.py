@@ -7,10 +7,9 @@ from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 
-from amalthea_uros._internal.files import is_stream
 from amalthea_uros._internal.paths import StrPath
-from amalthea_uros.diagnostics import Finding, Location, Severity
-from amalthea_uros.errors import WriteError
+from amalthea_uros.diagnostics import Finding
+from amalthea_uros.services.files import save_new
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,7 +51,6 @@ def import_code(
     from amalthea_uros.source.files import read_sources
     from amalthea_uros.source.read import read_facts
     from amalthea_uros.spec.middleware import PoolSizes
-    from amalthea_uros.xmi.emf.files import FileText, write_texts
 
     given = [Path(paths)] if isinstance(paths, str | PathLike) else [Path(path) for path in paths]
     file = None if target is None else Path(target)
@@ -60,9 +58,6 @@ def import_code(
     name = given[0].resolve().stem if given else "app"
     text = description_text(facts, name.strip() or "app", board, PoolSizes.model_fields)
     if file is not None:
-        if not force and not is_stream(file) and file.exists():
-            advice = "Use --force to replace it, or name another file."
-            raise WriteError([Finding("XMI101", Severity.ERROR, "the file exists already", Location(file), advice)])
-        write_texts({file: FileText(text)})
+        save_new({file: text}, force=force)
     gaps = sum(line.partition(" #")[0].count(f": {GAP}") for line in text.splitlines())
     return ImportResult(path=file, text=text, gaps=gaps, findings=tuple(dict.fromkeys(facts.findings)))

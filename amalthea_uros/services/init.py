@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from amalthea_uros._internal.addresses import DOCUMENTATION
 from amalthea_uros._internal.files import is_stream
 from amalthea_uros._internal.resources import PLATFORMS, known_platforms, resource_folder
-from amalthea_uros.diagnostics import Finding, Location, Severity
-from amalthea_uros.errors import WriteError
+from amalthea_uros.services.files import save_new
 
 #: The board of somebody who names none.
 DEFAULT_BOARD = "generic"
@@ -98,7 +96,7 @@ def init_from_board(target: Path, board: str = DEFAULT_BOARD, *, force: bool = F
         board=board, summary=_offered(PLATFORMS / f"{board}.yaml").summary, documentation=DOCUMENTATION, **(looping or {})
     )
     path = _place(target)
-    _write({path: text}, force)
+    save_new({path: text}, force=force)
     return InitResult(path=path, origin=f"board {board}")
 
 
@@ -123,7 +121,7 @@ def init_from_example(target: Path, example: str, *, force: bool = False) -> Ini
         measurement = {path.parent / origin.name: origin for origin in _measurement(example)}
         database = {path.parent / origin.name: origin for origin in _databases(example)}
     texts = {place: origin.read_text(encoding="utf-8") for place, origin in (origins | measurement | database).items()}
-    _write({place: text for place, text in texts.items() if not (place in database and _has(place, text))}, force)
+    save_new({place: text for place, text in texts.items() if not (place in database and _has(place, text))}, force=force)
     return InitResult(
         path=path, origin=f"example {example}", measurement=tuple(measurement), database=next(iter(database), None)
     )
@@ -158,19 +156,3 @@ def _offered(path: Path) -> Offered:
 
 def _place(target: Path) -> Path:
     return target if is_stream(target) or (target.suffix in _SUFFIXES and not target.is_dir()) else target / FILE_NAME
-
-
-def _write(texts: Mapping[Path, str], force: bool) -> None:
-    """Write all files, or none."""
-    from amalthea_uros.xmi.emf.files import FileText, write_texts
-
-    advice = "Use --force to replace it, or name another file."
-    found = [path for path in texts if not force and not is_stream(path) and path.exists()]
-    if found:
-        raise WriteError(
-            [Finding("XMI101", Severity.ERROR, "the file exists already", Location(path), advice) for path in found]
-        )
-    for path in texts:
-        if not is_stream(path):
-            path.parent.mkdir(parents=True, exist_ok=True)
-    write_texts({path: FileText(text) for path, text in texts.items()})

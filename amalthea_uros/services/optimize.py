@@ -7,10 +7,12 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from time import monotonic
 
+from amalthea_uros._internal.files import read_text
+from amalthea_uros._internal.limits import DESCRIPTION_SIZE
+from amalthea_uros._internal.paths import TEXT
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.design.changes.change import Sweep, parse_sweep
-from amalthea_uros.design.changes.key import Configuration
 from amalthea_uros.design.optimize.choices import DEFAULT, Vary, Wishes
 from amalthea_uros.design.optimize.judged import Effort
 from amalthea_uros.design.optimize.parallel_evaluation import evaluator_on
@@ -22,8 +24,7 @@ from amalthea_uros.design.proposals import DesignProposal, SearchPlan, plan_sear
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.findings.accepted import unsuppressed
-from amalthea_uros.services.names import require_settings
-from amalthea_uros.services.subject import Subject, description_text, open_subject, paths_of, reusable
+from amalthea_uros.services.subject import Subject, SystemInput, open_changed
 from amalthea_uros.timing.basics.settings import Settings
 
 #: So many proposals are shown, unless more are asked for.
@@ -71,7 +72,7 @@ class Optimization(Shown):
 class OptimizationPlan(SearchPlan):
     """A search that can be started, with what it is about."""
 
-    subject: Subject = field(compare=False)
+    opened: SystemInput
     findings: tuple[Finding, ...]
 
 
@@ -86,19 +87,28 @@ def plan_optimization(
     seed: int = 1,
 ) -> OptimizationPlan:
     """Read what describes a system, and find out what may change; parameters and errors as for `optimize`."""
-    subject = reusable(subject)
-    opened = open_subject(subject)
-    present = Configuration(opened.system, settings or Settings())
-    require_settings(present.settings, present.system)
-    source = None if opened.assembly is None else description_text(subject)
+    changed = open_changed(subject, settings)
+    opened, source = changed.opened, None
+    if opened.assembly is not None:
+        if opened.paths:
+            source = read_text(opened.paths[0], DESCRIPTION_SIZE), opened.paths[0]
+        elif isinstance(subject, str):
+            source = subject, TEXT
     plan = plan_search(
-        present, wishes or Wishes(), opened.assembly, source, limits=limits, goals=goals, may_be_later=may_be_later, seed=seed
+        changed.given,
+        wishes or Wishes(),
+        opened.assembly,
+        source,
+        limits=limits,
+        goals=goals,
+        may_be_later=may_be_later,
+        seed=seed,
     )
     return OptimizationPlan(
         problem=plan.problem,
         before=plan.before,
         evaluator=plan.evaluator,
-        subject=subject,
+        opened=opened,
         findings=unsuppressed((*opened.findings, *plan.before.findings)),
     )
 
@@ -171,8 +181,8 @@ def found_by(plan: OptimizationPlan, found: SearchResult, proposals: int = MOST_
     """The outcome of a search, each proposal proved by a full analysis of its own."""
     problem, evaluator, before = plan.problem, plan.evaluator, plan.before
     return Optimization(
-        subject=plan.subject,
-        paths=paths_of(plan.subject) or (),
+        subject=plan.opened.subject,
+        paths=plan.opened.paths,
         space=problem.space,
         limits=evaluator.limits,
         goals=problem.goals,

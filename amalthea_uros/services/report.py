@@ -2,28 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.files import STANDARD_INPUT
-from amalthea_uros._internal.paths import StrPath, is_description
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.design.changes.apply import Difference, apply, describe
+from amalthea_uros.design.changes.apply import Difference
+from amalthea_uros.design.changes.change import Changes
 from amalthea_uros.diagnostics import Finding, Severity
-from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.findings.accepted import unsuppressed
 from amalthea_uros.perf.activities import Call, walk
 from amalthea_uros.perf.system import System
-from amalthea_uros.services.inputs import ModelInput, as_paths, refuse_descriptions
-from amalthea_uros.services.names import require_settings
+from amalthea_uros.services.check import check_input
+from amalthea_uros.services.inputs import ModelInput
 from amalthea_uros.services.simulate import SimulationResult
-from amalthea_uros.services.subject import Subject
+from amalthea_uros.services.subject import Subject, SystemInput, open_changed
 from amalthea_uros.services.waiting_messages import with_analysed_storage
-from amalthea_uros.services.what_if import Changes, as_changes
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.timing.activation.load import activation_rates
 from amalthea_uros.timing.basics.settings import Settings
@@ -31,7 +28,6 @@ from amalthea_uros.units import MILLISECOND, SECOND, Time
 
 if TYPE_CHECKING:
     from amalthea_uros.findings.presentation import Presentation
-    from amalthea_uros.metamodel.model import Model
     from amalthea_uros.uros.assemble import Assembly
 
 #: How long a run may be if nobody says it, the longest first.
@@ -111,100 +107,57 @@ def compile_report(
     ReadError : a file cannot be read, or something in a description or in the settings of the project is wrong.
     InvalidArgumentError : changes or settings name what does not exist, or are wrong; there is no bus.
     """
-    opened = _open(subject, with_bus)
-    parsed = as_changes(changes)
-    unchanged = settings or Settings()
-    require_settings(unchanged, opened.system)
-    differences = describe(opened.system, unchanged, parsed)
-    system, used = apply(opened.system, unchanged, parsed)
-    analysis = analyze_system(system, used)
-    before = analyze_system(opened.system, unchanged) if parsed else None
-    assembly = opened.assembly
+    changed = open_changed(subject, settings, changes, with_bus=with_bus)
+    opened, system = changed.opened, changed.system
+    analysis = analyze_system(system, changed.settings)
+    before = analyze_system(*changed.given) if changed.changes else None
+    model = _model_of(opened)
     simulation = None
     if with_simulation:
-        options = Options(duration=duration or default_duration(analysis), seed=seed, settings=used)
+        options = Options(duration=duration or default_duration(analysis), seed=seed, settings=changed.settings)
         simulation = _simulated(system, options, is_kept=duration is None)
+    # Those of reading and building a model are among the findings of the check.
+    told = () if model is None else model.findings
+    findings = [finding for finding in opened.findings if finding not in told]
+    findings += (*analysis.findings, *(() if simulation is None else simulation.findings))
     return ReportContent(
-        title=title or opened.name,
+        title=title or _name(opened),
         date=date,
         system=system,
-        settings=used,
+        settings=changed.settings,
         analysis=analysis,
         before=before,
-        differences=differences,
+        differences=tuple(each for each in changed.differences if not each.is_consequence),
         simulation=simulation,
         is_duration_chosen=duration is None,
-        check=_checked(opened),
-        findings=_findings(opened, analysis, simulation),
-        assembly=None if assembly is None else with_analysed_storage(assembly, before or analysis),
+        check=None if model is None else check_input(model, next(iter(_files(opened)), Path())),
+        findings=tuple(dict.fromkeys(unsuppressed(findings))),
+        assembly=None if opened.assembly is None else with_analysed_storage(opened.assembly, before or analysis),
     )
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Opened:
-    """What a report is about.
+def _model_of(opened: SystemInput) -> ModelInput | None:
+    """The AMALTHEA model that is checked; None for a system, of which there is none."""
+    if opened.assembly is not None:
+        from amalthea_uros.bridge.build import build_model
 
-    Attributes
-    ----------
-    model : None for a system
-    folder : where the settings of the project are looked for
-    findings : what could not be extracted
-    """
-
-    name: str
-    system: System
-    model: ModelInput | None = None
-    folder: Path = field(default_factory=Path)
-    findings: tuple[Finding, ...] = ()
-    assembly: Assembly | None = None
+        system = opened.assembly.system
+        return ModelInput(model=build_model(system), findings=opened.assembly.findings, system=system)
+    if opened.model is None:
+        return None
+    return ModelInput(model=opened.model, findings=opened.model.findings, system=opened.system)
 
 
-def _open(subject: Subject, with_bus: bool) -> _Opened:
-    from amalthea_uros.metamodel.model import Model
-
-    if isinstance(subject, System | Model):
-        if with_bus:
-            raise InvalidArgumentError("only an app.yaml describes the messages on a CAN bus")
-        return _Opened(name="System", system=subject) if isinstance(subject, System) else _of_model(subject, ())
-    paths = as_paths(subject)
-    if len(paths) == 1 and is_description(paths[0]):
-        return _of_description(paths[0], with_bus)
-    refuse_descriptions(paths)
-    if with_bus:
-        raise InvalidArgumentError("only an app.yaml describes the messages on a CAN bus; AMALTHEA models do not")
-    from amalthea_uros.xmi.load import load
-
-    return _of_model(load(*paths), paths)
+def _files(opened: SystemInput) -> tuple[Path, ...]:
+    documents = () if opened.model is None else opened.model.documents
+    return opened.paths or tuple(document.path for document in documents if document.path is not None)
 
 
-def _of_description(path: Path, with_bus: bool) -> _Opened:
-    from amalthea_uros.services.build import build
-
-    built = build(path)
-    assembly = built.assembly
-    system = assembly.system_with_bus() if with_bus else assembly.system
-    if system is None:
-        raise InvalidArgumentError(f"no CAN bus is described in {path}; set 'middleware.transport.can.bitrate'")
-    model = ModelInput(model=built.model, findings=assembly.findings, system=assembly.system)
-    return _Opened(name=_name([path]), system=system, model=model, folder=path, assembly=assembly)
-
-
-def _of_model(model: Model, paths: Sequence[Path]) -> _Opened:
-    from amalthea_uros.bridge.extract import extract
-
-    extraction = extract(model)
-    named = paths or [document.path for document in model.documents if document.path is not None]
-    return _Opened(
-        name=_name(named) or "Model",
-        system=extraction.system,
-        model=ModelInput(model=model, findings=model.findings, system=extraction.system),
-        folder=named[0] if named else Path(),
-        findings=extraction.findings,
-    )
-
-
-def _name(paths: Iterable[Path]) -> str:
-    return ", ".join("standard input" if path == STANDARD_INPUT else path.name or str(path) for path in paths)
+def _name(opened: SystemInput) -> str:
+    names = ["standard input" if path == STANDARD_INPUT else path.name or str(path) for path in _files(opened)]
+    if not names and opened.assembly is not None:
+        return opened.assembly.description.name
+    return ", ".join(names) or ("System" if opened.model is None else "Model")
 
 
 def _simulated(system: System, options: Options, *, is_kept: bool) -> SimulationResult:
@@ -213,25 +166,15 @@ def _simulated(system: System, options: Options, *, is_kept: bool) -> Simulation
     from amalthea_uros.trace.sinks import EventRecorder
 
     recorder = EventRecorder()
-    if is_kept:
-        simulation = simulate_system(system, replace(options, traced=(0, options.duration)), [recorder])
-        simulation = replace(simulation, trace=recorder.table)
-    else:
-        simulation = simulate_system(system, options)
-    findings = unsuppressed(simulation.findings)
-    return SimulationResult(paths=(), system=system, options=options, simulation=simulation, findings=findings)
-
-
-def _checked(opened: _Opened) -> Presentation | None:
-    from amalthea_uros.services.check import check_input
-
-    return None if opened.model is None else check_input(opened.model, opened.folder)
-
-
-def _findings(opened: _Opened, analysis: Analysis, simulation: SimulationResult | None) -> tuple[Finding, ...]:
-    """Each once, without those that comments accept."""
-    simulated = simulation.findings if simulation is not None else ()
-    return tuple(dict.fromkeys(unsuppressed((*opened.findings, *analysis.findings, *simulated))))
+    traced = (0, options.duration) if is_kept else None
+    simulation = simulate_system(system, replace(options, traced=traced), [recorder] if is_kept else [])
+    return SimulationResult(
+        paths=(),
+        system=system,
+        options=options,
+        simulation=replace(simulation, trace=recorder.table if is_kept else None),
+        findings=unsuppressed(simulation.findings),
+    )
 
 
 def default_duration(analysis: Analysis) -> Time:
@@ -244,15 +187,3 @@ def default_duration(analysis: Analysis) -> Time:
 
 def _calls(system: System, process: str) -> int:
     return sum(isinstance(activity, Call) for activity in walk(system.processes[process].activities))
-
-
-def save_text(path: StrPath, text: str) -> None:
-    """Write a file whole or not at all.
-
-    Raises
-    ------
-    WriteError : the file cannot be written.
-    """
-    from amalthea_uros.xmi.emf.files import FileText, write_text
-
-    write_text(Path(path), FileText(text))

@@ -40,9 +40,8 @@ def find_rules(
     ------
     InvalidArgumentError : a pattern matches no rule.
     """
-    selection = select(profiles, patterns, ())
     wanted = frozenset(severities) or frozenset(Severity)
-    rules = filter(None, map(registry.kind, selection.rules()))
+    rules = filter(None, map(registry.kind, select(profiles, patterns, ()).rules()))
     return RulesResult(tuple(rule for rule in rules if rule.severity in wanted and text.casefold() in _words(rule)))
 
 

@@ -1,20 +1,31 @@
-"""What callers of the library give: paths, a text, the content of a description, a model, or a system."""
+"""What callers give: files, a text, the content of a description, a model, or a system; and its system, with changes."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from operator import index
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias, TypeGuard
+from typing import TYPE_CHECKING, Any, TypeAlias
 
-from amalthea_uros._internal.files import read_text
-from amalthea_uros._internal.limits import DESCRIPTION_SIZE
-from amalthea_uros._internal.paths import TEXT, StrPath, is_description
+from amalthea_uros._internal.paths import TEXT, StrPath
+from amalthea_uros.design.changes.apply import Difference, apply
+from amalthea_uros.design.changes.change import Change, Changes, Sweep, as_changes
+from amalthea_uros.design.changes.key import Configuration
+from amalthea_uros.design.changes.timing_changes import described
+from amalthea_uros.diagnostics import Finding
+from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.names import require
 from amalthea_uros.perf.system import System
-from amalthea_uros.services.inputs import SystemInput, as_paths, described_input, open_system
+from amalthea_uros.services.inputs import as_paths, is_one_description
+from amalthea_uros.timing.activation.releases import sources
+from amalthea_uros.timing.basics.settings import Settings
+from amalthea_uros.units import Time, parse_time
 
 if TYPE_CHECKING:
     from amalthea_uros.metamodel.model import Model
+    from amalthea_uros.uros.assemble import Assembly
 
 Subject: TypeAlias = "StrPath | Iterable[StrPath] | Mapping[str, Any] | Model | System"
 
@@ -22,68 +33,163 @@ _ACCEPTED = (
     "the path of an app.yaml or .amxmi file, a list of paths, the text of an app.yaml, its content as a dict, a Model, "
     "or a System such as taskset() makes"
 )
+_NO_BUS = "only an app.yaml describes the messages on a CAN bus"
 
 
-def open_subject(subject: Subject) -> SystemInput:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SystemInput:
+    """The system of a subject.
+
+    Attributes
+    ----------
+    subject : what it was opened from, and can be opened from again
+    paths : the files; none for what is in memory
+    model : the AMALTHEA model that the system was extracted from, None for descriptions and systems
+    findings : problems found while reading, and what could not be extracted, also those that comments accept
+    assembly : the decisions that a description left open; None for AMALTHEA models and systems
+    """
+
+    subject: Subject
+    paths: tuple[Path, ...] = ()
+    system: System
+    model: Model | None = None
+    findings: tuple[Finding, ...] = ()
+    assembly: Assembly | None = None
+
+    @property
+    def task_periods(self) -> tuple[Time, ...]:
+        """Those that a description offers to tasks; empty if it offers any, and for AMALTHEA models."""
+        return () if self.assembly is None else self.assembly.task_periods
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ChangedSystem:
+    """A system that was opened, and what changes of its values make of it.
+
+    Attributes
+    ----------
+    given : the system and the settings without the changes
+    system, settings : with the changes
+    differences : what the changes did
+    """
+
+    opened: SystemInput
+    given: Configuration
+    changes: tuple[Change, ...]
+    system: System
+    settings: Settings
+    differences: tuple[Difference, ...]
+
+    def check_sweeps(self, sweeps: Iterable[Sweep]) -> None:
+        """Refuse names and values that cannot be swept, before the first run; the ends of each sweep are tried."""
+        for sweep in sweeps:
+            for value in (sweep.values[0], sweep.values[-1]):
+                changed = apply(*self.given, (*self.changes, Change(sweep.object, sweep.key, value)))
+                require_settings(changed.settings, changed.system)
+
+
+def open_system(subject: Subject, *, with_bus: bool = False) -> SystemInput:
     """The system of files, of a description as text or dict, of an AMALTHEA model, or the given one, with the findings about it.
 
     A text with a line break is the content of an `app.yaml`; any other text is a path.
 
+    Parameters
+    ----------
+    with_bus : with the CAN bus of the description as a further core, whose tasks are the messages
+
     Raises
     ------
     ReadError : a file cannot be read, or something in a description is wrong.
+    InvalidArgumentError : a bus is wanted, but not described.
     TypeError : the subject is something else; the text lists what is accepted.
     """
     if isinstance(subject, System):
-        return SystemInput(system=subject, model=None, findings=())
-    from amalthea_uros.metamodel.model import Model
-
-    if isinstance(subject, Model):
-        from amalthea_uros.bridge.extract import extract
-
-        extraction = extract(subject)
-        return SystemInput(system=extraction.system, model=subject, findings=(*subject.findings, *extraction.findings))
-    if isinstance(subject, Mapping) or _is_text(subject):
+        if with_bus:
+            raise InvalidArgumentError(_NO_BUS)
+        return SystemInput(subject=subject, system=subject)
+    if isinstance(subject, Mapping) or (isinstance(subject, str) and "\n" in subject):
         from amalthea_uros.uros.described import describe_content, describe_text
 
-        described = describe_text(subject) if isinstance(subject, str) else describe_content(subject)
-        return described_input(described.assembly)
-    return open_system(as_paths(_paths(subject)))
+        described_subject = describe_text(subject) if isinstance(subject, str) else describe_content(subject)
+        return _described(subject, (), described_subject.assembly, with_bus)
+    model = as_model(subject)
+    paths = as_paths(_paths(subject)) if model is None else ()
+    if model is None and is_one_description(paths):
+        from amalthea_uros.services.build import describe
+
+        return _described(paths, paths, describe(paths[0]), with_bus)
+    if with_bus:
+        raise InvalidArgumentError(f"{_NO_BUS}; AMALTHEA models do not")
+    from amalthea_uros.bridge.extract import extract
+
+    if model is None:
+        from amalthea_uros.xmi.load import load
+
+        model = load(*paths)
+    found = extract(model)
+    findings = (*model.findings, *found.findings)
+    return SystemInput(subject=paths or subject, paths=paths, system=found.system, model=model, findings=findings)
 
 
-def paths_of(subject: Subject) -> tuple[Path, ...] | None:
-    """The files of a subject; None if it is none."""
+def open_changed(
+    subject: Subject, settings: Settings | None = None, changes: Changes = (), *, with_bus: bool = False
+) -> ChangedSystem:
+    """The system of a subject with changes of its values; parameters and errors as for `open_system`.
+
+    Raises
+    ------
+    InvalidArgumentError : the changes or settings name what does not exist, or a value is wrong.
+    """
+    opened, parsed = open_system(subject, with_bus=with_bus), as_changes(changes)
+    given = Configuration(opened.system, settings or Settings())
+    require_settings(given.settings, given.system)
+    differences = described(given, parsed) if parsed else ()
+    system, changed_settings = apply(*given, parsed)
+    require_settings(changed_settings, system)
+    return ChangedSystem(
+        opened=opened, given=given, changes=parsed, system=system, settings=changed_settings, differences=differences
+    )
+
+
+def as_model(subject: object) -> Model | None:
+    """The subject if it is an AMALTHEA model; of paths that is known without the AMALTHEA classes."""
+    if isinstance(subject, str | PathLike | System | Mapping | list | tuple):
+        return None
     from amalthea_uros.metamodel.model import Model
 
-    if isinstance(subject, System | Model | Mapping) or _is_text(subject):
-        return None
-    return as_paths(_paths(subject))
+    return subject if isinstance(subject, Model) else None
 
 
-def reusable(subject: Subject) -> Subject:
-    """The subject, of which paths can be asked for again."""
-    return paths_of(subject) or subject
+def time_of(duration: str | Time) -> Time:
+    """A duration in picoseconds; InvalidArgumentError if it is no time."""
+    try:
+        return parse_time(duration) if isinstance(duration, str) else index(duration)
+    except TypeError:
+        message = f"the duration must be a time such as '1 s', or whole picoseconds, not {duration!r}"
+        raise InvalidArgumentError(message) from None
+    except ValueError as error:
+        raise InvalidArgumentError(f"the duration {error}") from None
 
 
-def description_text(subject: Subject) -> tuple[str, Path] | None:
-    """The text of a description, and its file; None if the subject is something else."""
-    paths = paths_of(subject)
-    if paths is not None and len(paths) == 1 and is_description(paths[0]):
-        return read_text(paths[0], DESCRIPTION_SIZE), paths[0]
-    return (subject, TEXT) if _is_text(subject) else None
+def require_settings(settings: Settings, system: System) -> None:
+    """Refuse settings for what a system does not have; raises as `require`, and TypeError for what is no `Settings`."""
+    if not isinstance(settings, Settings):
+        raise TypeError(f"expected Settings, not {type(settings).__name__}; changes of values are given as changes=...")
+    require("core", settings.frequencies, system.cores)
+    require("process", settings.factors, system.processes)
+    if settings.phases:
+        require("callback with a phase", settings.phases, sources(system))
+    require("mode label", settings.modes, [label.name for label in system.software.mode_labels])
 
 
-def system_of(subject: Subject) -> System:
-    """The system of a subject; as `open_subject`."""
-    return open_subject(subject).system
+def _described(subject: Subject, paths: tuple[Path, ...], assembly: Assembly, with_bus: bool) -> SystemInput:
+    from amalthea_uros.services.build import system_with_bus
+
+    system = system_with_bus(assembly, paths[0] if paths else TEXT) if with_bus else assembly.system
+    return SystemInput(subject=subject, paths=paths, system=system, findings=assembly.findings, assembly=assembly)
 
 
-def _is_text(subject: object) -> TypeGuard[str]:
-    """Whether something is a text, and no path."""
-    return isinstance(subject, str) and "\n" in subject
-
-
-def _paths(subject: object) -> list[StrPath]:
+def _paths(subject: object) -> Sequence[StrPath]:
     given = type(subject).__name__
     if isinstance(subject, str | PathLike):
         return [subject]

@@ -2,27 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TypeAlias
 
 from amalthea_uros._internal.paths import StrPath
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.impact import Impact, impact
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.design.changes.apply import Difference, apply
-from amalthea_uros.design.changes.change import EXAMPLE, FORM, Change, parse_change, split_target
-from amalthea_uros.design.changes.key import Configuration
-from amalthea_uros.design.changes.timing_changes import described
+from amalthea_uros.design.changes.apply import Difference
+from amalthea_uros.design.changes.change import Change, Changes
 from amalthea_uros.perf.system import System
 from amalthea_uros.services.changed_model import write_changed
-from amalthea_uros.services.names import require_settings
-from amalthea_uros.services.subject import Subject, reusable, system_of
+from amalthea_uros.services.subject import Subject, open_changed
 from amalthea_uros.timing.basics.settings import Settings
-
-#: Changes as callers give them: `{"Task.period": "2 ms"}` or `["Task.period=2ms"]`.
-Changes: TypeAlias = Mapping[str, object] | Iterable[str | Change]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -79,35 +71,15 @@ def what_if(subject: Subject, changes: Changes, settings: Settings | None = None
     ReadError : a file cannot be read, or something in a description is wrong.
     InvalidArgumentError : the changes or settings name what does not exist, or a value is wrong.
     """
-    given = reusable(subject)
-    parsed, settings = as_changes(changes), settings or Settings()
-    system = system_of(given)
-    require_settings(settings, system)
-    differences = described(Configuration(system, settings), parsed)
-    changed = apply(system, settings, parsed)
-    before, after = analyze_system(system, settings), analyze_system(*changed)
+    changed = open_changed(subject, settings, changes)
+    before, after = analyze_system(*changed.given), analyze_system(changed.system, changed.settings)
     return WhatIf(
         before=before,
         after=after,
-        differences=differences,
+        differences=changed.differences,
         impact=impact(before, after),
         system=changed.system,
         settings=changed.settings,
-        _subject=given,
-        _given=(parsed, settings),
+        _subject=changed.opened.subject,
+        _given=(changed.changes, changed.given.settings),
     )
-
-
-def as_changes(changes: Changes) -> tuple[Change, ...]:
-    """Changes in any of the forms that callers give.
-
-    Raises
-    ------
-    InvalidArgumentError : a text is not of the form of a change.
-    """
-    if isinstance(changes, Mapping):
-        return tuple(Change(*split_target(target, target, FORM, EXAMPLE), str(value)) for target, value in changes.items())
-    if not isinstance(changes, Iterable):
-        raise TypeError(f'expected changes such as {{"Task.period": "2 ms"}}, not {changes!r}')
-    texts: Sequence[str | Change] = [changes] if isinstance(changes, str) else list(changes)
-    return tuple(change if isinstance(change, Change) else parse_change(change) for change in texts)

@@ -10,7 +10,7 @@ from amalthea_uros.analyze.impact import Effect, ResultPart, impact
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.design.changes.apply import apply
 from amalthea_uros.design.changes.change import parse_change
-from amalthea_uros.services.inputs import open_system
+from amalthea_uros.services.subject import open_system
 from amalthea_uros.timing.basics.settings import Settings
 
 #: What is certain about a process, requirement or system that is fine.

@@ -12,7 +12,7 @@ from system_strategies import systems
 from amalthea_uros import describe
 from amalthea_uros.bridge.build import build_model
 from amalthea_uros.bridge.extract import extract
-from amalthea_uros.cli.build import VERSIONS
+from amalthea_uros.cli.descriptions import VERSIONS
 from amalthea_uros.errors import WriteError
 from amalthea_uros.xmi.load import load
 from amalthea_uros.xmi.save import save

@@ -8,7 +8,7 @@ from inchron import problems
 from support import ROOT, SHARED
 
 from amalthea_uros import build, load
-from amalthea_uros.cli.build import VERSIONS
+from amalthea_uros.cli.descriptions import VERSIONS
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.services.check import summaries
 

@@ -10,7 +10,7 @@ import pytest
 from click.testing import CliRunner
 
 from amalthea_uros import diff
-from amalthea_uros.cli.diff import command
+from amalthea_uros.cli.models import diff as command
 from amalthea_uros.metamodel.classes import Amalthea, Label, SWModel
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.report import formats

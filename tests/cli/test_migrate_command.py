@@ -9,7 +9,7 @@ import pytest
 from click.testing import CliRunner
 from command import amuros
 
-from amalthea_uros.cli.migrate import command
+from amalthea_uros.cli.models import migrate as command
 from amalthea_uros.xmi.emf.versions import VERSIONS, version_of
 
 SPACES = 'xmi:version="2.0" xmlns:xmi="http://www.omg.org/XMI" xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"'

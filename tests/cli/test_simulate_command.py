@@ -269,7 +269,7 @@ def test_ctrl_c_before_the_run_is_no_finding(run, monkeypatch):
     def interrupted(*_arguments, **_options):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("amalthea_uros.services.simulate.open_system", interrupted)
+    monkeypatch.setattr("amalthea_uros.services.subject.open_system", interrupted)
     assert run(ADVANCED) == (130, "", "interrupted\n")
 
 
@@ -365,7 +365,7 @@ def test_wrong_use_writes_nothing(case, run, tmp_path, monkeypatch):
 
 
 def test_the_library_takes_texts_and_systems(run):
-    from amalthea_uros.services.inputs import open_system
+    from amalthea_uros.services.subject import open_system
 
     found = simulate(open_system([ADVANCED]).system, "10 ms", seed=7, mode="worst", changes=["Control_Function.period=2ms"])
     assert (found.duration, found.seed, found.mode) == (10 * MS, 7, "worst")

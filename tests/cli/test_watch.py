@@ -11,7 +11,7 @@ import pytest
 from command import amuros
 from support import ROOT
 
-from amalthea_uros.services.watched import watched_files
+from amalthea_uros.cli.watch import watched_files
 
 YAML = ROOT / "samples" / "bodas-test-simple.yaml"
 PLATFORM = "amuros: 1\nplatform: mine\nhardware: {microcontroller: C, core_type: Core, frequency: 1 MHz, cores: 1}\n"

@@ -10,9 +10,9 @@ from support import ROOT
 import amalthea_uros as amuros
 from amalthea_uros import InvalidArgumentError, Meaning, Names, compare, perf, simulate
 from amalthea_uros.compare.naming import parse_meaning
+from amalthea_uros.compare.shares import parse_tolerance
 from amalthea_uros.measure.series import MeasuredKind, Series, TimeStatistics, statistics_of
-from amalthea_uros.services.compare import parse_tolerance
-from amalthea_uros.services.subject import system_of
+from amalthea_uros.services.subject import open_system
 from amalthea_uros.units import MICROSECOND, MILLISECOND
 
 SIMPLE = ROOT / "samples" / "bodas-test-simple.yaml"
@@ -365,7 +365,7 @@ def test_a_baseline_counts_for_limits():
 def test_a_limit_of_another_quantity_does_not_replace_a_deadline(metric, bound):
     # Both are 1 ms, as the period.
     limit = perf.TimeLimit(metric=metric, bound=bound, value=MILLISECOND)
-    system = system_of(SIMPLE)
+    system = open_system(SIMPLE).system
     other = perf.Requirement(name="other", process="Control_Function", limit=limit)
     system = replace(system, constraints=replace(system.constraints, requirements=(other,)))
     found = compare(system, measurement(series("Control_Function", "response_time", [1200])))
@@ -382,7 +382,7 @@ def test_limits_of_numbers_are_not_judged_by_times():
     count = perf.Requirement(
         name="few", process="Control_Function", limit=perf.CountLimit(metric=perf.CountMetric.PREEMPTIONS, value=0)
     )
-    system = system_of(SIMPLE)
+    system = open_system(SIMPLE).system
     system = replace(system, constraints=replace(system.constraints, requirements=(count,)))
     found = compare(system, measurement(series("Control_Function", "response_time", [16])))
     assert [limit.verdict for limit in found.limits if limit.name == "few"] == ["not_observed"]

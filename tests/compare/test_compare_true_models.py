@@ -13,7 +13,7 @@ from measurements import measurement, series
 
 from amalthea_uros import compare, simulate
 from amalthea_uros.perf.distributions import Beta, Boundaries, Bucket, Histogram, Statistics, Uniform
-from amalthea_uros.services.subject import system_of
+from amalthea_uros.services.subject import open_system
 
 RANGES = """
 amuros: 1
@@ -92,7 +92,7 @@ def drawn(item, shape):
 def compared(model, log_of, tmp_path, shape, seed=5, duration="2 s", **options):
     """A model compared with a log of a system with another distribution."""
     trace = tmp_path / "run.csv"
-    simulate(drawn(system_of(log_of), shape), duration, seed=seed, trace_paths=[trace])
+    simulate(drawn(open_system(log_of).system, shape), duration, seed=seed, trace_paths=[trace])
     return compare(model, trace, **options)
 
 

@@ -21,11 +21,11 @@ from amalthea_uros.design.campaign import executors
 from amalthea_uros.design.campaign.campaign import run_campaign
 from amalthea_uros.design.campaign.executors import cluster, processes, serial
 from amalthea_uros.design.campaign.run import CampaignRun, RunOutcome, plan_runs
+from amalthea_uros.design.campaign.simulations import SimulationJob
 from amalthea_uros.design.campaign.tables import table_format, write_table
 from amalthea_uros.design.changes.change import Change, parse_sweep
 from amalthea_uros.errors import InvalidArgumentError, WriteError
-from amalthea_uros.services.inputs import open_system
-from amalthea_uros.services.simulate import SimulationJob
+from amalthea_uros.services.subject import open_system
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.timing.basics.settings import Settings
 

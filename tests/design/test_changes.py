@@ -15,7 +15,7 @@ from amalthea_uros.design.changes.change import Change, parse_change
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf import activities, distributions, events, hardware, mapping, os, software, stimuli
 from amalthea_uros.perf.system import System
-from amalthea_uros.services.inputs import open_system
+from amalthea_uros.services.subject import open_system
 from amalthea_uros.timing.basics.settings import Settings
 
 MHZ = Fraction(10**6)

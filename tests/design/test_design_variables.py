@@ -5,7 +5,7 @@ import pytest
 from amalthea_uros import InvalidArgumentError, Settings, analyze, build, diff, optimize
 from amalthea_uros.analyze.results.chains import LatencyQuantity
 from amalthea_uros.design.optimize.problem import Conclusion
-from amalthea_uros.services.optimized_model import write_proposal
+from amalthea_uros.services.changed_model import write_proposal
 from amalthea_uros.timing.basics.settings import MemoryModel
 from amalthea_uros.units import MICROSECOND as US
 

@@ -11,7 +11,7 @@ from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.design.changes.apply import apply
 from amalthea_uros.design.changes.change import Change, parse_change
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.services.inputs import open_system
+from amalthea_uros.services.subject import open_system
 from amalthea_uros.timing.basics.settings import Settings
 
 ADVANCED = ROOT / "samples" / "bodas-test-advanced.yaml"

@@ -10,7 +10,7 @@ from support import MODEL, ROOT
 
 from amalthea_uros import analyze_files
 from amalthea_uros.services.fix import fix_files
-from amalthea_uros.services.settings import CheckSettings
+from amalthea_uros.validate.settings import CheckSettings
 
 pytest.importorskip("pygls")
 

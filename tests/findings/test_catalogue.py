@@ -15,9 +15,9 @@ from amalthea_uros.errors import ReadError
 from amalthea_uros.findings import catalogue
 from amalthea_uros.services.generate import check_colcon_meta
 from amalthea_uros.services.import_code import import_code
-from amalthea_uros.services.settings import project_settings
 from amalthea_uros.trace.state_charts import check_trace
 from amalthea_uros.validate import registry
+from amalthea_uros.validate.settings import project_settings
 
 ALL_KINDS = [kind for family in catalogue.FAMILIES for kind in catalogue.kinds(family)]
 KINDS = {kind.id: kind for kind in ALL_KINDS}

@@ -14,7 +14,7 @@ from opponent.vectors import CONSTRUCTS, facts, needs_vectors, plain_systems
 
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.services.analyze import analyze_files
-from amalthea_uros.services.inputs import open_system
+from amalthea_uros.services.subject import open_system
 
 SEEDS = 1000
 BLOCK = 50

@@ -4,7 +4,7 @@ from io import StringIO
 from pathlib import Path
 
 from amalthea_uros.report import formats
-from amalthea_uros.services.file_changes import FileChange, FilesDiff
+from amalthea_uros.services.files import FileChange, FilesDiff
 
 
 class Screen(StringIO):

@@ -12,8 +12,6 @@ from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.report import formats
 from amalthea_uros.report.documents import DOCUMENTS
 from amalthea_uros.report.wording.findings import findings_text
-from amalthea_uros.services.check import CheckResult
-from amalthea_uros.services.info import InfoResult
 
 MODULES = [import_module(f"{services.__name__}.{module.name}") for module in iter_modules(services.__path__)]
 RESULTS = {
@@ -26,12 +24,12 @@ RESULTS = {
 
 @pytest.mark.parametrize("result", sorted(RESULTS, key=lambda result: result.__name__))
 def test_every_result_can_be_shown_as_text(result):
-    assert formats.formats_for(result)[0] == "text"
+    assert formats.formats_for(result.__name__)[0] == "text"
 
 
 def test_a_command_offers_the_formats_that_can_write_its_result():
-    assert formats.formats_for(CheckResult) == ["text", "github", "json", "junit", "sarif"]
-    assert formats.formats_for(InfoResult) == ["text", "json"]
+    assert formats.formats_for("CheckResult") == ["text", "github", "json", "junit", "sarif"]
+    assert formats.formats_for("InfoResult") == ["text", "json"]
 
 
 @pytest.mark.parametrize(("name", "function"), [(name, function) for name, (function, _) in formats.FORMATS.items()])

@@ -13,9 +13,10 @@ from support import ROOT
 from amalthea_uros.errors import ReadError, WriteError
 from amalthea_uros.services.analyze import analyze_files
 from amalthea_uros.services.build import describe
-from amalthea_uros.services.generate import check_colcon_meta, generate, texts_of
+from amalthea_uros.services.generate import check_colcon_meta, generate
 from amalthea_uros.services.init import example_names
 from amalthea_uros.services.report import compile_report
+from amalthea_uros.uros.generated_files import texts_of
 
 #: zenoh-pico has no pools.
 SAMPLES = [ROOT / "samples" / f"{name}.yaml" for name in example_names() if name != "robot-zenoh"]

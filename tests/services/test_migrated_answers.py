@@ -12,7 +12,7 @@ from amalthea_uros import analyze_files
 from amalthea_uros.report.writers.json import content
 from amalthea_uros.services.format import format_files
 from amalthea_uros.services.migrate import migrate_files
-from amalthea_uros.services.simulate import plan_simulation, simulate_plan
+from amalthea_uros.services.simulate import simulate_files
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.units import MILLISECOND
 from amalthea_uros.xmi.emf.versions import is_older
@@ -103,7 +103,7 @@ NOT_STATED = [
 
 def observed(paths):
     """What a short run shows."""
-    simulation = simulate_plan(plan_simulation(paths, Options(duration=100 * MILLISECOND))).simulation
+    simulation = simulate_files(paths, Options(duration=100 * MILLISECOND)).simulation
     return [(each.name, each.jobs, each.response_time) for each in simulation.processes]
 
 

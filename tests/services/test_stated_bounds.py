@@ -4,7 +4,7 @@ import pytest
 from test_migrated_answers import observed, with_item
 
 from amalthea_uros import analyze_files
-from amalthea_uros.services.simulate import plan_simulation, simulate_plan
+from amalthea_uros.services.simulate import simulate_files
 from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.units import MILLISECOND
 
@@ -31,7 +31,7 @@ def test_ticks_between_two_bounds(kind, missing, tmp_path):
     assert observed([path]) == []
     for mode, expected in ((Mode.WORST, 2), (Mode.BEST, 1)):
         options = Options(duration=20 * MILLISECOND, mode=mode)
-        simulation = simulate_plan(plan_simulation([path], options)).simulation
+        simulation = simulate_files([path], options).simulation
         assert simulation.processes["A"].response_time.max == expected * MILLISECOND
 
 

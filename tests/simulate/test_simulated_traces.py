@@ -11,8 +11,8 @@ from traces import said
 from amalthea_uros.perf.activities import Call, Demand, Execute
 from amalthea_uros.perf.distributions import Uniform
 from amalthea_uros.perf.software import Label, Runnable
-from amalthea_uros.services.inputs import open_system
 from amalthea_uros.services.simulate import simulate
+from amalthea_uros.services.subject import open_system
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.timing.basics.quantities import JobMetric

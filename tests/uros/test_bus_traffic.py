@@ -15,7 +15,7 @@ from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.activities import Execute
 from amalthea_uros.perf.stimuli import Single
 from amalthea_uros.perf.system import System
-from amalthea_uros.services.inputs import open_system
+from amalthea_uros.services.subject import open_system
 from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.units import MICROSECOND as US

@@ -25,8 +25,8 @@ from amalthea_uros.services.check import check_files
 from amalthea_uros.services.diff import diff
 from amalthea_uros.services.fix import fix_files
 from amalthea_uros.services.format import format_files
-from amalthea_uros.services.inputs import open_system
 from amalthea_uros.services.simulate import simulate_files
+from amalthea_uros.services.subject import open_system
 from amalthea_uros.simulate.options import Options, SimulationMode
 from amalthea_uros.trace.state_charts import check_trace
 from amalthea_uros.xmi.load import load

@@ -10,7 +10,10 @@ from functools import partial
 from io import BytesIO
 from typing import Any, TypeAlias
 
+from amalthea_uros._internal.shown import Shown
+from amalthea_uros.design.changes.apply import Difference
 from amalthea_uros.design.changes.change import Change, Sweep, count_variants, variants
+from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.system import System
 from amalthea_uros.units import parse_frequency, parse_time
@@ -62,6 +65,32 @@ class RunOutcome:
     def row(self) -> Record:
         """The run and its results as a row of a table."""
         return {**self.run.columns(), **self.record, **({"error": self.error} if self.error else {})}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class VariantResults(Shown):
+    """What came out of the runs of all variants of a system.
+
+    Attributes
+    ----------
+    outcomes : in the order of the runs; those that were not finished when somebody interrupted are absent
+    differences : what the changes of all variants did
+    findings : problems found while reading the files
+    """
+
+    outcomes: tuple[RunOutcome, ...]
+    differences: tuple[Difference, ...] = ()
+    findings: tuple[Finding, ...] = ()
+
+    @property
+    def rows(self) -> list[Record]:
+        """The rows of a table of all runs."""
+        return [outcome.row() for outcome in self.outcomes]
+
+    @property
+    def failed(self) -> tuple[RunOutcome, ...]:
+        """The runs that could not be executed."""
+        return tuple(outcome for outcome in self.outcomes if outcome.error)
 
 
 def plan_runs(sweeps: Sequence[Sweep], repetitions: int, seed: int) -> tuple[CampaignRun, ...]:

@@ -11,7 +11,7 @@ from amalthea_uros.analyze.impact import ComparedFigure, FigureUnit, figures
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.sensitivity import max_growth
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.design.campaign.run import CampaignRun, Record, Value, system_bytes, system_from
+from amalthea_uros.design.campaign.run import CampaignRun, Record, RunOutcome, Value, VariantResults, system_bytes, system_from
 from amalthea_uros.design.changes.apply import apply
 from amalthea_uros.design.changes.change import (
     SWEEP_FORM,
@@ -24,6 +24,8 @@ from amalthea_uros.design.changes.change import (
     variants,
 )
 from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.judge.summary import Schedulable
+from amalthea_uros.names import require
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.settings import Settings
 
@@ -87,6 +89,65 @@ def _listed(target: str, values: Sequence[object]) -> Sweep:
 
 
 SCHEDULABLE, GROWTH = "schedulable", "maximum_growth"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class SweepResult(VariantResults):
+    """The analyses of all variants of a system.
+
+    Attributes
+    ----------
+    source : the files, as text; "" if there are none
+    shown : the results that people want to see; none: the first ones that change
+    """
+
+    plan: SweepPlan
+    source: str = ""
+    shown: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        return f"<SweepResult: {len(self.outcomes)} variants, schedulable {len(self.schedulable)}>"
+
+    @property
+    def rows(self) -> list[Record]:
+        """The rows of a table of all variants."""
+        return [{name: value for name, value in outcome.row().items() if name != "seed"} for outcome in self.outcomes]
+
+    @property
+    def schedulable(self) -> tuple[RunOutcome, ...]:
+        """The variants in which everything is met for certain."""
+        return self.with_verdict(Schedulable.YES)
+
+    def with_verdict(self, verdict: Schedulable) -> tuple[RunOutcome, ...]:
+        """The variants with a verdict on the whole system."""
+        return tuple(outcome for outcome in self.outcomes if outcome.record.get(SCHEDULABLE) == verdict)
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether all variants were analysed."""
+        return len(self.outcomes) == len(self.plan.runs)
+
+    @property
+    def quantities(self) -> tuple[str, ...]:
+        """The columns with results, as in the table."""
+        return tuple(dict.fromkeys(name for outcome in self.outcomes for name in outcome.record))
+
+    @property
+    def changing(self) -> tuple[str, ...]:
+        """The columns that are not equal in all variants."""
+        records = [outcome.record for outcome in self.outcomes if not outcome.error]
+        return tuple(name for name in self.quantities if len({record.get(name) for record in records}) > 1)
+
+    def column(self, quantity: str) -> str:
+        """The column of a quantity, which need not have the end that says its unit.
+
+        Raises
+        ------
+        InvalidArgumentError : there is no such column; says what it may mean.
+        """
+        known = {name.removesuffix("_ps"): name for name in self.quantities}
+        require("quantity", [quantity.removesuffix("_ps")], known)
+        return known[quantity.removesuffix("_ps")]
 
 
 @dataclass(frozen=True, slots=True)

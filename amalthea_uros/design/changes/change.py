@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
 from math import prod
 from random import Random
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.units import FREQUENCY, TIME, parse
@@ -48,6 +48,25 @@ class Change:
 def compact(text: str) -> str:
     """A quantity without the blank before its unit, so that equal ones have equal texts; names stay as they are."""
     return text.replace(" ", "") if _QUANTITY.fullmatch(text) else text
+
+
+#: Changes as callers give them: `{"Task.period": "2 ms"}` or `["Task.period=2ms"]`.
+Changes: TypeAlias = Mapping[str, object] | Iterable[str | Change]
+
+
+def as_changes(changes: Changes) -> tuple[Change, ...]:
+    """Changes in any of the forms that callers give.
+
+    Raises
+    ------
+    InvalidArgumentError : a text is not of the form of a change.
+    """
+    if isinstance(changes, Mapping):
+        return tuple(Change(*split_target(target, target, FORM, EXAMPLE), str(value)) for target, value in changes.items())
+    if not isinstance(changes, Iterable):
+        raise TypeError(f'expected changes such as {{"Task.period": "2 ms"}}, not {changes!r}')
+    texts: Sequence[str | Change] = [changes] if isinstance(changes, str) else list(changes)
+    return tuple(change if isinstance(change, Change) else parse_change(change) for change in texts)
 
 
 def parse_change(text: str) -> Change:

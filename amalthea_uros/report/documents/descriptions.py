@@ -179,7 +179,7 @@ def bus_section(content: ReportContent) -> Section | None:
 
 def pools_section(content: ReportContent) -> Section | None:
     """The pools that the application needs, the files for a build with the right sizes, and the memory."""
-    from amalthea_uros.services.generate import texts_of
+    from amalthea_uros.uros.generated_files import texts_of
 
     assembly = content.assembly
     if assembly is None or not assembly.description.application.nodes:

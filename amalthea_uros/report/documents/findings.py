@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from amalthea_uros.findings.grouping import FindingGroup
     from amalthea_uros.findings.presentation import Presentation
     from amalthea_uros.services.check import CheckResult, CheckStatistics
-    from amalthea_uros.services.file_changes import FileChange, FilesDiff
+    from amalthea_uros.services.files import FileChange, FilesDiff
     from amalthea_uros.services.fix import FixResult
     from amalthea_uros.services.format import FormatResult
     from amalthea_uros.services.generate import MetaCheck

@@ -8,12 +8,12 @@ from fractions import Fraction
 from math import floor
 
 from amalthea_uros._internal.plural import counted
+from amalthea_uros.compare.calibration.calibration import Calibration
 from amalthea_uros.compare.calibration.values import CalibratedValue, Outcome
 from amalthea_uros.measure.series import Counts, Measurement, Series
 from amalthea_uros.report.basics.document import Document, Sentences, document, section, table
 from amalthea_uros.report.documents.simulation import duration_text
 from amalthea_uros.report.wording.cells import shortened
-from amalthea_uros.services.calibrate import Calibration
 from amalthea_uros.simulate.observations import TimeHistogram
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.units import Rounding, Time, rounded_time_text, time_text

@@ -24,11 +24,11 @@ if TYPE_CHECKING:
     from amalthea_uros.analyze.results.analysis import Analysis
     from amalthea_uros.analyze.results.processes import RequirementResult
     from amalthea_uros.design.campaign.run import RunOutcome, Value
+    from amalthea_uros.design.campaign.sweeps import SweepResult
     from amalthea_uros.design.optimize.quantities import Amount, Limit, Range
     from amalthea_uros.design.optimize.space import Choice, Space
     from amalthea_uros.design.proposals import DesignProposal, LimitRow
     from amalthea_uros.services.optimize import Optimization
-    from amalthea_uros.services.sweep import SweepResult
 
 #: More values of a choice are only counted, and further drawbacks.
 _MOST_OPTIONS, _MOST_CHOICES, _MOST_DRAWBACKS = 6, 12, 6

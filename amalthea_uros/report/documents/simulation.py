@@ -9,6 +9,7 @@ from math import ceil, floor
 
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.design.campaign.run import RunOutcome
+from amalthea_uros.design.campaign.simulations import CampaignResult, judged_in
 from amalthea_uros.judge.causes import distinct
 from amalthea_uros.judge.verdict import WORST_OBSERVED_FIRST, ObservedVerdict
 from amalthea_uros.report.basics.document import (
@@ -28,7 +29,7 @@ from amalthea_uros.report.wording.cells import badge, by_core_and_priority, dead
 from amalthea_uros.report.wording.chains import CHAINS_HEADING
 from amalthea_uros.report.wording.closing_line import left_text
 from amalthea_uros.report.wording.findings import joined
-from amalthea_uros.services.simulate import KEPT, MISSED, NOT_OBSERVED, CampaignResult, SimulationResult, judged_in
+from amalthea_uros.services.simulate import SimulationResult
 from amalthea_uros.simulate.observations import ChainObservation, ProcessObservation, RequirementObservation
 from amalthea_uros.simulate.results import IDLE, Judged, Simulation
 from amalthea_uros.simulate.runs.not_simulated import LIMITED_PROCESS_LEFT_OUT, consequence_of
@@ -288,7 +289,10 @@ def _observed_in(outcome: RunOutcome) -> str:
     if outcome.error:
         return f"failed: {outcome.error}"
     lost = outcome.record.get("lost_activations")
-    missed, unseen, kept = (judged_in(outcome.record, verdict) for verdict in (MISSED, NOT_OBSERVED, KEPT))
+    missed, unseen, kept = (
+        judged_in(outcome.record, verdict)
+        for verdict in (ObservedVerdict.MISSED, ObservedVerdict.NOT_OBSERVED, ObservedVerdict.OK)
+    )
     texts = [str(errors)] if (errors := outcome.record.get("errors")) else []
     texts += [f"missed: {', '.join(missed)}"] if missed else ["nothing missed"] if kept else []
     texts += [f"lost: {counted(lost, 'activation')}"] if isinstance(lost, int) and lost else []
@@ -313,7 +317,7 @@ def campaign_line(result: CampaignResult) -> str:
 
 def _missed_in(result: CampaignResult) -> str:
     """In how many runs something was missed, and what is missed in most of them."""
-    numbers = Counter(name for outcome in result.missed for name in judged_in(outcome.record, MISSED))
+    numbers = Counter(name for outcome in result.missed for name in judged_in(outcome.record, ObservedVerdict.MISSED))
     if not numbers:
         return "nothing missed"
     ((name, number),) = numbers.most_common(1)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from amalthea_uros.compare.calibration.calibration import Calibration
 from amalthea_uros.compare.calibration.values import CalibratedValue
 from amalthea_uros.compare.results import (
     Agreement,
@@ -17,7 +18,6 @@ from amalthea_uros.report.documents import comparison as compared
 from amalthea_uros.report.documents import measurement as measured
 from amalthea_uros.report.fields import changes, simulation
 from amalthea_uros.report.fields.declaration import ALSO, declare, fields_of, json_of
-from amalthea_uros.services.calibrate import Calibration
 from amalthea_uros.units import Time
 
 #: Declare differences and histograms.
@@ -158,7 +158,7 @@ declare(
     ("judge_on", "options.judge_on"),
     "values",
     ("refuted", lambda found: sum(bool(value.refuted) for value in found.values)),
-    ("changed", lambda found: found.change.after != found.change.before),
+    ("changed", lambda found: found.text != found.before),
     "findings",
 )
 declare(

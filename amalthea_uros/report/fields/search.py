@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import Any
 
+from amalthea_uros.design.campaign.sweeps import SweepResult
 from amalthea_uros.design.optimize.problem import DesignEvaluation, Goal
 from amalthea_uros.design.optimize.quantities import Amount, AmountKind, Range, dimension
 from amalthea_uros.design.proposals import DesignProposal, LimitRow
@@ -15,7 +16,6 @@ from amalthea_uros.report.fields.analysis import summary_json
 from amalthea_uros.report.fields.declaration import ALSO, declare, json_of
 from amalthea_uros.report.wording.findings import joined
 from amalthea_uros.services.optimize import Optimization
-from amalthea_uros.services.sweep import SweepResult
 
 _VERDICTS = {"yes": "met", "no": "missed", "unknown": "unknown"}
 _LIMIT_COLUMNS_LEFT_OUT = ("strict", "reason", "exact")

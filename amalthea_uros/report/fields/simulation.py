@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
+from amalthea_uros.design.campaign.simulations import CampaignResult
 from amalthea_uros.judge.causes import distinct
 from amalthea_uros.report.documents.simulation import campaign_line, closing_line
 from amalthea_uros.report.fields.changes import CHANGED
 from amalthea_uros.report.fields.declaration import ALSO, declare, fields_of, given, json_of
 from amalthea_uros.report.wording.findings import joined
-from amalthea_uros.services.simulate import CampaignResult, SimulationResult
+from amalthea_uros.services.simulate import SimulationResult
 from amalthea_uros.simulate.observations import (
     ChainObservation,
     CoreObservation,

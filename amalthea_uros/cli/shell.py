@@ -1,4 +1,4 @@
-"""`amuros lsp`: the language server."""
+"""`amuros completion` and `amuros lsp`: what a shell and an editor need of the commands."""
 
 from __future__ import annotations
 
@@ -7,9 +7,27 @@ import os
 import click
 
 
+@click.command("completion")
+@click.argument("shell", type=click.Choice(("bash", "zsh", "fish")))
+@click.pass_context
+def completion(context: click.Context, shell: str) -> None:
+    r"""Print what makes a shell complete commands, options and files.
+
+    \b
+    Add this to ~/.bashrc:                   eval "$(amuros completion bash)"
+    Add this to ~/.zshrc, after compinit:    eval "$(amuros completion zsh)"
+    Write it to a file for fish:             amuros completion fish > ~/.config/fish/completions/amuros.fish
+    """
+    from click.shell_completion import get_completion_class
+
+    complete = get_completion_class(shell)
+    assert complete is not None
+    click.echo(complete(context.find_root().command, {}, "amuros", "_AMUROS_COMPLETE").source())
+
+
 @click.command("lsp")
 @click.option("--stdio", is_flag=True, hidden=True, help="The default, which some editors state.")
-def command(stdio: bool) -> None:
+def lsp(stdio: bool) -> None:
     """Run the language server on standard input and output; editors start it.
 
     While an app.yaml or .amxmi file is edited, it shows the findings of `amuros check`, repairs what `--fix` repairs, and shows

@@ -1,0 +1,168 @@
+"""The times in a trace of any kind: as options say, with baselines subtracted."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from hashlib import file_digest, sha256
+from pathlib import Path
+
+from amalthea_uros._internal.files import is_directory, is_file
+from amalthea_uros.compare.measured.events import measured_events
+from amalthea_uros.compare.measured.frames import measured_frames
+from amalthea_uros.compare.measured.marker_files import counter_of, read_markers
+from amalthea_uros.compare.measured.signals import Signals
+from amalthea_uros.compare.measured.values import is_value_table, measured_values
+from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.measure.baselines import Baselines, names_of
+from amalthea_uros.measure.findings import judged
+from amalthea_uros.measure.markers import Marker, MarkerChain, MarkerPair, Measurable, refuse_overlap
+from amalthea_uros.measure.series import Measurement, Series
+from amalthea_uros.measure.window import MeasurementWindow
+from amalthea_uros.names import require
+from amalthea_uros.timing.basics.quantities import JobMetric
+from amalthea_uros.trace.can.logs import is_can_log
+from amalthea_uros.trace.files import trace_files
+from amalthea_uros.trace.readers import format_of
+from amalthea_uros.trace.table import EventKind
+from amalthea_uros.units import Time
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MeasureOptions:
+    """How a trace is measured.
+
+    Attributes
+    ----------
+    markers : a file that names objects and their markers in CAN logs
+    start, end, name, counter : a single object of a CAN log
+    dbc : the file that describes the messages of the bus
+    channel : the only bus of a CAN log that is used
+    baselines : objects, and the empty ones whose times are subtracted from theirs; "" stands for all others
+    baseline_from : another trace, in which the empty objects are
+    period : the standard period, from which the distances of starts deviate
+    window : the part of the trace that is measured
+    select : the only objects of the result; empty: all
+    chain_starts : with which event of a job chains begin, by default with its activation; None: they are not measured.
+        `measured_events.chain_starts` finds them in a model
+    """
+
+    markers: Path | None = None
+    start: Marker | None = None
+    end: Marker | None = None
+    name: str = "interval"
+    counter: str | None = None
+    dbc: Path | None = None
+    channel: str | None = None
+    baselines: Mapping[str, str] = field(default_factory=dict)
+    baseline_from: Path | None = None
+    period: Time | None = None
+    window: MeasurementWindow = field(default_factory=MeasurementWindow)
+    select: tuple[str, ...] = ()
+    chain_starts: Mapping[str, EventKind | None] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if (self.start is None) != (self.end is None):
+            missing, given = ("end", "start") if self.end is None else ("start", "end")
+            raise InvalidArgumentError(f"an interval needs two markers; add --{missing} to --{given}")
+        if self.start is not None and self.end is not None:
+            try:
+                refuse_overlap(self.start, self.end)
+            except ValueError as error:
+                raise InvalidArgumentError(str(error)) from None
+        if self.counter is not None and self.start is None:
+            raise InvalidArgumentError(
+                "a counter belongs to a start and an end; add --start and --end, or state it in the markers"
+            )
+        if self.baseline_from is not None and not self.baselines and self.markers is None:
+            raise InvalidArgumentError("a trace for baselines needs the name of the empty object; add --baseline NAME")
+
+
+def measure_file(path: Path, options: MeasureOptions) -> Measurement:
+    """Measure the times in a trace.
+
+    Raises
+    ------
+    ReadError : a file cannot be read, or something in the markers is wrong.
+    InvalidArgumentError : an option that cannot be right, or a package that is missing.
+    """
+    objects = _objects(options)
+    found = _measured(path, objects, options)
+    baselines = {item.name: item.baseline for item in objects if not isinstance(item, MarkerChain) and item.baseline}
+    baselines |= options.baselines
+    if baselines:
+        from_trace = found if options.baseline_from is None else _measured(options.baseline_from, objects, options)
+        known = {item.name for item in objects} | {name for each in (found, from_trace) for name in names_of(each.series)}
+        if known:
+            require("object", [*options.baselines.values(), *filter(None, options.baselines)], known)
+        found = _net(found, from_trace, baselines)
+    if options.period is not None:
+        found = replace(found, series=tuple(_with_period(series, options.period) for series in found.series))
+    if options.select:
+        require("measured object", options.select, dict.fromkeys(series.name for series in found.series))
+        found = replace(found, series=tuple(series for series in found.series if series.name in options.select))
+    return replace(found, findings=(*found.findings, *judged(found)))
+
+
+def _objects(options: MeasureOptions) -> tuple[Measurable, ...]:
+    signals = Signals(options.dbc)
+    objects: tuple[Measurable, ...] = ()
+    if options.markers is not None:
+        objects = read_markers(options.markers, signals)
+    if options.start is not None and options.end is not None:
+        counter = None if options.counter is None else counter_of(options.counter, signals)
+        objects = (*objects, MarkerPair(name=options.name, start=options.start, end=options.end, counter=counter))
+    return objects
+
+
+def _measured(path: Path, objects: Sequence[Measurable], options: MeasureOptions) -> Measurement:
+    if is_can_log(path) or (objects and not _is_other_trace(path)):
+        found = measured_frames(path, objects, options.window, options.channel)
+    elif objects:
+        raise InvalidArgumentError(f"{path.name!r} is not a log of a CAN bus, so it has no frames with markers; omit them")
+    elif is_value_table(path):
+        found = measured_values(path, options.window)
+    else:
+        found = measured_events(path, options.window, options.chain_starts)
+    return replace(found, digest=_digest(path))
+
+
+def _is_other_trace(path: Path) -> bool:
+    return format_of(path) is not None or is_value_table(path)
+
+
+def _digest(path: Path) -> str:
+    if is_directory(path):
+        digests = (f"{_digest(file)}  {file.relative_to(path).as_posix()}\n" for file in trace_files(path))
+        return sha256("".join(digests).encode()).hexdigest()
+    if not is_file(path):  # a stream that has been read
+        return ""
+    with path.open("rb") as stream:
+        return file_digest(stream, "sha256").hexdigest()
+
+
+def _net(found: Measurement, empty: Measurement, baselines: Mapping[str, str]) -> Measurement:
+    """A measurement with the times of the empty objects subtracted from those of the other objects; a missing one is reported."""
+    subtracted = Baselines(baselines, empty.series)
+    series = tuple(map(subtracted.net, found.series))
+    place = Location(Path(empty.source))
+    findings = (
+        Finding(
+            "MEA012",
+            Severity.ERROR,
+            f"{name!r} was not measured; nothing is subtracted from the times of other objects",
+            place,
+            _ADVICE,
+        )
+        for name in subtracted.missing
+    )
+    return replace(found, series=series, findings=(*found.findings, *findings))
+
+
+_ADVICE = "Check the markers of the empty object, or give the trace with it: --baseline-from TRACE."
+
+
+def _with_period(series: Series, period: Time) -> Series:
+    is_distance = series.quantity in (JobMetric.START_TO_START, JobMetric.ACTIVATE_TO_ACTIVATE, JobMetric.END_TO_END)
+    return replace(series, period=series.period or period) if is_distance else series

@@ -1,0 +1,94 @@
+"""The simulations of the variants of a system, each as a row of a table; they can be sent to other computers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from amalthea_uros.design.campaign.run import CampaignRun, Record, RunOutcome, VariantResults, system_bytes, system_from
+from amalthea_uros.design.changes.apply import apply
+from amalthea_uros.design.changes.change import Change
+from amalthea_uros.judge.verdict import ObservedVerdict
+from amalthea_uros.perf.named import Brief
+from amalthea_uros.perf.system import System
+from amalthea_uros.simulate.options import Options
+
+#: The end of the columns with verdicts in a row of a table.
+_VERDICT = ".verdict"
+#: The column with what was not simulated.
+_ERRORS = "errors"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CampaignResult(Brief, VariantResults):
+    """Many simulations of some files.
+
+    Attributes
+    ----------
+    planned : number of runs
+    """
+
+    paths: tuple[Path, ...]
+    options: Options
+    planned: int
+
+    @property
+    def is_failed(self) -> bool:
+        """Whether a run failed, or in one a limit was missed, an activation was lost, or not everything was simulated."""
+        return bool(self.failed or self.missed or self.incomplete)
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether all runs were executed."""
+        return len(self.outcomes) == self.planned
+
+    @property
+    def incomplete(self) -> tuple[RunOutcome, ...]:
+        """The runs in which not everything was simulated."""
+        return tuple(outcome for outcome in self.outcomes if outcome.record.get(_ERRORS))
+
+    @property
+    def missed(self) -> tuple[RunOutcome, ...]:
+        """The runs in which a limit was observed as missed, or an activation was lost."""
+        return self._with_verdict(ObservedVerdict.MISSED)
+
+    @property
+    def not_observed(self) -> tuple[RunOutcome, ...]:
+        """The runs in which a limit was neither observed as kept nor as missed."""
+        return self._with_verdict(ObservedVerdict.NOT_OBSERVED)
+
+    @property
+    def is_anything_kept(self) -> bool:
+        """Whether a limit was observed as kept in a run."""
+        return bool(self._with_verdict(ObservedVerdict.OK))
+
+    def _with_verdict(self, verdict: ObservedVerdict) -> tuple[RunOutcome, ...]:
+        return tuple(outcome for outcome in self.outcomes if judged_in(outcome.record, verdict))
+
+
+def judged_in(record: Record, verdict: ObservedVerdict) -> list[str]:
+    """What has a verdict in a run, by the columns with verdicts; lost activations are one that was missed."""
+    return [name.removesuffix(_VERDICT) for name, value in record.items() if name.endswith(_VERDICT) and value == verdict]
+
+
+@dataclass(frozen=True, slots=True)
+class SimulationJob:
+    """Simulates a system with the changes and the seed of a run."""
+
+    system: System
+    options: Options
+    changes: tuple[Change, ...] = ()
+
+    def __call__(self, run: CampaignRun) -> Record:
+        """The observations of a run as a row of a table."""
+        from amalthea_uros.simulate.runs.run import simulate_system
+
+        changed = apply(self.system, self.options.settings, (*self.changes, *run.changes))
+        return simulate_system(changed.system, replace(self.options, settings=changed.settings, seed=run.seed)).record()
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return _received_job, (system_bytes(self.system), self.options, self.changes)
+
+
+def _received_job(system: bytes, options: Options, changes: tuple[Change, ...]) -> SimulationJob:
+    return SimulationJob(system_from(system), options, changes)

@@ -1,0 +1,113 @@
+"""The files for the build of the firmware: options with the smallest pools that hold, and a header that checks them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+
+from amalthea_uros._internal.resources import resource_folder
+from amalthea_uros.spec.application import Application, NodeSection
+from amalthea_uros.uros.application.entities import LIFECYCLE_SERVICES, PARAMETER_SERVICES
+from amalthea_uros.uros.assemble import Assembly
+from amalthea_uros.uros.generated_options import values_of, with_generated_options
+from amalthea_uros.uros.memory import MemoryDemand
+from amalthea_uros.uros.middleware.options import Option
+
+META, HEADER, CMAKE = "colcon.meta", "amuros_limits.h", "zenoh_options.cmake"
+#: In each file, by which it can be told from those that people wrote.
+MARK = "Written by amuros generate"
+#: Packages of options that the header of rmw_microxrcedds repeats.
+_WITH_HEADER = "rmw_microxrcedds"
+_MTU = re.compile(r"UCLIENT_(\w+_TRANSPORT_MTU)")
+
+
+def generated_memory(assembly: Assembly) -> MemoryDemand:
+    """The memory with the options that are generated."""
+    application, profile = assembly.description.application, assembly.profile
+    described = profile.memory(application)
+    generated = with_generated_options(profile, assembly.options).memory(application)
+    rest = [use for use in assembly.memory.uses if use not in described]
+    return replace(assembly.memory, uses=(*generated, *rest))
+
+
+def texts_of(assembly: Assembly) -> dict[str, str]:
+    """The contents of the files, by name."""
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+    loader = FileSystemLoader(resource_folder("templates/generate"))
+    environment = Environment(
+        loader=loader, undefined=StrictUndefined, keep_trailing_newline=True, trim_blocks=True, lstrip_blocks=True
+    )
+    values = values_of(assembly.options)
+    packages: dict[str, list[tuple[Option, int]]] = {}
+    for option, value in values:
+        packages.setdefault(option.package, []).append((option, value))
+    application = assembly.description.application
+    content = {
+        "mark": MARK,
+        "name": _in_comment(assembly.description.name),
+        "packages": packages,
+        "values": values,
+        "checks": list(_checks(values)),
+        "handles": _constants("AMUROS_HANDLES", _handles(assembly)),
+        "sizes": _constants("AMUROS_SIZE", _sizes(application)),
+    }
+    is_xrce = _WITH_HEADER in packages
+    names = (META, HEADER) if is_xrce else (CMAKE, HEADER)
+    return {name: environment.get_template(f"{name}.j2").render(content) for name in names}
+
+
+def _checks(values: list[tuple[Option, int]]) -> Iterator[tuple[str, int, Option]]:
+    """What the compiler can check: the macros of the library that options became."""
+    for option, value in values:
+        if option.needed and (found := _MTU.fullmatch(option.name)):
+            yield f"UXR_CONFIG_{found[1]}", option.needed, option
+        elif option.needed and option.package == _WITH_HEADER and not option.is_power_of_two:
+            yield option.name, value, option
+
+
+def _handles(assembly: Assembly) -> dict[str, int]:
+    """The handles that `rclc_executor_init` needs, by executor."""
+    loops = {executor.name: len(executor.handles) for executor in assembly.system.executors}
+    if loops:
+        return loops
+    nodes = assembly.description.application.nodes
+    return {assembly.description.middleware.stated_executors[0].name: sum(map(_node_handles, nodes))}
+
+
+def _node_handles(node: NodeSection) -> int:
+    messages = len(node.subscriptions) + len(node.services) + len(node.clients)
+    others = len(node.timers) + len(node.guard_conditions) + len(node.action_servers) + len(node.action_clients)
+    parameters = PARAMETER_SERVICES if node.parameter_server is not None else 0
+    lifecycle = min(node.lifecycle.services, LIFECYCLE_SERVICES) if node.lifecycle is not None else 0
+    return messages + others + parameters + lifecycle
+
+
+def _sizes(application: Application) -> dict[str, int]:
+    """The longest message of each topic, in bytes."""
+    found: dict[str, int] = {}
+    for node in application.nodes:
+        sizes = [(subscription.topic, subscription.message_size) for subscription in node.subscriptions]
+        sizes += [(publisher.topic, publisher.message_size) for publisher in node.publishers]
+        for topic, size in sizes:
+            found[topic] = max(found.get(topic, 0), -(-size // 8))
+    return found
+
+
+def _constants(prefix: str, values: Mapping[str, int]) -> list[tuple[str, int, str]]:
+    """Names of C for values, each once, with what they are for."""
+    found: dict[str, tuple[int, str]] = {}
+    for name, value in values.items():
+        base = f"{prefix}_{re.sub('[^A-Za-z0-9]+', '_', name).strip('_').upper() or 'UNNAMED'}"
+        constant, count = base, 1
+        while constant in found:
+            count += 1
+            constant = f"{base}_{count}"
+        found[constant] = (value, _in_comment(name))
+    return [(constant, *rest) for constant, rest in found.items()]
+
+
+def _in_comment(text: str) -> str:
+    """A text that does not end the comment of C that it is in."""
+    return text.replace("*/", "* /").replace("\\", "/")
