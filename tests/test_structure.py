@@ -45,7 +45,7 @@ LINES = {
     "timing": 5080,
     "trace": 4803,
     "units": 164,
-    "uros": 5962,
+    "uros": 5963,
     "validate": 3611,
     "xmi": 8530,
 }
