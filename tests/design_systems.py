@@ -3,27 +3,16 @@
 import json
 from collections.abc import Sequence
 from dataclasses import replace
-from fractions import Fraction
-from itertools import pairwise
 
+from hand_made_systems import chain, of_parts, read, release, request, ticks, write
 from support import SHARED
 
-from amalthea_uros.perf.activities import (
-    AccessKind,
-    Demand,
-    Execute,
-    LabelAccess,
-    SemaphoreAccess,
-    SemaphoreOperation,
-)
-from amalthea_uros.perf.distributions import Boundaries, Constant
-from amalthea_uros.perf.events import EventChain, Events, ProcessChange, ProcessEvent, Segment
-from amalthea_uros.perf.events import Sequence as EventSequence
-from amalthea_uros.perf.hardware import Clock, Core, Hardware, Structure
-from amalthea_uros.perf.mapping import Mapping, TaskAllocation
-from amalthea_uros.perf.os import OperatingSystem, Os, Policy, Scheduler, Semaphore
-from amalthea_uros.perf.software import Label, Preemption, Software, Task
-from amalthea_uros.perf.stimuli import Periodic, RelativePeriodic, Stimuli
+from amalthea_uros.perf.distributions import Boundaries
+from amalthea_uros.perf.events import Events, ProcessChange, ProcessEvent
+from amalthea_uros.perf.mapping import TaskAllocation
+from amalthea_uros.perf.os import Semaphore
+from amalthea_uros.perf.software import Label, Preemption, Task
+from amalthea_uros.perf.stimuli import Periodic, RelativePeriodic
 from amalthea_uros.perf.system import System
 from amalthea_uros.units import MICROSECOND as US
 
@@ -50,44 +39,30 @@ def system_of(
     order = order or [task["name"] for task in reversed(tasks)]
     preemption = Preemption.PREEMPTIVE if preemptive else Preemption.NON_PREEMPTIVE
     locks = sorted({lock for task in tasks for lock in task.get("locks", ())})
-    return System(
-        hardware=Hardware(
-            clocks=(Clock(name="clock", frequency=Fraction(10**6)),),
-            structures=(Structure(name="ECU", cores=tuple(Core(name=core, clock="clock") for core in cores)),),
-        ),
-        os=Os(
-            systems=(
-                OperatingSystem(
-                    name="OS", schedulers=tuple(Scheduler(name=core, policy=Policy.OSEK, cores=(core,)) for core in cores)
-                ),
-            ),
-            semaphores=tuple(Semaphore(name=lock, ceiling=True) for lock in locks),
-        ),
-        stimuli=Stimuli(stimuli=tuple(map(_stimulus, tasks))),
-        software=Software(
-            tasks=tuple(
-                Task(
-                    name=task["name"],
-                    stimuli=(f"every {task['name']}",),
-                    activities=tuple(_activities(task)),
-                    preemption=preemption,
-                    activation_limit=1 + -(-task.get("D", 0) // task["T"]),
-                )
-                for task in tasks
+    return of_parts(
+        [
+            Task(
+                name=task["name"],
+                stimuli=(f"every {task['name']}",),
+                activities=tuple(_activities(task)),
+                preemption=preemption,
+                activation_limit=1 + -(-task.get("D", 0) // task["T"]),
             )
-        ),
-        mapping=Mapping(
-            tasks=tuple(
-                TaskAllocation(
-                    task=task["name"],
-                    scheduler=(core_of or {}).get(task["name"], cores[0]),
-                    priority=len(tasks) - order.index(task["name"]),
-                    # Counted from the release, which a jitter delays.
-                    deadline=(task.get("D", task["T"]) - task.get("J", 0)) * US,
-                )
-                for task in tasks
+            for task in tasks
+        ],
+        [
+            TaskAllocation(
+                task=task["name"],
+                scheduler=(core_of or {}).get(task["name"], cores[0]),
+                priority=len(tasks) - order.index(task["name"]),
+                # Counted from the release, which a jitter delays.
+                deadline=(task.get("D", task["T"]) - task.get("J", 0)) * US,
             )
-        ),
+            for task in tasks
+        ],
+        map(_stimulus, tasks),
+        cores=cores,
+        os_parts={"semaphores": tuple(Semaphore(name=lock, ceiling=True) for lock in locks)},
         **more,
     )
 
@@ -96,17 +71,17 @@ def with_chain(system: System, names: Sequence[str]) -> System:
     """The system with a chain through tasks, each of which reads what the one before it writes."""
     bodies = {task.name: task.activities for task in system.software.tasks}
     for number, name in enumerate(names):
-        read = LabelAccess(label=f"label {number}", kind=AccessKind.READ)
-        write = LabelAccess(label=f"label {number + 1}", kind=AccessKind.WRITE)
-        bodies[name] = (read, *bodies[name], write)
+        bodies[name] = (read(f"label {number}"), *bodies[name], write(f"label {number + 1}"))
     events = [ProcessEvent(name=f"{names[0]} starts", process=names[0], change=ProcessChange.START)]
     events += [ProcessEvent(name=f"{name} ends", process=name, change=ProcessChange.TERMINATE) for name in names[1:]]
-    segments = tuple(Segment(stimulus=one.name, response=then.name) for one, then in pairwise(events))
-    chain = EventChain(name="chain", stimulus=events[0].name, response=events[-1].name, items=EventSequence(segments))
     labels = tuple(Label(name=f"label {number}") for number in range(len(names) + 1))
     tasks = tuple(replace(task, activities=bodies[task.name]) for task in system.software.tasks)
     software = replace(system.software, labels=labels, tasks=tasks)
-    return replace(system, software=software, events=Events(events=tuple(events), chains=(chain,)))
+    return replace(
+        system,
+        software=software,
+        events=Events(events=tuple(events), chains=(chain("chain", *(event.name for event in events)),)),
+    )
 
 
 def _stimulus(task: dict) -> Periodic | RelativePeriodic:
@@ -124,11 +99,11 @@ def _activities(task: dict):
     sections = sorted(task.get("locks", {}).items(), key=lambda section: section[1])
     done = 0
     for lock, _ in reversed(sections):
-        yield SemaphoreAccess(semaphore=lock, operation=SemaphoreOperation.REQUEST)
+        yield request(lock)
     for lock, length in sections:
         if length > done:
-            yield Execute(demand=Demand(Constant(length - done)))
-        yield SemaphoreAccess(semaphore=lock, operation=SemaphoreOperation.RELEASE)
+            yield ticks(length - done)
+        yield release(lock)
         done = length
     if task["C"] > done:
-        yield Execute(demand=Demand(Constant(task["C"] - done)))
+        yield ticks(task["C"] - done)

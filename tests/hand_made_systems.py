@@ -1,6 +1,6 @@
 """Small systems in which processes wait for each other, lose activations, migrate; cores have 1 MHz, so a tick is a microsecond."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import pairwise
 
@@ -68,6 +68,15 @@ def access(label, kind, communication=Communication.EXPLICIT):
     return LabelAccess(label=label, kind=kind, communication=communication)
 
 
+def read(label):
+    """A read whose communication is not stated."""
+    return access(label, READ, None)
+
+
+def write(label):
+    return access(label, WRITE, None)
+
+
 @dataclass(frozen=True)
 class Proc:
     """A process; times in microseconds."""
@@ -98,16 +107,23 @@ def of_parts(tasks, allocations, stimuli, *, cores=("core",), schedulers=None, p
     parts : of the operating system (`os_parts`), of the software by name, and of the system itself
     """
     schedulers = schedulers or [Scheduler(name=core, policy=policy, cores=(core,)) for core in cores]
-    software = {name: tuple(parts.pop(name)) for name in ("isrs", "runnables", "labels") if name in parts}
-    operating_system = OperatingSystem(name="OS", schedulers=tuple(schedulers), overhead=parts.pop("overhead", None))
+    software = {name: tuple(parts.pop(name)) for name in ("isrs", "runnables", "labels", "os_events") if name in parts}
+    os_parts = dict(parts.pop("os_parts", {}))
+    controllers = tuple(os_parts.pop("interrupt_controllers", ()))
+    operating_system = OperatingSystem(
+        name="OS",
+        schedulers=tuple(schedulers),
+        interrupt_controllers=controllers,
+        overhead=parts.pop("overhead", None),
+    )
     structure = Structure(name="ECU", cores=tuple(Core(name=core, clock="clock") for core in cores))
     clock = Clock(name="clock", frequency=Fraction(frequency))
     return System(
         hardware=parts.pop("hardware", None) or Hardware(clocks=(clock,), structures=(structure,)),
-        os=Os(systems=(operating_system,), **parts.pop("os_parts", {})),
+        os=Os(systems=(operating_system,), **os_parts),
         stimuli=Stimuli(stimuli=tuple(stimuli)),
         software=Software(tasks=tuple(tasks), **software),
-        mapping=Mapping(tasks=tuple(allocations)),
+        mapping=Mapping(tasks=tuple(allocations), isrs=tuple(parts.pop("isr_allocations", ()))),
         **parts,
     )
 
@@ -130,32 +146,56 @@ def system(*processes, schedulers=None, triggers=(), chains=(), **parts):
             allocations.append(
                 TaskAllocation(task=each.name, scheduler=each.scheduler, priority=each.priority, deadline=deadline)
             )
-    return System(
-        hardware=Hardware(
-            clocks=(Clock(name="clock", frequency=Fraction(10**6)),),
-            structures=(Structure(name="ECU", cores=tuple(Core(name=core, clock="clock") for core in CORES)),),
-        ),
-        os=Os(
-            systems=(
-                OperatingSystem(
-                    name="OS",
-                    schedulers=tuple(schedulers),
-                    interrupt_controllers=(InterruptController(name="irq", cores=("c0",)),),
-                ),
-            ),
-            semaphores=parts.get("semaphores", ()),
-        ),
-        stimuli=Stimuli(stimuli=(*stimuli, *(InterProcess(name=name) for name in triggers))),
-        software=Software(
-            tasks=tuple(tasks),
-            isrs=tuple(isrs),
-            runnables=parts.get("runnables", ()),
-            labels=parts.get("labels", ()),
-            os_events=parts.get("os_events", ()),
-        ),
-        mapping=Mapping(tasks=tuple(allocations), isrs=tuple(controlled)),
-        events=Events(events=parts.get("events", ()), chains=tuple(chains)),
+    os_parts = {
+        "interrupt_controllers": (InterruptController(name="irq", cores=("c0",)),),
+        "semaphores": parts.pop("semaphores", ()),
+    }
+    return of_parts(
+        tasks,
+        allocations,
+        [*stimuli, *(InterProcess(name=name) for name in triggers)],
+        cores=CORES,
+        schedulers=schedulers,
+        isrs=isrs,
+        isr_allocations=controlled,
+        os_parts=os_parts,
+        events=Events(events=parts.pop("events", ()), chains=tuple(chains)),
+        **parts,
     )
+
+
+def one_core(*tasks, stimuli=(), **parts):
+    """Tasks of (name, period in us, activities) on a core of 1 MHz, the first one first; those without a period are triggered.
+
+    Stimuli that are named "every ..." or "trigger ..." after a task activate it.
+    """
+    periodic = [Periodic(name=f"every {name}", period=period * US) for name, period, _ in tasks if period]
+    known = {stimulus.name for stimulus in (*periodic, *stimuli)}
+    return of_parts(
+        [
+            Task(
+                name=name,
+                stimuli=(f"every {name}" if f"every {name}" in known else f"trigger {name}",),
+                activities=tuple(activities),
+            )
+            for name, _, activities in tasks
+        ],
+        [TaskAllocation(task=name, scheduler="core", priority=-index) for index, (name, _, _) in enumerate(tasks)],
+        [*periodic, *stimuli],
+        **parts,
+    )
+
+
+def changed(built, name=None, /, **changes):
+    """A system with one task changed, or all of them."""
+    tasks = tuple(replace(task, **changes) if name in (None, task.name) else task for task in built.software.tasks)
+    return replace(built, software=replace(built.software, tasks=tasks))
+
+
+def reallocated(built, name=None, /, **changes):
+    """A system with the allocation of one task changed, or of all of them."""
+    found = tuple(replace(each, **changes) if name in (None, each.task) else each for each in built.mapping.tasks)
+    return replace(built, mapping=replace(built.mapping, tasks=found))
 
 
 def _time(name, microseconds):

@@ -2,6 +2,7 @@
 
 import math
 import struct
+import sys
 from collections import Counter
 from enum import Enum
 from functools import cache
@@ -21,65 +22,9 @@ from amalthea_uros.xmi.emf.reader import read
 from amalthea_uros.xmi.emf.references import resolve
 
 FLOAT_TYPES = {"EDouble", "EDoubleObject", "EFloat", "PositiveDouble", "NonNegativeDouble"}
-PIECES = [
-    "",
-    "a",
-    "Z9",
-    " ",
-    "  ",
-    "/",
-    "?",
-    "=",
-    "&",
-    "%",
-    "+",
-    ":",
-    "?type=",
-    "%2F",
-    "~",
-    "*",
-    "é",
-    "µ",
-    "名",
-    "😀",
-    "\u00a0",
-    "#",
-    ".",
-]
-XML_PIECES = [
-    *PIECES,
-    "<",
-    ">",
-    '"',
-    "'",
-    "\n",
-    "\r",
-    "\t",
-    "\r\n",
-    "]]>",
-    "-->",
-    "&amp;",
-    "&#10;",
-    "\u0085",
-    "\u2028",
-    "\ufeff",
-]
-FLOATS = [
-    0.0,
-    -0.0,
-    1.0,
-    -1.5,
-    0.1,
-    1 / 3,
-    1e-3,
-    9.99e-4,
-    1e7,
-    9999999.0,
-    123456789.125,
-    5e-324,
-    1.5e-45,
-    1.7976931348623157e308,
-]
+PIECES = ["", "Z9", "  ", "?type=", "%2F", *"a /?=&%+:~*éµ名😀\u00a0#."]
+XML_PIECES = [*PIECES, "\r\n", "]]>", "-->", "&amp;", "&#10;", *"<>\"'\n\r\t\u0085\u2028\ufeff"]
+FLOATS = [0.0, -0.0, 1.0, -1.5, 0.1, 1 / 3, 1e-3, 9.99e-4, 1e7, 9999999.0, 123456789.125, 5e-324, 1.5e-45, sys.float_info.max]
 FLOATS += [math.inf, -math.inf, math.nan, 3.4028234663852886e38, 16777217.0, 1e21, 2**53 + 2.0]
 INTEGERS = [0, 1, -1, 7, 10, 255, 2**31 - 1, -(2**31)]
 LONGS = [*INTEGERS, 2**63 - 1, -(2**63)]

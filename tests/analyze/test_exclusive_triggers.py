@@ -8,10 +8,10 @@ from itertools import product
 
 import pytest
 from effort import examples
+from hand_made_systems import one_core, ticks
 from hypothesis import given
 from hypothesis import strategies as st
 from support import SHARED, analysis_of
-from test_system import one_core, ticks
 
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.judge.verdict import Verdict

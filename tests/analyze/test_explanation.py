@@ -1,38 +1,29 @@
 """What a response time consists of: execution times by runnable, and the loads of what is served first."""
 
-from dataclasses import replace
 from fractions import Fraction
 
 import pytest
-from support import ROOT
-from test_system import system, ticks
+from hand_made_systems import Proc, changed, reallocated, system, ticks
+from support import ROOT, analysis_of
 
 from amalthea_uros import describe
 from amalthea_uros.analyze.explanations.processes import ACCESSES, OTHER, OVERHEADS, OWN, explain_callback, explain_process
 from amalthea_uros.analyze.results.explanations import OriginKind
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.activities import Call, Case, Group, Loop, Switch, WaitEvent
-from amalthea_uros.perf.mapping import TaskAllocation
 from amalthea_uros.perf.os import Duration, Parameter, Parent, Policy, Scheduler
-from amalthea_uros.perf.software import Runnable, Task
-from amalthea_uros.perf.stimuli import Counter, Periodic
+from amalthea_uros.perf.software import Runnable
+from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import MICROSECOND as US
 
 
-def tasks_on_a_core(*rows, runnables=()):
+def tasks_on_a_core(*rows, **parts):
     """Tasks of (name, period, activities, priority, deadline) at 1 MHz."""
-    return system(
-        ["core"],
-        [Periodic(name=name, period=period * US) for name, period, *_ in rows],
-        [Task(name=name, stimuli=(name,), activities=tuple(body)) for name, _, body, _, _ in rows],
-        [
-            TaskAllocation(task=name, scheduler="core", priority=priority, deadline=deadline and deadline * US)
-            for name, _, _, priority, deadline in rows
-        ],
-        runnables=runnables,
-        frequency=10**6,
-    )
+    tasks = [
+        Proc(name, tuple(body), period, priority=priority, deadline=deadline) for name, period, body, priority, deadline in rows
+    ]
+    return system(*tasks, **parts)
 
 
 def execution(explanation):
@@ -41,7 +32,7 @@ def execution(explanation):
 
 class TestExecution:
     def test_the_executor_of_the_thesis(self):
-        analysis = analyze_system(describe(ROOT / "samples" / "bodas-test-advanced.yaml").system)
+        analysis = analysis_of(ROOT / "samples" / "bodas-test-advanced.yaml")
         spin, take = explain_process(analysis, "Executor_Task").execution
         # 12 us in each job, 13 us more in every 20th.
         assert (spin.name, spin.time, spin.counter, spin.is_runnable) == ("Executor_Task_Spin", 12 * US, None, True)
@@ -103,21 +94,16 @@ class TestLoads:
         assert found.load == Fraction(6, 10) + Fraction(4, 20)
 
     def test_the_supply_of_a_server(self):
-        built = tasks_on_a_core(("T", 10, [ticks(4)], 1, 10), ("beside", 10, [ticks(1)], 1, 10))
-        parameters = [("capacity", 3), ("period", 10)]
-        server = Scheduler(
-            name="server",
-            policy=Policy.DEFERRABLE_SERVER,
-            parent=Parent(scheduler="core", priority=2),
-            parameters=tuple(Parameter(name=name, values=(Duration(time=time * US),)) for name, time in parameters),
+        parameters = tuple(
+            Parameter(name=name, values=(Duration(time=us * US),)) for name, us in (("capacity", 3), ("period", 10))
         )
-        (os,) = built.os.systems
-        first, second = built.mapping.tasks
-        built = replace(
-            built,
-            os=replace(built.os, systems=(replace(os, schedulers=(*os.schedulers, server)),)),
-            mapping=replace(built.mapping, tasks=(replace(first, scheduler="server"), second)),
-        )
+        parent = Parent(scheduler="s0", priority=2)
+        schedulers = [
+            Scheduler(name="s0", policy=Policy.OSEK, cores=("c0",)),
+            Scheduler(name="server", policy=Policy.DEFERRABLE_SERVER, parent=parent, parameters=parameters),
+        ]
+        rows = ("T", 10, [ticks(4)], 1, 10), ("beside", 10, [ticks(1)], 1, 10)
+        built = reallocated(tasks_on_a_core(*rows, schedulers=schedulers), "T", scheduler="server")
         found = explain_process(analyze_system(built), "T")
         # 4 of 10 in a budget of 3 of 10; what runs outside does not count.
         assert [(load.name, load.utilisation) for load in found.loads] == [("T", Fraction(4, 10))]
@@ -149,9 +135,7 @@ class TestOrigins:
         assert origin.remedy == "Trigger a separate task instead of waiting for the event."
 
     def test_an_unknown_activation(self):
-        built = tasks_on_a_core(("T", 10, [ticks(4)], 1, 10))
-        (task,) = built.software.tasks
-        built = replace(built, software=replace(built.software, tasks=(replace(task, stimuli=()),)))
+        built = changed(tasks_on_a_core(("T", 10, [ticks(4)], 1, 10)), stimuli=())
         (origin,) = explain_process(analyze_system(built), "T").origins
         assert (origin.kind, origin.reason) == (OriginKind.ACTIVATION, "it has no stimulus")
 
@@ -160,13 +144,6 @@ class TestOrigins:
 
 
 class TestCallbacks:
-    def test_the_worst_job_of_an_executor(self):
-        """The second of two jobs executes the callback; both are as long as what they execute."""
-        runnables = (Runnable(name="spin", activities=(ticks(3),)), Runnable(name="take", activities=(ticks(5),)))
-        body = [Call(runnable="spin"), Call(runnable="take", counter=Counter(prescaler=2, offset=2))]
-        found = explain_process(analyze_system(tasks_on_a_core(("T", 20, body, 1, 20), runnables=runnables)), "T")
-        assert (found.worst_job, found.in_worst_job) == (2, (True, True))
-
     def test_a_job_need_not_execute_everything(self):
         """3 and 5 in even jobs, 3 and 4 in odd ones."""
         runnables = tuple(Runnable(name=name, activities=(ticks(time),)) for name, time in (("a", 3), ("b", 5), ("c", 4)))
@@ -178,7 +155,7 @@ class TestCallbacks:
 
     def test_what_executes_before_a_callback(self):
         """20 us for the executor, notices, the messages with 15 us and 100 ns for each byte, then the callbacks in order."""
-        analysis = analyze_system(describe(ROOT / "samples" / "rclc-in-executor.yaml").system)
+        analysis = analysis_of(ROOT / "samples" / "rclc-in-executor.yaml")
         (found,) = explain_callback(analysis, "On_Command_Callback")
         assert (found.process.name, found.execution[-1].name) == ("rclc_executor", "On_Command_Callback")
         # All of it in one job: 20 + 4 + 51 + 23.8 + 4 + 90 + 40.

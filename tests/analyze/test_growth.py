@@ -115,7 +115,7 @@ def limits(number):
 
 @pytest.mark.parametrize("build", [data_ages, event_stimuli, guesses])
 def test_twice_the_system_takes_twice_the_steps(build):
-    small, large = build(40), build(80)
+    small, large = build(20), build(40)
     analyze_system(build(8))  # what is imported or compiled once does not count
     assert steps(lambda: analyze_system(large)) <= 2.2 * steps(lambda: analyze_system(small))
 
@@ -126,7 +126,7 @@ def test_losses_of_other_tasks_are_found_by_core():
         assert len(solution.losing) >= number // 2
         return steps(lambda: [solution.follows_losses(name) for name in solution.context.scheduled])
 
-    assert take(160) <= 2.2 * take(80)
+    assert take(80) <= 2.2 * take(40)
 
 
 def test_the_callbacks_of_a_requirement_are_found_by_name():
@@ -136,7 +136,7 @@ def test_the_callbacks_of_a_requirement_are_found_by_name():
         assert len(callbacks) == number
         return steps(lambda: list(evaluate_requirements(limited, Results(), callbacks, notes)))
 
-    assert take(160) <= 2.2 * take(80)
+    assert take(80) <= 2.2 * take(40)
 
 
 def test_the_certainty_of_a_schedule_is_found_in_one_look():

@@ -1,10 +1,9 @@
 """Why something is unknown: each reason names its cause, and what is known nevertheless is shown."""
 
 import pytest
-from hand_made_systems import Proc, locked
+from hand_made_systems import Proc, locked, ticks
 from hand_made_systems import system as two_cores
-from test_policies import root, system, ticks
-from test_system import by_name
+from test_policies import root, system
 
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.activities import Trigger
@@ -18,7 +17,7 @@ OTHER = Scheduler(name="other", policy=Policy.OSEK, parent=Parent(scheduler="roo
 
 def analysed(schedulers, **allocation):
     tasks = [("T", 100, [ticks(10)], {"scheduler": "root", "priority": 248} | allocation)]
-    return by_name(analyze_system(system(schedulers, tasks)))["T"]
+    return analyze_system(system(schedulers, tasks))["T"]
 
 
 @pytest.mark.parametrize(
@@ -50,7 +49,7 @@ def test_activations_that_depend_on_an_unknown_task_are_not_shown():
     triggers = [("source", 100, [ticks(1), Trigger(stimulus="every T")], {"scheduler": "root"})]
     tasks = [*triggers, ("T", None, [ticks(10)], {"scheduler": "root"})]
     built = system([root("PfairPD2")], tasks, stimuli=[InterProcess(name="every T")])
-    found = by_name(analyze_system(built))["T"]
+    found = analyze_system(built)["T"]
     assert (found.wcet, found.deadline, found.min_interarrival) == (10 * US, None, None)
 
 

@@ -4,9 +4,10 @@ from dataclasses import replace
 
 import pytest
 from effort import examples
+from hand_made_systems import ticks
 from hypothesis import given
 from hypothesis import strategies as st
-from test_policies import root, system, ticks, under, worst
+from test_policies import root, system, under, worst
 
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.activities import Group

@@ -7,17 +7,15 @@ from itertools import permutations
 
 import pytest
 from effort import examples
+from hand_made_systems import Proc, system, ticks
 from hypothesis import given
 from hypothesis import strategies as st
 from support import SHARED
-from test_system import system, ticks
 
 import amalthea_uros as amuros
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.perf.mapping import TaskAllocation
 from amalthea_uros.perf.os import Policy
-from amalthea_uros.perf.software import Preemption, Task
-from amalthea_uros.perf.stimuli import Periodic
+from amalthea_uros.perf.software import Preemption
 from amalthea_uros.timing.response import Claim
 from amalthea_uros.units import MICROSECOND as US
 
@@ -28,30 +26,21 @@ def analysed(tasks, priorities, offsets=None):
     """Tasks of (period, demand, whether they can be preempted), by the names T0, T1 and so on."""
     names = [f"T{index}" for index in range(len(tasks))]
     offsets = offsets or [0] * len(tasks)
-    return analyze_system(
-        system(
-            ["core"],
-            [
-                Periodic(name=f"every {name}", period=period * US, offset=offset * US)
-                for name, (period, _, _), offset in zip(names, tasks, offsets, strict=True)
-            ],
-            [
-                Task(
-                    name=name,
-                    stimuli=(f"every {name}",),
-                    activities=(ticks(demand),),
-                    preemption=Preemption.PREEMPTIVE if is_preemptive else Preemption.NON_PREEMPTIVE,
-                    activation_limit=100,
-                )
-                for name, (_, demand, is_preemptive) in zip(names, tasks, strict=True)
-            ],
-            [
-                TaskAllocation(task=name, scheduler="core", priority=priority)
-                for name, priority in zip(names, priorities, strict=True)
-            ],
-            frequency=10**6,
+    tasks = [
+        Proc(
+            name,
+            (ticks(demand),),
+            period,
+            offset,
+            priority=priority,
+            task={
+                "preemption": Preemption.PREEMPTIVE if is_preemptive else Preemption.NON_PREEMPTIVE,
+                "activation_limit": 100,
+            },
         )
-    )
+        for name, (period, demand, is_preemptive), priority, offset in zip(names, tasks, priorities, offsets, strict=True)
+    ]
+    return analyze_system(system(*tasks))
 
 
 def worst(analysis):

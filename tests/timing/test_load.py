@@ -247,7 +247,7 @@ def systems(draw):
     )
 
 
-@examples(18)
+@examples(12)
 @given(systems())
 def test_the_load_of_random_systems(system):
     model = build_model(system)
