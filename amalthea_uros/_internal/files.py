@@ -245,7 +245,10 @@ def is_stream(path: Path) -> bool:
     """Whether a path is a pipe, a device or an open file of this process, which must not become another file."""
     if _descriptor(path) is not None:
         return True
-    mode = _mode(path)
+    try:
+        mode = _mode(path)
+    except FileError:  # who writes it reports that
+        return False
     return mode is not None and not stat.S_ISREG(mode) and not stat.S_ISDIR(mode)
 
 
