@@ -25,6 +25,11 @@ MODEL = """<?xml version="1.0" encoding="UTF-8"?>
 """
 
 
+def model_text(excerpt: str, version: str = "3.3.0") -> str:
+    """The text of a file with an excerpt, in which ` t="Task"` stands for the class of an object, `xsi:type="am:Task"`."""
+    return MODEL.format(excerpt.replace(' t="', ' xsi:type="am:')).replace("amalthea/3.3.0", f"amalthea/{version}")
+
+
 def is_held(version: str) -> bool:
     return not version.startswith("ITEA") and tuple(map(int, version.split("."))) >= (0, 9, 7)
 

@@ -7,11 +7,13 @@ import yaml
 from effort import examples
 from hypothesis import given
 from hypothesis import strategies as st
-from inchron import problems
 from support import ROOT
 
-from amalthea_uros import build
+from amalthea_uros import build, check
+from amalthea_uros.diagnostics import Severity
 from amalthea_uros.errors import ReadError
+from amalthea_uros.validate import registry
+from amalthea_uros.validate.rule import RuleProfile
 from amalthea_uros.xmi.emf.writer import document_text
 from amalthea_uros.xmi.schema import validate
 
@@ -110,6 +112,8 @@ def built_or_refused(file):
         return None, error.findings
 
 
+IMPORTER = list(registry.ids([RuleProfile.INCHRON]))
+
 #: What a description can ask for, and the importer does not take over.
 WISHES = {"INC-CO-KIND", "INC-LC-MAX", "INC-OS-ALGORITHM", "INC-OS-SEMA-TYPE", "INC-SW-PREEMPTION"}
 WISHES |= {"INC-HW-ACCESS", "INC-SW-TICKS-BETA", "INC-SW-TICKS-DEFAULT", "INC-SW-TICKS-STAT"}
@@ -123,9 +127,9 @@ def test_a_random_application(file, description):
     assert all(finding.location and finding.location.line for finding in findings)
     if built is None:
         return
-    found = [problem for problem in problems(built.model) if problem[1] != "I"]
-    assert [problem for problem in found if problem[1] == "E"] == []
-    assert {rule for rule, _, _ in found} <= WISHES
+    found = [finding for finding in check(built.model, IMPORTER) if finding.severity is not Severity.INFO]
+    assert [finding for finding in found if finding.severity is Severity.ERROR] == []
+    assert {finding.rule for finding in found} <= WISHES
     assert validate(document_text(built.model.documents[0]).encode(), "3.3.0") == []
 
 

@@ -1,7 +1,7 @@
 """Excerpts of models for the rules of the profile app4mc, and what these say of them."""
 
 import pytest
-from support import MODEL
+from support import model_text
 
 from amalthea_uros import check, load
 
@@ -10,7 +10,7 @@ def messages(folder, rule, *excerpts, version="3.3.0"):
     """What a rule says of a model whose files have these contents."""
     paths = [folder / f"{number}.amxmi" for number in range(len(excerpts))]
     for path, excerpt in zip(paths, excerpts, strict=True):
-        path.write_text(MODEL.format(excerpt).replace("3.3.0", version))
+        path.write_text(model_text(excerpt, version))
     read = load(*paths)
     # Nothing is wrong that is not meant to be.
     assert not read.findings or any("gone" in excerpt for excerpt in excerpts), read.findings
@@ -37,7 +37,7 @@ def port(name, kind="", interface=""):
 
 
 def module(cls, name, *content, features=""):
-    return f'<modules xsi:type="am:{cls}" name="{name}" {features}>{"".join(content)}</modules>'
+    return f'<modules t="{cls}" name="{name}" {features}>{"".join(content)}</modules>'
 
 
 def connection(name, first, second, tag="connections"):
@@ -50,7 +50,7 @@ def runnable(name, *items, parameters="", features=""):
 
 
 def call(called, arguments=""):
-    return f'<items xsi:type="am:RunnableCall" runnable="{called}?type=Runnable">{arguments}</items>'
+    return f'<items t="RunnableCall" runnable="{called}?type=Runnable">{arguments}</items>'
 
 
 def process(tag, name, *items):

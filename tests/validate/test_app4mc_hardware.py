@@ -36,7 +36,7 @@ CONNECTIONS = [
 CORE = module("ProcessingUnit", "core", port("p"), "{}")
 PATH = '<accessElements name="a"{}><accessPath name="w"{}/></accessElements>'
 TO_RAM = ' destination="RAM?type=Memory"'
-MEMORY = '<definitions xsi:type="am:MemoryDefinition" name="D">{}</definitions>'
+MEMORY = '<definitions t="MemoryDefinition" name="D">{}</definitions>'
 KIB = '<size value="1" unit="KiB"/>'
 RAM = module("Memory", "RAM", port("p"), features='definition="D?type=MemoryDefinition"')
 
@@ -81,11 +81,7 @@ PATHS = [
     ("AM-HW-AccessPath", path(TO_RAM, over(WIRE), connection("w", "core/p", None)), ["end of the path has no port of 'RAM'"]),
     ("AM-HW-AccessPath", path(TO_RAM, over(WIRE, BUS, "ECU/v?type=HwConnection"), BUSES), []),
     ("AM-HW-AccessPath", path(TO_RAM, over(BUS), BUSES), ["'bus' at the start", "'bus' at the end"]),
-    (
-        "AM-HW-AccessPath",
-        path(TO_RAM, over(WIRE, "ECU/v?type=HwConnection"), BUSES),
-        ["'ECU.w' and 'ECU.v' are adjacent"],
-    ),
+    ("AM-HW-AccessPath", path(TO_RAM, over(WIRE, "ECU/v?type=HwConnection"), BUSES), ["'ECU.w' and 'ECU.v' are adjacent"]),
     (
         "AM-HW-AccessPath",
         path(TO_RAM, over(WIRE, "ECU/u?type=HwConnection", BUS, "ECU/v?type=HwConnection"), BUSES),
@@ -181,7 +177,7 @@ STRUCTURES += [
     ("AM-HW-Structure", ECU.format("", port("a", INITIATOR) + connection("w", "ECU/a", "ECU/gone")), []),
 ]
 
-HANDLER = '<hwModel><definitions xsi:type="am:ConnectionHandlerDefinition" name="D"{}/><structures name="ECU">{}</structures></hwModel>'
+HANDLER = '<hwModel><definitions t="ConnectionHandlerDefinition" name="D"{}/><structures name="ECU">{}</structures></hwModel>'
 
 
 def handler(name, *kinds):
@@ -210,7 +206,7 @@ TRANSFERS = [
     )
 ]
 
-FEATURES = """<hwModel><definitions xsi:type="am:ProcessingUnitDefinition" name="D" features="{}"/>
+FEATURES = """<hwModel><definitions t="ProcessingUnitDefinition" name="D" features="{}"/>
 <featureCategories name="I"><features name="a"/><features name="b"/></featureCategories>
 <featureCategories name="J"><features name="a"/></featureCategories></hwModel>"""
 CATEGORIES = [

@@ -3,9 +3,9 @@
 import pytest
 from app4mc_excerpts import assert_said, call, cases, messages, process, runnable
 
-SYSTEM = """<hwModel><structures name="ECU"><modules xsi:type="am:ProcessingUnit" name="a"/>
-<modules xsi:type="am:ProcessingUnit" name="b"/><modules xsi:type="am:Memory" name="RAM"/>
-<modules xsi:type="am:Memory" name="ROM"/></structures></hwModel>
+SYSTEM = """<hwModel><structures name="ECU"><modules t="ProcessingUnit" name="a"/>
+<modules t="ProcessingUnit" name="b"/><modules t="Memory" name="RAM"/>
+<modules t="Memory" name="ROM"/></structures></hwModel>
 <osModel><schedulerDefinitions name="Grouping"/><operatingSystems name="OS">{}</operatingSystems></osModel>{}
 <mappingModel>{}</mappingModel>"""
 
@@ -182,7 +182,7 @@ SECTIONS = [
 
 
 def group(kind, feature, cls, names):
-    return f'xsi:type="am:{kind}" {feature}="{" ".join(f"{name}?type={cls}" for name in names)}"'
+    return f't="{kind}" {feature}="{" ".join(f"{name}?type={cls}" for name in names)}"'
 
 
 def data(*names):
@@ -197,11 +197,11 @@ def runnables(*names):
     return group("RunnableEntityGroup", "runnables", "Runnable", names)
 
 
-TAGGED = 'xsi:type="am:TagGroup" tag="tag?type=Tag"'
+TAGGED = 't="TagGroup" tag="tag?type=Tag"'
 
 
 def target(kind, feature, cls, names):
-    return f"<target {group(kind, feature, cls, names)}/>" if names else f'<target xsi:type="am:{kind}"/>'
+    return f"<target {group(kind, feature, cls, names)}/>" if names else f'<target t="{kind}"/>'
 
 
 def on_memories(*names):
@@ -219,7 +219,7 @@ def on_schedulers(*names):
 def affinity(kind, on, *groups):
     name = "group" if "Pairing" in kind else "groups"
     content = "".join(f"<{name} {each}/>" for each in groups)
-    return f'<affinityConstraints xsi:type="am:{kind}Constraint" name="C">{on}{content}</affinityConstraints>'
+    return f'<affinityConstraints t="{kind}Constraint" name="C">{on}{content}</affinityConstraints>'
 
 
 SOFTWARE = """<commonElements><tags name="tag"/></commonElements><swModel>
@@ -247,7 +247,7 @@ def carries(scheduler, name):
 
 APART, TOGETHER = (runs("T", "S"), runs("U", "R")), (runs("T", "S"), runs("U", "S"))
 SERVES_I = '<isrAllocation isr="I?type=ISR" controller="IC?type=InterruptController"/>'
-ISR_AND_T = 'xsi:type="am:ProcessEntityGroup" processes="I?type=ISR T?type=Task"'
+ISR_AND_T = 't="ProcessEntityGroup" processes="I?type=ISR T?type=Task"'
 AFFINITY_CASES = [
     # Pairs of labels.
     ("DataPairing", on_memories(), [data("L", "N")], [in_memory("L", "RAM"), in_memory("N", "RAM")], []),
@@ -379,7 +379,7 @@ AFFINITY_CASES = [
         [runs("T", "S"), carries("S", "R"), carries("S", "Q")],
         ["'a' is used by 'R' and 'Q'"],
     ),
-    ("RunnablePairing", on_cores("b"), ['xsi:type="am:TagGroup"'], [carries("S", "R")], []),
+    ("RunnablePairing", on_cores("b"), ['t="TagGroup"'], [carries("S", "R")], []),
 ]
 AFFINITY = [
     ("DOC-Pairing-Separation", constrained(affinity(kind, on, *groups), *mapping), said)
@@ -393,12 +393,11 @@ def test_a_case(rule, excerpt, said, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("algorithm", "parent", "grouping", "unallocated"),
-    [("Grouping", "", 1, 0), ("Grouping", "R", 0, 0), ("OSEK", "", 0, 1)],
+    ("algorithm", "parent", "grouping", "unallocated"), [("Grouping", "", 1, 0), ("Grouping", "R", 0, 0), ("OSEK", "", 0, 1)]
 )
 def test_groups_of_old_models_have_a_class_of_their_own(algorithm, parent, grouping, unallocated, tmp_path):
-    group = scheduler("S", parent, content=f'<schedulingAlgorithm xsi:type="am:{algorithm}"/>')
-    excerpt = f"""<hwModel><structures name="ECU"><modules xsi:type="am:ProcessingUnit" name="a"/></structures></hwModel>
+    group = scheduler("S", parent, content=f'<schedulingAlgorithm t="{algorithm}"/>')
+    excerpt = f"""<hwModel><structures name="ECU"><modules t="ProcessingUnit" name="a"/></structures></hwModel>
 <osModel><operatingSystems name="OS">{group}{R}</operatingSystems></osModel><mappingModel>{serves("R", "a")}</mappingModel>"""
     assert len(messages(tmp_path, "DOC-Grouping-Parent", excerpt, version="1.2.0")) == grouping
     assert len(messages(tmp_path, "AM-Mapping-Scheduler-ProcessingUnit", excerpt, version="1.2.0")) == unallocated

@@ -6,7 +6,7 @@ from app4mc_excerpts import ECU, assert_said, cases, messages, module, port
 from amalthea_uros.validate import registry
 from amalthea_uros.validate.rule import RuleProfile
 
-CLOCK = '<stimuliModel><clocks xsi:type="am:ClockFunction" name="C">{}</clocks></stimuliModel>'
+CLOCK = '<stimuliModel><clocks t="ClockFunction" name="C">{}</clocks></stimuliModel>'
 VALUES = [
     ("AM-Basic-Data-Size", '<swModel><labels name="L"><size unit="B"/></labels></swModel>', ["the size of 'L' is 0"]),
     (
@@ -17,12 +17,12 @@ VALUES = [
     ("AM-Basic-Data-Size", '<swModel><labels name="L"/></swModel>', []),
     (
         "AM-Basic-Data-Size",
-        '<hwModel><definitions xsi:type="am:MemoryDefinition" name="D"><size value="0" unit="B"/></definitions></hwModel>',
+        '<hwModel><definitions t="MemoryDefinition" name="D"><size value="0" unit="B"/></definitions></hwModel>',
         [],
     ),
     (
         "AM-Basic-Frequency",
-        '<hwModel><domains xsi:type="am:FrequencyDomain" name="c"><defaultValue unit="MHz"/></domains></hwModel>',
+        '<hwModel><domains t="FrequencyDomain" name="c"><defaultValue unit="MHz"/></domains></hwModel>',
         ["0"],
     ),
     ("AM-Basic-Frequency", CLOCK.format('<yOffset value="0.0" unit="Hz"/>'), ["0"]),
@@ -35,10 +35,10 @@ VALUES = [
     ("AM-Basic-Frequency", CLOCK.format('<peakToPeak value="0.0" unit="Hz"/>'), []),
 ]
 
-CHAIN = """<eventModel><events xsi:type="am:CustomEvent" name="a"/><events xsi:type="am:CustomEvent" name="b"/></eventModel>
+CHAIN = """<eventModel><events t="CustomEvent" name="a"/><events t="CustomEvent" name="b"/></eventModel>
 <constraintsModel><eventChains name="C" stimulus="a?type=CustomEvent" response="b?type=CustomEvent" itemType="{}">{}</eventChains>
 </constraintsModel>"""
-PART = '<items xsi:type="am:EventChainContainer"><eventChain stimulus="{}?type=CustomEvent" response="{}?type=CustomEvent"/></items>'
+PART = '<items t="EventChainContainer"><eventChain stimulus="{}?type=CustomEvent" response="{}?type=CustomEvent"/></items>'
 CHAINS = [
     ("AM-Constraints-EventChain", CHAIN.format("sequence", PART.format("a", "b") * 2), ["segment 2"]),
     ("AM-Constraints-EventChain", CHAIN.format("sequence", PART.format("b", "a")), ["first segment", "last segment"]),
@@ -46,10 +46,10 @@ CHAINS = [
     ("AM-Constraints-EventChain", CHAIN.format("sequence", ""), []),
     (
         "AM-Constraints-EventChain",
-        CHAIN.format("sequence", '<items xsi:type="am:EventChainReference" eventChain="gone?type=EventChain"/>'),
+        CHAIN.format("sequence", '<items t="EventChainReference" eventChain="gone?type=EventChain"/>'),
         [],
     ),
-    ("AM-Constraints-EventChain", CHAIN.format("sequence", '<items xsi:type="am:EventChainReference"/>'), []),
+    ("AM-Constraints-EventChain", CHAIN.format("sequence", '<items t="EventChainReference"/>'), []),
 ]
 
 
@@ -60,7 +60,7 @@ def test_a_case(rule, excerpt, said, tmp_path):
 
 ARGUMENT = '<arguments name="a" parameter="S/p?type=RunnableParameter"/>'
 CALLS = f"""<swModel><runnables name="S"><parameters name="p"/></runnables><runnables name="R"><activityGraph>
-{f'<items xsi:type="am:RunnableCall" runnable="S?type=Runnable">{ARGUMENT}</items>' * 2}</activityGraph></runnables></swModel>"""
+{f'<items t="RunnableCall" runnable="S?type=Runnable">{ARGUMENT}</items>' * 2}</activityGraph></runnables></swModel>"""
 
 
 @pytest.mark.parametrize(

@@ -37,9 +37,7 @@ def depending(owner, on):
     access, parameters, given = "", PARAMETERS, {name: argument("S", name) for name in ("in", "out", "inout", "free")}
     place, _, which = owner.partition(" ")
     if place == "access":
-        access = f'<items xsi:type="am:LabelAccess" data="L?type=Label" access="{which}">{depends}</items>'.replace(
-            ' access=""', ""
-        )
+        access = f'<items t="LabelAccess" data="L?type=Label" access="{which}">{depends}</items>'.replace(' access=""', "")
     elif place == "parameter":
         parameters = parameters.replace(f'name="{which}"/>', f'name="{which}">{depends}</parameters>').replace(
             f'direction="{which}"/>', f'direction="{which}">{depends}</parameters>'
@@ -90,7 +88,7 @@ DEPENDENCIES += [
     # Outside of runnables nothing is demanded.
     (
         "AM-SW-DataDependency",
-        '<swModel><tasks name="T"><activityGraph><items xsi:type="am:LabelAccess" access="read" data="L?type=Label">'
+        '<swModel><tasks name="T"><activityGraph><items t="LabelAccess" access="read" data="L?type=Label">'
         '<dependsOn labels="L?type=Label"/></items></activityGraph></tasks><labels name="L"/></swModel>',
         [],
     ),
@@ -126,16 +124,14 @@ SERVICES = [
     ("DOC-Service-Caller", SERVICE(SERVES + process("tasks", "T", call("S"), call("S"))), ["'S' is called directly by 'T'"]),
     (
         "DOC-Service-Caller",
-        SERVICE(
-            SERVES + process("tasks", "T", call("S")) + process("tasks", "U", f'<items xsi:type="am:Group">{call("S")}</items>')
-        ),
+        SERVICE(SERVES + process("tasks", "T", call("S")) + process("tasks", "U", f'<items t="Group">{call("S")}</items>')),
         ["'T'", "'U'"],
     ),
     ("DOC-Service-Caller", SERVICE(SERVES + runnable("R", call("S")) + process("tasks", "T", call("R"))), []),
 ]
 
 LABEL = '<labels name="L"><size value="{}" unit="{}"/></labels>'
-ACCESS = '<items xsi:type="am:{}" data="{}"><transmissionPolicy {}>{}</transmissionPolicy></items>'
+ACCESS = '<items t="{}" data="{}"><transmissionPolicy {}>{}</transmissionPolicy></items>'
 
 
 def transmits(policy, content="", what="LabelAccess", data="L?type=Label", rest='<labels name="L"/>'):
@@ -150,17 +146,11 @@ def queue(element):
     return f"<channels name='C' elementType='{element}'/>"
 
 
-WORD = '<typeDefinitions xsi:type="am:BaseTypeDefinition" name="W"><size value="4" unit="B"/></typeDefinitions>'
+WORD = '<typeDefinitions t="BaseTypeDefinition" name="W"><size value="4" unit="B"/></typeDefinitions>'
 IN_CHANNEL = {"what": "ChannelSend", "data": "C?type=Channel"}
 TRANSMISSIONS = [
     ("DOC-Transmission-Ratio", transmits(f'transmitRatio="{ratio}"' if ratio else ""), said)
-    for ratio, said in (
-        (None, []),
-        ("0.0", []),
-        ("1.0", []),
-        ("1.01", ["1.01"]),
-        ("-0.01", ["-0.01"]),
-    )
+    for ratio, said in ((None, []), ("0.0", []), ("1.0", []), ("1.01", ["1.01"]), ("-0.01", ["-0.01"]))
 ] + [
     ("DOC-Transmission-Chunk", content, said)
     for content, said in (
@@ -191,7 +181,7 @@ RECEIVE = '<swModel>{}<channels name="C"/></swModel>'
 CHANNELS = [
     (
         "DOC-Channel-LowerBound",
-        RECEIVE.format(runnable("R", f'<items xsi:type="am:ChannelReceive" data="C?type=Channel" {bounds}/>')),
+        RECEIVE.format(runnable("R", f'<items t="ChannelReceive" data="C?type=Channel" {bounds}/>')),
         said,
     )
     for bounds, said in (
@@ -216,7 +206,7 @@ CHANNELS = [
                 runnable(
                     "R",
                     *(
-                        f'<items xsi:type="am:ChannelSend" data="C?type=Channel" elements="{n}"/>'.replace(' elements=""', "")
+                        f'<items t="ChannelSend" data="C?type=Channel" elements="{n}"/>'.replace(' elements=""', "")
                         for n in sent
                     ),
                 ),
@@ -232,7 +222,7 @@ CHANNELS = [
     )
 ]
 
-MODES = """<swModel><modes xsi:type="am:EnumMode" name="M"><literals name="on"/></modes><modes xsi:type="am:NumericMode" name="N"/>
+MODES = """<swModel><modes t="EnumMode" name="M"><literals name="on"/></modes><modes t="NumericMode" name="N"/>
 <modeLabels name="L" {}/></swModel>"""
 INITIAL = [
     ("DOC-Enum-Initial", MODES.format(features), said)
@@ -259,7 +249,7 @@ def test_a_case(rule, excerpt, said, tmp_path):
 
 
 def test_the_type_of_a_channel_is_contained_in_old_models(tmp_path):
-    element = '<channels name="C"><elementType xsi:type="am:{}"/></channels>'
+    element = '<channels name="C"><elementType t="{}"/></channels>'
     typed = element.format('TypeRef" typeDef="W?type=BaseTypeDefinition')
     for rest, said in ((typed, ["5 B is larger than the transmitted 4 B"]), (element.format("Array"), [])):
         excerpt = transmits("", chunk(5, "B"), **IN_CHANNEL, rest=rest + WORD)

@@ -3,11 +3,11 @@
 import pytest
 from app4mc_excerpts import assert_said, messages
 
-STIMULUS = '<stimuliModel><stimuli xsi:type="am:{}" name="S">{}</stimuli></stimuliModel>'
-CLOCK = '<stimuliModel><clocks xsi:type="am:{}" name="C">{}</clocks></stimuliModel>'
-ACTIVATION = '<swModel><activations xsi:type="am:{}" name="A">{}</activations></swModel>'
-CONSTRAINT = '<constraintsModel><timingConstraints xsi:type="am:{}" name="C">{}</timingConstraints></constraintsModel>'
-DATA_AGE = """<constraintsModel><dataAgeConstraints name="C"><dataAge xsi:type="am:{}">{}</dataAge></dataAgeConstraints>
+STIMULUS = '<stimuliModel><stimuli t="{}" name="S">{}</stimuli></stimuliModel>'
+CLOCK = '<stimuliModel><clocks t="{}" name="C">{}</clocks></stimuliModel>'
+ACTIVATION = '<swModel><activations t="{}" name="A">{}</activations></swModel>'
+CONSTRAINT = '<constraintsModel><timingConstraints t="{}" name="C">{}</timingConstraints></constraintsModel>'
+DATA_AGE = """<constraintsModel><dataAgeConstraints name="C"><dataAge t="{}">{}</dataAge></dataAgeConstraints>
 </constraintsModel>"""
 
 POSITIVE = [

@@ -185,18 +185,18 @@ def test_the_gaps_of_random_chains(system):
 # What the analysis does not know of, or sees otherwise
 
 EVENTS = {
-    "start of T": '<events xsi:type="am:ProcessEvent" name="start of T" eventType="start" entity="T?type=Task"/>',
-    "end of U": '<events xsi:type="am:ProcessEvent" name="end of U" eventType="terminate" entity="U?type=Task"/>',
-    "start of R": '<events xsi:type="am:RunnableEvent" name="start of R" eventType="start" entity="R?type=Runnable"/>',
-    "end of R": '<events xsi:type="am:RunnableEvent" name="end of R" eventType="terminate" entity="R?type=Runnable"/>',
-    "L is written": '<events xsi:type="am:LabelEvent" name="L is written" eventType="write" entity="L?type=Label"/>',
-    "L is read": '<events xsi:type="am:LabelEvent" name="L is read" eventType="read" entity="L?type=Label"/>',
-    "any of T": '<events xsi:type="am:ProcessEvent" name="any of T" entity="T?type=Task"/>',
+    "start of T": '<events t="ProcessEvent" name="start of T" eventType="start" entity="T?type=Task"/>',
+    "end of U": '<events t="ProcessEvent" name="end of U" eventType="terminate" entity="U?type=Task"/>',
+    "start of R": '<events t="RunnableEvent" name="start of R" eventType="start" entity="R?type=Runnable"/>',
+    "end of R": '<events t="RunnableEvent" name="end of R" eventType="terminate" entity="R?type=Runnable"/>',
+    "L is written": '<events t="LabelEvent" name="L is written" eventType="write" entity="L?type=Label"/>',
+    "L is read": '<events t="LabelEvent" name="L is read" eventType="read" entity="L?type=Label"/>',
+    "any of T": '<events t="ProcessEvent" name="any of T" entity="T?type=Task"/>',
 }
 
 
 def reference(event):
-    kind = re.search(r'am:(\w+)"', EVENTS[event])[1]
+    kind = re.search(r' t="(\w+)"', EVENTS[event])[1]
     return f"{event.replace(' ', '+')}?type={kind}"
 
 
@@ -207,7 +207,7 @@ def chain(first, then, items="", attributes=""):
 
 
 def part(first, then, items="", attributes=""):
-    return f'<items xsi:type="am:EventChainContainer"><eventChain {chain(first, then, items, attributes)}</eventChain></items>'
+    return f'<items t="EventChainContainer"><eventChain {chain(first, then, items, attributes)}</eventChain></items>'
 
 
 def system(first="", then="", *, others="", stimulus="", chains=None, events=""):
@@ -216,8 +216,8 @@ def system(first="", then="", *, others="", stimulus="", chains=None, events="")
     return f"""
 <eventModel>{"".join(EVENTS.values())}{events}</eventModel>
 <stimuliModel>
-  <stimuli xsi:type="am:EventStimulus" name="by L" triggeringEvents="{reference("L is written")}"/>
-  <stimuli xsi:type="am:EventStimulus" name="by R" triggeringEvents="{reference("end of R")}"/>
+  <stimuli t="EventStimulus" name="by L" triggeringEvents="{reference("L is written")}"/>
+  <stimuli t="EventStimulus" name="by R" triggeringEvents="{reference("end of R")}"/>
 </stimuliModel>
 <swModel>
   <tasks name="T"><activityGraph>{first}</activityGraph></tasks>
@@ -225,7 +225,7 @@ def system(first="", then="", *, others="", stimulus="", chains=None, events="")
   {others}
   <labels name="L"/><labels name="M"/>
   <events name="E"/><events name="F"/>
-  <modes xsi:type="am:NumericMode" name="N"/>
+  <modes t="NumericMode" name="N"/>
   <modeLabels name="K" mode="N?type=NumericMode"/>
 </swModel>
 <constraintsModel>{chains}</constraintsModel>"""
@@ -236,22 +236,22 @@ def found(excerpt, folder, rule=RULE):
 
 
 def access(kind, label="L"):
-    return f'<items xsi:type="am:LabelAccess" data="{label}?type=Label" access="{kind}"/>'
+    return f'<items t="LabelAccess" data="{label}?type=Label" access="{kind}"/>'
 
 
 def mask(kind, events="E?type=OsEvent", attributes=""):
-    return f'<items xsi:type="am:{kind}" {attributes}><eventMask events="{events}"/></items>'
+    return f'<items t="{kind}" {attributes}><eventMask events="{events}"/></items>'
 
 
 def runnable(name, *items):
     return f'<runnables name="{name}"><activityGraph>{"".join(items)}</activityGraph></runnables>'
 
 
-CALL = '<items xsi:type="am:RunnableCall" runnable="R?type=Runnable"/>'
-SERVER = '<items xsi:type="am:{}" serverRunnable="R?type=Runnable"/>'
-SET_MODE = '<items xsi:type="am:ModeLabelAccess" data="K?type=ModeLabel" access="set" value="1"/>'
-IS_ONE = '<entries xsi:type="am:ModeValueCondition" label="K?type=ModeLabel" relation="EQUAL" value="1"/>'
-SWITCH = f'<items xsi:type="am:Switch"><entries name="one"><condition>{IS_ONE}</condition></entries></items>'
+CALL = '<items t="RunnableCall" runnable="R?type=Runnable"/>'
+SERVER = '<items t="{}" serverRunnable="R?type=Runnable"/>'
+SET_MODE = '<items t="ModeLabelAccess" data="K?type=ModeLabel" access="set" value="1"/>'
+IS_ONE = '<entries t="ModeValueCondition" label="K?type=ModeLabel" relation="EQUAL" value="1"/>'
+SWITCH = f'<items t="Switch"><entries name="one"><condition>{IS_ONE}</condition></entries></items>'
 GAP = ["no data flow or trigger connects 'start of T' to 'end of U'"]
 
 
@@ -266,8 +266,7 @@ GAP = ["no data flow or trigger connects 'start of T' to 'end of U'"]
         (system(CALL, access("read"), others=runnable("R", access("write"))), []),
         (
             system(
-                '<items xsi:type="am:SenderReceiverWrite" label="L?type=Label"/>',
-                '<items xsi:type="am:SenderReceiverRead" label="L?type=Label"/>',
+                '<items t="SenderReceiverWrite" label="L?type=Label"/>', '<items t="SenderReceiverRead" label="L?type=Label"/>'
             ),
             [],
         ),
@@ -346,9 +345,9 @@ A, B, W, D = "start of T", "end of U", "L is written", "L is read"
         (part(A, D) + part(W, B), 'itemType="parallel"', []),
         (part(A, B) + part(A, B), 'itemType="parallel"', []),
         (part(W, A) + part(A, B), "", gap(W, A)),
-        ('<items xsi:type="am:EventChainContainer"/><items xsi:type="am:EventChainReference"/>', "", []),
+        ('<items t="EventChainContainer"/><items t="EventChainReference"/>', "", []),
         # A chain that is part of itself ends nowhere.
-        ('<items xsi:type="am:EventChainReference" eventChain="C?type=EventChain"/>', "", []),
+        ('<items t="EventChainReference" eventChain="C?type=EventChain"/>', "", []),
     ],
 )
 def test_the_parts_of_a_chain(items, attributes, expected, tmp_path):
@@ -365,7 +364,7 @@ def test_branches_that_start_elsewhere_than_their_chain(tmp_path):
 
 
 def test_sets_of_events(tmp_path):
-    events = '<events xsi:type="am:EventSet" name="all" events="start+of+T?type=ProcessEvent L+is+written?type=LabelEvent"/>'
+    events = '<events t="EventSet" name="all" events="start+of+T?type=ProcessEvent L+is+written?type=LabelEvent"/>'
     chains = f'<eventChains name="C" stimulus="all?type=EventSet" response="{reference(B)}"/>'
     assert found(system(*CARRIED, chains=chains, events=events), tmp_path) == []
     assert found(system(access("write"), chains=chains, events=events), tmp_path) == gap(A, B) + gap(W, B)
@@ -392,17 +391,17 @@ def controllers(kinds, items="", second="core1", events="sent got"):
     first, then = events.split()
     return f"""
 <eventModel>
-  <events xsi:type="am:ProcessEvent" name="sent" eventType="terminate" entity="T?type=Task"/>
-  <events xsi:type="am:ProcessEvent" name="got" eventType="start" entity="U?type=Task"/>
-  <events xsi:type="am:EventSet" name="both" events="sent?type=ProcessEvent got?type=ProcessEvent"/>
+  <events t="ProcessEvent" name="sent" eventType="terminate" entity="T?type=Task"/>
+  <events t="ProcessEvent" name="got" eventType="start" entity="U?type=Task"/>
+  <events t="EventSet" name="both" events="sent?type=ProcessEvent got?type=ProcessEvent"/>
 </eventModel>
 <swModel><tasks name="T"/><tasks name="U"/></swModel>
 <hwModel>
   <structures name="car" structureType="System">
     <structures name="A" structureType="{kinds[0]}">
-      <structures name="chip" structureType="Microcontroller"><modules xsi:type="am:ProcessingUnit" name="core0"/></structures>
+      <structures name="chip" structureType="Microcontroller"><modules t="ProcessingUnit" name="core0"/></structures>
     </structures>
-    <structures name="B" structureType="{kinds[1]}"><modules xsi:type="am:ProcessingUnit" name="core1"/></structures>
+    <structures name="B" structureType="{kinds[1]}"><modules t="ProcessingUnit" name="core1"/></structures>
   </structures>
 </hwModel>
 <osModel>
@@ -438,16 +437,14 @@ TOLD = ["'C' goes through 'A' and 'B', which have no common clock"]
         (
             controllers(
                 ("ECU", "ECU"),
-                f'<items xsi:type="am:EventChainContainer"><eventChain stimulus="{SENT}" response="{GOT}"/></items>',
+                f'<items t="EventChainContainer"><eventChain stimulus="{SENT}" response="{GOT}"/></items>',
                 events=f"{SENT} {SENT}",
             ),
             TOLD,
         ),
         (
             controllers(
-                ("ECU", "ECU"),
-                '<items xsi:type="am:EventChainReference" eventChain="C?type=EventChain"/>',
-                events=f"{SENT} {SENT}",
+                ("ECU", "ECU"), '<items t="EventChainReference" eventChain="C?type=EventChain"/>', events=f"{SENT} {SENT}"
             ),
             [],
         ),

@@ -8,13 +8,12 @@ import json
 import re
 
 import pytest
-from support import MODEL, SHARED
+from support import SHARED, model_text
 from test_rules import model
 
 from amalthea_uros import check, load
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel import classes as am
-from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.validate import registry
 from amalthea_uros.validate.rule import RuleProfile
@@ -59,7 +58,7 @@ EVENTS = {"INC-EV-KIND", "INC-EV-TYPE", "INC-EV-LABEL-RUN"}
 #: Each of the mode models has a label with a bad initial value, and one without a mode.
 MODES = {"INC-SW-MODE-VALUE", "INC-SW-MODE-MISSING"}
 
-#: What has to be told of each of the others, at least.
+#: What has to be told of each of the others.
 CAUSES = {
     # Other versions are read, but only as far as they agree with 3.2.0.
     "01_ns_0_9_9": {"INC-IO-VERSION"},
@@ -132,6 +131,35 @@ CAUSES = {
     "70_unknown_elem": {"INC-IO-FEATURE"},
 }
 
+#: The policy of all schedulers of the vectors is OSEK, except for these.
+OTHER_POLICY = {
+    *("01_ns_0_9_9", "01_ns_1_0_0", "01_ns_1_1_0", "23_semaphore", "40_osoverhead", "40_sched_computation"),
+    *("40_sched_param_nokey", "41_isr_unalloc", "44_prio_wrongname", "44_two_os_shared_runnable", "70_only_root"),
+}
+
+#: What is told of a vector that is about something else.
+BESIDES = {
+    "10_chain_par_badresp": {"INC-EC-PAR-ITEMS"},
+    "10_chain_par_badstim": {"INC-EC-PAR-ITEMS"},
+    "23_channel": {"INC-SW-PROCCHAIN"},
+    "25_switch_conj_channelfill": {"INC-SW-PROCCHAIN"},
+    "27_runnable_unused": {"INC-SW-LABELSIZE"},
+    "27_task_nograph": {"INC-SW-PREEMPTION"},
+    "40_task_twice": {"INC-MAP-SCHED"},
+    "41_isr_unalloc": {"INC-MAP-SCHED"},
+    "44_two_os_shared_runnable": {"INC-MAP-SCHED"},
+    "44_unalloc_task_only": {"INC-MAP-SCHED"},
+    "50_cache_l1": {"INC-HW-MEM-SIZE"},
+    "50_cache_l2": {"INC-HW-MEM-SIZE"},
+    "50_conn_ok": {"INC-HW-CONN-PORTS", "INC-HW-MEM-SIZE"},
+    "50_undef_unit": {"INC-ST-UNIT"},
+    "60_namespace_dup": {"INC-IO-NAME"},
+} | {
+    name: {"INC-MAP-SCHED", "INC-MAP-TASK-ONCE"}
+    for name in VERDICTS
+    if name.startswith(("40_alloc_no", "40_prio_string", "43_memmap_noelem", "44_prio_wrongname", "46_multi"))
+}
+
 #: An empty file is refused by every tool, no rule is needed for that.
 NO_MODEL = {"70_empty"}
 
@@ -173,14 +201,10 @@ def vector(name):
     return load(FOLDER / f"{name}.amxmi")
 
 
-@pytest.mark.parametrize("name", sorted(CAUSES))
-def test_what_goes_wrong_is_told(name):
-    assert {finding.rule for finding in told(vector(name))} >= CAUSES[name]
-
-
-@pytest.mark.parametrize("name", sorted(SOUND))
-def test_what_goes_well_is_no_error(name):
-    assert [finding for finding in told(vector(name)) if finding.severity is Severity.ERROR] == []
+@pytest.mark.parametrize("name", sorted([*SOUND, *CAUSES]))
+def test_what_goes_wrong_is_told_and_nothing_else(name):
+    policy = set() if name in OTHER_POLICY else {"INC-OS-ALGORITHM"}
+    assert {finding.rule for finding in told(vector(name))} == CAUSES.get(name, set()) | BESIDES.get(name, set()) | policy
 
 
 @pytest.mark.skipif(not VERDICTS, reason="the verdicts are not at hand")
@@ -255,44 +279,40 @@ def graph(items, more=""):
 
 
 def ticks(content):
-    return graph(f'<items xsi:type="am:Ticks">{content}</items>')
+    return graph(f'<items t="Ticks">{content}</items>')
 
 
 def condition(entry, more=""):
     return graph(
-        f'<items xsi:type="am:Switch"><entries name="e"><condition>{entry}</condition></entries></items>',
-        '<modes xsi:type="am:EnumMode" name="M"><literals name="on"/><literals name="off"/></modes>'
-        '<modes xsi:type="am:NumericMode" name="N"/>'
+        f'<items t="Switch"><entries name="e"><condition>{entry}</condition></entries></items>',
+        '<modes t="EnumMode" name="M"><literals name="on"/><literals name="off"/></modes>'
+        '<modes t="NumericMode" name="N"/>'
         '<modeLabels name="ML" mode="M?type=EnumMode"/><modeLabels name="OL" mode="M?type=EnumMode"/>'
         f'<modeLabels name="NL" mode="N?type=NumericMode"/><modeLabels name="No"/><channels name="C"/>{more}',
     )
 
 
 def value(label, text):
-    return condition(
-        f'<entries xsi:type="am:ModeValueCondition" label="{label}?type=ModeLabel" value="{text}" relation="EQUAL"/>'
-    )
+    return condition(f'<entries t="ModeValueCondition" label="{label}?type=ModeLabel" value="{text}" relation="EQUAL"/>')
 
 
 def labels(first, second):
     names = f'label1="{first}?type=ModeLabel" label2="{second}?type=ModeLabel"'
-    return condition(f'<entries xsi:type="am:ModeLabelCondition" {names} relation="EQUAL"/>')
+    return condition(f'<entries t="ModeLabelCondition" {names} relation="EQUAL"/>')
 
 
 def access(label, attributes):
     more = condition("").partition("</runnables>")[2].removesuffix("</swModel>")
-    return graph(f'<items xsi:type="am:ModeLabelAccess" data="{label}?type=ModeLabel" {attributes}/>', more)
+    return graph(f'<items t="ModeLabelAccess" data="{label}?type=ModeLabel" {attributes}/>', more)
 
 
 def cores(domain, *names):
-    modules = "".join(
-        f'<modules xsi:type="am:ProcessingUnit" name="{n}" frequencyDomain="D?type=FrequencyDomain"/>' for n in names
-    )
+    modules = "".join(f'<modules t="ProcessingUnit" name="{n}" frequencyDomain="D?type=FrequencyDomain"/>' for n in names)
     return f'<hwModel><structures name="ECU">{modules}</structures>{domain}</hwModel>'
 
 
 def domain(content=""):
-    return f'<domains xsi:type="am:FrequencyDomain" name="D">{content}</domains>'
+    return f'<domains t="FrequencyDomain" name="D">{content}</domains>'
 
 
 def structure(name, *inner):
@@ -300,7 +320,7 @@ def structure(name, *inner):
 
 
 def core(name):
-    return f'<modules xsi:type="am:ProcessingUnit" name="{name}"/>'
+    return f'<modules t="ProcessingUnit" name="{name}"/>'
 
 
 def scheduler(content, more=""):
@@ -320,12 +340,12 @@ def allocation(name, content):
     return f'<swModel><tasks name="T"/></swModel>{defined}<mappingModel>{mapped}</mappingModel>'
 
 
-INTEGER = '<value xsi:type="am:IntegerObject" value="3"/>'
-LONG = '<value xsi:type="am:LongObject" value="3"/>'
+INTEGER = '<value t="IntegerObject" value="3"/>'
+LONG = '<value t="LongObject" value="3"/>'
 
 
 def stimulus(kind, content="", attributes=""):
-    return f'<stimuliModel><stimuli xsi:type="am:{kind}" name="S" {attributes}>{content}</stimuli></stimuliModel>'
+    return f'<stimuliModel><stimuli t="{kind}" name="S" {attributes}>{content}</stimuli></stimuliModel>'
 
 
 def distance(content):
@@ -336,10 +356,10 @@ def events(constraints, more=""):
     """Three events that are converted, and what is said of them."""
     return (
         '<swModel><tasks name="T"/><isrs name="I"/><runnables name="R"/><labels name="L"/></swModel><eventModel>'
-        '<events xsi:type="am:ProcessEvent" name="a" entity="T?type=Task" eventType="start"/>'
-        '<events xsi:type="am:RunnableEvent" name="b" entity="R?type=Runnable" eventType="terminate"/>'
-        '<events xsi:type="am:LabelEvent" name="c" entity="L?type=Label" eventType="read"/>'
-        '<events xsi:type="am:ProcessEvent" name="odd" entity="I?type=ISR" eventType="resume"/>'
+        '<events t="ProcessEvent" name="a" entity="T?type=Task" eventType="start"/>'
+        '<events t="RunnableEvent" name="b" entity="R?type=Runnable" eventType="terminate"/>'
+        '<events t="LabelEvent" name="c" entity="L?type=Label" eventType="read"/>'
+        '<events t="ProcessEvent" name="odd" entity="I?type=ISR" eventType="resume"/>'
         f"{more}</eventModel><constraintsModel>{constraints}</constraintsModel>"
     )
 
@@ -358,28 +378,28 @@ def chain(ends, *items, name="C", attributes=""):
 
 def segment(ends, *items):
     inner = chain(ends, *items, name="s").replace("<eventChains", "<eventChain").replace("</eventChains", "</eventChain")
-    return f'<items xsi:type="am:EventChainContainer">{inner}</items>'
+    return f'<items t="EventChainContainer">{inner}</items>'
 
 
 def reference(name):
-    return f'<items xsi:type="am:EventChainReference" eventChain="{name}?type=EventChain"/>'
+    return f'<items t="EventChainReference" eventChain="{name}?type=EventChain"/>'
 
 
 PARALLEL = 'itemType="parallel"'
-LATENCY = '<timingConstraints xsi:type="am:EventChainLatencyConstraint" name="LC" scope="C?type=EventChain"/>'
-SET = '<events xsi:type="am:EventSet" name="set" events="a?type=ProcessEvent odd?type=ProcessEvent"/>'
+LATENCY = '<timingConstraints t="EventChainLatencyConstraint" name="LC" scope="C?type=EventChain"/>'
+SET = '<events t="EventSet" name="set" events="a?type=ProcessEvent odd?type=ProcessEvent"/>'
 BAD_SET = "set?type=EventSet"
 
 
 def server(policy, is_server="true"):
-    kind = f'<customProperties key="callbackServer"><value xsi:type="am:BooleanObject" value="{is_server}"/></customProperties>'
+    kind = f'<customProperties key="callbackServer"><value t="BooleanObject" value="{is_server}"/></customProperties>'
     dispatched = f'<customProperties key="dispatchingPolicy">{policy}</customProperties>'
-    group = f'<activityGraph><items xsi:type="am:Group" name="G">{dispatched}</items></activityGraph>'
+    group = f'<activityGraph><items t="Group" name="G">{dispatched}</items></activityGraph>'
     return f'<swModel><tasks name="T">{kind}{group}</tasks></swModel>'
 
 
 def text(content):
-    return f'<value xsi:type="am:StringObject" value="{content}"/>'
+    return f'<value t="StringObject" value="{content}"/>'
 
 
 def stated(content):
@@ -401,7 +421,7 @@ def consistent(attributes, content=""):
     return f"<osModel>{system}</osModel>"
 
 
-MEMORY = '<modules xsi:type="am:Memory" name="RAM"><ports name="p" {}/></modules>'
+MEMORY = '<modules t="Memory" name="RAM"><ports name="p" {}/></modules>'
 
 #: Rule, how often it tells something, and of what.
 CASES = [
@@ -412,9 +432,9 @@ CASES = [
     ("INC-HW-FREQ-VALUE", 1, cores(domain('<defaultValue value="9" unit="_undefined_"/>'), "A")),
     ("INC-HW-FREQ-VALUE", 0, cores(domain('<defaultValue value="9" unit="MHz"/>'), "A", "B")),
     ("INC-HW-FREQ-VALUE", 0, cores(domain())),
-    ("INC-HW-CACHE-PLACE", 1, ports('<modules xsi:type="am:Cache" name="L2"/>')),
-    ("INC-HW-CACHE-PLACE", 1, ports('<modules xsi:type="am:Cache" name="L2"/>' + structure("uC", core("A")))),
-    ("INC-HW-CACHE-PLACE", 0, ports(core("A") + '<modules xsi:type="am:Cache" name="L2"/>')),
+    ("INC-HW-CACHE-PLACE", 1, ports('<modules t="Cache" name="L2"/>')),
+    ("INC-HW-CACHE-PLACE", 1, ports('<modules t="Cache" name="L2"/>' + structure("uC", core("A")))),
+    ("INC-HW-CACHE-PLACE", 0, ports(core("A") + '<modules t="Cache" name="L2"/>')),
     # Nesting that says nothing: around one CPU, or around all of them.
     ("INC-HW-PU-STRUCT", 0, ports(structure("uC", core("A"), core("B")))),
     ("INC-HW-PU-STRUCT", 0, ports(structure("u1", core("A")) + structure("u2", core("B")))),
@@ -430,21 +450,21 @@ CASES = [
     ("INC-HW-BITWIDTH", 0, ports(MEMORY.format('portType="responder" bitWidth="32"'))),
     ("INC-HW-CONN-PORTS", 1, ports(MEMORY.format('bitWidth="32"'))),
     ("INC-HW-CONN-PORTS", 0, ports(MEMORY.format('portType="responder"') + '<ports name="p"/>')),
-    ("INC-HW-MEM-SIZE", 1, ports('<modules xsi:type="am:Memory" name="RAM"/>')),
+    ("INC-HW-MEM-SIZE", 1, ports('<modules t="Memory" name="RAM"/>')),
     (
         "INC-HW-ACCESS",
         1,
-        '<hwModel><definitions xsi:type="am:MemoryDefinition" name="D">'
-        '<accessLatency xsi:type="am:DiscreteValueConstant" value="9"/></definitions></hwModel>',
+        '<hwModel><definitions t="MemoryDefinition" name="D">'
+        '<accessLatency t="DiscreteValueConstant" value="9"/></definitions></hwModel>',
     ),
-    ("INC-HW-ACCESS", 0, '<hwModel><definitions xsi:type="am:MemoryDefinition" name="D"/></hwModel>'),
+    ("INC-HW-ACCESS", 0, '<hwModel><definitions t="MemoryDefinition" name="D"/></hwModel>'),
     # Scheduling parameters, by where they stand.
     ("INC-OS-PARAM-KEY", 1, scheduler(parameter("", INTEGER))),
     ("INC-OS-PARAM-KEY", 0, allocation("", INTEGER)),
     ("INC-OS-ALGOPARAM", 1, allocation("", INTEGER)),
     ("INC-OS-ALGOPARAM", 0, scheduler(parameter("", INTEGER))),
     ("INC-OS-ALGOPARAM", 1, allocation("Priority", INTEGER)),
-    ("INC-OS-ALGOPARAM", 0, allocation("deadline", '<value xsi:type="am:Time" value="3" unit="ms"/>')),
+    ("INC-OS-ALGOPARAM", 0, allocation("deadline", '<value t="Time" value="3" unit="ms"/>')),
     ("INC-OS-ALGOPARAM", 1, scheduler(parameter("deadline", INTEGER), '<schedulingParameterDefinitions name="deadline"/>')),
     ("INC-OS-ALGOPARAM", 0, scheduler(parameter("priority", INTEGER), '<schedulingParameterDefinitions name="priority"/>')),
     (
@@ -475,7 +495,7 @@ CASES = [
         1,
         '<osModel><osOverheads name="O"><apiOverhead><apiActivateTask/></apiOverhead></osOverheads></osModel>',
     ),
-    ("INC-OS-OVERHEAD", 1, scheduler('<computationItems xsi:type="am:LabelAccess"/>')),
+    ("INC-OS-OVERHEAD", 1, scheduler('<computationItems t="LabelAccess"/>')),
     ("INC-OS-SEMA-TYPE", 0, '<osModel><semaphores name="S" semaphoreType="_undefined_" ownership="false"/></osModel>'),
     # The default of the ownership is true, so that canonical form, which states it, means the same.
     ("INC-OS-SEMA-TYPE", 1, '<osModel><semaphores name="S" ownership="true"/></osModel>'),
@@ -502,48 +522,43 @@ CASES = [
     ),
     ("INC-ST-PERIOD", 1, stimulus("PeriodicSyntheticStimulus", '<recurrence value="0" unit="ms"/>')),
     ("INC-ST-PERIOD", 1, stimulus("PeriodicStimulus", '<recurrence value="9" unit="_undefined_"/>')),
-    ("INC-ST-RELPER", 1, distance('<nextOccurrence xsi:type="am:TimeConstant"/>')),
-    ("INC-ST-RELPER", 0, distance('<nextOccurrence xsi:type="am:TimeGaussDistribution"/>')),
-    ("INC-ST-JITTER", 1, stimulus("PeriodicStimulus", '<jitter xsi:type="am:TimeGaussDistribution"/>')),
-    ("INC-ST-JITTER", 1, stimulus("PeriodicStimulus", '<jitter xsi:type="am:TimeHistogram"/>')),
-    ("INC-ST-JITTER", 0, stimulus("PeriodicStimulus", '<jitter xsi:type="am:TimeConstant"/>')),
+    ("INC-ST-RELPER", 1, distance('<nextOccurrence t="TimeConstant"/>')),
+    ("INC-ST-RELPER", 0, distance('<nextOccurrence t="TimeGaussDistribution"/>')),
+    ("INC-ST-JITTER", 1, stimulus("PeriodicStimulus", '<jitter t="TimeGaussDistribution"/>')),
+    ("INC-ST-JITTER", 1, stimulus("PeriodicStimulus", '<jitter t="TimeHistogram"/>')),
+    ("INC-ST-JITTER", 0, stimulus("PeriodicStimulus", '<jitter t="TimeConstant"/>')),
     # Ticks: only what is read of them matters.
     ("INC-SW-TICKS-DEFAULT", 1, ticks("")),
-    ("INC-SW-TICKS-DEFAULT", 1, ticks('<extended><value xsi:type="am:DiscreteValueConstant" value="1"/></extended>')),
-    ("INC-SW-TICKS-DEFAULT", 1, ticks('<default xsi:type="am:DiscreteValueConstant"/><extended/>')),
-    ("INC-SW-TICKS-DEFAULT", 0, ticks('<default xsi:type="am:DiscreteValueConstant"/>')),
-    ("INC-SW-TICKS-BETA", 1, ticks('<extended><value xsi:type="am:DiscreteValueBetaDistribution"/></extended>')),
-    ("INC-SW-TICKS-BETA", 0, ticks('<extended/><extended><value xsi:type="am:DiscreteValueBetaDistribution"/></extended>')),
+    ("INC-SW-TICKS-DEFAULT", 1, ticks('<extended><value t="DiscreteValueConstant" value="1"/></extended>')),
+    ("INC-SW-TICKS-DEFAULT", 1, ticks('<default t="DiscreteValueConstant"/><extended/>')),
+    ("INC-SW-TICKS-DEFAULT", 0, ticks('<default t="DiscreteValueConstant"/>')),
+    ("INC-SW-TICKS-BETA", 1, ticks('<extended><value t="DiscreteValueBetaDistribution"/></extended>')),
+    ("INC-SW-TICKS-BETA", 0, ticks('<extended/><extended><value t="DiscreteValueBetaDistribution"/></extended>')),
     (
         "INC-SW-TICKS-BETA",
         0,
-        ticks(
-            '<default xsi:type="am:DiscreteValueConstant"/>'
-            '<extended><value xsi:type="am:DiscreteValueBetaDistribution"/></extended>'
-        ),
+        ticks('<default t="DiscreteValueConstant"/><extended><value t="DiscreteValueBetaDistribution"/></extended>'),
     ),
     (
         "INC-SW-TICKS-BOUNDS",
         0,
-        graph(
-            '<items xsi:type="am:ExecutionNeed"><needs key="k"><value xsi:type="am:DiscreteValueBoundaries"/></needs></items>'
-        ),
+        graph('<items t="ExecutionNeed"><needs key="k"><value t="DiscreteValueBoundaries"/></needs></items>'),
     ),
-    ("INC-SW-TICKS-GAUSS", 1, ticks('<default xsi:type="am:DiscreteValueGaussDistribution" lowerBound="1"/>')),
-    ("INC-SW-TICKS-INT", 2, ticks('<default xsi:type="am:DiscreteValueGaussDistribution" mean="1.5" sd="0.5"/>')),
-    ("INC-SW-TICKS-INT", 1, ticks('<default xsi:type="am:DiscreteValueWeibullEstimatorsDistribution" average="1.5"/>')),
-    ("INC-SW-TICKS-INT", 0, ticks('<default xsi:type="am:DiscreteValueGaussDistribution" mean="2" sd="1"/>')),
-    ("INC-SW-TICKS-INT", 0, ticks('<default xsi:type="am:DiscreteValueBetaDistribution" alpha="1.5" beta="0.5"/>')),
+    ("INC-SW-TICKS-GAUSS", 1, ticks('<default t="DiscreteValueGaussDistribution" lowerBound="1"/>')),
+    ("INC-SW-TICKS-INT", 2, ticks('<default t="DiscreteValueGaussDistribution" mean="1.5" sd="0.5"/>')),
+    ("INC-SW-TICKS-INT", 1, ticks('<default t="DiscreteValueWeibullEstimatorsDistribution" average="1.5"/>')),
+    ("INC-SW-TICKS-INT", 0, ticks('<default t="DiscreteValueGaussDistribution" mean="2" sd="1"/>')),
+    ("INC-SW-TICKS-INT", 0, ticks('<default t="DiscreteValueBetaDistribution" alpha="1.5" beta="0.5"/>')),
     # Items
-    ("INC-SW-REF", 1, graph('<items xsi:type="am:SetEvent"/>')),
-    ("INC-SW-REF", 1, graph('<items xsi:type="am:ModeLabelAccess" access="read"/>')),
+    ("INC-SW-REF", 1, graph('<items t="SetEvent"/>')),
+    ("INC-SW-REF", 1, graph('<items t="ModeLabelAccess" access="read"/>')),
     ("INC-SW-REF", 0, '<swModel><processPrototypes name="P"><runnableCalls/></processPrototypes></swModel>'),
-    ("INC-SW-EVENTMASK", 1, graph('<items xsi:type="am:WaitEvent"><eventMask/></items>')),
-    ("INC-SW-SERVER", 1, graph('<items xsi:type="am:GetResultServerCall"/>')),
-    ("INC-SW-SERVER", 1, graph('<items xsi:type="am:SenderReceiverRead"/>')),
-    ("INC-SW-SERVER", 1, graph('<items xsi:type="am:SenderReceiverWrite"/>')),
-    ("INC-SW-SERVER", 0, graph('<items xsi:type="am:SenderReceiverRead" label="L?type=Label"/>', '<labels name="L"/>')),
-    ("INC-SW-ACCESS", 1, graph('<items xsi:type="am:SemaphoreAccess" access="request"/>')),
+    ("INC-SW-EVENTMASK", 1, graph('<items t="WaitEvent"><eventMask/></items>')),
+    ("INC-SW-SERVER", 1, graph('<items t="GetResultServerCall"/>')),
+    ("INC-SW-SERVER", 1, graph('<items t="SenderReceiverRead"/>')),
+    ("INC-SW-SERVER", 1, graph('<items t="SenderReceiverWrite"/>')),
+    ("INC-SW-SERVER", 0, graph('<items t="SenderReceiverRead" label="L?type=Label"/>', '<labels name="L"/>')),
+    ("INC-SW-ACCESS", 1, graph('<items t="SemaphoreAccess" access="request"/>')),
     ("INC-SW-ACCESS", 1, access("ML", 'access="increment"')),
     ("INC-SW-ACCESS", 0, access("NL", 'access="increment"')),
     ("INC-SW-ACCESS", 1, access("NL", "")),
@@ -552,17 +567,17 @@ CASES = [
     ("INC-SW-PROCCHAIN", 1, '<componentsModel><components name="C"/></componentsModel>'),
     ("INC-SW-PROCCHAIN", 1, stimulus("VariableRateStimulus", "<scenario/>")),
     # Conditions and modes
-    ("INC-SW-CONDKIND", 1, condition('<entries xsi:type="am:ChannelFillCondition"/>')),
-    ("INC-SW-CONDKIND", 1, condition('<entries xsi:type="am:LocalModeCondition"/>')),
-    ("INC-SW-CONDKIND", 1, condition('<entries xsi:type="am:ModeValueCondition" value="on"/>')),
-    ("INC-SW-CONDKIND", 1, condition('<entries xsi:type="am:ModeLabelCondition" label1="ML?type=ModeLabel"/>')),
+    ("INC-SW-CONDKIND", 1, condition('<entries t="ChannelFillCondition"/>')),
+    ("INC-SW-CONDKIND", 1, condition('<entries t="LocalModeCondition"/>')),
+    ("INC-SW-CONDKIND", 1, condition('<entries t="ModeValueCondition" value="on"/>')),
+    ("INC-SW-CONDKIND", 1, condition('<entries t="ModeLabelCondition" label1="ML?type=ModeLabel"/>')),
     ("INC-SW-CONDKIND", 1, labels("ML", "NL")),
     ("INC-SW-CONDKIND", 1, labels("NL", "No")),
     ("INC-SW-CONDKIND", 0, labels("No", "NL")),
     ("INC-SW-CONDKIND", 0, labels("ML", "OL")),
     ("INC-SW-CONDKIND", 0, value("ML", "on")),
     ("INC-SW-CONDSET", 1, condition("")),
-    ("INC-SW-CONDSET", 1, graph('<items xsi:type="am:WhileLoop"/>')),
+    ("INC-SW-CONDSET", 1, graph('<items t="WhileLoop"/>')),
     ("INC-SW-CONDSET", 0, value("ML", "on")),
     ("INC-SW-MODE-VALUE", 0, value("ML", "on")),
     ("INC-SW-MODE-VALUE", 1, value("ML", "up")),
@@ -586,25 +601,17 @@ CASES = [
     ("INC-CO-KIND", 1, '<constraintsModel><dataCoherencyGroups name="G"/></constraintsModel>'),
     ("INC-CO-KIND", 1, '<constraintsModel><dataStabilityGroups name="G"/></constraintsModel>'),
     ("INC-CO-KIND", 1, '<constraintsModel><physicalSectionConstraints name="P"/></constraintsModel>'),
-    (
-        "INC-CO-KIND",
-        0,
-        '<constraintsModel><timingConstraints xsi:type="am:EventChainLatencyConstraint" name="L"/></constraintsModel>',
-    ),
+    ("INC-CO-KIND", 0, '<constraintsModel><timingConstraints t="EventChainLatencyConstraint" name="L"/></constraintsModel>'),
     # Events and chains; one with an event that is not converted is dropped, and its latency with it.
-    ("INC-EV-KIND", 1, events("", '<events xsi:type="am:SemaphoreEvent" name="s"/>')),
-    ("INC-EV-KIND", 1, events("", '<events xsi:type="am:ModeLabelEvent" name="s"/>')),
+    ("INC-EV-KIND", 1, events("", '<events t="SemaphoreEvent" name="s"/>')),
+    ("INC-EV-KIND", 1, events("", '<events t="ModeLabelEvent" name="s"/>')),
     ("INC-EV-KIND", 0, events(chain("ab"))),
-    (
-        "INC-EV-KIND",
-        2,
-        events(chain(("s?type=CustomEvent", "s?type=CustomEvent")), '<events xsi:type="am:CustomEvent" name="s"/>'),
-    ),
+    ("INC-EV-KIND", 2, events(chain(("s?type=CustomEvent", "s?type=CustomEvent")), '<events t="CustomEvent" name="s"/>')),
     ("INC-EV-TYPE", 1, events(chain("ab"))),
     ("INC-EV-TYPE", 2, events(chain(("a", "odd")))),
     ("INC-EV-TYPE", 2, events(chain("ab", segment(("a", "odd")), segment(("odd", "b"))))),
     ("INC-EV-TYPE", 1, events(chain("ab", segment(("a", "odd")), segment("cb")))),
-    ("INC-EV-LABEL-RUN", 1, events("", '<events xsi:type="am:LabelEvent" name="l" runnable="R?type=Runnable"/>')),
+    ("INC-EV-LABEL-RUN", 1, events("", '<events t="LabelEvent" name="l" runnable="R?type=Runnable"/>')),
     ("INC-EC-CYCLE", 2, events(chain("ab", reference("D")) + chain("ab", reference("C"), name="D"))),
     (
         "INC-EC-CYCLE",
@@ -616,11 +623,11 @@ CASES = [
     ("INC-EC-SEQ", 0, events(chain("ab", segment("ac"), segment("cb")))),
     ("INC-EC-SEQ", 1, events(chain("ab", segment("ac"), segment("cc")))),
     ("INC-EC-SEQ", 1, events(chain("ab", segment("cb"), attributes=PARALLEL))),
-    ("INC-EC-SEQ", 1, events(chain("ab", '<items xsi:type="am:EventChainReference"/>'))),
+    ("INC-EC-SEQ", 1, events(chain("ab", '<items t="EventChainReference"/>'))),
     ("INC-EC-SEQ", 0, events(chain("ab", segment("cb"), segment("cb"), attributes=PARALLEL))),
     ("INC-EC-PAR", 0, events(chain("ab", segment("cb"), attributes=PARALLEL))),
     ("INC-EC-PAR", 2, events(chain("ab", segment("cb"), segment("ac"), attributes=PARALLEL))),
-    ("INC-EC-PAR", 1, events(chain("ab", segment("ab"), '<items xsi:type="am:EventChainReference"/>', attributes=PARALLEL))),
+    ("INC-EC-PAR", 1, events(chain("ab", segment("ab"), '<items t="EventChainReference"/>', attributes=PARALLEL))),
     ("INC-EC-PAR-ITEMS", 0, events(chain("ab", segment("ab"), attributes=PARALLEL))),
     ("INC-EC-PAR-ITEMS", 2, events(chain("ab", segment("ab"), segment("ab"), attributes=PARALLEL))),
     ("INC-EC-SEQ", 0, events(chain("ab", reference("X")))),
@@ -637,8 +644,8 @@ CASES = [
     ("INC-LC-SCOPE", 1, events(chain("ab", segment("ab"), segment("ac"), attributes=PARALLEL) + LATENCY)),
     ("INC-LC-SCOPE", 1, events(chain("ab", reference("D")) + chain(("a", ""), name="D") + LATENCY)),
     # How data is protected
-    ("INC-SW-STABILITY", 1, graph('<items xsi:type="am:LabelAccess" dataStability="customProtection"/>')),
-    ("INC-SW-STABILITY", 0, graph('<items xsi:type="am:LabelAccess" dataStability="inherited"/>')),
+    ("INC-SW-STABILITY", 1, graph('<items t="LabelAccess" dataStability="customProtection"/>')),
+    ("INC-SW-STABILITY", 0, graph('<items t="LabelAccess" dataStability="inherited"/>')),
     ("INC-SW-STABILITY", 1, '<swModel><labels name="L" dataStability="handledByModelElements"/></swModel>'),
     ("INC-SW-STABILITY", 0, '<swModel><labels name="L"/></swModel>'),
     ("INC-OS-CONSISTENCY", 1, consistent('mode="customProtection"')),
@@ -660,12 +667,12 @@ CASES = [
     # What the metamodel knows
     ("INC-IO-FEATURE", 1, '<swModel><tasks name="T" prio="1"/></swModel>'),
     ("INC-IO-FEATURE", 1, '<swModel><tasks name="T" preemption="never"/></swModel>'),
-    ("INC-IO-FEATURE", 1, graph('<items xsi:type="am:Sleep"/>')),
-    ("INC-IO-FEATURE", 1, graph('<items xsi:type="am:Task"/>')),
+    ("INC-IO-FEATURE", 1, graph('<items t="Sleep"/>')),
+    ("INC-IO-FEATURE", 1, graph('<items t="Task"/>')),
     ("INC-IO-FEATURE", 1, graph("<items/>")),
     ("INC-IO-FEATURE", 0, '<swModel xmlns:x="y"><!-- a comment --><?and an instruction?></swModel>'),
-    ("INC-IO-FEATURE", 0, '<swModel><channels name="C"><elementType xsi:type="am:TypeRef"/></channels></swModel>'),
-    ("INC-IO-FEATURE", 0, stated('<value xsi:type="am:MapObject"/>')),
+    ("INC-IO-FEATURE", 0, '<swModel><channels name="C"><elementType t="TypeRef"/></channels></swModel>'),
+    ("INC-IO-FEATURE", 0, stated('<value t="MapObject"/>')),
 ]
 
 
@@ -674,7 +681,7 @@ def test_a_case(rule, times, excerpt, tmp_path):
     assert len(check(model(excerpt, tmp_path), [rule])) == times
 
 
-NOTHING = '<events xsi:type="am:EventSet" name="set"/>'
+NOTHING = '<events t="EventSet" name="set"/>'
 ONE = NOTHING.replace("/>", ' events="b?type=RunnableEvent"/>')
 TWO = NOTHING.replace("/>", ' events="a?type=ProcessEvent b?type=RunnableEvent"/>')
 
@@ -716,14 +723,14 @@ def allocated(attributes):
         ("INC-EC-PAR-ITEMS", ["warning", "warning"], events(chain("ab", segment("ab"), segment("ac"), attributes=PARALLEL))),
         ("INC-MAP-TASK", ["error"], allocated('scheduler="S?type=TaskScheduler"')),
         ("INC-MAP-TASK", ["warning"], allocated('task="T?type=Task"')),
-        ("INC-ST-RELPER", ["error"], distance('<nextOccurrence xsi:type="am:TimeConstant"/>')),
+        ("INC-ST-RELPER", ["error"], distance('<nextOccurrence t="TimeConstant"/>')),
         ("INC-ST-RELPER", ["warning"], distance("")),
         ("INC-IO-FEATURE", ["warning"], '<swModel><tasks name="T" prio="1"/></swModel>'),
         ("INC-IO-FEATURE", ["error"], '<swModel><tasks name="T" preemption="never"/></swModel>'),
         ("INC-IO-FEATURE", ["error"], '<swModel><threads name="T"/></swModel>'),
         # References that lead to nothing, by feature.
-        ("INC-IO-REF", ["error"], graph('<items xsi:type="am:RunnableCall" runnable="X?type=Runnable"/>')),
-        ("INC-IO-REF", ["error"], graph('<items xsi:type="am:LabelAccess" data="X?type=Label"/>')),
+        ("INC-IO-REF", ["error"], graph('<items t="RunnableCall" runnable="X?type=Runnable"/>')),
+        ("INC-IO-REF", ["error"], graph('<items t="LabelAccess" data="X?type=Label"/>')),
         ("INC-IO-REF", ["error"], value("X", "on")),
         ("INC-IO-REF", ["error"], cores("", "A")),
         ("INC-IO-REF", ["error"], allocated('task="X?type=Task"')),
@@ -733,13 +740,9 @@ def allocated(attributes):
         ("INC-IO-REF", ["error"], events(chain(("a", "x?type=ProcessEvent")))),
         ("INC-IO-REF", ["warning"], allocated('task="T?type=Task" scheduler="X?type=TaskScheduler"')),
         ("INC-IO-REF", ["warning"], allocated('task="T?type=Task" affinity="X?type=ProcessingUnit"')),
-        ("INC-IO-REF", ["warning"], ports('<modules xsi:type="am:Memory" name="RAM" definition="X?type=MemoryDefinition"/>')),
+        ("INC-IO-REF", ["warning"], ports('<modules t="Memory" name="RAM" definition="X?type=MemoryDefinition"/>')),
         ("INC-IO-REF", ["warning"], f"<mappingModel><taskAllocation>{parameter('X', INTEGER)}</taskAllocation></mappingModel>"),
-        (
-            "INC-IO-REF",
-            ["warning"],
-            events("", '<events xsi:type="am:ProcessEvent" name="e" entity="X?type=Task" eventType="start"/>'),
-        ),
+        ("INC-IO-REF", ["warning"], events("", '<events t="ProcessEvent" name="e" entity="X?type=Task" eventType="start"/>')),
         # A parameter of a scheduler, unlike one of an allocation, has to have a key.
         ("INC-IO-REF", ["error"], scheduler(parameter("X", INTEGER))),
     ],
@@ -761,7 +764,7 @@ def test_no_object_is_called_none(tmp_path):
     assert not [finding for finding in found if "None" in finding.message]
 
 
-LESS = condition('<entries xsi:type="am:ModeValueCondition" label="NL?type=ModeLabel" value="1" relation="LESS_THAN"/>')
+LESS = condition('<entries t="ModeValueCondition" label="NL?type=ModeLabel" value="1" relation="LESS_THAN"/>')
 OLD_LESS = LESS.replace("Switch", "ModeSwitch")
 
 
@@ -777,16 +780,16 @@ OLD_LESS = LESS.replace("Switch", "ModeSwitch")
             "INC-SW-SERVER",
             "2.2.0",
             1,
-            graph('<items xsi:type="am:SynchronousServerCall" serverRunnable="Q?type=Runnable"/>', '<runnables name="Q"/>'),
+            graph('<items t="SynchronousServerCall" serverRunnable="Q?type=Runnable"/>', '<runnables name="Q"/>'),
         ),
         ("INC-SW-DISPATCH", "2.2.0", 0, server(text("random"))),
-        ("INC-SW-CONDSET", "2.2.0", 1, graph('<items xsi:type="am:ModeSwitch"><entries name="e"/></items>')),
+        ("INC-SW-CONDSET", "2.2.0", 1, graph('<items t="ModeSwitch"><entries name="e"/></items>')),
         ("INC-ST-BURST", "1.1.0", 0, stimulus("PeriodicBurstStimulus")),
-        ("INC-IO-FEATURE", "2.2.0", 0, graph('<items xsi:type="am:ModeSwitch"/>')),
-        ("INC-IO-FEATURE", "1.1.0", 1, graph('<items xsi:type="am:ModeSwitch"/>')),
-        ("INC-IO-FEATURE", "1.1.0", 1, scheduler('<schedulingAlgorithm xsi:type="am:OSEK"/>')),
+        ("INC-IO-FEATURE", "2.2.0", 0, graph('<items t="ModeSwitch"/>')),
+        ("INC-IO-FEATURE", "1.1.0", 1, graph('<items t="ModeSwitch"/>')),
+        ("INC-IO-FEATURE", "1.1.0", 1, scheduler('<schedulingAlgorithm t="OSEK"/>')),
         ("INC-IO-FEATURE", "1.1.0", 0, scheduler("")),
-        ("INC-IO-FEATURE", "1.1.0", 0, graph('<items xsi:type="am:Switch"/>')),
+        ("INC-IO-FEATURE", "1.1.0", 0, graph('<items t="Switch"/>')),
         ("INC-IO-FEATURE", "1.1.0", 0, '<osModel><semaphores name="S" semaphoreType="Mutex"/></osModel>'),
         ("INC-IO-FEATURE", "2.2.0", 1, '<osModel><semaphores name="S" semaphoreType="Mutex"/></osModel>'),
         *[
@@ -800,7 +803,7 @@ def test_a_version(rule, version, times, excerpt, tmp_path):
     assert len(check(model(excerpt, tmp_path, version), [rule])) == times
 
 
-CALL = '<items xsi:type="am:RunnableCall" runnable="{}?type=Runnable"/>'
+CALL = '<items t="RunnableCall" runnable="{}?type=Runnable"/>'
 SPACE = '<commonElements><namespaces name="A"/></commonElements>'
 
 
@@ -881,7 +884,7 @@ def test_what_was_not_read_is_written_with_ids():
 )
 def test_several_files(files, found, tmp_path):
     for number, (version, excerpt) in enumerate(files):
-        text_ = MODEL.format(excerpt).replace("amalthea/3.3.0", f"amalthea/{version}")
+        text_ = model_text(excerpt, version)
         (tmp_path / f"{number}.amxmi").write_text(text_)
     told_of = [finding.rule for finding in check(load(tmp_path), ["INC-IO-SAMEVERSION", "INC-IO-SUBMODEL-ONCE"])]
     assert {rule: told_of.count(rule) for rule in told_of} == found
@@ -911,12 +914,11 @@ def test_runnables_are_shared_through_calls(second, shared, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("stimuli", "late"),
-    [("CP", ["P"]), ("PC", []), ("PCP", ["P"]), ("CC", []), ("PCPQ", ["P", "Q"]), ("", [])],
+    ("stimuli", "late"), [("CP", ["P"]), ("PC", []), ("PCP", ["P"]), ("CC", []), ("PCPQ", ["P", "Q"]), ("", [])]
 )
 def test_stimuli_behind_one_that_is_not_converted(stimuli, late, tmp_path):
     kinds = {"C": "CustomStimulus", "P": "PeriodicStimulus", "Q": "InterProcessStimulus"}
-    declared = "".join(f'<stimuli xsi:type="am:{kind}" name="{name}"/>' for name, kind in kinds.items())
+    declared = "".join(f'<stimuli t="{kind}" name="{name}"/>' for name, kind in kinds.items())
     used = " ".join(f"{name}?type={kinds[name]}" for name in stimuli)
     excerpt = f'<stimuliModel>{declared}</stimuliModel><swModel><isrs name="I" stimuli="{used}"/></swModel>'
     found = check(model(excerpt, tmp_path), ["INC-ST-ORDER"])
@@ -929,6 +931,3 @@ def test_a_chain_of_many_chains_is_followed(tmp_path):
     read = model(events(chains + chain(("a", ""), name="C3000") + LATENCY.replace("C?", "C0?")), tmp_path)
     assert check(read, ["INC-EC-CYCLE"]) == []
     assert len(check(read, ["INC-LC-SCOPE"])) == 1
-
-
-CLASSES = [cls for cls in vars(am).values() if isinstance(cls, type) and issubclass(cls, Element) and not cls.is_abstract]

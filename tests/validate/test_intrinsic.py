@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from support import MODEL, SHARED
+from support import SHARED, model_text
 
 from amalthea_uros import check, load
 from amalthea_uros.metamodel.factfile import FeatureKind
@@ -74,30 +74,27 @@ BOUNDS = [
 @pytest.mark.parametrize(("kind", "attributes", "expected"), BOUNDS)
 def test_the_order_of_bounds(kind, attributes, expected, tmp_path):
     path = tmp_path / "model.amxmi"
-    ticks = f'<items xsi:type="am:Ticks"><default xsi:type="am:{kind}" {attributes}/></items>'
-    path.write_text(MODEL.format(f'<swModel><runnables name="R"><activityGraph>{ticks}</activityGraph></runnables></swModel>'))
+    ticks = f'<items t="Ticks"><default t="{kind}" {attributes}/></items>'
+    path.write_text(model_text(f'<swModel><runnables name="R"><activityGraph>{ticks}</activityGraph></runnables></swModel>'))
     rules = ["AM-EMF-INTRINSIC/DiscreteValueInterval", "AM-EMF-INTRINSIC/TruncatedDiscreteValueDistribution"]
     assert sorted(finding.message for finding in check(load(path), rules)) == sorted(expected)
 
 
 def test_times_of_different_units_are_compared_as_times(tmp_path):
     path = tmp_path / "model.amxmi"
-    jitter = (
-        '<jitter xsi:type="am:TimeUniformDistribution">'
-        '<lowerBound value="{}" unit="us"/><upperBound value="1" unit="ms"/></jitter>'
-    )
-    stimulus = f'<stimuliModel><stimuli xsi:type="am:PeriodicStimulus" name="S">{jitter}</stimuli></stimuliModel>'
-    path.write_text(MODEL.format(stimulus.format(1000)))
+    jitter = '<jitter t="TimeUniformDistribution"><lowerBound value="{}" unit="us"/><upperBound value="1" unit="ms"/></jitter>'
+    stimulus = f'<stimuliModel><stimuli t="PeriodicStimulus" name="S">{jitter}</stimuli></stimuliModel>'
+    path.write_text(model_text(stimulus.format(1000)))
     assert not check(load(path), ["AM-EMF-INTRINSIC/TimeInterval"])
-    path.write_text(MODEL.format(stimulus.format(1001)))
+    path.write_text(model_text(stimulus.format(1001)))
     (finding,) = check(load(path), ["AM-EMF-INTRINSIC/TimeInterval"])
     assert finding.message == "the lower bound 1001 us is above the upper bound 1 ms"
 
 
 MODES = """
 <swModel>
-  <modes xsi:type="am:EnumMode" name="E"><literals name="on"/></modes>
-  <modes xsi:type="am:NumericMode" name="N"/>
+  <modes t="EnumMode" name="E"><literals name="on"/></modes>
+  <modes t="NumericMode" name="N"/>
   <modeLabels name="L" {}/>
 </swModel>
 """
@@ -116,5 +113,5 @@ MODES = """
 )
 def test_initial_values_of_mode_labels(attributes, expected, tmp_path):
     path = tmp_path / "model.amxmi"
-    path.write_text(MODEL.format(MODES.format(attributes)))
+    path.write_text(model_text(MODES.format(attributes)))
     assert [finding.message for finding in check(load(path), ["AM-EMF-INTRINSIC/ModeLabel"])] == expected

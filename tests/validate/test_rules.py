@@ -1,16 +1,13 @@
-"""Every rule, by its own examples and, for INCHRON's importer, against the reference table of constraints."""
+"""Every rule, by its own examples."""
 
 import subprocess
 import sys
 from importlib import import_module
 
-import inchron
 import pytest
-from support import MODEL, ROOT, SHARED
+from support import ROOT, model_text
 
 from amalthea_uros import check, check_files, load
-from amalthea_uros.diagnostics import Severity
-from amalthea_uros.errors import ReadError
 from amalthea_uros.findings.kind import ids_in
 from amalthea_uros.validate import registry
 from amalthea_uros.validate.engine import run
@@ -21,10 +18,10 @@ IDS = list(registry.ids())
 
 def model(excerpt, folder, version="3.3.0", beside=None):
     path = folder / "model.amxmi"
-    path.write_text(MODEL.format(excerpt).replace("amalthea/3.3.0", f"amalthea/{version}"))
+    path.write_text(model_text(excerpt, version))
     other = folder / "beside.amxmi"
     if beside is not None:
-        other.write_text(MODEL.format(beside))
+        other.write_text(model_text(beside))
         return load(other, path)
     return load(path)
 
@@ -89,34 +86,9 @@ def test_the_checks_of_a_module_are_those_of_the_texts_beside_it(path):
     assert {identifier for identifier, check in CHECKS.items() if check.check.__module__ == module} == set(ids_in(path))
 
 
-LETTERS = {Severity.ERROR: "E", Severity.WARNING: "W", Severity.INFO: "I"}
-
-
-def found_by_rules(model):
-    return {(finding.rule, LETTERS[finding.severity]) for finding in check(model, registry.ids([RuleProfile.INCHRON]))}
-
-
-def test_every_row_of_the_reference_table_is_a_rule():
-    # The severity of a rule is that of the worst that it finds.
-    rows = {rule: min(letter for other, letter, _ in inchron.ROWS if other == rule) for rule, _, _ in inchron.ROWS}
-    assert rows == {rule: LETTERS[registry.kind(rule).severity] for rule in registry.ids([RuleProfile.INCHRON])}
-
-
-PATHS = [*sorted((ROOT / "samples").glob("*.amxmi")), *sorted((SHARED / "vectors" / "am2inc").glob("*.amxmi"))]
-
-
-@pytest.mark.parametrize("path", PATHS, ids=lambda path: path.stem)
-def test_the_reference_table_of_the_importer(path):
-    try:
-        read = load(path)
-    except ReadError:
-        pytest.skip("the file cannot be read")
-    assert found_by_rules(read) == {(rule, severity) for rule, severity, _ in inchron.problems(read)}
-
-
 def test_a_circle_of_calls_is_told_from_each_of_its_runnables(tmp_path):
     def calls(name, *called):
-        items = "".join(f'<items xsi:type="am:RunnableCall" runnable="{other}?type=Runnable"/>' for other in called)
+        items = "".join(f'<items t="RunnableCall" runnable="{other}?type=Runnable"/>' for other in called)
         return f'<runnables name="{name}"><activityGraph>{items}</activityGraph></runnables>'
 
     excerpt = f"<swModel>{calls('A', 'D', 'B')}{calls('B', 'C')}{calls('C', 'A')}{calls('D')}</swModel>"

@@ -9,8 +9,8 @@ from test_rules import found
 def ticks(attributes):
     return f"""
 <swModel>
-  <runnables name="R"><activityGraph><items xsi:type="am:Ticks">
-    <default xsi:type="am:DiscreteValueGaussDistribution" sd="1" {attributes}/>
+  <runnables name="R"><activityGraph><items t="Ticks">
+    <default t="DiscreteValueGaussDistribution" sd="1" {attributes}/>
   </items></activityGraph></runnables>
 </swModel>"""
 
@@ -18,8 +18,8 @@ def ticks(attributes):
 def rate(attributes):
     return f"""
 <stimuliModel>
-  <stimuli xsi:type="am:VariableRateStimulus" name="S">
-    <occurrencesPerStep xsi:type="am:ContinuousValueGaussDistribution" sd="1" {attributes}/>
+  <stimuli t="VariableRateStimulus" name="S">
+    <occurrencesPerStep t="ContinuousValueGaussDistribution" sd="1" {attributes}/>
   </stimuli>
 </stimuliModel>"""
 
@@ -81,7 +81,7 @@ def test_the_mean_of_numbers(attributes, expected, tmp_path):
 def test_the_mean_of_times(parts, expected, tmp_path):
     excerpt = f"""
 <stimuliModel>
-  <stimuli xsi:type="am:PeriodicStimulus" name="S"><jitter xsi:type="am:TimeGaussDistribution">{parts}</jitter></stimuli>
+  <stimuli t="PeriodicStimulus" name="S"><jitter t="TimeGaussDistribution">{parts}</jitter></stimuli>
 </stimuliModel>"""
     assert found("TA-Basic-TimeGaussDistribution-mean", excerpt, tmp_path) == expected
 
@@ -89,11 +89,11 @@ def test_the_mean_of_times(parts, expected, tmp_path):
 # Times in order
 
 CONSTRAINTS = "<constraintsModel>{}</constraintsModel>"
-TIMING = '<timingConstraints xsi:type="am:{}" name="C">{}</timingConstraints>'
+TIMING = '<timingConstraints t="{}" name="C">{}</timingConstraints>'
 
 
 def data_age(parts):
-    return f'<dataAgeConstraints name="D"><dataAge xsi:type="am:DataAgeTime">{parts}</dataAge></dataAgeConstraints>'
+    return f'<dataAgeConstraints name="D"><dataAge t="DataAgeTime">{parts}</dataAge></dataAgeConstraints>'
 
 
 @pytest.mark.parametrize(
@@ -144,12 +144,12 @@ def scheduled(definition, limit="", allocations=1):
 <swModel><tasks name="T"/></swModel>
 <mappingModel>{allocation * allocations}</mappingModel>
 <constraintsModel>
-  <requirements xsi:type="am:ProcessRequirement" name="R" process="T?type=Task">{limit}</requirements>
+  <requirements t="ProcessRequirement" name="R" process="T?type=Task">{limit}</requirements>
 </constraintsModel>"""
 
 
 EDF = "TA-Constraints-EDFTaskMustHaveDeadline"
-LIMIT = '<limit xsi:type="am:TimeRequirementLimit" limitType="{}" metric="{}"><limitValue value="1" unit="ms"/></limit>'
+LIMIT = '<limit t="TimeRequirementLimit" limitType="{}" metric="{}"><limitValue value="1" unit="ms"/></limit>'
 
 
 @pytest.mark.parametrize(
@@ -174,7 +174,7 @@ def test_tasks_by_deadline_until_1_2(tmp_path):
     excerpt = """
 <osModel>
   <operatingSystems name="OS">
-    <taskSchedulers name="S"><schedulingAlgorithm xsi:type="am:EarliestDeadlineFirst"/></taskSchedulers>
+    <taskSchedulers name="S"><schedulingAlgorithm t="EarliestDeadlineFirst"/></taskSchedulers>
   </operatingSystems>
 </osModel>
 <swModel><tasks name="T"/></swModel>
@@ -187,14 +187,14 @@ def test_tasks_by_deadline_until_1_2(tmp_path):
     [("ResponseTime", 0, True), ("ResponseTime", -1, True), ("ResponseTime", 1, False), ("Lateness", 0, False)],
 )
 def test_limits_of_response_times(metric, value, is_reported, tmp_path):
-    limit = f"""<limit xsi:type="am:TimeRequirementLimit" metric="{metric}"><limitValue value="{value}" unit="ms"/></limit>"""
-    excerpt = CONSTRAINTS.format(f'<requirements xsi:type="am:ProcessRequirement" name="R">{limit}</requirements>')
+    limit = f"""<limit t="TimeRequirementLimit" metric="{metric}"><limitValue value="{value}" unit="ms"/></limit>"""
+    excerpt = CONSTRAINTS.format(f'<requirements t="ProcessRequirement" name="R">{limit}</requirements>')
     assert bool(found("TA-Constraints-RTLimitMustBePositive", excerpt, tmp_path)) is is_reported
 
 
 def test_a_limit_without_a_value_is_not_judged(tmp_path):
-    limit = '<limit xsi:type="am:TimeRequirementLimit" metric="ResponseTime"/>'
-    excerpt = CONSTRAINTS.format(f'<requirements xsi:type="am:ProcessRequirement" name="R">{limit}</requirements>')
+    limit = '<limit t="TimeRequirementLimit" metric="ResponseTime"/>'
+    excerpt = CONSTRAINTS.format(f'<requirements t="ProcessRequirement" name="R">{limit}</requirements>')
     assert found("TA-Constraints-RTLimitMustBePositive", excerpt, tmp_path) == []
 
 
@@ -241,7 +241,7 @@ def test_instructions_per_cycle(category, feature, value, is_reported, tmp_path)
 def test_the_instructions_per_cycle_of_a_processor(kind, features, expected, tmp_path):
     excerpt = f"""
 <hwModel>
-  <definitions xsi:type="am:ProcessingUnitDefinition" name="D" puType="{kind}" features="{features}"/>
+  <definitions t="ProcessingUnitDefinition" name="D" puType="{kind}" features="{features}"/>
   <featureCategories name="Instructions">
     <features name="IPC_1" value="1"/><features name="IPC_2" value="2"/><features name="other" value="3"/>
   </featureCategories>
@@ -257,16 +257,16 @@ def condition(*entries, conjunction=True, literals=("on", "off"), kind="EnumMode
     """A condition of (relation, value[, label]) on a mode label."""
     rows = [(*entry, "L") if len(entry) == 2 else entry for entry in entries]
     conditions = "".join(
-        f'<entries xsi:type="am:ModeValueCondition" label="{label}?type=ModeLabel" relation="{relation}" value="{value}"/>'
+        f'<entries t="ModeValueCondition" label="{label}?type=ModeLabel" relation="{relation}" value="{value}"/>'
         for relation, value, label in rows
     )
     if conjunction:
-        conditions = f'<entries xsi:type="am:ConditionConjunction">{conditions}</entries>'
+        conditions = f'<entries t="ConditionConjunction">{conditions}</entries>'
     inner = "".join(f'<literals name="{literal}"/>' for literal in literals) if kind == "EnumMode" else ""
     return f"""
 <swModel>
   <runnables name="R"><executionCondition>{conditions}</executionCondition></runnables>
-  <modes xsi:type="am:{kind}" name="M">{inner}</modes>
+  <modes t="{kind}" name="M">{inner}</modes>
   <modeLabels name="L" mode="M?type={kind}"/>
   <modeLabels name="K" mode="M?type={kind}"/>
 </swModel>"""
@@ -349,10 +349,8 @@ def test_conditions_of_older_versions(version, tmp_path):
     ],
 )
 def test_events_that_are_never_set(items, is_reported, tmp_path):
-    graph = "".join(
-        f'<items xsi:type="am:{item}"><eventMask events="F?type=OsEvent E?type=OsEvent"/></items>' for item in items
-    )
-    both = '<items xsi:type="am:SetEvent"><eventMask events="F?type=OsEvent"/></items><items xsi:type="am:WaitEvent"/>'
+    graph = "".join(f'<items t="{item}"><eventMask events="F?type=OsEvent E?type=OsEvent"/></items>' for item in items)
+    both = '<items t="SetEvent"><eventMask events="F?type=OsEvent"/></items><items t="WaitEvent"/>'
     excerpt = f"""
 <swModel>
   <tasks name="T"><activityGraph>{graph}{both}</activityGraph></tasks>
@@ -366,20 +364,20 @@ def runnables(item):
     return f"""
 <swModel>
   <tasks name="T"><activityGraph>{item}</activityGraph></tasks>
-  <runnables name="R"><activityGraph><items xsi:type="am:Group">{item}</items></activityGraph></runnables>
+  <runnables name="R"><activityGraph><items t="Group">{item}</items></activityGraph></runnables>
   <runnables name="Q"><activityGraph>{item}</activityGraph></runnables>
 </swModel>"""
 
 
 def test_a_runnable_that_calls_itself(tmp_path):
     # Calls through others are not reported.
-    item = '<items xsi:type="am:RunnableCall" runnable="R?type=Runnable"/>'
+    item = '<items t="RunnableCall" runnable="R?type=Runnable"/>'
     assert found("TA-Software-RunnableCall", runnables(item), tmp_path) == ["'R' calls itself"]
 
 
 @pytest.mark.parametrize("call", ["SynchronousServerCall", "AsynchronousServerCall", "GetResultServerCall"])
 def test_a_runnable_that_is_its_own_server(call, tmp_path):
-    item = f'<items xsi:type="am:{call}" serverRunnable="R?type=Runnable"/>'
+    item = f'<items t="{call}" serverRunnable="R?type=Runnable"/>'
     assert found("TA-Software-ServerCall", runnables(item), tmp_path) == ["'R' calls itself as a server"]
 
 

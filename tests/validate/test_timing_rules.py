@@ -16,14 +16,14 @@ def graph(*items):
 
 
 def call(runnable, inner=""):
-    return f'<items xsi:type="am:RunnableCall" runnable="{runnable}?type=Runnable">{inner}</items>'
+    return f'<items t="RunnableCall" runnable="{runnable}?type=Runnable">{inner}</items>'
 
 
 def runnable(name, *items):
     return f'<runnables name="{name}">{graph(*items)}</runnables>'
 
 
-TICK = '<items xsi:type="am:Ticks"><default xsi:type="am:DiscreteValueConstant" value="100"/></items>'
+TICK = '<items t="Ticks"><default t="DiscreteValueConstant" value="100"/></items>'
 
 
 # Priorities
@@ -32,7 +32,7 @@ TICK = '<items xsi:type="am:Ticks"><default xsi:type="am:DiscreteValueConstant" 
 def prioritized(priority):
     if priority is None:
         return ""
-    value = f'<value xsi:type="am:IntegerObject" value="{priority}"/>'
+    value = f'<value t="IntegerObject" value="{priority}"/>'
     return f'<schedulingParameters key="priority?type=SchedulingParameterDefinition">{value}</schedulingParameters>'
 
 
@@ -43,11 +43,11 @@ def scheduled(definition="FixedPriorityPreemptive", tasks=(("T", 1),), processes
         f'<taskAllocation task="{name}?type=Task" scheduler="S?type=TaskScheduler" {affinity}>{prioritized(priority)}</taskAllocation>'
         for name, priority in tasks
     )
-    given = "" if default is None else f'<defaultValue xsi:type="am:IntegerObject" value="{default}"/>'
+    given = "" if default is None else f'<defaultValue t="IntegerObject" value="{default}"/>'
     return f"""
 <hwModel>
   <structures name="ECU">
-    <modules xsi:type="am:ProcessingUnit" name="core0"/><modules xsi:type="am:ProcessingUnit" name="core1"/>
+    <modules t="ProcessingUnit" name="core0"/><modules t="ProcessingUnit" name="core1"/>
   </structures>
 </hwModel>
 <osModel>
@@ -138,7 +138,7 @@ def test_priorities_until_1_2(tmp_path):
         return f"""
 <osModel>
   <operatingSystems name="OS">
-    <taskSchedulers name="S"><schedulingAlgorithm xsi:type="am:OSEK"/></taskSchedulers>
+    <taskSchedulers name="S"><schedulingAlgorithm t="OSEK"/></taskSchedulers>
   </operatingSystems>
 </osModel>
 <swModel><tasks name="T"/><tasks name="U"/></swModel>
@@ -152,7 +152,7 @@ def test_priorities_until_1_2(tmp_path):
     assert len(found("TIM-PRIORITY-SHARED", excerpt(one, one), tmp_path, "1.2.0")) == 2
 
 
-@pytest.mark.parametrize(("algorithm", "is_told"), [('<schedulingAlgorithm xsi:type="am:OSEK"/>', False), ("", True)])
+@pytest.mark.parametrize(("algorithm", "is_told"), [('<schedulingAlgorithm t="OSEK"/>', False), ("", True)])
 def test_policies_until_1_2(algorithm, is_told, tmp_path):
     excerpt = f"""
 <osModel><operatingSystems name="OS"><taskSchedulers name="S">{algorithm}</taskSchedulers></operatingSystems></osModel>
@@ -218,9 +218,9 @@ def test_places(allocations, expected, tmp_path):
 def test_clocks(value, is_known, tmp_path):
     excerpt = f"""
 <hwModel>
-  <domains xsi:type="am:FrequencyDomain" name="clock"><defaultValue {value}/></domains>
+  <domains t="FrequencyDomain" name="clock"><defaultValue {value}/></domains>
   <structures name="ECU">
-    <modules xsi:type="am:ProcessingUnit" name="core" frequencyDomain="clock?type=FrequencyDomain"/>
+    <modules t="ProcessingUnit" name="core" frequencyDomain="clock?type=FrequencyDomain"/>
   </structures>
 </hwModel>"""
     assert found("TIM-CLOCK", excerpt, tmp_path) == ([] if is_known else ["the clock frequency of 'core' is unknown"])
@@ -228,7 +228,7 @@ def test_clocks(value, is_known, tmp_path):
 
 # Activations
 
-STIMULUS = '<stimuliModel><stimuli xsi:type="am:{}" name="S" {}>{}</stimuli></stimuliModel>'
+STIMULUS = '<stimuliModel><stimuli t="{}" name="S" {}>{}</stimuli></stimuliModel>'
 
 
 @pytest.mark.parametrize(
@@ -241,12 +241,12 @@ STIMULUS = '<stimuliModel><stimuli xsi:type="am:{}" name="S" {}>{}</stimuli></st
         ("PeriodicStimulus", '<recurrence value="1" unit="_undefined_"/>', True),
         (
             "PeriodicStimulus",
-            '<recurrence value="1" unit="ms"/><jitter xsi:type="am:TimeGaussDistribution"><mean value="0" unit="s"/></jitter>',
+            '<recurrence value="1" unit="ms"/><jitter t="TimeGaussDistribution"><mean value="0" unit="s"/></jitter>',
             True,
         ),
         (
             "PeriodicStimulus",
-            '<recurrence value="1" unit="ms"/><jitter xsi:type="am:TimeConstant"><value value="0" unit="s"/></jitter>',
+            '<recurrence value="1" unit="ms"/><jitter t="TimeConstant"><value value="0" unit="s"/></jitter>',
             False,
         ),
         ("PeriodicSyntheticStimulus", "", True),
@@ -254,12 +254,12 @@ STIMULUS = '<stimuliModel><stimuli xsi:type="am:{}" name="S" {}>{}</stimuli></st
         ("RelativePeriodicStimulus", "", True),
         (
             "RelativePeriodicStimulus",
-            '<nextOccurrence xsi:type="am:TimeBoundaries"><lowerBound value="1" unit="ms"/></nextOccurrence>',
+            '<nextOccurrence t="TimeBoundaries"><lowerBound value="1" unit="ms"/></nextOccurrence>',
             False,
         ),
         (
             "RelativePeriodicStimulus",
-            '<nextOccurrence xsi:type="am:TimeBoundaries"><upperBound value="1" unit="ms"/></nextOccurrence>',
+            '<nextOccurrence t="TimeBoundaries"><upperBound value="1" unit="ms"/></nextOccurrence>',
             True,
         ),
         ("ArrivalCurveStimulus", "", True),
@@ -269,10 +269,10 @@ STIMULUS = '<stimuliModel><stimuli xsi:type="am:{}" name="S" {}>{}</stimuli></st
         ("ArrivalCurveStimulus", '<entries numberOfOccurrences="1"><lowerTimeBorder value="1" unit="ms"/></entries>', True),
         (
             "VariableRateStimulus",
-            '<step value="1" unit="s"/><occurrencesPerStep xsi:type="am:ContinuousValueConstant" value="5"/>',
+            '<step value="1" unit="s"/><occurrencesPerStep t="ContinuousValueConstant" value="5"/>',
             False,
         ),
-        ("VariableRateStimulus", '<occurrencesPerStep xsi:type="am:ContinuousValueConstant" value="5"/>', True),
+        ("VariableRateStimulus", '<occurrencesPerStep t="ContinuousValueConstant" value="5"/>', True),
         ("VariableRateStimulus", '<step value="1" unit="s"/>', True),
         # A clock drives it.
         ("VariableRateStimulus", "<scenario/>", False),
@@ -286,7 +286,7 @@ def test_distances_of_occurrences(kind, parts, is_told, tmp_path):
     assert bool(found("TIM-PERIOD", STIMULUS.format(kind, "", parts), tmp_path)) is is_told
 
 
-TRIGGER = '<items xsi:type="am:InterProcessTrigger" stimulus="I?type=InterProcessStimulus"/>'
+TRIGGER = '<items t="InterProcessTrigger" stimulus="I?type=InterProcessStimulus"/>'
 
 
 @pytest.mark.parametrize(
@@ -309,9 +309,9 @@ TRIGGER = '<items xsi:type="am:InterProcessTrigger" stimulus="I?type=InterProces
 def test_stimuli_that_never_occur(stimuli, others, expected, tmp_path):
     excerpt = f"""
 <stimuliModel>
-  <stimuli xsi:type="am:InterProcessStimulus" name="I"/>
-  <stimuli xsi:type="am:EventStimulus" name="E"/>
-  <stimuli xsi:type="am:CustomStimulus" name="C"/>
+  <stimuli t="InterProcessStimulus" name="I"/>
+  <stimuli t="EventStimulus" name="E"/>
+  <stimuli t="CustomStimulus" name="C"/>
 </stimuliModel>
 <swModel><tasks name="T" stimuli="{stimuli}"/>{others}</swModel>"""
     assert found("TIM-STIMULUS", excerpt, tmp_path) == expected
@@ -374,7 +374,7 @@ def activations(kind, attributes, parts, limit, folder):
 def jitter(upper, least=""):
     return f"""
 <recurrence value="10" unit="ms"/>
-<jitter xsi:type="am:TimeBoundaries"><lowerBound value="-1" unit="ms"/><upperBound value="{upper}" unit="us"/></jitter>{least}"""
+<jitter t="TimeBoundaries"><lowerBound value="-1" unit="ms"/><upperBound value="{upper}" unit="us"/></jitter>{least}"""
 
 
 @pytest.mark.parametrize(
@@ -411,21 +411,21 @@ def test_the_limit_that_nobody_states_is_1(tmp_path):
 
 def deadlines(stimuli, requirement=None, parameter=None, limit_type="UpperLimit", metric="ResponseTime"):
     limit = f"""
-<requirements xsi:type="am:ProcessRequirement" name="R" process="T?type=Task">
-  <limit xsi:type="am:TimeRequirementLimit" limitType="{limit_type}" metric="{metric}">
+<requirements t="ProcessRequirement" name="R" process="T?type=Task">
+  <limit t="TimeRequirementLimit" limitType="{limit_type}" metric="{metric}">
     <limitValue value="{requirement}" unit="ms"/>
   </limit>
 </requirements>"""
     stated = f"""
 <schedulingParameters key="deadline?type=SchedulingParameterDefinition">
-  <value xsi:type="am:Time" value="{parameter}" unit="ms"/>
+  <value t="Time" value="{parameter}" unit="ms"/>
 </schedulingParameters>"""
     return f"""
 <stimuliModel>
-  <stimuli xsi:type="am:PeriodicStimulus" name="P"><recurrence value="10" unit="ms"/></stimuli>
-  <stimuli xsi:type="am:PeriodicStimulus" name="Q"><recurrence value="40" unit="ms"/></stimuli>
-  <stimuli xsi:type="am:SingleStimulus" name="O"/>
-  <stimuli xsi:type="am:CustomStimulus" name="C"/>
+  <stimuli t="PeriodicStimulus" name="P"><recurrence value="10" unit="ms"/></stimuli>
+  <stimuli t="PeriodicStimulus" name="Q"><recurrence value="40" unit="ms"/></stimuli>
+  <stimuli t="SingleStimulus" name="O"/>
+  <stimuli t="CustomStimulus" name="C"/>
 </stimuliModel>
 <osModel>
   <schedulingParameterDefinitions name="deadline"/>
@@ -475,11 +475,11 @@ def test_deadlines(excerpt, expected, tmp_path):
     [
         (TICK, "", False),
         (call("R"), runnable("R", call("Q")) + runnable("Q", TICK), False),
-        ('<items xsi:type="am:SynchronousServerCall" serverRunnable="Q?type=Runnable"/>', runnable("Q", TICK), False),
-        ('<items xsi:type="am:AsynchronousServerCall" serverRunnable="Q?type=Runnable"/>', runnable("Q", TICK), True),
+        ('<items t="SynchronousServerCall" serverRunnable="Q?type=Runnable"/>', runnable("Q", TICK), False),
+        ('<items t="AsynchronousServerCall" serverRunnable="Q?type=Runnable"/>', runnable("Q", TICK), True),
         ("", runnable("R", TICK), True),
-        ('<items xsi:type="am:Ticks"/>', "", True),
-        ('<items xsi:type="am:ExecutionNeed"/>', "", True),
+        ('<items t="Ticks"/>', "", True),
+        ('<items t="ExecutionNeed"/>', "", True),
         (call("R"), runnable("R", call("Q")) + runnable("Q", call("R")), True),
         (call("R"), runnable("R", call("Q")) + runnable("Q", TICK, call("R")), False),
     ],
@@ -495,13 +495,13 @@ def test_processes_that_take_no_time(task, others, is_told, tmp_path):
         (call("R"), runnable("R", call("Q")) + runnable("Q"), []),
         # What only calls itself, or is called by something that is not executed, is not executed either.
         ("", runnable("R", call("R"), call("Q")) + runnable("Q"), ["R", "Q"]),
-        ('<items xsi:type="am:SynchronousServerCall" serverRunnable="Q?type=Runnable"/>', runnable("Q"), []),
+        ('<items t="SynchronousServerCall" serverRunnable="Q?type=Runnable"/>', runnable("Q"), []),
         (
-            '<items xsi:type="am:AsynchronousServerCall" serverRunnable="Q?type=Runnable" resultRunnable="R?type=Runnable"/>',
+            '<items t="AsynchronousServerCall" serverRunnable="Q?type=Runnable" resultRunnable="R?type=Runnable"/>',
             runnable("Q") + runnable("R"),
             [],
         ),
-        ('<items xsi:type="am:SenderReceiverWrite" notifiedRunnables="Q?type=Runnable"/>', runnable("Q"), []),
+        ('<items t="SenderReceiverWrite" notifiedRunnables="Q?type=Runnable"/>', runnable("Q"), []),
         # A prototype runs nothing.
         (
             "",
@@ -518,8 +518,8 @@ def test_runnables_that_no_process_executes(task, others, expected, tmp_path):
 
 
 def test_a_runnable_that_waits_for_itself_as_a_server(tmp_path):
-    server = '<items xsi:type="am:SynchronousServerCall" serverRunnable="R?type=Runnable"/>'
-    request = '<items xsi:type="am:AsynchronousServerCall" serverRunnable="P?type=Runnable"/>'
+    server = '<items t="SynchronousServerCall" serverRunnable="R?type=Runnable"/>'
+    request = '<items t="AsynchronousServerCall" serverRunnable="P?type=Runnable"/>'
     excerpt = f"<swModel>{runnable('R', call('Q'))}{runnable('Q', server)}{runnable('P', request)}</swModel>"
     assert found("TIM-RECURSION", excerpt, tmp_path) == ["'R' calls itself: R -> Q -> R", "'Q' calls itself: Q -> R -> Q"]
 
@@ -551,25 +551,25 @@ def test_many_runnables_are_looked_at_in_linear_time(tmp_path):
     ("deviation", "expected"),
     [
         (
-            '<default xsi:type="am:DiscreteValueGaussDistribution" lowerBound="1"/>',
+            '<default t="DiscreteValueGaussDistribution" lowerBound="1"/>',
             ["the DiscreteValueGaussDistribution has no upper bound"],
         ),
         (
-            '<default xsi:type="am:DiscreteValueGaussDistribution" upperBound="1"/>',
+            '<default t="DiscreteValueGaussDistribution" upperBound="1"/>',
             ["the DiscreteValueGaussDistribution has no lower bound"],
         ),
         (
-            '<default xsi:type="am:DiscreteValueHistogram"/>',
+            '<default t="DiscreteValueHistogram"/>',
             ["the DiscreteValueHistogram has no lower bound", "the DiscreteValueHistogram has no upper bound"],
         ),
-        ('<default xsi:type="am:DiscreteValueHistogram"><entries lowerBound="1" upperBound="2"/></default>', []),
+        ('<default t="DiscreteValueHistogram"><entries lowerBound="1" upperBound="2"/></default>', []),
         # What is not stated is 0.
-        ('<default xsi:type="am:DiscreteValueBoundaries"/>', []),
-        ('<default xsi:type="am:DiscreteValueConstant"/>', []),
+        ('<default t="DiscreteValueBoundaries"/>', []),
+        ('<default t="DiscreteValueConstant"/>', []),
     ],
 )
 def test_bounds(deviation, expected, tmp_path):
-    item = f'<items xsi:type="am:Ticks">{deviation}</items>'
+    item = f'<items t="Ticks">{deviation}</items>'
     excerpt = f"<swModel>{runnable('R', item)}</swModel>"
     assert found("TIM-BOUNDS", excerpt, tmp_path) == expected
 
@@ -588,8 +588,8 @@ def test_bounds(deviation, expected, tmp_path):
     ],
 )
 def test_estimators(attributes, expected, tmp_path):
-    deviation = f'<default xsi:type="am:DiscreteValueWeibullEstimatorsDistribution" {attributes}/>'
-    item = f'<items xsi:type="am:Ticks">{deviation}</items>'
+    deviation = f'<default t="DiscreteValueWeibullEstimatorsDistribution" {attributes}/>'
+    item = f'<items t="Ticks">{deviation}</items>'
     excerpt = f"<swModel>{runnable('R', item)}</swModel>"
     assert found("TIM-DISTRIBUTION", excerpt, tmp_path) == expected
 
@@ -598,14 +598,14 @@ def two_types(item, features="", tasks="T U", modules=True):
     """A runnable that T calls on a core of the type A, and U on one of the type B."""
     hardware = """
   <structures name="ECU">
-    <modules xsi:type="am:ProcessingUnit" name="core0" definition="A?type=ProcessingUnitDefinition"/>
-    <modules xsi:type="am:ProcessingUnit" name="core1" definition="B?type=ProcessingUnitDefinition"/>
+    <modules t="ProcessingUnit" name="core0" definition="A?type=ProcessingUnitDefinition"/>
+    <modules t="ProcessingUnit" name="core1" definition="B?type=ProcessingUnitDefinition"/>
   </structures>"""
     body = {name: graph(call("R")) if name in tasks.split() else "" for name in ("T", "U")}
     return f"""
 <hwModel>
-  <definitions xsi:type="am:ProcessingUnitDefinition" name="A" {features}/>
-  <definitions xsi:type="am:ProcessingUnitDefinition" name="B"/>
+  <definitions t="ProcessingUnitDefinition" name="A" {features}/>
+  <definitions t="ProcessingUnitDefinition" name="B"/>
   <featureCategories name="Matrix"><features name="cost" value="2"/><features name="nothing" value="0"/></featureCategories>
   {hardware if modules else ""}
 </hwModel>
@@ -621,11 +621,11 @@ def two_types(item, features="", tasks="T U", modules=True):
 </mappingModel>"""
 
 
-ONE = '<value xsi:type="am:DiscreteValueConstant" value="1"/>'
+ONE = '<value t="DiscreteValueConstant" value="1"/>'
 
 
 def need(key):
-    return f'<items xsi:type="am:ExecutionNeed"><needs key="{key}">{ONE}</needs></items>'
+    return f'<items t="ExecutionNeed"><needs key="{key}">{ONE}</needs></items>'
 
 
 COST = 'features="Matrix/cost?type=HwFeature"'
@@ -661,7 +661,7 @@ def test_software_without_hardware_may_need_anything(tmp_path):
 
 
 def extended(definition):
-    return f'<items xsi:type="am:Ticks"><extended key="{definition}?type=ProcessingUnitDefinition">{ONE}</extended></items>'
+    return f'<items t="Ticks"><extended key="{definition}?type=ProcessingUnitDefinition">{ONE}</extended></items>'
 
 
 @pytest.mark.parametrize(
@@ -670,10 +670,7 @@ def extended(definition):
         (two_types(extended("A")), ["the ticks have no value for 'core1'"]),
         (two_types(extended("A"), tasks="T"), []),
         (two_types(TICK), []),
-        (
-            two_types('<items xsi:type="am:Ticks"><extended key="A?type=ProcessingUnitDefinition"/></items>'),
-            ["the ticks have no value"],
-        ),
+        (two_types('<items t="Ticks"><extended key="A?type=ProcessingUnitDefinition"/></items>'), ["the ticks have no value"]),
     ],
 )
 def test_ticks_without_a_value(excerpt, expected, tmp_path):
@@ -681,7 +678,7 @@ def test_ticks_without_a_value(excerpt, expected, tmp_path):
 
 
 def test_waiting(tmp_path):
-    items = '<items xsi:type="am:WaitEvent"><eventMask events="E?type=OsEvent F?type=OsEvent"/></items><items xsi:type="am:WaitEvent"/>'
+    items = '<items t="WaitEvent"><eventMask events="E?type=OsEvent F?type=OsEvent"/></items><items t="WaitEvent"/>'
     excerpt = f'<swModel><tasks name="T">{graph(items)}</tasks><events name="E"/><events name="F"/></swModel>'
     assert found("TIM-WAIT", excerpt, tmp_path) == [
         "the maximum waiting time for 'E' and 'F' is unknown",
@@ -701,10 +698,10 @@ def memory(size='<size value="10" unit="B"/>', label='<size value="8" unit="B"/>
   <sections name="S"/>
 </swModel>
 <hwModel>
-  <definitions xsi:type="am:MemoryDefinition" name="D">{size}</definitions>
+  <definitions t="MemoryDefinition" name="D">{size}</definitions>
   <structures name="ECU">
-    <modules xsi:type="am:Memory" name="M" definition="D?type=MemoryDefinition"/>
-    <modules xsi:type="am:Memory" name="N"/>
+    <modules t="Memory" name="M" definition="D?type=MemoryDefinition"/>
+    <modules t="Memory" name="N"/>
   </structures>
 </hwModel>
 <mappingModel>{mappings}</mappingModel>"""
@@ -777,11 +774,11 @@ def test_sizes_of_memories(size, label, expected, tmp_path):
 
 
 def access(kind="write", attributes="", label="L"):
-    return f'<items xsi:type="am:LabelAccess" data="{label}?type=Label" access="{kind}" {attributes}/>'
+    return f'<items t="LabelAccess" data="{label}?type=Label" access="{kind}" {attributes}/>'
 
 
 def semaphore(operation, name="X"):
-    return f'<items xsi:type="am:SemaphoreAccess" semaphore="{name}?type=Semaphore" access="{operation}"/>'
+    return f'<items t="SemaphoreAccess" semaphore="{name}?type=Semaphore" access="{operation}"/>'
 
 
 def shared(first, second, *, others="", label="", consistency="", constraints="", responsibility="core1?type=ProcessingUnit"):
@@ -789,7 +786,7 @@ def shared(first, second, *, others="", label="", consistency="", constraints=""
     return f"""
 <hwModel>
   <structures name="ECU">
-    <modules xsi:type="am:ProcessingUnit" name="core0"/><modules xsi:type="am:ProcessingUnit" name="core1"/>
+    <modules t="ProcessingUnit" name="core0"/><modules t="ProcessingUnit" name="core1"/>
   </structures>
 </hwModel>
 <osModel>
@@ -830,7 +827,7 @@ ALONE = semaphore("exclusive", "Z") + access() + semaphore("release", "Z")
         (access(), access("_undefined_"), "", False),
         (access(), access(label="M"), "", False),
         (access() + access(), "", "", False),
-        (access(), '<items xsi:type="am:SenderReceiverWrite" label="L?type=Label"/>', "", True),
+        (access(), '<items t="SenderReceiverWrite" label="L?type=Label"/>', "", True),
         # A common semaphore around both, in whatever runnable it is requested.
         (locked(access()), locked(access()), "", False),
         (locked(access()), access(), "", True),
