@@ -18,7 +18,7 @@ VERSION = "3.3.0"
 SHARED = Path(__file__).parents[2].parent / "shared"
 XSI = "http://www.w3.org/2001/XMLSchema-instance"
 #: The newest one, and older ones.
-VERSIONS = every(4, supported_versions()[::-1])
+VERSIONS = every(len(supported_versions()) - 1, supported_versions()[::-1])
 
 
 def document(content: str, version: str = VERSION) -> bytes:
@@ -115,7 +115,7 @@ def test_every_feature_of_every_class_is_accepted_in_any_order(version):
     declared = facts(version)
     ways = ways_to_contain(declared)
     assert len(ways) > 250
-    for class_name, way in ways.items():
+    for class_name, way in every(5, list(ways.items())):
         root = etree.fromstring(document("", version))
         element = root
         for name, step in way:

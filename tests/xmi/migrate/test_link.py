@@ -146,7 +146,7 @@ def test_comments_stay(tmp_path):
 
 
 def test_many_objects_of_one_name_are_told_apart(tmp_path):
-    count = 20_000
+    count = 4_000
     labels = "".join(f'<labels xmi:id="_{number:022d}" name="L"/>' for number in range(count))
     used = " ".join(f"_{number:022d}" for number in range(count))
     content = f'<swModel>{labels}</swModel><componentsModel><components labels="{used}"/></componentsModel>'

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import pytest
+from effort import every
 from inline_models import damaged, written
 from migration import meaning, migrated, opened
 
@@ -141,5 +142,5 @@ def test_what_a_step_back_does_not_lose_comes_back(step, tmp_path):
 def test_damaged_files_are_migrated(step, tmp_path):
     source, target = step.versions
     values = ["", "0", "x", "T?type=Task", "gone?type=Label gone?type=Core"]
-    for number in range(6):
+    for number in every(3, range(6)):
         migrated(written(tmp_path, source, *(damaged(text, values, number) for text in step.before)), target)
