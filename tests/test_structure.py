@@ -17,7 +17,7 @@ from support import ROOT
 LINES = {
     "__init__": 231,
     "__main__": 3,
-    "_internal": 674,
+    "_internal": 677,
     "_version": 1,
     "am": 2,
     "analyze": 7249,
