@@ -1,4 +1,4 @@
-"""Random systems with all constructs, small enough to be played.
+"""Random systems in the plain form, with constructs nested in each other, small enough to be played.
 
 What no reading defines is left out: waiting inside a non-interruptible group (nobody could end the wait), semaphores nested in
 different orders (deadlock), and semaphores on a core with round robin.
@@ -10,7 +10,9 @@ from dataclasses import dataclass, field
 from random import Random
 from typing import Any
 
-from opponent.systems import Item, PlainSystem, items_of
+from opponent.models.generator import RandomModel
+from opponent.systems import Item, PlainSystem, constructs_of, items_of
+from opponent.to_text import to_text
 
 #: Periods as multiples of a base: harmonic, and others with a small hyperperiod.
 FAMILIES = ((1, 2, 4, 8), (1, 2, 4), (1, 2, 3, 6), (2, 3, 6), (2, 3, 4, 6, 12), (4, 5, 10, 20))
@@ -29,6 +31,13 @@ def random_system(seed: int) -> PlainSystem:
     """The system of a seed."""
     rng = Random(seed)
     return pile_up(rng) if some(rng, 0.05) else Generator(rng).system()
+
+
+def nested_model(seed: int) -> RandomModel:
+    """The same as a model, with a pair of events between which a delay can be limited."""
+    system = random_system(seed)
+    first, *_, last = [process["name"] for process in (system["processes"] * 2)[:-1]]
+    return RandomModel(to_text(system), constructs_of(system), (((first, "start"), (last, "terminate")),))
 
 
 def pile_up(rng: Random) -> PlainSystem:

@@ -14,6 +14,7 @@ from functools import partial
 from pathlib import Path
 from statistics import median
 
+from opponent.generator import nested_model
 from opponent.models.claims import Tally, false_claims
 from opponent.models.facts import facts_of
 from opponent.models.generator import RandomModel, random_model
@@ -76,11 +77,13 @@ def main() -> None:
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--out", type=Path, help="folder for the smallest models")
     parser.add_argument("--shrink", type=int, default=1, metavar="N", help="smallest models of N failures of each kind")
+    parser.add_argument("--nested", action="store_true", help="models with constructs nested in each other")
     parser.add_argument("--richer", action="store_true", help="models with constraints and further constructs")
     parser.add_argument("--always", default="", metavar="FEATURE[,FEATURE]", help="richer models that have these constructs")
     arguments = parser.parse_args()
     always = frozenset(filter(None, arguments.always.split(",")))
-    make = partial(richer_model, always=always) if arguments.richer or always else random_model
+    make: Maker = nested_model if arguments.nested else random_model
+    make = partial(richer_model, always=always) if arguments.richer or always else make
     first, end = map(int, arguments.seeds.split(".."))
     total, kinds, failing, begin = Tally(), Counter[str](), 0, time.monotonic()
     for seed, said, tally in _results(make, range(first, end), arguments.jobs):

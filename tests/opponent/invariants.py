@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator
 
-from opponent.observation import Horizon
+from opponent.models.facts import horizon
+from opponent.models.reading import read
 from opponent.simulation import Recording, record
 from opponent.systems import PlainSystem
-from opponent.to_perf import MICROSECOND, to_perf
+from opponent.to_perf import read_system
+from opponent.to_text import to_text
 
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.timing.observed.job_times import JobColumn
@@ -20,8 +22,9 @@ _LEAVES = (EventKind.PREEMPT, EventKind.TERMINATE, EventKind.PARK, EventKind.WAI
 
 def violations(plain: PlainSystem, seed: int = 1) -> list[str]:
     """What is wrong in a simulation of a system."""
-    duration = Horizon.of(plain).end * MICROSECOND
-    run = record(to_perf(plain), Options(duration=duration, seed=seed, traced=(0, duration)))
+    text = to_text(plain)
+    duration = horizon(read(text))
+    run = record(read_system(text), Options(duration=duration, seed=seed, traced=(0, duration)))
     return [*_lost_time(run), *_shared_cores(run), *_shared_semaphores(run), *disobeyed_priorities(plain, run)]
 
 

@@ -1,6 +1,7 @@
 """The player of models plays small ones as they can be computed by hand."""
 
 import pytest
+from opponent.models import writing
 from opponent.models.constraints import (
     Age,
     AgeInCycles,
@@ -14,7 +15,19 @@ from opponent.models.constraints import (
 from opponent.models.facts import Facts, facts_of
 from opponent.models.limits import limits_of, with_limits
 from opponent.models.reading import UnplayableError, read
-from opponent.models.writing import Parts, item, parameter, scheduler, stimulus, ticks, time
+from opponent.models.writing import (
+    Parts,
+    item,
+    label_access,
+    parameter,
+    scheduler,
+    semaphore,
+    semaphore_access,
+    stimulus,
+    ticks,
+    time,
+)
+from opponent.to_text import to_text
 
 PERIODIC = time("recurrence", 20) + time("offset", 0)
 
@@ -22,19 +35,15 @@ PERIODIC = time("recurrence", 20) + time("offset", 0)
 def task(
     parts: Parts, name: str, priority: int, body: str, stimuli: str = "", kind: str = "Periodic", where: str = "Sc0"
 ) -> None:
-    parts.tasks.append(
-        f'<tasks name="{name}" stimuli="s{name}?type={kind}Stimulus" preemption="preemptive" multipleTaskActivationLimit="9">'
-        f"<activityGraph>{body}</activityGraph></tasks>"
-    )
+    parts.tasks.append(writing.task(name, f"s{name}", body, limit=9))
     parts.stimuli.append(stimulus(kind, f"s{name}", "", stimuli or PERIODIC))
-    given = parameter("priority", priority)
-    parts.allocations.append(f'<taskAllocation task="{name}" scheduler="{where}">{given}</taskAllocation>')
+    parts.allocations.append(writing.task_allocation(name, where, {"priority": priority}))
 
 
 @pytest.fixture
 def parts() -> Parts:
     found = Parts(cores={"c0": "1.0"}, schedulers=[scheduler("Sc0", "FixedPriorityPreemptive")])
-    found.allocations.append('<schedulerAllocation scheduler="Sc0" responsibility="c0"/>')
+    found.allocations.append(writing.scheduler_allocation("Sc0", "c0"))
     return found
 
 
@@ -98,7 +107,7 @@ def test_decisions_take_time(parts):
 def test_a_task_goes_on_on_another_core(parts):
     parts.cores["c1"] = "2.0"
     parts.schedulers.append(scheduler("Sc1", "FixedPriorityPreemptive"))
-    parts.allocations.insert(0, '<schedulerAllocation scheduler="Sc1" responsibility="c1"/>')
+    parts.allocations.insert(0, writing.scheduler_allocation("Sc1", "c1"))
     task(parts, "here", 1, ticks(4, 4))
     task(parts, "there", 1, ticks(4, 4) + item("EnforcedMigration", 'resourceOwner="Sc0"') + ticks(1, 1), where="Sc1")
     # there: 2 on its own core; here 0..4, then 1 on the slower core, or before it, if what is declared last goes first
@@ -122,11 +131,10 @@ def test_bursts_and_times(parts):
 
 def test_latencies_of_a_chain(parts):
     parts.data.append('<labels name="L"/>')
-    task(parts, "W", 2, ticks(1, 1) + item("LabelAccess", 'data="L" access="write" implementation="explicit"'))
-    read_label = item("LabelAccess", 'data="L" access="read" implementation="explicit"')
-    task(parts, "R", 1, read_label + ticks(1, 1), time("recurrence", 10) + time("offset", 0))
+    task(parts, "W", 2, ticks(1, 1) + label_access("L", "write", "explicit"))
+    task(parts, "R", 1, label_access("L", "read", "explicit") + ticks(1, 1), time("recurrence", 10) + time("offset", 0))
     for name, change, process in (("begin", "start", "W"), ("end", "terminate", "R")):
-        parts.events.append(f'<events xsi:type="am:ProcessEvent" name="{name}" eventType="{change}" entity="{process}"/>')
+        parts.events.append(writing.process_event(name, process, "Task", change))
     parts.chains.append('<eventChains name="chain" stimulus="begin" response="end"/>')
     facts = played(parts)
     found = {key[2]: value // 10**6 for key, value in (*facts.greatest.items(), *facts.least.items()) if key[0] == "chain"}
@@ -158,7 +166,7 @@ def constrained(parts: Parts, constraint) -> tuple[int | None, int]:
 
 
 def runnable(parts: Parts, name: str, body: str) -> str:
-    parts.runnables.append(f'<runnables name="{name}"><activityGraph>{body}</activityGraph></runnables>')
+    parts.runnables.append(writing.runnable(name, body))
     return item("RunnableCall", f'runnable="{name}"')
 
 
@@ -166,9 +174,7 @@ def runnable(parts: Parts, name: str, body: str) -> str:
 def writer_and_reader(parts) -> Parts:
     """W at 0, 20, ... executes 1, w that takes 2 and then writes, and 1; R at 5, 25, ... executes r, which reads and takes 1."""
     parts.data.append('<labels name="L"/>')
-    write, read_label = (
-        item("LabelAccess", f'data="L" access="{access}" implementation="explicit"') for access in ("write", "read")
-    )
+    write, read_label = (label_access("L", access, "explicit") for access in ("write", "read"))
     task(parts, "W", 2, ticks(1, 1) + runnable(parts, "w", ticks(2, 2) + write) + ticks(1, 1))
     later = time("recurrence", 20) + time("offset", 5)
     task(parts, "R", 1, runnable(parts, "r", read_label + ticks(1, 1)) + runnable(parts, "s", ticks(1, 1)), later)
@@ -203,24 +209,81 @@ def test_what_constraints_limit(writer_and_reader, constraint, expected):
 
 
 def test_a_semaphore_with_and_without_ceiling(parts):
-    request, release = (item("SemaphoreAccess", f'semaphore="S" access="{access}"') for access in ("request", "release"))
+    request, release = (semaphore_access("S", access) for access in ("request", "release"))
     task(parts, "low", 1, request + ticks(5, 5) + release)
     task(parts, "mid", 2, ticks(3, 3), time("recurrence", 20) + time("offset", 2))
     task(parts, "high", 3, request + ticks(1, 1) + release, time("recurrence", 20) + time("offset", 1))
-    parts.semaphores.append('<semaphores name="S" priorityCeilingProtocol="true"/>')
-    # low has the semaphore from 0 to 5, then high ends at 6 and mid at 9
-    assert [responses(played(parts), name) for name in ("low", "mid", "high")] == [(5, 5), (7, 7), (5, 5)]
-    parts.semaphores[:] = ['<semaphores name="S" priorityCeilingProtocol="false"/>']
-    # high waits from 1, mid goes from 2 to 5, low ends at 8, high at 9
+    parts.semaphores.append(semaphore("S", has_ceiling=True))
+    # low has the semaphore from 0 to 5, then high ends at 6 and mid at 9; low at 5, or at 9, if its end waits for the core, too
+    assert [responses(played(parts), name) for name in ("low", "mid", "high")] == [(9, 5), (7, 7), (5, 5)]
+    parts.semaphores[:] = [semaphore("S", has_ceiling=False)]
+    # high waits from 1, mid goes from 2 to 5, low ends at 8, or behind high, which ends at 9
     facts = played(parts)
-    assert [responses(facts, name) for name in ("low", "mid", "high")] == [(8, 8), (3, 3), (8, 8)]
+    assert [responses(facts, name) for name in ("low", "mid", "high")] == [(9, 8), (3, 3), (8, 8)]
     assert facts.greatest[("process", "high", "net_execution_time")] == 8 * 10**6
 
 
-def test_a_cooperative_task(parts):
-    task(parts, "low", 1, ticks(4, 4) + item("SchedulePoint") + ticks(2, 2))
-    task(parts, "high", 2, ticks(1, 1), time("recurrence", 20) + time("offset", 1))
-    parts.tasks[:] = [text.replace('"preemptive"', '"cooperative"') for text in parts.tasks]
-    # high waits from 1 to 4
-    facts = played(parts)
-    assert (responses(facts, "low"), responses(facts, "high")) == ((7, 7), (4, 4))
+# Systems in the plain form.
+
+
+def process(name, body, period=20, priority=1, offset=0, **more):
+    given = {"name": name, "kind": "task", "core": "core0", "priority": priority, "preemption": "preemptive"}
+    return {**given, "arrival": {"periodic": {"period": period, "offset": offset}}, "body": body, **more}
+
+
+def execute(time: int):
+    return {"execute": [time, time]}
+
+
+COOPERATIVE = {"preemption": "cooperative"}
+POINT = {"point": True}
+#: The policy of the core, processes, and the least of the greatest response times and the greatest of the least ones in all readings.
+PLAIN = {
+    # high runs at 0..2, 5..7, 10..12: low gets 2..5 and 7..9.
+    "a more urgent task interrupts": (
+        "FPP",
+        [process("low", [execute(5)]), process("high", [execute(2)], 5, priority=2)],
+        {"low": (9, 9), "high": (2, 2)},
+    ),
+    # high waits from 1 to 4.
+    "a cooperative task goes on to its schedule point": (
+        "FPP",
+        [
+            process("low", [execute(4), POINT, execute(2)], **COOPERATIVE),
+            process("high", [execute(1)], priority=2, offset=1, **COOPERATIVE),
+        ],
+        {"low": (7, 7), "high": (4, 4)},
+    ),
+    # low executes 0..7 in one stretch; then high has waited for 6.
+    "executions of a cooperative task are one stretch": (
+        "FPP",
+        [
+            process("low", [execute(3), execute(4), POINT, execute(1)], **COOPERATIVE),
+            process("high", [execute(2)], priority=2, offset=1, **COOPERATIVE),
+        ],
+        {"low": (10, 10), "high": (8, 8)},
+    ),
+    "the earlier deadline goes first": (
+        "EDF",
+        [process("late", [execute(3)], deadline=9), process("soon", [execute(2)], deadline=5)],
+        {"soon": (2, 2), "late": (5, 5)},
+    ),
+    # a a b a b, or with b first: b a a b a
+    "slices alternate": (
+        "RR",
+        [process("a", [execute(3)], slice=2), process("b", [execute(2)], slice=1)],
+        {"a": (5, 4), "b": (5, 4)},
+    ),
+    "a counter takes effect every other time": (
+        "FPP",
+        [process("caller", [execute(1), {"call": "r", "prescaler": 2, "offset": 0}], 10)],
+        {"caller": (1, 5)},
+    ),
+}
+
+
+@pytest.mark.parametrize(("policy", "processes", "expected"), PLAIN.values(), ids=PLAIN)
+def test_systems_in_the_plain_form(policy, processes, expected):
+    plain = {"cores": {"core0": policy}, "semaphores": {}, "processes": processes, "runnables": {"r": [execute(4)]}}
+    facts = facts_of(to_text(plain), until=200 * 10**6)
+    assert {name: responses(facts, name) for name in expected} == expected

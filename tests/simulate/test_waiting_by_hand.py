@@ -3,7 +3,6 @@
 import pytest
 from by_hand import built, play
 from hand_made_systems import READ, WRITE, Proc, access, chain, locked, release, request, ticks
-from opponent.simulation import latencies, record
 
 from amalthea_uros.perf.activities import (
     Call,
@@ -19,6 +18,7 @@ from amalthea_uros.perf.events import ProcessChange, ProcessEvent
 from amalthea_uros.perf.os import Semaphore, SemaphoreKind
 from amalthea_uros.perf.software import Label, OsEvent, Runnable
 from amalthea_uros.simulate.options import Options
+from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.timing.observed.job_times import JobColumn
 from amalthea_uros.units import MICROSECOND as US
 
@@ -287,6 +287,6 @@ def test_latencies_from_the_start_of_a_producer_to_the_end_of_a_consumer(communi
     rival = Proc("rival", (ticks(6),), 20, 5, priority=2, scheduler="s1")
     consumer = Proc("consumer", (ticks(2), access("data", READ, communication), ticks(1)), 20, 5, priority=1, scheduler="s1")
     parts = {"labels": (Label(name="data"),), "events": EVENTS, "chains": (chain("through", "begin", "end"),)}
-    run = record(built(producer, rival, consumer, **parts), Options(duration=400 * US))
-    found = latencies(run, "through", 0)
+    run = simulate_system(built(producer, rival, consumer, **parts), Options(duration=400 * US))
+    found = {quantity.value: latency for quantity, latency in run.chains["through"].quantities.items()}
     assert {name: (found[name].min / US, found[name].max / US) for name in expected} == expected

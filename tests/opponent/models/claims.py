@@ -9,11 +9,10 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from fuzzing.contradictions import contradictions
-from opponent.models.facts import Facts, facts_of, horizon
+from opponent.models.facts import MOST_VARIANTS, Facts, facts_of, horizon, is_random
 from opponent.models.generator import RandomModel
 from opponent.models.limits import Limit, limits_of, loose_limits_of, with_limits
 from opponent.models.reading import UnplayableError
-from opponent.models.variants import items_of
 
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import ChainResult
@@ -26,6 +25,10 @@ from amalthea_uros.simulate.observations import RequirementObservation
 from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.simulate.results import Simulation
 from amalthea_uros.timing.basics.quantities import JobMetric
+from amalthea_uros.timing.response import Claim
+
+#: How many readings confirm a suspicion.
+MANY_VARIANTS = 64
 
 #: The runs that are compared: how values are chosen, and the seed.
 RUNS = ((Mode.WORST, 1), (Mode.BEST, 1), (Mode.SAMPLED, 1), (Mode.SAMPLED, 2))
@@ -63,11 +66,14 @@ class Tally:
                 self.ratios.setdefault(name, []).append(ratio)
 
 
-def false_claims(model: RandomModel, tally: Tally | None = None) -> list[str]:
-    """Whatever the product says falsely of a model with limits that it breaks; unplayable ones are left out."""
+def false_claims(model: RandomModel, tally: Tally | None = None, most: int = MOST_VARIANTS) -> list[str]:
+    """Whatever the product says falsely of a model with limits that it breaks; unplayable ones are left out.
+
+    Some readings show what is suspicious, many of them whether it is false.
+    """
     tally = Tally() if tally is None else tally
     try:
-        facts = facts_of(model.text, model.delays, model.constraints)
+        facts = facts_of(model.text, model.delays, model.constraints, most=most)
     except UnplayableError as error:
         tally.unplayable[str(error)] += 1
         return []
@@ -82,7 +88,9 @@ def false_claims(model: RandomModel, tally: Tally | None = None) -> list[str]:
             path.write_text(with_limits(text, facts, list(loose_limits_of(facts))), encoding="utf-8")
             tally.kinds["simulated with limits that are kept"] += 1
             found += falsely_missed(path, facts)
-        return found
+    if found and not facts.is_complete and most < MANY_VARIANTS:
+        return false_claims(model, most=MANY_VARIANTS)
+    return found
 
 
 def falsely_missed(path: Path, facts: Facts) -> list[str]:
@@ -159,7 +167,8 @@ def refuted(analysis: Analysis, facts: Facts) -> Iterator[str]:
             occurs = (facts.greatest if value.quantity.is_upper else facts.least).get(key)
             if value.value is None or occurs is None or value.quantity.is_mean:
                 continue
-            if value.value < occurs if value.quantity.is_upper else value.value > occurs:
+            is_beyond = value.value < occurs if value.quantity.is_upper else value.value > occurs
+            if is_beyond or (value.claim is Claim.EXACT and key in facts.determined and value.value != occurs):
                 yield f"{chain.name}: {value.quantity} {value.value} ({value.claim} by {value.method}), but {occurs} occurs"
 
 
@@ -174,6 +183,11 @@ def _refuted_process(process: ProcessResult, facts: Facts) -> Iterator[str]:
             yield f"{process.name}: {quantity} at most {most} ({how}), but {facts.greatest[key]} occurs"
         if least is not None and least > facts.least.get(key, least):
             yield f"{process.name}: {quantity} at least {least} ({how}), but {facts.least[key]} occurs"
+    key = ("process", process.name, "response_time")
+    if process.response is not None and process.response.claim is Claim.EXACT and key in facts.determined:
+        claimed, occurs = (process.response.best, process.response.worst), (facts.least[key], facts.greatest[key])
+        if process.response.worst is not None and claimed != occurs:
+            yield f"{process.name}: response_time exactly {claimed} by {process.response.method}, but {occurs} occurs"
 
 
 def falsely_met(analysis: Analysis, limits: Iterable[Limit], tally: Tally) -> Iterator[str]:
@@ -209,16 +223,7 @@ def falsely_kept(simulation: Simulation, limits: Iterable[Limit]) -> Iterator[st
 
 def is_determined(facts: Facts) -> bool:
     """Whether nothing is left to chance, and all readings were played."""
-    ticks = str([process.body for process in facts.played.processes]) + str(facts.played.runnables)
-    kinds = {stimulus.kind for stimulus in facts.played.stimuli.values()}
-    is_random = bool(kinds & {"RelativePeriodic", "ArrivalCurve", "VariableRate"}) or "chance" in ticks
-    is_random |= any(item[0] == "group" and not item[2] for item in items_of(facts.played))
-    jitters = any("jitter" in stimulus.given for stimulus in facts.played.stimuli.values())
-    return facts.is_complete and not (is_random or jitters or facts.lost or facts.played.servers or _varies(facts))
-
-
-def _varies(facts: Facts) -> bool:
-    return any(item[0] == "execute" and any(t[0] != t[1] for t in item[1].values()) for item in items_of(facts.played))
+    return facts.is_complete and not facts.lost and not is_random(facts.played)
 
 
 def played_otherwise(simulation: Simulation, facts: Facts) -> Iterator[str]:

@@ -12,7 +12,7 @@ from opponent.models.chains import Chain, Event, Reading, chains_of, latencies, 
 from opponent.models.constraints import Constraint, Play
 from opponent.models.player import Job, Player, play
 from opponent.models.reading import Played, Process, read
-from opponent.models.variants import Choices, variants_of
+from opponent.models.variants import Choices, items_of, variants_of
 
 #: What is measured: its kind ("process", "jitter", "chain", "delay", "constraint"), of what, and the quantity.
 Key = tuple[str, str, str]
@@ -49,6 +49,7 @@ class Facts:
     loose : the least and the greatest value in any way to read a constraint, and up to the end of a play; None: no complete one
     lost : processes of which activations were beyond a limit in some play
     is_complete : whether all readings were played
+    determined : what has no other extremes, however the model is read
     """
 
     played: Played
@@ -61,6 +62,7 @@ class Facts:
     constraints: tuple[Constraint, ...]
     lost: frozenset[str]
     is_complete: bool
+    determined: frozenset[Key] = frozenset()
 
 
 def horizon(played: Played) -> int:
@@ -121,7 +123,10 @@ def facts_of(
         complete = [each.least[key] for each in extremes if key in each.least]
         if extremes:
             loose[key] = (min(complete, default=None), max(each.greatest[key] for each in extremes))
+    is_fixed = len(chosen) == len(variants) and not lost and not is_random(played) and not has_counters(played)
+    fixed = {key for key, ends in spread.items() if ends == (least[key], greatest[key])} if is_fixed else ()
     return Facts(
+        determined=frozenset(fixed),
         loose=loose,
         constraints=constraints,
         played=played,
@@ -133,6 +138,25 @@ def facts_of(
         lost=frozenset(lost),
         is_complete=len(chosen) == len(variants),
     )
+
+
+def is_random(played: Played) -> bool:
+    """Whether anything is left to chance: times, branches or orders; and the uses of servers, which are not determined either."""
+    stimuli, items = played.stimuli.values(), list(items_of(played))
+    if played.servers or any(
+        s.kind in ("RelativePeriodic", "ArrivalCurve", "VariableRate") or "jitter" in s.given for s in stimuli
+    ):
+        return True
+    if any(item[0] == "chance" or (item[0] == "group" and not item[2]) for item in items):
+        return True
+    return any(least != most for item in items if item[0] == "execute" for least, most, _ in item[1].values())
+
+
+def has_counters(played: Played) -> bool:
+    """Whether something takes effect only sometimes, so that schedules repeat late."""
+    if any(stimulus.counter for stimulus in played.stimuli.values()):
+        return True
+    return any(item[0] in ("call", "trigger") and item[2] for item in items_of(played))
 
 
 def under_all(results: list[Extremes]) -> tuple[dict[Key, int], dict[Key, int]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from itertools import pairwise
+from itertools import pairwise, starmap
 from random import Random
 
 from opponent.models import writing
@@ -192,9 +192,7 @@ class Generator:
                 'data="Q?type=Channel" elements="1" receiveOperation="FIFO_Take" dataMustBeNew="false" elementIndex="0" lowerBound="0"',
             )
         if self.has("group", chance=0.4):
-            return item(
-                "Group", f'ordered="true" interruptible="{rng.choice(("true", "false"))}"', self._ticks() + self._ticks()
-            )
+            return writing.group(self._ticks() + self._ticks(), is_interruptible=rng.choice((True, False)))
         if rng.random() < 0.3:
             return self._call()
         return self._ticks()
@@ -204,11 +202,8 @@ class Generator:
         self.runnables += 1
         if self.has("modes", chance=0.3):
             condition = f"<executionCondition>{self._condition()}</executionCondition>"
-        self.parts.runnables.append(
-            f'<runnables xmi:id="{name}?type=Runnable" name="{name}" callback="false" service="false">{condition}'
-            f"<activityGraph>{self._ticks()}</activityGraph></runnables>"
-        )
-        counter = '<counter prescaler="2" offset="0"/>' if self.has("counter", chance=0.5) else ""
+        self.parts.runnables.append(writing.runnable(name, self._ticks(), condition))
+        counter = writing.counter(2, 0) if self.has("counter", chance=0.5) else ""
         return item("RunnableCall", f'runnable="{name}?type=Runnable"', counter)
 
     # Activations.
@@ -234,7 +229,7 @@ class Generator:
 
     def _fire(self, source: Plan, target: Plan) -> None:
         target.is_fired, name = True, f"s{target.name}"
-        counter = '<counter prescaler="2" offset="1"/>' if self.has("counter", chance=0.5) else ""
+        counter = writing.counter(2, 1) if self.has("counter", chance=0.5) else ""
         at = self.rng.randint(0, len(source.items))
         if "custom event" in self.features and (not self.features & {"trigger"} or self.rng.random() < 0.5):
             event = f"E{target.name}"
@@ -254,14 +249,14 @@ class Generator:
         return item("InterProcessTrigger", f'stimulus="{name}?type=InterProcessStimulus"')
 
     def _fire_either(self, source: Plan, *targets: Plan) -> None:
-        branches = ""
+        branches = []
         for target in targets:
             name = f"s{target.name}"
             target.is_fired = True
             target.stimuli.append(f"{name}?type=InterProcessStimulus")
             self.parts.stimuli.append(writing.stimulus("InterProcess", name))
-            branches += f'<entries probability="{self.rng.randint(1, 3)}.0">{self._trigger(name)}</entries>'
-        source.items.insert(self.rng.randint(0, len(source.items)), item("ProbabilitySwitch", content=branches))
+            branches.append((self.rng.randint(1, 3), self._trigger(name)))
+        source.items.insert(self.rng.randint(0, len(source.items)), writing.chance(branches))
 
     def _guard(self) -> str:
         """What a stimulus sets, and its condition."""
@@ -300,10 +295,7 @@ class Generator:
             )
         elif self.has("sporadic", chance=0.6):
             kind = "RelativePeriodic"
-            content = offset + (
-                f'<nextOccurrence xsi:type="am:TimeUniformDistribution">{time("lowerBound", period)}'
-                f"{time('upperBound', period + rng.randint(1, 30))}</nextOccurrence>"
-            )
+            content = offset + writing.times("nextOccurrence", period, period + rng.randint(1, 30))
         elif self.has("jitter", chance=0.7) and self.policy != POLICIES["EDF"]:
             late = rng.choice((3, period // 2, period - 1))
             jitter = f'<jitter xsi:type="am:TimeBoundaries">{time("lowerBound", 0)}{time("upperBound", late)}</jitter>'
@@ -328,27 +320,16 @@ class Generator:
         ends = [rng.choice(("start", "start", "activate", "terminate")), rng.choice(("terminate", "terminate", "start"))]
         changes = [ends[0], *["terminate"] * (len(path) - 2), ends[1]]
         for n, (plan, change) in enumerate(zip(path, changes, strict=True)):
-            self.parts.events.append(
-                f'<events xsi:type="am:ProcessEvent" xmi:id="v{n}?type=ProcessEvent" name="v{n}" eventType="{change}" '
-                f'entity="{plan.name}?type={plan.kind}"/>'
-            )
-        last = len(path) - 1
-        parts = "".join(
-            f'<items xsi:type="am:EventChainContainer"><eventChain name="" stimulus="v{n}?type=ProcessEvent" '
-            f'response="v{n + 1}?type=ProcessEvent" minItemsCompleted="1"/></items>'
-            for n in range(last)
-        )
-        self.parts.chains.append(
-            f'<eventChains xmi:id="chain?type=EventChain" name="chain" stimulus="v0?type=ProcessEvent" '
-            f'response="v{last}?type=ProcessEvent" itemType="sequence" minItemsCompleted="1">{parts}</eventChains>'
-        )
+            self.parts.events.append(writing.process_event(f"v{n}", plan.name, plan.kind, change))
+        events = [f"v{n}?type=ProcessEvent" for n in range(len(path))]
+        self.parts.chains.append(writing.chain("chain", events[0], events[-1], starmap(writing.step, pairwise(events))))
         self.used.add("chain")
 
     def _share(self, source: Plan, target: Plan, label: str) -> None:
-        self.parts.data.append(f'<labels xmi:id="{label}?type=Label" name="{label}" constant="false" bVolatile="false"/>')
+        self.parts.data.append(writing.label(label))
         how = self.rng.choice(("explicit", "explicit", "implicit"))
         for plan, access in ((source, "write"), (target, "read")):
-            text = item("LabelAccess", f'data="{label}?type=Label" access="{access}" implementation="{how}"')
+            text = writing.label_access(label, access, how)
             plan.items.insert(self.rng.randint(0, len(plan.items)), text)
 
     def _share_mode(self, source: Plan, target: Plan, label: str) -> None:
@@ -380,23 +361,13 @@ class Generator:
         for plan, priority in zip(self.plans, priorities, strict=True):
             body, stimuli = "".join(plan.items), " ".join(plan.stimuli)
             if plan.is_isr:
-                parts.isrs.append(
-                    f'<isrs xmi:id="{plan.name}?type=ISR" name="{plan.name}" stimuli="{stimuli}" category="CATEGORY_2">'
-                    f"<activityGraph>{body}</activityGraph></isrs>"
-                )
-                parts.allocations.append(
-                    f'<isrAllocation isr="{plan.name}?type=ISR" controller="I{plan.core}?type=InterruptController" '
-                    f'priority="{priority}"/>'
-                )
+                parts.isrs.append(writing.isr(plan.name, stimuli, body))
+                parts.allocations.append(writing.isr_allocation(plan.name, plan.core, priority))
                 continue
             if self.has("migration", chance=0.5) and self.policy == "FixedPriorityPreemptive" and not self.has("server"):
                 other = "c1" if plan.core == "c0" else "c0"
                 body += item("EnforcedMigration", f'resourceOwner="S{other}?type=TaskScheduler"') + self._ticks()
-            mode, limit = self._mode(plan), self._limit()
-            parts.tasks.append(
-                f'<tasks xmi:id="{plan.name}?type=Task" name="{plan.name}" stimuli="{stimuli}" preemption="{mode}" '
-                f'multipleTaskActivationLimit="{limit}"><activityGraph>{body}</activityGraph></tasks>'
-            )
+            parts.tasks.append(writing.task(plan.name, stimuli, body, self._mode(plan), self._limit()))
             parts.allocations.append(self._allocation(plan, priority))
 
     def _mode(self, _plan: Plan) -> str:
@@ -415,8 +386,7 @@ class Generator:
         }.get(self.policy, {"deadline": rng.randint(10, plan.period)})
         if scheduler == "V0":
             given = {"priority": priority}
-        parameters = "".join(writing.parameter(name, value) for name, value in given.items())
-        return f'<taskAllocation task="{plan.name}?type=Task" scheduler="{scheduler}?type=TaskScheduler">{parameters}</taskAllocation>'
+        return writing.task_allocation(plan.name, scheduler, given)
 
     def _schedulers(self) -> None:
         rng, parts = self.rng, self.parts
@@ -426,9 +396,7 @@ class Generator:
         with_cost = self.has("scheduler overhead")
         for core in parts.cores:
             parts.schedulers.append(writing.scheduler(f"S{core}", self.policy, decides if with_cost else ""))
-            parts.allocations.append(
-                f'<schedulerAllocation scheduler="S{core}?type=TaskScheduler" responsibility="{core}?type=ProcessingUnit"/>'
-            )
+            parts.allocations.append(writing.scheduler_allocation(f"S{core}", core))
         if "server" in self.features and self.policy == "FixedPriorityPreemptive":
             self.used.add("server")
             given = {"priority": rng.randint(1, 100), "capacity": rng.randint(4, 9), "period": rng.choice((12, 15, 20))}

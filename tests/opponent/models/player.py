@@ -13,7 +13,17 @@ from typing import Any, NamedTuple
 from opponent.models.arrivals import occurrences
 from opponent.models.comparisons import is_true
 from opponent.models.reading import Body, Item, Played, Process, UnplayableError
-from opponent.models.variants import ACCESSES, Choices, Variant, items_of_process
+from opponent.models.variants import (
+    ACCESSES,
+    END_WAITS_AFTER,
+    Ceilings,
+    Choices,
+    Handover,
+    Intruders,
+    Points,
+    Variant,
+    items_of_process,
+)
 
 NEVER = 10**18
 _MOST_STEPS = 200_000
@@ -50,11 +60,11 @@ class Job:
     copies: list[str] = field(default_factory=list)
     #: What runnables do: they start, terminate, read and write; with the name of what they access, or their own.
     marks: list[Mark] = field(default_factory=list)
-    #: A cooperative job lets other ones go first, and so it does after calls.
-    at_point: bool = False
-    yields_at_calls: bool = False
-    #: Semaphores that it holds, and the one that it waits for, since when, and how long it has waited.
-    held: list[str] = field(default_factory=list)
+    #: Whether it keeps others off, as far as its mode of preemption has it; a cooperative job also yields after calls up to a depth.
+    is_in_section: bool = False
+    yields_up_to: int = 0
+    #: Semaphores that it holds, since when; and the one that it waits for, since when, and how long it has waited.
+    held: dict[str, int] = field(default_factory=dict)
     #: Labels whose data are visible at the end of the period, and whether that is before the end of the job.
     timed: list[str] = field(default_factory=list)
     is_late: bool = False
@@ -65,6 +75,11 @@ class Job:
     def has_more(self) -> bool:
         """Whether anything is left in its text."""
         return any(index < len(body) for body, index, *_ in self.stack)
+
+    def is_before_mask(self) -> bool:
+        """Whether a non-interruptible group comes next, which keeps off nobody who arrives at the instant at which it would begin."""
+        following = next((body[index] for body, index, *_ in reversed(self.stack) if index < len(body)), None)
+        return following is not None and following[0] == "group" and not following[3]
 
     def has_only(self, kinds: Container[str]) -> bool:
         """Whether nothing but items of some kinds is left in its text."""
@@ -80,7 +95,7 @@ class Job:
             self.stack.pop()
             if top[3]:
                 self.marks.append(Mark("terminate", top[3], now, top[3]))
-                if self.yields_at_calls:
+                if len(self.stack) <= self.yields_up_to:
                     return ("point",)
             if top[2]:
                 self.masks -= top[2]
@@ -116,10 +131,10 @@ class Player:
         self.activated_by = {
             name: [i for i, process in enumerate(self.processes) if name in process.stimuli] for name in played.stimuli
         }
-        self.ceilings = {
-            name: max(p.priority for p in self.processes if ("request", name) in items_of_process(played, p.name))
-            for name in played.semaphores
-        }
+        self.ceilings = {name: self._ceiling(name) for name in played.semaphores}
+        self.holders: dict[str, Job | None] = dict.fromkeys(played.semaphores)
+        self.waiting: dict[str, list[Job]] = {name: [] for name in played.semaphores}
+        self.occurred = dict.fromkeys(played.stimuli, 0)
         self.timeline: list[tuple[int, int, int, str]] = []
         for order, stimulus in enumerate(played.stimuli.values()):
             place = -order if variant.last_first else order
@@ -128,6 +143,12 @@ class Player:
         for name, server in played.servers.items():
             for time in range(server.period, until, server.period):
                 heappush(self.timeline, (time, 0 if variant.polls_early else 2, 0, name))
+
+    def _ceiling(self, semaphore: str) -> tuple[int, int]:
+        """The highest priority and the shortest deadline of the users."""
+        users = [p for p in self.processes if ("request", semaphore) in items_of_process(self.played, p.name)]
+        deadlines = (user.deadline or NEVER for user in users)
+        return max((user.priority for user in users), default=0), min(deadlines, default=NEVER)
 
     def play(self, until: int) -> Player:
         """Play up to a time."""
@@ -163,12 +184,20 @@ class Player:
     def fire(self, name: str, cause: tuple[int, int] | None) -> None:
         """An occurrence of a stimulus: condition, modes, activations."""
         stimulus = self.played.stimuli[name]
+        self.occurred[name] += 1
         if not is_true(stimulus.condition, self.modes, self.fills) or not self._counts(name, stimulus.counter):
             return
         self.modes.update(stimulus.sets)
         processes = self.activated_by[name]
         for index in reversed(processes) if self.variant.last_first else processes:
-            self._activate(index, cause)
+            self._activate(index, cause, self._nominal(name))
+
+    def _nominal(self, name: str) -> int:
+        """When this occurrence of a stimulus would have been without jitter."""
+        given = self.played.stimuli[name].given
+        if not self.variant.nominal_deadlines or "jitter" not in given:
+            return self.now
+        return int(given.get("offset", 0) + (self.occurred[name] - 1) * given["recurrence"])
 
     def _counts(self, key: object, counter: tuple[int, int] | None) -> bool:
         if counter is None:
@@ -176,7 +205,7 @@ class Player:
         self.counts[key] = number = self.counts.get(key, 0) + 1
         return number >= max(counter[1], 1) and (number - counter[1]) % counter[0] == 0
 
-    def _activate(self, index: int, cause: tuple[int, int] | None) -> None:
+    def _activate(self, index: int, cause: tuple[int, int] | None, nominal: int) -> None:
         process = self.processes[index]
         if len(self.queues[index]) >= process.limit:
             self.lost[index] += 1
@@ -184,7 +213,7 @@ class Player:
         self.rank += 1
         is_sliced = self._is_sliced(process)
         body = process.body
-        if process.is_isr:
+        if process.is_isr and self.played.overhead:
             before, after = (
                 self.played.overhead.get(f"isrCategory2Overhead/{when}ExecutionOverhead", 0) for when in ("pre", "post")
             )
@@ -199,14 +228,17 @@ class Player:
             core=process.core,
             activated=self.now,
             rank=(self.now, self.rank if is_sliced else order),
-            deadline=self.now + (process.deadline or NEVER),
+            deadline=nominal + (process.deadline or NEVER),
             stack=[[body, 0, 0, ""]],
             slice_left=process.slice if is_sliced and process.slice else NEVER,
             cause=cause,
-            yields_at_calls=process.mode == "cooperative" and self.variant.points_at_calls,
+            yields_up_to=self._depth_of_points() if process.mode == "cooperative" else 0,
         )
         self.queues[index].append(job)
         self.jobs[index].append(job)
+
+    def _depth_of_points(self) -> int:
+        return {Points.SCHEDULE_POINTS: 0, Points.TOP_CALLS: 1, Points.CALLS: NEVER}[self.variant.points]
 
     def _is_sliced(self, process: Process) -> bool:
         return not process.is_isr and "RoundRobin" in self.played.policies[process.core]
@@ -219,12 +251,16 @@ class Player:
         policy = self.played.policies.get(process.core, "")
         if process.server is not None:
             return (-self.played.servers[process.server].priority, -process.priority, job.rank)
-        if policy.startswith("EarliestDeadline"):
-            return (job.deadline, 0, job.rank)
+        with_ceiling = {name: since for name, since in job.held.items() if self.played.semaphores[name]}
+        if policy.startswith("EarliestDeadline") and not process.is_isr:
+            own = job.deadline
+            if self.variant.ceilings is Ceilings.DEADLINE:
+                own = min([own, *(since + self.ceilings[name][1] for name, since in with_ceiling.items())])
+            return (own, own == job.deadline, job.rank)
         if policy.startswith("DeadlineMonotonic"):
             return (process.deadline, 0, job.rank)
-        ceilings = (self.ceilings[name] for name in job.held if self.played.semaphores[name])
-        return (-max(process.priority, *ceilings, -NEVER), 0, job.rank)
+        priority = max([process.priority, *(self.ceilings[name][0] for name in with_ceiling)])
+        return (-priority, priority == process.priority, job.rank)
 
     def _pick(self, core: str) -> Job | None:
         """The job that has the core."""
@@ -240,14 +276,33 @@ class Player:
             return started[0] if started and self.variant.serial_isrs else min(isrs, key=lambda j: (-self._priority(j), j.rank))
         if self.deciding[core]:
             return None
-        ready = [job for job in ready if self._has_budget(job)]
-        keeping = [job for job in ready if job.start is not None and self.processes[job.process].mode == "non_preemptive"]
-        between = [job for job in ready if job.start is not None and self._is_cooperative(job) and not job.at_point]
-        if between and self.variant.whole_cooperative:
-            keeping += between
-        elif between:
-            ready = [job for job in ready if job in between or not self._is_cooperative(job)]
-        return min(keeping or ready, key=self._urgency, default=None)
+        ready = self._not_blocked([job for job in ready if self._has_budget(job)])
+        if self.played.policies.get(core, "").startswith("EarliestDeadline") and self.variant.ceilings is Ceilings.START:
+            ready = [job for job in ready if job.start is not None or self._is_below_ceilings(job)]
+        return min(ready, key=self._urgency, default=None)
+
+    def _not_blocked(self, ready: list[Job]) -> list[Job]:
+        """Those that non-preemptive and cooperative tasks allow to run."""
+        inside = [job for job in ready if job.is_in_section]
+        keeping = [job for job in inside if not self._is_cooperative(job)]
+        if keeping or not inside:
+            return keeping or ready
+        if self.variant.intruders is Intruders.NOBODY:
+            return inside
+        others = [job for job in ready if not self._is_cooperative(job)]
+        return [job for job in ready if job in inside or job in others or self._comes_over(inside, others)]
+
+    def _comes_over(self, inside: list[Job], others: list[Job]) -> bool:
+        """Whether cooperative jobs may run because tasks that are not cooperative interrupt those inside."""
+        if self.variant.intruders is not Intruders.ABOVE_THEM or not others:
+            return False
+        return min(map(self._urgency, others)) < min(map(self._urgency, inside))
+
+    def _is_below_ceilings(self, job: Job) -> bool:
+        """Whether the relative deadline of a job is below the ceilings of all semaphores that are held on its core."""
+        held = (name for name, has_ceiling in self.played.semaphores.items() if has_ceiling and self.holders[name] is not None)
+        here = [name for name in held if (holder := self.holders[name]) is not None and holder.core == job.core]
+        return all((self.processes[job.process].deadline or NEVER) < self.ceilings[name][1] for name in here)
 
     def _is_cooperative(self, job: Job) -> bool:
         return self.processes[job.process].mode == "cooperative"
@@ -281,8 +336,11 @@ class Player:
         if before is not None and before is not job and before.end is None and self.variant.fresh_slice:
             before.slice_left = self.processes[before.process].slice or NEVER
         self.running[core] = job
-        if job is not None and job.start is None:
-            job.start = self.now
+        if job is not None:
+            process = self.processes[job.process]
+            job.is_in_section = not process.is_isr and process.mode != "preemptive"
+            if job.start is None:
+                job.start = self.now
         return job
 
     def _requeue(self, *, at_once: bool) -> None:
@@ -303,11 +361,16 @@ class Player:
     def _continue_ended(self) -> None:
         """Do what follows executions that end now."""
         for core, job in self.running.items():
-            while job is not None and job.end is None and not job.remaining and self._pick(core) is job:
+            while (
+                job is not None
+                and job.end is None
+                and not job.remaining
+                and not job.is_before_mask()
+                and self._pick(core) is job
+            ):
                 self._act(job)
 
     def _act(self, job: Job) -> None:
-        job.at_point = False
         item = job.next_item(self.now)
         if item is None:
             self._end(job)
@@ -317,7 +380,8 @@ class Player:
             while (item := job.next_item(self.now)) is not None:
                 if item[0] in ACCESSES:
                     getattr(self, f"_do_{item[0]}")(job, *item[1:])
-        if not job.remaining and not job.has_more():
+        may_end = not (self.variant.end_waits and item is not None and item[0] in END_WAITS_AFTER)
+        if may_end and job.end is None and not job.remaining and not job.has_more():
             self._end(job)
 
     def _end(self, job: Job) -> None:
@@ -420,21 +484,38 @@ class Player:
 
     def _do_point(self, job: Job) -> None:
         """Others go first only where the task is cooperative."""
-        job.at_point = True
+        job.is_in_section = job.is_in_section and not self._is_cooperative(job)
 
     def _do_request(self, job: Job, semaphore: str) -> None:
-        if any(semaphore in other.held for queue in self.queues for other in queue):
-            job.awaited, job.since = semaphore, self.now
+        if self.holders[semaphore] is None:
+            self._grant(job, semaphore)
         else:
-            job.held.append(semaphore)
+            job.awaited, job.since, job.is_in_section = semaphore, self.now, False
+            self.waiting[semaphore].append(job)
+
+    def _grant(self, job: Job, semaphore: str) -> None:
+        self.holders[semaphore] = job
+        job.held[semaphore] = self.now
 
     def _do_release(self, job: Job, semaphore: str) -> None:
-        job.held.remove(semaphore)
-        waiting = [other for queue in self.queues for other in queue if other.awaited == semaphore]
-        if waiting:
-            first = min(waiting, key=self._urgency)
-            first.held.append(semaphore)
-            first.awaited, first.waited = "", first.waited + self.now - first.since
+        del job.held[semaphore]
+        self.holders[semaphore] = None
+        waiting = self.waiting[semaphore]
+        if not waiting:
+            return
+        if self.variant.handover is Handover.AGAIN:
+            woken = list(waiting)
+        elif self.variant.handover is Handover.FIRST:
+            woken = waiting[:1]
+        else:
+            woken = [min(waiting, key=self._urgency)]
+        for other in woken:
+            waiting.remove(other)
+            other.awaited, other.waited = "", other.waited + self.now - other.since
+            if self.variant.handover is Handover.AGAIN:
+                other.stack[-1][1] -= 1
+            else:
+                self._grant(other, semaphore)
 
     def _do_migrate(self, job: Job, core: str) -> None:
         job.core = core

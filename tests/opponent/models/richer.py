@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
+from itertools import pairwise, starmap
 from random import Random
 
 from opponent.models import writing
@@ -63,7 +63,7 @@ class _Richer(Generator):
         if self.has("calls", "nested calls", chance=0.5):
             return self._call()
         if self.has("unordered group", chance=0.4):
-            return item("Group", 'ordered="false" interruptible="true"', self._ticks() + self._call() + self._ticks())
+            return writing.group(self._ticks() + self._call() + self._ticks(), is_ordered=False)
         if self.has("chance", chance=0.4):
             return self._chance()
         if self.has("cooperative", chance=0.3):
@@ -73,11 +73,8 @@ class _Richer(Generator):
         return super()._item(plan)
 
     def _chance(self) -> str:
-        branches = "".join(
-            f'<entries probability="{self.rng.randint(1, 3)}.0">{self._ticks() if self.rng.random() < 0.7 else self._call()}</entries>'
-            for _ in range(2)
-        )
-        return item("ProbabilitySwitch", content=branches)
+        rng = self.rng
+        return writing.chance((rng.randint(1, 3), self._ticks() if rng.random() < 0.7 else self._call()) for _ in range(2))
 
     def _call(self) -> str:
         """A call of a runnable, which can call another one."""
@@ -99,11 +96,8 @@ class _Richer(Generator):
         """A call of a new runnable."""
         name = f"r{self.runnables}"
         self.runnables += 1
-        self.parts.runnables.append(
-            f'<runnables xmi:id="{name}?type=Runnable" name="{name}" callback="false" service="false">'
-            f"<activityGraph>{content}</activityGraph></runnables>"
-        )
-        counter = '<counter prescaler="2" offset="0"/>' if is_counted and self.has("counter", chance=0.3) else ""
+        self.parts.runnables.append(writing.runnable(name, content))
+        counter = writing.counter(2, 0) if is_counted and self.has("counter", chance=0.3) else ""
         return item("RunnableCall", f'runnable="{name}?type=Runnable"', counter)
 
     def _locked(self, plan: Plan) -> str:
@@ -114,18 +108,10 @@ class _Richer(Generator):
         content = self._ticks()
         for name in reversed(names):
             if not any(f'name="{name}"' in text for text in self.parts.semaphores):
-                has_ceiling = str(self.has("ceiling")).lower()
                 self.used |= self.features & {"semaphore"}
-                self.parts.semaphores.append(
-                    f'<semaphores xmi:id="{name}?type=Semaphore" name="{name}" initialValue="0" maxValue="1" '
-                    f'priorityCeilingProtocol="{has_ceiling}"/>'
-                )
-            request, release = (
-                item("SemaphoreAccess", f'semaphore="{name}?type=Semaphore" access="{access}" waitingBehaviour="passive"')
-                for access in ("request", "release")
-            )
-            content = request + content + release
-        return item("Group", 'ordered="true" interruptible="true"', content)
+                self.parts.semaphores.append(writing.semaphore(name, has_ceiling=self.has("ceiling")))
+            content = writing.semaphore_access(name, "request") + content + writing.semaphore_access(name, "release")
+        return writing.group(content)
 
     # Chains.
 
@@ -194,7 +180,7 @@ class _Richer(Generator):
 
     def _state_chain(self, name: str, events: list[str]) -> None:
         """A chain of events; its first two steps can be a chain of their own."""
-        items = list(map(_step, pairwise(events)))
+        items = list(starmap(writing.step, pairwise(events)))
         if len(items) > 2 and self.has("nested chain"):
             self._stated(f"{name} part", events[:3], items[:2])
             reference = f"{name}+part?type=EventChain"
@@ -206,7 +192,7 @@ class _Richer(Generator):
         """Ways between the same events, one or all of which have to be completed."""
         branches = "".join(
             f'<items xsi:type="am:EventChainContainer"><eventChain name="" stimulus="{events[0]}" response="{events[-1]}" '
-            f'itemType="sequence" minItemsCompleted="1">{"".join(map(_step, pairwise(events)))}</eventChain></items>'
+            f'itemType="sequence" minItemsCompleted="1">{"".join(starmap(writing.step, pairwise(events)))}</eventChain></items>'
             for events in ways
         )
         self.parts.chains.append(
@@ -215,31 +201,21 @@ class _Richer(Generator):
         )
 
     def _stated(self, name: str, events: list[str], items: list[str]) -> None:
-        self.parts.chains.append(
-            f'<eventChains xmi:id="{name.replace(" ", "+")}?type=EventChain" name="{name}" stimulus="{events[0]}" '
-            f'response="{events[-1]}" itemType="sequence" minItemsCompleted="1">{"".join(items)}</eventChains>'
-        )
+        self.parts.chains.append(writing.chain(name, events[0], events[-1], items))
 
     def _named_runnable(self, content: str) -> tuple[str, str]:
         name = f"r{self.runnables}"
         return self._runnable(content, is_counted=False), name
 
     def _share(self, source: Plan, target: Plan, label: str, how: str = "") -> None:
-        self.parts.data.append(f'<labels xmi:id="{label}?type=Label" name="{label}" constant="false" bVolatile="false"/>')
+        self.parts.data.append(writing.label(label))
         how = how or self.rng.choice(("explicit", "explicit", "implicit"))
         how = "timed" if self.has("timed", chance=0.6) and how == "implicit" else how
         in_runnables = self.has("data in runnables")
         for plan, access in ((source, "write"), (target, "read")):
-            text = item("LabelAccess", f'data="{label}?type=Label" access="{access}" implementation="{how}"')
+            text = writing.label_access(label, access, how)
             if in_runnables:
                 text = self._runnable("".join([self._ticks(), text] if self.rng.random() < 0.5 else [text, self._ticks()]))
                 if self.has("nested calls", chance=0.5):
                     text = self._runnable(text + self._ticks())
             plan.items.insert(self.rng.randint(0, len(plan.items)), text)
-
-
-def _step(events: tuple[str, str]) -> str:
-    return (
-        f'<items xsi:type="am:EventChainContainer"><eventChain name="" stimulus="{events[0]}" response="{events[1]}" '
-        f'minItemsCompleted="1"/></items>'
-    )

@@ -2,13 +2,46 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from enum import StrEnum
 from itertools import dropwhile, product
 from random import Random
 from typing import Any
 
 from opponent.models.reading import Body, Item, Played, Process
+
+
+class Points(StrEnum):
+    """Where a cooperative task lets others go first."""
+
+    SCHEDULE_POINTS = "schedule points"
+    TOP_CALLS = "also after calls at the top of its body"
+    CALLS = "also after all calls"
+
+
+class Intruders(StrEnum):
+    """Who interrupts a cooperative task elsewhere."""
+
+    NOBODY = "no task"
+    PREEMPTIVE = "tasks that are not cooperative"
+    ABOVE_THEM = "also cooperative tasks above them"
+
+
+class Handover(StrEnum):
+    """Who gets a semaphore for which several wait."""
+
+    URGENT = "the most urgent"
+    FIRST = "the first come"
+    AGAIN = "all try again"
+
+
+class Ceilings(StrEnum):
+    """What a ceiling means under earliest deadline first."""
+
+    START = "jobs start if their relative deadline is below all ceilings"
+    DEADLINE = "the deadline of the holder is shortened"
+    NONE = "mutual exclusion only"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -18,7 +51,10 @@ class Variant:
     Attributes
     ----------
     ends_late : what follows an execution waits for the core if somebody arrives at its end; else it is done before
+    end_waits : also the end of the job waits for the core after a trigger, release or schedule point
+    accesses_last : a job that has only accesses of labels left ends at once, before more urgent jobs that it has activated
     last_first : at one instant, what is declared last comes first, also of equals
+    nominal_deadlines : deadlines count from the release without jitter
     serial_isrs : interrupt service routines do not preempt each other
     unmasked : interrupts come also within non-interruptible groups
     fresh_slice : a slice starts anew after a preemption
@@ -27,13 +63,17 @@ class Variant:
     decides_below : decisions of schedulers do not keep interrupts off
     decides_outside : the decision at the end of a job is no part of it
     polls_early : a polling server looks for work before what arrives at that instant
-    points_at_calls : cooperative tasks can be preempted after calls, too
-    whole_cooperative : cooperative tasks keep off all tasks between these points, not only cooperative ones
-    accesses_last : a job that has only accesses of labels left ends at once, before more urgent jobs that it has activated
     """
 
+    points: Points = Points.SCHEDULE_POINTS
+    intruders: Intruders = Intruders.PREEMPTIVE
+    handover: Handover = Handover.URGENT
+    ceilings: Ceilings = Ceilings.START
     ends_late: bool = False
+    end_waits: bool = False
+    accesses_last: bool = False
     last_first: bool = False
+    nominal_deadlines: bool = False
     serial_isrs: bool = False
     unmasked: bool = False
     fresh_slice: bool = False
@@ -42,40 +82,47 @@ class Variant:
     decides_below: bool = False
     decides_outside: bool = False
     polls_early: bool = False
-    points_at_calls: bool = False
-    whole_cooperative: bool = False
-    accesses_last: bool = False
 
 
 ACCESSES = ("read", "write")
+#: Items after which the end of a job can wait for the core.
+END_WAITS_AFTER = {"trigger", "release", "point"}
 
 
 def variants_of(played: Played) -> list[Variant]:
     """All readings that matter to a model."""
-    open_points = [name for name, matters in _open_points(played).items() if matters]
-    choices = product((False, True), repeat=len(open_points))
-    return [Variant(**dict(zip(open_points, chosen, strict=True))) for chosen in choices]
+    open_points = {name: values for name, (matters, values) in _open_points(played).items() if matters}
+    return [Variant(**dict(zip(open_points, chosen, strict=True))) for chosen in product(*open_points.values())]
 
 
-def _open_points(played: Played) -> dict[str, bool]:
+def _open_points(played: Played) -> dict[str, tuple[bool, Iterable[Any]]]:
+    """The fields of a variant: whether they matter, and their values."""
+    either = (False, True)
     isrs = [process for process in played.processes if process.is_isr]
+    tasks = [process for process in played.processes if not process.is_isr]
     items = list(items_of(played))
+    kinds = {item[0] for item in items}
     has_slices = any("RoundRobin" in policy for policy in played.policies.values())
-    cooperative = [process for process in played.processes if process.mode == "cooperative"]
+    has_deadlines = any("EarliestDeadline" in policy for policy in played.policies.values())
+    cooperative = [process for process in tasks if process.mode == "cooperative"]
     return {
-        "points_at_calls": any(item[0] == "call" for p in cooperative for item in p.body),
-        "whole_cooperative": bool(cooperative),
-        "accesses_last": any(map(_ends_with_accesses, played.processes)),
-        "ends_late": True,
-        "last_first": True,
-        "serial_isrs": len({p.core for p in isrs}) < len(isrs),
-        "unmasked": bool(isrs) and any(item[0] == "group" and not item[3] for item in items),
-        "fresh_slice": has_slices,
-        "requeue_late": has_slices,
-        "fires_first": "apiOverhead/apiActivateTask" in played.overhead,
-        "decides_below": bool(played.decisions) and bool(isrs),
-        "decides_outside": bool(played.decisions),
-        "polls_early": any("Polling" in server.policy for server in played.servers.values()),
+        "points": (bool(cooperative) and "call" in kinds, Points),
+        "intruders": (bool(cooperative) and len({task.mode for task in tasks}) > 1, Intruders),
+        "handover": (not all(played.semaphores.values()), Handover),
+        "ceilings": (has_deadlines and any(played.semaphores.values()), Ceilings),
+        "nominal_deadlines": (has_deadlines and any("jitter" in s.given for s in played.stimuli.values()), either),
+        "accesses_last": (any(map(_ends_with_accesses, played.processes)), either),
+        "ends_late": (True, either),
+        "end_waits": (bool(kinds & END_WAITS_AFTER), either),
+        "last_first": (True, either),
+        "serial_isrs": (len({p.core for p in isrs}) < len(isrs), either),
+        "unmasked": (bool(isrs) and any(item[0] == "group" and not item[3] for item in items), either),
+        "fresh_slice": (has_slices, either),
+        "requeue_late": (has_slices, either),
+        "fires_first": ("apiOverhead/apiActivateTask" in played.overhead, either),
+        "decides_below": (bool(played.decisions) and bool(isrs), either),
+        "decides_outside": (bool(played.decisions), either),
+        "polls_early": (any("Polling" in server.policy for server in played.servers.values()), either),
     }
 
 

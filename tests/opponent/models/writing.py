@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 DEFINITIONS = {
     "FixedPriorityPreemptive": ("priority",),
+    "OSEK": ("priority",),
     "EarliestDeadlineFirst": ("deadline",),
     "DeadlineMonotonic": ("deadline",),
     "PriorityBasedRoundRobin": ("priority", "timeSliceLength"),
@@ -145,3 +146,110 @@ def time(tag: str, value: int) -> str:
 def stimulus(kind: str, name: str, attributes: str = "", content: str = "") -> str:
     """A stimulus."""
     return f'<stimuli xsi:type="am:{kind}Stimulus" xmi:id="{name}?type={kind}Stimulus" name="{name}" {attributes}>{content}</stimuli>'
+
+
+def times(tag: str, least: int, most: int) -> str:
+    """A time between two others in microseconds, each as likely."""
+    if least == most:
+        return f'<{tag} xsi:type="am:TimeConstant">{time("value", least)}</{tag}>'
+    return f'<{tag} xsi:type="am:TimeUniformDistribution">{time("lowerBound", least)}{time("upperBound", most)}</{tag}>'
+
+
+def counter(prescaler: int, offset: int) -> str:
+    """What lets only some occurrences take effect."""
+    return f'<counter prescaler="{prescaler}" offset="{offset}"/>'
+
+
+def group(content: str, *, is_ordered: bool = True, is_interruptible: bool = True) -> str:
+    """A group of items."""
+    return item("Group", f'ordered="{str(is_ordered).lower()}" interruptible="{str(is_interruptible).lower()}"', content)
+
+
+def chance(branches: Iterable[tuple[float, str]]) -> str:
+    """One of several branches, by their weights."""
+    entries = (f'<entries probability="{float(weight)}">{content}</entries>' for weight, content in branches)
+    return item("ProbabilitySwitch", content="".join(entries))
+
+
+def label_access(label: str, access: str, implementation: str) -> str:
+    """A read or write access."""
+    return item("LabelAccess", f'data="{label}?type=Label" access="{access}" implementation="{implementation}"')
+
+
+def semaphore_access(semaphore: str, access: str) -> str:
+    """A request or a release."""
+    return item("SemaphoreAccess", f'semaphore="{semaphore}?type=Semaphore" access="{access}" waitingBehaviour="passive"')
+
+
+def semaphore(name: str, *, has_ceiling: bool) -> str:
+    """A semaphore for one."""
+    protocol = f'priorityCeilingProtocol="{str(has_ceiling).lower()}"'
+    return f'<semaphores xmi:id="{name}?type=Semaphore" name="{name}" initialValue="0" maxValue="1" {protocol}/>'
+
+
+def label(name: str) -> str:
+    """A label."""
+    return f'<labels xmi:id="{name}?type=Label" name="{name}" constant="false" bVolatile="false"/>'
+
+
+def runnable(name: str, body: str, condition: str = "") -> str:
+    """A runnable."""
+    return (
+        f'<runnables xmi:id="{name}?type=Runnable" name="{name}" callback="false" service="false">{condition}'
+        f"<activityGraph>{body}</activityGraph></runnables>"
+    )
+
+
+def task(name: str, stimuli: str, body: str, preemption: str = "preemptive", limit: int = 99) -> str:
+    """A task."""
+    return (
+        f'<tasks xmi:id="{name}?type=Task" name="{name}" stimuli="{stimuli}" preemption="{preemption}" '
+        f'multipleTaskActivationLimit="{limit}"><activityGraph>{body}</activityGraph></tasks>'
+    )
+
+
+def isr(name: str, stimuli: str, body: str) -> str:
+    """An interrupt service routine."""
+    return (
+        f'<isrs xmi:id="{name}?type=ISR" name="{name}" stimuli="{stimuli}" category="CATEGORY_2">'
+        f"<activityGraph>{body}</activityGraph></isrs>"
+    )
+
+
+def scheduler_allocation(name: str, core: str) -> str:
+    """The core of a scheduler of tasks."""
+    return f'<schedulerAllocation scheduler="{name}?type=TaskScheduler" responsibility="{core}?type=ProcessingUnit"/>'
+
+
+def task_allocation(name: str, where: str, given: dict[str, int]) -> str:
+    """The scheduler of a task, with parameters."""
+    parameters = "".join(parameter(key, value) for key, value in given.items())
+    return f'<taskAllocation task="{name}?type=Task" scheduler="{where}?type=TaskScheduler">{parameters}</taskAllocation>'
+
+
+def isr_allocation(name: str, core: str, priority: int) -> str:
+    """The interrupt controller of an interrupt service routine."""
+    return f'<isrAllocation isr="{name}?type=ISR" controller="I{core}?type=InterruptController" priority="{priority}"/>'
+
+
+def process_event(name: str, process: str, kind: str, change: str) -> str:
+    """Something that happens to a task or interrupt service routine."""
+    identity = f"{name.replace(' ', '+')}?type=ProcessEvent"
+    return f'<events xsi:type="am:ProcessEvent" xmi:id="{identity}" name="{name}" eventType="{change}" entity="{process}?type={kind}"/>'
+
+
+def chain(name: str, stimulus: str, response: str, items: Iterable[str]) -> str:
+    """An event chain of parts one after the other."""
+    identity = f"{name.replace(' ', '+')}?type=EventChain"
+    return (
+        f'<eventChains xmi:id="{identity}" name="{name}" stimulus="{stimulus}" response="{response}" itemType="sequence" '
+        f'minItemsCompleted="1">{"".join(items)}</eventChains>'
+    )
+
+
+def step(stimulus: str, response: str) -> str:
+    """A part of a chain from an event to the next one."""
+    return (
+        f'<items xsi:type="am:EventChainContainer"><eventChain name="" stimulus="{stimulus}" response="{response}" '
+        f'minItemsCompleted="1"/></items>'
+    )
