@@ -9,7 +9,7 @@ from opponent.systems import PlainSystem
 from opponent.to_text import to_text
 
 from amalthea_uros.perf.system import System
-from amalthea_uros.services.inputs import open_system
+from amalthea_uros.services.subject import open_system
 
 MICROSECOND = 10**6
 
