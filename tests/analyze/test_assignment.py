@@ -10,6 +10,7 @@ from hand_made_systems import Proc, locked, system, ticks
 from hypothesis import example, given
 from hypothesis import strategies as st
 from support import ROOT, analysis_of
+from unit_player import UnitTask, play
 
 from amalthea_uros import describe
 from amalthea_uros.analyze.priorities.assignment import ProposalOutcome, propose_priorities
@@ -125,24 +126,18 @@ def test_an_overload_has_no_proposal():
 
 
 def player(rows, order, preemptive=True):
-    """Whether all jobs of (period, offset, wcet, deadline) meet their deadlines, played unit by unit; lowest priority first."""
-    cycle = lcm(*(period for period, *_ in rows))
-    end = max(offset for _, offset, *_ in rows) + 3 * cycle
-    left = {}  # (priority, release) of a job to its remaining demand
-    running = None
-    for now in range(end):
-        for task, (period, offset, wcet, _) in enumerate(rows):
-            if now >= offset and (now - offset) % period == 0:
-                left[order.index(task), now] = wcet
-        if any(now >= release + rows[order[rank]][3] for rank, release in left):
-            return False
-        if left:
-            if preemptive or running not in left:
-                running = max(left, key=lambda job: (job[0], -job[1]))
-            left[running] -= 1
-            if left[running] == 0:
-                del left[running]
-    return True
+    """Whether all jobs of (period, offset, wcet, deadline) meet their deadlines when they are played; lowest priority first."""
+    tasks = [
+        UnitTask(period, wcet, offset, rank=-order.index(index), is_preemptive=preemptive)
+        for index, (period, offset, wcet, _) in enumerate(rows)
+    ]
+    end = max(offset for _, offset, *_ in rows) + 3 * lcm(*(period for period, *_ in rows))
+    return not any(
+        (job.left or job.response > deadline)
+        for jobs, (*_, deadline) in zip(play(tasks, end), rows, strict=True)
+        for job in jobs
+        if job.release + deadline < end
+    )
 
 
 def with_offsets(rows, order, preemption=Preemption.PREEMPTIVE, others=()):

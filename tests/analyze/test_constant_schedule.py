@@ -1,38 +1,26 @@
 """Non-preemptive tasks with known releases and constant execution times, against a schedule that is played unit by unit."""
 
-from dataclasses import replace
 from math import lcm
 
 import pytest
 from design_systems import system_of
 from effort import examples
+from hand_made_systems import changed, ticks
 from hypothesis import assume, given
 from hypothesis import strategies as st
+from unit_player import UnitTask, longest_responses
 
 from amalthea_uros.analyze.response_times.constant_schedule import ASSUMPTION
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.perf.activities import Demand, Execute, SchedulePoint
-from amalthea_uros.perf.distributions import Boundaries
+from amalthea_uros.perf.activities import SchedulePoint
 from amalthea_uros.timing.response import Claim
 from amalthea_uros.units import MICROSECOND as US
 
 
 def played(tasks):
     """The longest response time of each task, the most important one first."""
-    cycle, start = lcm(*(task["T"] for task in tasks)), max(task["O"] for task in tasks)
-    worst, waiting, running = [0] * len(tasks), [], None
-    for now in range(start + 6 * cycle):
-        waiting += [(rank, now) for rank, task in enumerate(tasks) if now >= task["O"] and (now - task["O"]) % task["T"] == 0]
-        if running is None and waiting:
-            rank, release = min(waiting)
-            waiting.remove((rank, release))
-            running = rank, release, tasks[rank]["C"]
-        if running is not None:
-            rank, release, left = running
-            running = (rank, release, left - 1) if left > 1 else None
-            if left == 1:
-                worst[rank] = max(worst[rank], now + 1 - release)
-    return worst
+    rows = [UnitTask(task["T"], task["C"], task["O"], rank, is_preemptive=False) for rank, task in enumerate(tasks)]
+    return longest_responses(rows, max(task["O"] for task in tasks) + 6 * lcm(*(task["T"] for task in tasks)))
 
 
 @st.composite
@@ -68,24 +56,11 @@ def test_a_job_below_goes_on_to_its_end():
     assert analysis["B"].wcrt == 3 * US
 
 
-def varying(system):
-    task = system.software.tasks[1]
-    demand = Execute(demand=Demand(Boundaries(lower=1, upper=3)))
-    return with_second(system, replace(task, activities=(demand,)))
-
-
-def yielding(system):
-    task = system.software.tasks[1]
-    return with_second(system, replace(task, activities=(*task.activities, SchedulePoint())))
-
-
-def with_second(system, task):
-    return replace(system, software=replace(system.software, tasks=(system.software.tasks[0], task)))
-
-
-@pytest.mark.parametrize("change", [varying, yielding], ids=lambda change: change.__name__)
-def test_only_a_bound_is_claimed_where_the_schedule_can_be_another_one(change):
-    analysis = analyze_system(change(system_of(TASKS, "AB", preemptive=False)))
+@pytest.mark.parametrize(
+    "body", [(ticks(3, 1),), (ticks(3), SchedulePoint())], ids=["a varying execution time", "a schedule point"]
+)
+def test_only_a_bound_is_claimed_where_the_schedule_can_be_another_one(body):
+    analysis = analyze_system(changed(system_of(TASKS, "AB", preemptive=False), "B", activities=body))
     assert {process.response.claim for process in analysis.processes} == {Claim.BOUND}
     assert ASSUMPTION not in analysis.assumptions
 
@@ -94,6 +69,5 @@ def test_only_a_bound_is_claimed_where_the_schedule_can_be_another_one(change):
 def test_only_a_bound_is_claimed_if_activations_are_lost(limit, claim):
     # B executes from 0 to 2, Long from 2 to 9; meanwhile B is activated at 4, and again at 8 before that job has begun.
     tasks = [{"name": "Long", "C": 7, "T": 20, "O": 0}, {"name": "B", "C": 2, "T": 4, "O": 0}]
-    system = system_of(tasks, ["B", "Long"], preemptive=False)
-    changed = with_second(system, replace(system.software.tasks[1], activation_limit=limit))
-    assert {process.response.claim for process in analyze_system(changed).processes} == {claim}
+    system = changed(system_of(tasks, ["B", "Long"], preemptive=False), "B", activation_limit=limit)
+    assert {process.response.claim for process in analyze_system(system).processes} == {claim}

@@ -1,16 +1,18 @@
 """The metrics of jobs: against the thesis, by hand, and against systems that are played tick by tick."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
 from math import lcm
 from textwrap import dedent
 
 import pytest
+import unit_player as player
 from hand_made_systems import of_parts, ticks
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from support import ROOT, analysis_of
+from unit_player import UnitTask
 
 from amalthea_uros.analyze.response_times import metrics
 from amalthea_uros.analyze.results.processes import Metric
@@ -119,47 +121,22 @@ def built(rows, requirements=(), activities=calls, limit=99, semaphores=(), jitt
     )
 
 
-@dataclass
-class Job:
-    """A job that first executes `base`, and then what the counter selects.
-
-    Attributes
-    ----------
-    reached : when each of its ticks was executed
-    """
-
-    activation: int
-    net: int
-    base: int
-    reached: list[int] = field(default_factory=list)
-
-    @property
-    def left(self):
-        return self.net - len(self.reached)
-
-    @property
-    def start(self):
-        return self.reached[0] - 1
-
-    @property
-    def end(self):
-        return self.reached[-1]
-
-
 def play(rows, until, choose):
-    """Tick by tick, the jobs that are activated before a time, of each task; what is activated later is played as well."""
-    jobs = [[] for _ in rows]
-    now = 0
-    while now < until or any(job.left for own in jobs for job in own if job.activation < until):
-        for row, own in zip(rows, jobs, strict=True):
-            if now >= row.offset and (now - row.offset) % row.period == 0:
-                base = choose(row.best, row.worst)
-                own.append(Job(now, base + (row.extra if row.has_extra(len(own) + 1) else 0), base))
-        job = next((job for own in jobs for job in own if job.left), None)
-        now += 1
-        if job is not None:
-            job.reached.append(now)
-    return jobs
+    """The jobs that are activated before a time, of each task, and some later ones; and what their first callbacks executed."""
+    bases = [[] for _ in rows]
+
+    def demand(row, own):
+        def of_job(number):
+            own.append(choose(row.best, row.worst))
+            return own[-1] + (row.extra if row.has_extra(number) else 0)
+
+        return of_job
+
+    tasks = [
+        UnitTask(row.period, demand(row, own), row.offset, rank)
+        for rank, (row, own) in enumerate(zip(rows, bases, strict=True))
+    ]
+    return player.play(tasks, until, to_the_end=True), bases
 
 
 def measured(jobs, deadline):
@@ -167,19 +144,19 @@ def measured(jobs, deadline):
     jobs = [job for job in jobs if not job.left]
     pairs = list(pairwise(jobs))
     return {
-        JobMetric.NET_EXECUTION_TIME: [job.net for job in jobs],
+        JobMetric.NET_EXECUTION_TIME: [job.demand for job in jobs],
         JobMetric.GROSS_EXECUTION_TIME: [job.end - job.start for job in jobs],
-        JobMetric.RESPONSE_TIME: [job.end - job.activation for job in jobs],
-        JobMetric.INITIAL_PENDING_TIME: [job.start - job.activation for job in jobs],
-        JobMetric.READY_TIME: [job.end - job.start - job.net for job in jobs],
-        JobMetric.PREEMPTION_TIME: [job.end - job.activation - job.net for job in jobs],
+        JobMetric.RESPONSE_TIME: [job.end - job.release for job in jobs],
+        JobMetric.INITIAL_PENDING_TIME: [job.start - job.release for job in jobs],
+        JobMetric.READY_TIME: [job.end - job.start - job.demand for job in jobs],
+        JobMetric.PREEMPTION_TIME: [job.end - job.release - job.demand for job in jobs],
         JobMetric.WAITING_TIME: [0 for _ in jobs],
-        JobMetric.ACTIVATE_TO_ACTIVATE: [then.activation - job.activation for job, then in pairs],
+        JobMetric.ACTIVATE_TO_ACTIVATE: [then.release - job.release for job, then in pairs],
         JobMetric.START_TO_START: [then.start - job.start for job, then in pairs],
         JobMetric.END_TO_END: [then.end - job.end for job, then in pairs],
         JobMetric.END_TO_START: [then.start - job.end for job, then in pairs],
-        JobMetric.SLACK_TIME: [job.activation + deadline - job.end for job in jobs],
-        JobMetric.LATENESS: [job.end - job.activation - deadline for job in jobs],
+        JobMetric.SLACK_TIME: [job.release + deadline - job.end for job in jobs],
+        JobMetric.LATENESS: [job.end - job.release - deadline for job in jobs],
     }
 
 
@@ -219,13 +196,13 @@ def with_deadlines(rows):
 def test_all_metrics_of_constant_execution_times_are_exact(rows):
     analysis = analyze_system(built(rows, with_deadlines(rows)))
     start, cycle = horizon(rows)
-    played = play(rows, start + 2 * cycle, max)
+    played, _ = play(rows, start + 2 * cycle, max)
     for index, row in enumerate(rows):
         found = analysis[f"T{index}"].metrics
-        jobs = [job for job in played[index] if job.activation < start + 2 * cycle]
+        jobs = [job for job in played[index] if job.release < start + 2 * cycle]
         everything = measured(jobs, 10)
         # One more job than in a cycle, for the times from job to job.
-        last = measured([job for job in jobs if job.activation >= start], 10)
+        last = measured([job for job in jobs if job.release >= start], 10)
         count = cycle // row.period
         assert set(found) == set(everything)
         for name, metric in found.items():
@@ -238,7 +215,7 @@ def test_all_metrics_of_constant_execution_times_are_exact(rows):
 def test_no_job_is_beyond_the_metrics_of_varying_execution_times(rows, random):
     analysis = analyze_system(built(rows, with_deadlines(rows)))
     start, cycle = horizon(rows)
-    plays = [play(rows, start + 2 * cycle, choose) for choose in (min, max, random.randint)]
+    plays = [play(rows, start + 2 * cycle, choose)[0] for choose in (min, max, random.randint)]
     for index in range(len(rows)):
         found = analysis[f"T{index}"].metrics
         worst, best, drawn = (measured(jobs[index], 10) for jobs in plays)
@@ -310,13 +287,11 @@ class TestCallbacks:
         plays = [play(rows, start + 2 * cycle, choose) for choose in (min, max, random.randint)]
         for index, row in enumerate(rows):
             seen = {"base": [], "extra": []}
-            for jobs in plays:
-                for number, job in enumerate(jobs[index], start=1):
-                    if job.left:
-                        continue
-                    seen["base"].append(job.reached[job.base - 1] - job.activation)
-                    if row.extra and row.has_extra(number):
-                        seen["extra"].append(job.end - job.activation)
+            for jobs, bases in plays:
+                for job in (job for job in jobs[index] if not job.left):
+                    seen["base"].append(job.reached[bases[index][job.number - 1] - 1] - job.release)
+                    if row.extra and row.has_extra(job.number):
+                        seen["extra"].append(job.response)
             for name in ["base", "extra"] if row.extra else ["base"]:
                 response = analysis.callbacks[f"T{index}.{name}"].response
                 assert (response.best, response.worst) == (min(seen[name]) * US, max(seen[name]) * US), name

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from support import SHARED
+from unit_player import UnitTask, longest_responses
 
 from amalthea_uros.analyze.response_times import non_preemptive, priority_levels, schedule
 from amalthea_uros.analyze.response_times.core_schedule import CoreSchedule
@@ -189,29 +190,12 @@ def test_the_order_of_tasks_does_not_matter(rows, random):
         assert {task.name: response for task, response in zip(shuffled, analysis(shuffled), strict=True)} == by_name
 
 
-def interrupted_never(tasks, until):
-    """Brute force: jobs served whole, highest priority first, whichever arrived; integer time."""
-    activations = sorted(
-        (k * t.events.period, -t.priority, i) for i, t in enumerate(tasks) for k in range(until // t.events.period + 1)
-    )
-    now, waiting, worst = 0, [], [0] * len(tasks)
-    while activations or waiting:
-        if not waiting:
-            now = max(now, activations[0][0])
-        while activations and activations[0][0] <= now:
-            waiting.append(activations.pop(0))
-        job = min(waiting, key=lambda job: (job[1], job[0]))
-        waiting.remove(job)
-        now += tasks[job[2]].demand.worst
-        worst[job[2]] = max(worst[job[2]], now - job[0])
-    return worst
-
-
 @given(TASKS)
 def test_no_schedule_without_interruption_is_worse_than_its_bound(rows):
     tasks = drawn(rows)
     assume(load(tasks) < 1)
-    seen = interrupted_never(tasks, 240)
+    rows = [UnitTask(task.events.period, task.demand.worst, rank=-task.priority, is_preemptive=False) for task in tasks]
+    seen = longest_responses(rows, 240)
     for observed, bound in zip(seen, non_preemptive.response_times(tasks), strict=True):
         assert observed <= bound.worst
 

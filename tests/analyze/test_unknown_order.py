@@ -11,6 +11,7 @@ from hand_made_systems import Proc, system, ticks
 from hypothesis import given
 from hypothesis import strategies as st
 from support import SHARED
+from unit_player import UnitTask, longest_responses
 
 import amalthea_uros as amuros
 from amalthea_uros.analyze.system import analyze_system
@@ -111,21 +112,9 @@ def test_no_order_exceeds_the_bound(tasks, data):
 
 
 def played(tasks, priorities, offsets):
-    """The longest response times of two hyperperiods, tick by tick; the highest priority is served first."""
-    pending, current, longest = [[] for _ in tasks], None, [0] * len(tasks)
-    for now in range(2 * 120 + max(offsets)):
-        for index, (period, demand, _) in enumerate(tasks):
-            if now >= offsets[index] and (now - offsets[index]) % period == 0:
-                pending[index].append([now, demand])
-        if current is None or tasks[current][2]:
-            ready = [index for index, jobs in enumerate(pending) if jobs]
-            # One that cannot be preempted goes on once it has started.
-            current = max(ready, key=lambda index: priorities[index], default=None)
-        if current is not None:
-            job = pending[current][0]
-            job[1] -= 1
-            if not job[1]:
-                longest[current] = max(longest[current], now + 1 - job[0])
-                pending[current].pop(0)
-                current = None
-    return longest
+    """The longest response times of two hyperperiods; the highest priority is served first."""
+    rows = [
+        UnitTask(period, demand, offset, rank=-priority, is_preemptive=is_preemptive)
+        for (period, demand, is_preemptive), priority, offset in zip(tasks, priorities, offsets, strict=True)
+    ]
+    return longest_responses(rows, 2 * 120 + max(offsets))

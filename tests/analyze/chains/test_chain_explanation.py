@@ -8,11 +8,11 @@ import pytest
 from effort import examples
 from hypothesis import given
 from hypothesis import strategies as st
-from support import ROOT
+from support import ROOT, analysis_of
 from test_brute_force import ALWAYS, ANY, built, run, systems
 from test_chain_systems import END, START, at, read, system, ticks, write
+from unit_player import UnitTask, play
 
-from amalthea_uros import describe
 from amalthea_uros.analyze.chains import bounds
 from amalthea_uros.analyze.chains.bounds import ChainTask, total
 from amalthea_uros.analyze.explanations.chains import explain_chain
@@ -98,7 +98,7 @@ def check_all_hops(communication, drawn, controllers):
 
 def test_the_worst_message_of_the_thesis():
     """Taken one tick after the callback ran, 19 ticks before it runs again; the next control function also waits for a message."""
-    analysis = analyze_system(describe(ROOT / "samples" / "bodas-test-advanced.yaml").system)
+    analysis = analysis_of(ROOT / "samples" / "bodas-test-advanced.yaml")
     executor, callback, control = check_sums(explain_chain(analysis, "factor-to-output"))
     assert (executor.process, executor.release, executor.start, executor.write) == ("Executor_Task", 0, 0, 25 * US)
     assert (callback.process, callback.release, callback.start) == ("Message_Factor", 19_000 * US, 19_016 * US)
@@ -109,22 +109,13 @@ def test_the_worst_message_of_the_thesis():
 
 def played(tasks, until):
     """For each core the process and job that it executes in each unit of time, played through."""
-    pending, executed = [], {}
-    counts = dict.fromkeys((task.name for task in tasks), 0)
-    for now in range(until):
-        for rank, task in enumerate(tasks):
-            if now >= task.offset and (now - task.offset) % task.period == 0:
-                counts[task.name] += 1
-                pending.append([rank, now, task, counts[task.name], task.worst])
-        for core in {task.core for task in tasks}:
-            here = [job for job in pending if job[2].core == core]
-            if here:
-                job = min(here, key=lambda job: job[:2])
-                executed[core, now] = (job[2].name, job[3])
-                job[4] -= 1
-                if not job[4]:
-                    pending.remove(job)
-    return executed
+    rows = [UnitTask(task.period, task.worst, task.offset, rank, task.core) for rank, task in enumerate(tasks)]
+    return {
+        (task.core, moment - 1): (task.name, job.number)
+        for task, jobs in zip(tasks, play(rows, until), strict=True)
+        for job in jobs
+        for moment in job.reached
+    }
 
 
 @examples(18)
@@ -163,7 +154,7 @@ def test_the_causes_are_what_the_core_executes(drawn):
 
 def test_why_the_worst_message_of_the_thesis_waits():
     """The callback runs every 20 ms; the executor, 12 us without a message, and the control function, 4 us, run before it."""
-    analysis = analyze_system(describe(ROOT / "samples" / "bodas-test-advanced.yaml").system)
+    analysis = analysis_of(ROOT / "samples" / "bodas-test-advanced.yaml")
     explanation = explain_chain(analysis, "factor-to-output")
     _, callback, control = explanation.hops
     assert [(cause.kind, cause.process, cause.time // US) for cause in callback.wait_causes] == [

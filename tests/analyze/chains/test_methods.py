@@ -2,7 +2,7 @@
 
 import json
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 from itertools import pairwise
 from random import Random
 
@@ -12,6 +12,7 @@ from effort import examples
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from support import SHARED
+from unit_player import UnitTask, play
 
 from amalthea_uros.analyze.chains import job_chains
 from amalthea_uros.analyze.chains.boundary_times import logical
@@ -223,26 +224,19 @@ def drawn(rows):
 
 def observe(tasks, chain, until, random):
     """The latencies of a chain in one run: reads and writes of all jobs, then each value followed on its way."""
-    drawn_demands = {}
-
-    def demand_of(demand, job):
-        return drawn_demands.setdefault((id(demand), job), random.randint(demand.best, demand.worst))
-
-    waiting, found = [], {task.name: [] for task in tasks}
-    for now in range(until):
-        for task in tasks:
-            if now >= task.offset and (now - task.offset) % task.period == 0:
-                number = (now - task.offset) // task.period
-                waiting.append([-task.priority, now, task.name, demand_of(task.demand, number), None])
-        if waiting:
-            job = min(waiting, key=lambda job: job[:2])
-            job[4] = now if job[4] is None else job[4]
-            job[3] -= 1
-            if not job[3]:
-                waiting.remove(job)
-                found[job[2]].append((job[4], now + 1))
+    rows = [
+        UnitTask(task.period, partial(drawn_demand, task.demand, random), task.offset, rank=-task.priority) for task in tasks
+    ]
+    found = {
+        task.name: [(job.start, job.end) for job in jobs if not job.left]
+        for task, jobs in zip(tasks, play(rows, until), strict=True)
+    }
     chain_times = [found[name] for name in chain]
     return list(forward(chain_times)), list(backward(chain_times))
+
+
+def drawn_demand(demand, random, _job):
+    return random.randint(demand.best, demand.worst)
 
 
 def forward(chain_times):
