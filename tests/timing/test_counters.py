@@ -1,55 +1,28 @@
 """Counters against a play that counts, job by job."""
 
 from collections import Counter as Tally
-from fractions import Fraction
 
 import pytest
+from hand_made_systems import one_core, ticks
 from hypothesis import given
 from hypothesis import strategies as st
 
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.perf.activities import Call, Chance, Demand, Execute, Group, ProbabilitySwitch
-from amalthea_uros.perf.distributions import Constant
-from amalthea_uros.perf.hardware import Clock, Core, CoreType, Hardware, Structure
-from amalthea_uros.perf.mapping import Mapping, TaskAllocation
-from amalthea_uros.perf.os import OperatingSystem, Os, Policy, Scheduler
-from amalthea_uros.perf.software import Runnable, Software, Task
-from amalthea_uros.perf.stimuli import Counter, Periodic, Stimuli
-from amalthea_uros.perf.system import System
+from amalthea_uros.perf.activities import Call, Chance, Execute, Group, ProbabilitySwitch
+from amalthea_uros.perf.software import Runnable
+from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.jobs.counters import composed, first_effect, of_one_in
 from amalthea_uros.timing.response import Claim
-from amalthea_uros.units import MICROSECOND, MILLISECOND
+from amalthea_uros.units import MICROSECOND
 
 JOBS, MANY_JOBS = 120, 60_000
-SCHEDULER = Scheduler(name="scheduler", policy=Policy.FIXED_PRIORITY_PREEMPTIVE, cores=("core",))
-
-
-def execute(ticks):
-    return Execute(demand=Demand(Constant(ticks)))
 
 
 def system(tasks, runnables):
     """Tasks of 1 ms on a core of 1 MHz, the first one with the highest priority; a tick is a microsecond."""
-    return System(
-        hardware=Hardware(
-            clocks=(Clock(name="clock", frequency=Fraction(1_000_000)),),
-            core_types=(CoreType(name="type"),),
-            structures=(Structure(name="ECU", cores=(Core(name="core", type="type", clock="clock"),)),),
-        ),
-        os=Os(systems=(OperatingSystem(name="OS", schedulers=(SCHEDULER,)),)),
-        stimuli=Stimuli(stimuli=(Periodic(name="tick", period=MILLISECOND),)),
-        software=Software(
-            tasks=tuple(Task(name=name, stimuli=("tick",), activities=tuple(body)) for name, body in tasks.items()),
-            runnables=tuple(Runnable(name=name, activities=tuple(body)) for name, body in runnables.items()),
-        ),
-        mapping=Mapping(
-            tasks=tuple(
-                TaskAllocation(task=name, scheduler="scheduler", priority=len(tasks) - index)
-                for index, name in enumerate(tasks)
-            )
-        ),
-    )
+    called = [Runnable(name=name, activities=tuple(body)) for name, body in runnables.items()]
+    return one_core(*((name, 1000, body) for name, body in tasks.items()), runnables=called)
 
 
 def takes_effect(counter, number):
@@ -60,20 +33,20 @@ def played(tasks, runnables, jobs=JOBS):
     """The ticks of the jobs of each task, all of which are released together and executed in their order."""
     reached = Tally()
 
-    def ticks(activities):
+    def demand(activities):
         total = 0
         for activity in activities:
             if isinstance(activity, Execute):
                 total += activity.demand.ticks.value
             elif isinstance(activity, Group):
-                total += ticks(activity.activities)
+                total += demand(activity.activities)
             else:
                 reached[id(activity)] += 1
                 if activity.counter is None or takes_effect(activity.counter, reached[id(activity)]):
-                    total += ticks(runnables[activity.runnable])
+                    total += demand(runnables[activity.runnable])
         return total
 
-    rows = [{name: ticks(body) for name, body in tasks.items()} for _ in range(jobs)]
+    rows = [{name: demand(body) for name, body in tasks.items()} for _ in range(jobs)]
     return {name: [row[name] for row in rows] for name in tasks}
 
 
@@ -85,7 +58,7 @@ def calls(names):
 
 
 def bodies(names):
-    return st.lists(st.one_of(st.integers(1, 3).map(execute), *([calls(names)] if names else [])), min_size=1, max_size=3)
+    return st.lists(st.one_of(st.integers(1, 3).map(ticks), *([calls(names)] if names else [])), min_size=1, max_size=3)
 
 
 @st.composite
@@ -117,29 +90,18 @@ def test_a_counter_seen_by_one_of_several_calls_in_a_job(counter, count, data):
     assert {job for job in range(1, 80) if found is not None and takes_effect(found, job)} == expected
 
 
-@given(structure=structures(["T"]))
-def test_the_demand_of_each_job_of_a_single_task(structure):
-    tasks, runnables = structure
-    demand = TimingContext.of(system(tasks, runnables)).demands["T"]
-    executed = played(tasks, runnables)["T"]
-    found = [(demand.best_of(job) // MICROSECOND, demand.worst_of(job) // MICROSECOND) for job in range(1, JOBS + 1)]
-    if demand.is_certain:
-        assert found == [(ticks, ticks) for ticks in executed]
-    assert all(best <= ticks <= worst for ticks, (best, worst) in zip(executed, found, strict=True))
-    for count in (1, 2, 3, 7):
-        most = max(sum(executed[first : first + count]) for first in range(JOBS - count))
-        assert demand.max_demand(count) >= most * MICROSECOND
-
-
-@given(structure=structures(["T", "U"]))
-def test_the_demand_of_tasks_that_share_runnables(structure):
+@given(structure=structures(["T"]) | structures(["T", "U"]))
+def test_the_demand_of_each_job(structure):
     tasks, runnables = structure
     context, executed = TimingContext.of(system(tasks, runnables)), played(tasks, runnables)
     for name, demand in context.demands.items():
         found = [(demand.best_of(job) // MICROSECOND, demand.worst_of(job) // MICROSECOND) for job in range(1, JOBS + 1)]
         if demand.is_certain:
-            assert found == [(ticks, ticks) for ticks in executed[name]]
-        assert all(best <= ticks <= worst for ticks, (best, worst) in zip(executed[name], found, strict=True))
+            assert found == [(spent, spent) for spent in executed[name]]
+        assert all(best <= spent <= worst for spent, (best, worst) in zip(executed[name], found, strict=True))
+        for count in (1, 2, 3, 7):
+            most = max(sum(executed[name][first : first + count]) for first in range(JOBS - count))
+            assert demand.max_demand(count) >= most * MICROSECOND
 
 
 @given(structure=structures(["T", "U"]))
@@ -177,13 +139,13 @@ class TestCallsThatAreFollowed:
     )
     def test_it_is_known_which_jobs_execute_it(self, body, expected):
         demand = TimingContext.of(
-            system({"T": body}, {"A": [Call(runnable="B", counter=Counter(prescaler=2))], "B": [execute(5)]})
+            system({"T": body}, {"A": [Call(runnable="B", counter=Counter(prescaler=2))], "B": [ticks(5)]})
         ).demands["T"]
         assert demand.is_certain
         assert {job for job in range(1, 13) if demand.worst_of(job)} == expected
 
     def test_two_tasks_that_call_it_can_each_meet_the_counter_in_any_job(self):
-        runnables = {"A": [Call(runnable="B", counter=Counter(prescaler=2))], "B": [execute(5)]}
+        runnables = {"A": [Call(runnable="B", counter=Counter(prescaler=2))], "B": [ticks(5)]}
         # Both call A once per period, so that B runs once per period: always in the job of U, never in that of T.
         analysis = analyze_system(system({"T": [Call(runnable="A")], "U": [Call(runnable="A")]}, runnables))
         response = analysis["T"].response
@@ -191,22 +153,20 @@ class TestCallsThatAreFollowed:
 
     def test_a_counter_in_a_branch_counts_only_when_it_is_reached(self):
         branch = (Call(runnable="B", counter=Counter(prescaler=2)),)
-        body = [
-            ProbabilitySwitch(branches=(Chance(weight=0.5, activities=branch), Chance(weight=0.5, activities=(execute(1),))))
-        ]
-        response = analyze_system(system({"T": body}, {"B": [execute(5)]}))["T"].response
+        body = [ProbabilitySwitch(branches=(Chance(weight=0.5, activities=branch), Chance(weight=0.5, activities=(ticks(1),))))]
+        response = analyze_system(system({"T": body}, {"B": [ticks(5)]}))["T"].response
         assert (response.best, response.worst, response.claim) == (0, 5 * MICROSECOND, Claim.BOUND)
 
     def test_a_branch_that_is_never_taken_is_no_proof_of_the_worst_case(self):
         def claim(weight):
-            branches = (Chance(weight=weight, activities=(execute(5),)), Chance(weight=1.0, activities=(execute(1),)))
+            branches = (Chance(weight=weight, activities=(ticks(5),)), Chance(weight=1.0, activities=(ticks(1),)))
             return analyze_system(system({"T": [ProbabilitySwitch(branches=branches)]}, {}))["T"].response.claim
 
         assert [claim(0.5), claim(0.0)] == [Claim.EXACT, Claim.BOUND]
 
     def test_an_offset_below_one_only_shifts(self):
         # -5 mod 4 = 3: jobs 3, 7, 11.
-        body = [execute(1), Call(runnable="B", counter=Counter(prescaler=4, offset=-5))]
-        analysis = analyze_system(system({"T": body}, {"B": [execute(5)]}))
+        body = [ticks(1), Call(runnable="B", counter=Counter(prescaler=4, offset=-5))]
+        analysis = analyze_system(system({"T": body}, {"B": [ticks(5)]}))
         response = analysis["T"].response
         assert (response.best, response.worst, response.claim) == (1 * MICROSECOND, 6 * MICROSECOND, Claim.EXACT)

@@ -4,6 +4,7 @@ from fractions import Fraction
 
 import pytest
 from effort import every, examples
+from hand_made_systems import of_parts
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from support import MODEL, ROOT, SHARED, analysis_of, corpus, hand_written
@@ -25,8 +26,8 @@ from amalthea_uros.perf.activities import (
 )
 from amalthea_uros.perf.distributions import Boundaries, Bucket, Constant, Gauss, Histogram
 from amalthea_uros.perf.hardware import Clock, Core, CoreType, Feature, Hardware, Structure
-from amalthea_uros.perf.mapping import IsrAllocation, Mapping, TaskAllocation
-from amalthea_uros.perf.os import InterruptController, OperatingSystem, Os, Policy, Scheduler
+from amalthea_uros.perf.mapping import IsrAllocation, TaskAllocation
+from amalthea_uros.perf.os import InterruptController, Policy
 from amalthea_uros.perf.software import Isr, Runnable, Software, Task
 from amalthea_uros.perf.stimuli import (
     ArrivalCurve,
@@ -48,6 +49,24 @@ from amalthea_uros.validate.system_context import SystemContext
 CORES = {"core 0": ("small", 1_000_000), "core 1": ("big", 3_000_000)}
 #: Ticks for each unit of a need; the second one is the inverse of instructions per cycle.
 FEATURES = {"small": (2.0, 0.5), "big": (1.0, 2.0)}
+HARDWARE = Hardware(
+    clocks=tuple(Clock(name=f"clock of {core}", frequency=Fraction(hertz)) for core, (_, hertz) in CORES.items()),
+    core_types=tuple(
+        CoreType(
+            name=name,
+            features=(
+                Feature(category="Matrix", name="cost", value=cost),
+                Feature(category="Vector", name="IPC_1", value=rate),
+            ),
+        )
+        for name, (cost, rate) in FEATURES.items()
+    ),
+    structures=(
+        Structure(
+            name="ECU", cores=tuple(Core(name=core, type=kind, clock=f"clock of {core}") for core, (kind, _) in CORES.items())
+        ),
+    ),
+)
 
 
 def total(model):
@@ -201,49 +220,19 @@ def systems(draw):
     places = {process.name: draw(st.sampled_from(sorted(CORES))) for process in processes}
     tasks = [process for process in processes if isinstance(process, Task)]
     isrs = [process for process in processes if isinstance(process, Isr)]
-    return System(
-        hardware=Hardware(
-            clocks=tuple(Clock(name=f"clock of {core}", frequency=Fraction(hertz)) for core, (_, hertz) in CORES.items()),
-            core_types=tuple(
-                CoreType(
-                    name=name,
-                    features=(
-                        Feature(category="Matrix", name="cost", value=cost),
-                        Feature(category="Vector", name="IPC_1", value=rate),
-                    ),
-                )
-                for name, (cost, rate) in FEATURES.items()
-            ),
-            structures=(
-                Structure(
-                    name="ECU",
-                    cores=tuple(Core(name=core, type=kind, clock=f"clock of {core}") for core, (kind, _) in CORES.items()),
-                ),
-            ),
-        ),
-        os=Os(
-            systems=(
-                OperatingSystem(
-                    name="OS",
-                    schedulers=tuple(
-                        Scheduler(name=f"tasks of {core}", policy=Policy.FIXED_PRIORITY_PREEMPTIVE, cores=(core,))
-                        for core in CORES
-                    ),
-                    interrupt_controllers=tuple(
-                        InterruptController(name=f"interrupts of {core}", cores=(core,)) for core in CORES
-                    ),
-                ),
-            )
-        ),
-        stimuli=Stimuli(stimuli=tuple(stimuli)),
-        software=Software(tasks=tuple(tasks), isrs=tuple(isrs), runnables=tuple(runnables)),
-        mapping=Mapping(
-            tasks=tuple(
-                TaskAllocation(task=task.name, scheduler=f"tasks of {places[task.name]}", priority=number)
-                for number, task in enumerate(tasks)
-            ),
-            isrs=tuple(IsrAllocation(isr=isr.name, controller=f"interrupts of {places[isr.name]}") for isr in isrs),
-        ),
+    return of_parts(
+        tasks,
+        [TaskAllocation(task=task.name, scheduler=places[task.name], priority=number) for number, task in enumerate(tasks)],
+        stimuli,
+        cores=CORES,
+        policy=Policy.FIXED_PRIORITY_PREEMPTIVE,
+        hardware=HARDWARE,
+        isrs=isrs,
+        isr_allocations=[IsrAllocation(isr=isr.name, controller=f"interrupts of {places[isr.name]}") for isr in isrs],
+        os_parts={
+            "interrupt_controllers": [InterruptController(name=f"interrupts of {core}", cores=(core,)) for core in CORES]
+        },
+        runnables=runnables,
     )
 
 
@@ -333,13 +322,12 @@ NEED = (
 TICK = '<items xsi:type="am:Ticks"><default xsi:type="am:DiscreteValueConstant" value="100"/></items>'
 
 
-def calls(name, *called):
-    items = "".join(f'<items xsi:type="am:RunnableCall" runnable="{other}?type=Runnable"/>' for other in called)
-    return f'<runnables name="{name}"><activityGraph>{TICK}{items}</activityGraph></runnables>'
-
-
 def call(name):
     return f'<items xsi:type="am:RunnableCall" runnable="{name}?type=Runnable"/>'
+
+
+def calls(name, *called):
+    return f'<runnables name="{name}"><activityGraph>{TICK}{"".join(map(call, called))}</activityGraph></runnables>'
 
 
 def test_a_known_load(tmp_path):
@@ -348,40 +336,29 @@ def test_a_known_load(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("task", "others"),
+    "parts",
     [
-        (TICK + f'<items xsi:type="am:WhileLoop">{TICK}</items>', ""),
-        (TICK + NEED, ""),
-        (call("A"), calls("A", "B") + calls("B", "A")),
-        (call("A"), calls("A", "A")),
+        pytest.param({"task": TICK + f'<items xsi:type="am:WhileLoop">{TICK}</items>'}, id="loop"),
+        pytest.param({"task": TICK + NEED}, id="need"),
+        pytest.param({"task": call("A"), "others": calls("A", "B") + calls("B", "A")}, id="circle"),
+        pytest.param({"task": call("A"), "others": calls("A", "A")}, id="itself"),
         # What is incomplete may take any time.
-        (TICK + '<items xsi:type="am:WaitEvent"/>', ""),
-        (TICK + '<items xsi:type="am:EnforcedMigration"/>', ""),
-        (TICK + '<items xsi:type="am:Ticks"/>', ""),
-        (TICK + UNBOUNDED, ""),
-        (TICK + '<items xsi:type="am:RunnableCall"/>', ""),
-        (TICK + call("nowhere"), ""),
-    ],
-    ids=["loop", "need", "circle", "itself", "wait", "migration", "no ticks", "no bound", "no runnable", "unresolved"],
-)
-def test_a_process_of_which_the_demand_is_not_known_is_left_out(task, others, tmp_path):
-    assert total(model(tmp_path, task, others)) == {}
-
-
-@pytest.mark.parametrize(
-    ("stimulus", "domain"),
-    [
-        ("", CLOCKED),
-        ("I?type=InterProcessStimulus", CLOCKED),
-        ("C?type=CustomStimulus", CLOCKED),
+        pytest.param({"task": TICK + '<items xsi:type="am:WaitEvent"/>'}, id="wait"),
+        pytest.param({"task": TICK + '<items xsi:type="am:EnforcedMigration"/>'}, id="migration"),
+        pytest.param({"task": TICK + '<items xsi:type="am:Ticks"/>'}, id="no ticks"),
+        pytest.param({"task": TICK + UNBOUNDED}, id="no bound"),
+        pytest.param({"task": TICK + '<items xsi:type="am:RunnableCall"/>'}, id="no runnable"),
+        pytest.param({"task": TICK + call("nowhere")}, id="unresolved"),
+        pytest.param({"stimulus": ""}, id="no stimulus"),
+        pytest.param({"stimulus": "I?type=InterProcessStimulus"}, id="never triggered"),
+        pytest.param({"stimulus": "C?type=CustomStimulus"}, id="custom"),
         # What is known of one stimulus is not all.
-        ("P?type=PeriodicStimulus C?type=CustomStimulus", CLOCKED),
-        ("P?type=PeriodicStimulus", ""),
+        pytest.param({"stimulus": "P?type=PeriodicStimulus C?type=CustomStimulus"}, id="partly custom"),
+        pytest.param({"domain": ""}, id="no clock"),
     ],
-    ids=["no stimulus", "never triggered", "custom", "partly custom", "no clock"],
 )
-def test_a_process_of_which_the_activations_or_the_clock_are_not_known_is_left_out(stimulus, domain, tmp_path):
-    assert total(model(tmp_path, TICK, "", stimulus, domain)) == {}
+def test_a_process_of_which_something_is_not_known_is_left_out(parts, tmp_path):
+    assert total(model(tmp_path, **{"task": TICK} | parts)) == {}
 
 
 def test_a_task_that_triggers_itself_is_left_out(tmp_path):

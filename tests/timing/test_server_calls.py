@@ -4,6 +4,7 @@ from dataclasses import replace
 from fractions import Fraction
 
 import pytest
+from hand_made_systems import of_parts, read, ticks, write
 
 from amalthea_uros import analyze_system
 from amalthea_uros.analyze.results.chains import LatencyQuantity
@@ -12,8 +13,6 @@ from amalthea_uros.perf.activities import (
     Call,
     Chance,
     Demand,
-    Execute,
-    LabelAccess,
     ProbabilitySwitch,
     SenderReceiverAccess,
     ServerCall,
@@ -23,21 +22,17 @@ from amalthea_uros.perf.activities import (
 from amalthea_uros.perf.distributions import Constant
 from amalthea_uros.perf.events import EventChain, Events, ProcessChange, ProcessEvent, RunnableChange, RunnableEvent
 from amalthea_uros.perf.hardware import Access, Clock, Core, Hardware, Latency, Memory, Structure
-from amalthea_uros.perf.mapping import Mapping, Placement, TaskAllocation
-from amalthea_uros.perf.os import OperatingSystem, Os, Overhead, Policy, Scheduler, Service
-from amalthea_uros.perf.software import Label, Runnable, Software, Task
-from amalthea_uros.perf.stimuli import InterProcess, Periodic, Stimuli
-from amalthea_uros.perf.system import System
+from amalthea_uros.perf.mapping import Placement, TaskAllocation
+from amalthea_uros.perf.os import Overhead, Service
+from amalthea_uros.perf.software import Label, Runnable, Task
+from amalthea_uros.perf.stimuli import InterProcess, Periodic
 from amalthea_uros.timing.basics.settings import MemoryModel as MemoryMode
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import MICROSECOND as US
 
-
-def ticks(number):
-    return Execute(demand=Demand(Constant(number)))
-
-
 SYNCHRONOUS = ServerCall(runnable="serve")
+RECEIVE, SEND = (SenderReceiverAccess(label="data", kind=kind) for kind in (AccessKind.READ, AccessKind.WRITE))
+NOTIFYING = replace(SEND, notifies=("notified",))
 
 
 def system(client, server=(), services=()):
@@ -45,53 +40,28 @@ def system(client, server=(), services=()):
     tasks = (
         Task(name="client", stimuli=("often",), activities=(ticks(3), *client)),
         Task(name="server", stimuli=("often",), activities=(ticks(1), *server)),
-        Task(name="last", stimuli=("triggered",), activities=(ticks(1), LabelAccess(label="out", kind=AccessKind.READ))),
+        Task(name="last", stimuli=("triggered",), activities=(ticks(1), read("out"))),
     )
-    write = LabelAccess(label="out", kind=AccessKind.WRITE)
-    return System(
+    access = Access(memory="ram", latency=Latency(read=Constant(2), write=Constant(3)))
+    core = Core(name="core", clock="clock", accesses=(access,))
+    built = of_parts(
+        tasks,
+        [TaskAllocation(task=task.name, scheduler="core", priority=-rank) for rank, task in enumerate(tasks)],
+        [Periodic(name="often", period=100 * US), InterProcess(name="triggered")],
         hardware=Hardware(
             clocks=(Clock(name="clock", frequency=Fraction(10**6)),),
-            structures=(
-                Structure(
-                    name="ECU",
-                    cores=(
-                        Core(
-                            name="core",
-                            clock="clock",
-                            accesses=(Access(memory="ram", latency=Latency(read=Constant(2), write=Constant(3))),),
-                        ),
-                    ),
-                    memories=(Memory(name="ram"),),
-                ),
-            ),
+            structures=(Structure(name="ECU", cores=(core,), memories=(Memory(name="ram"),)),),
         ),
-        os=Os(
-            systems=(
-                OperatingSystem(
-                    name="OS",
-                    schedulers=(Scheduler(name="S", policy=Policy.OSEK, cores=("core",)),),
-                    overhead="costs",
-                ),
-            ),
-            overheads=(Overhead(name="costs", services=tuple(services)),),
-        ),
-        stimuli=Stimuli(stimuli=(Periodic(name="often", period=100 * US), InterProcess(name="triggered"))),
-        software=Software(
-            tasks=tasks,
-            runnables=(
-                Runnable(name="serve", activities=(ticks(7), write, Trigger(stimulus="triggered"))),
-                Runnable(name="notified", activities=(ticks(2),)),
-            ),
-            labels=(Label(name="out"), Label(name="data")),
-        ),
-        mapping=Mapping(
-            tasks=tuple(
-                TaskAllocation(task=name, scheduler="S", priority=priority)
-                for name, priority in (("client", 3), ("server", 2), ("last", 1))
-            ),
-            placements=(Placement(element="data", memory="ram"), Placement(element="out", memory="ram")),
-        ),
+        overhead="costs",
+        os_parts={"overheads": (Overhead(name="costs", services=tuple(services)),)},
+        runnables=[
+            Runnable(name="serve", activities=(ticks(7), write("out"), Trigger(stimulus="triggered"))),
+            Runnable(name="notified", activities=(ticks(2),)),
+        ],
+        labels=[Label(name="out"), Label(name="data")],
     )
+    placements = tuple(Placement(element=label, memory="ram") for label in ("data", "out"))
+    return replace(built, mapping=replace(built.mapping, placements=placements))
 
 
 def responses(built, memory=MemoryMode.NONE):
@@ -105,14 +75,12 @@ def test_a_runnable_that_no_process_calls_is_executed_by_the_client():
 
 
 @pytest.mark.parametrize(
-    "client",
-    [
-        [ProbabilitySwitch(branches=(Chance(weight=1, activities=(SYNCHRONOUS,)), Chance(weight=1, activities=())))],
-        [SYNCHRONOUS],
-    ],
+    "call",
+    [ProbabilitySwitch(branches=(Chance(weight=1, activities=(SYNCHRONOUS,)), Chance(weight=1, activities=()))), SYNCHRONOUS],
+    ids=["in some jobs", "in all jobs"],
 )
-def test_it_is_said_that_clients_execute_it(client):
-    analysis = analyze_system(system(client))
+def test_it_is_said_that_clients_execute_it(call):
+    analysis = analyze_system(system([call]))
     assert analysis["client"].wcet == 10 * US
     assert "clients execute the runnables of synchronous servers that no process calls" in analysis.assumptions
 
@@ -149,12 +117,8 @@ def test_a_runnable_that_others_also_request_is_executed_somewhere():
         ),
         (ServerCall(runnable="serve", kind=ServerCallKind.GET_RESULT, waits=False), ["serve"], 3),
         # A process that is notified calls the runnable; otherwise it is unknown who executes it.
-        (SenderReceiverAccess(label="data", kind=AccessKind.WRITE, notifies=("notified",)), ["notified"], 3),
-        (
-            SenderReceiverAccess(label="data", kind=AccessKind.WRITE, notifies=("notified",)),
-            [],
-            "no process executes the notified runnable 'notified'",
-        ),
+        (NOTIFYING, ["notified"], 3),
+        (NOTIFYING, [], "no process executes the notified runnable 'notified'"),
     ],
 )
 def test_who_waits_and_for_whom(call, served, expected):
@@ -173,18 +137,16 @@ def test_overheads_of_calls_and_accesses():
         (Service.SENDER_RECEIVER_READ, Demand(Constant(20))),
         (Service.SENDER_RECEIVER_WRITE, Demand(Constant(40))),
     )
-    read, write = (SenderReceiverAccess(label="data", kind=kind) for kind in (AccessKind.READ, AccessKind.WRITE))
-    built = system([SYNCHRONOUS, read], services=services)
+    built = system([SYNCHRONOUS, RECEIVE], services=services)
     assert responses(built)["client"] == 3 + 7 + 10 + 20
-    assert responses(system([write], services=services))["client"] == 3 + 40
+    assert responses(system([SEND], services=services))["client"] == 3 + 40
     assert not analyze_system(built).findings
 
 
 def test_sender_receiver_accesses_take_the_time_of_the_memory():
-    read, write = (SenderReceiverAccess(label="data", kind=kind) for kind in (AccessKind.READ, AccessKind.WRITE))
-    assert responses(system([read, write]), MemoryMode.EXPLICIT)["client"] == 3 + 2 + 3
+    assert responses(system([RECEIVE, SEND]), MemoryMode.EXPLICIT)["client"] == 3 + 2 + 3
     # The label is copied in and out, and the copies are accessed.
-    assert responses(system([read, write]), MemoryMode.IMPLICIT)["client"] == 3 + 2 + 3 + 2 + 3
+    assert responses(system([RECEIVE, SEND]), MemoryMode.IMPLICIT)["client"] == 3 + 2 + 3 + 2 + 3
 
 
 def test_what_the_server_runnable_does_is_carried_on():
@@ -198,9 +160,6 @@ def test_what_the_server_runnable_does_is_carried_on():
     # The client starts it at 3; the last task always ends at 12, after all of the client (10) and of the server (1).
     # The data have no bound, since nobody states how long the last task is not triggered at most; what is claimed includes 9.
     claimed = {value.quantity: value.value for value in found.values}
-    assert (
-        claimed.get(LatencyQuantity.MIN_FIRST_TO_FIRST, 0)
-        <= 9 * US
-        <= claimed.get(LatencyQuantity.MAX_REDUCED_REACTION_TIME, 9 * US)
-    )
+    assert claimed.get(LatencyQuantity.MIN_FIRST_TO_FIRST, 0) <= 9 * US
+    assert claimed.get(LatencyQuantity.MAX_REDUCED_REACTION_TIME, 9 * US) >= 9 * US
     assert claimed[LatencyQuantity.MAX_REDUCED_DATA_AGE] >= 9 * US
