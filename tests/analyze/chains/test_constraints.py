@@ -31,6 +31,9 @@ EVENTS = (at("producer", START), at("producer", END), at("consumer", START), at(
 MADE, OUT = EVENTS[0].name, EVENTS[3].name
 
 
+MAKE = Runnable(name="make", activities=(ticks(1), write("L")))
+
+
 def evaluate(*constraints, built=None, data_ages=(), orders=(), chains=()):
     built = built or producer_and_consumer(*EVENTS, chains=(EventChain(name="chain", stimulus=MADE, response=OUT), *chains))
     stated = Constraints(constraints=constraints, data_ages=data_ages, orders=orders)
@@ -38,75 +41,75 @@ def evaluate(*constraints, built=None, data_ages=(), orders=(), chains=()):
     return [(r.quantity, r.value if r.value is None else r.value / US, str(r.verdict)) for r in analysis.requirements]
 
 
+def latency(**limits):
+    return LatencyConstraint(name="L", **{"chain": "chain"} | {name: us * US for name, us in limits.items()})
+
+
+def delay(source, target, *, matching=Matching.REACTION, **limits):
+    return DelayConstraint(
+        name="D", source=source, target=target, matching=matching, **{name: us * US for name, us in limits.items()}
+    )
+
+
+def repetition(event=EVENTS[2].name, **limits):
+    """Of the start of the consumer, twice, if nothing else is said."""
+    return RepetitionConstraint(name="R", event=event, span=2, **{name: us * US for name, us in limits.items()})
+
+
 @pytest.mark.parametrize(
-    ("kind", "minimum", "maximum", "expected"),
+    ("constraint", "expected"),
     [
         # From the start of the producer at 0 or 10 to the end of the consumer at 10 or 30.
-        (LatencyKind.REACTION, 10, 20, [("reaction", 20, "met"), ("reaction", 10, "met")]),
-        (LatencyKind.REACTION, 11, 19, [("reaction", 20, "missed"), ("reaction", 10, "missed")]),
-        (LatencyKind.AGE, 10, 10, [("data age", 10, "met"), ("data age", 10, "met")]),
-        (LatencyKind.AGE, None, 9, [("data age", 10, "missed")]),
+        (latency(minimum=10, maximum=20), [("reaction", 20, "met"), ("reaction", 10, "met")]),
+        (latency(minimum=11, maximum=19), [("reaction", 20, "missed"), ("reaction", 10, "missed")]),
+        (
+            replace(latency(minimum=10, maximum=10), kind=LatencyKind.AGE),
+            [("data age", 10, "met"), ("data age", 10, "met")],
+        ),
+        (replace(latency(maximum=9), kind=LatencyKind.AGE), [("data age", 10, "missed")]),
+        (replace(latency(maximum=1), chain="none"), [("reaction", None, "unknown")]),
+        # Without a limit it is not met.
+        (latency(), [("LatencyConstraint", None, "unknown")]),
+        (delay(MADE, OUT, lower=10, upper=19), [("delay", 20, "missed"), ("delay", 10, "met")]),
+        # Occurrences that belong together one by one.
+        (delay(MADE, EVENTS[1].name, matching=Matching.ONE_TO_ONE, upper=5), [("delay", 5, "met")]),
+        (delay(MADE, OUT, matching=Matching.ONE_TO_ONE, upper=99), [("delay", None, "unknown")]),
+        # The consumer starts at 5 after every 20; by its response time of 10 and its 5 it might start 5 later.
+        (
+            repetition(lower=35, upper=45, jitter=5),
+            [("repetition", 45, "met"), ("repetition", 35, "met"), ("jitter", 5, "met")],
+        ),
+        # Two periods are 40, and starts move by up to 5: the true value, 40, is between 35 and 45.
+        (repetition(upper=44), [("repetition", 45, "unknown")]),
+        (repetition(upper=35), [("repetition", 45, "unknown")]),
+        (repetition(upper=34), [("repetition", 45, "missed")]),
+        (repetition(lower=36), [("repetition", 35, "unknown")]),
+        (repetition(lower=46), [("repetition", 35, "missed")]),
     ],
 )
-def test_latencies_of_a_chain(kind, minimum, maximum, expected):
-    limits = {"minimum": minimum and minimum * US, "maximum": maximum and maximum * US}
-    assert evaluate(LatencyConstraint(name="L", chain="chain", kind=kind, **limits)) == expected
-
-
-def test_a_chain_that_is_not_there():
-    assert evaluate(LatencyConstraint(name="L", chain="none", maximum=1)) == [("reaction", None, "unknown")]
-
-
-def test_a_delay():
-    delay = DelayConstraint(name="D", source=MADE, target=OUT, lower=10 * US, upper=19 * US)
-    assert evaluate(delay) == [("delay", 20, "missed"), ("delay", 10, "met")]
-
-
-def test_a_delay_whose_occurrences_belong_together_one_by_one():
-    within = DelayConstraint(name="D", source=MADE, target=EVENTS[1].name, matching=Matching.ONE_TO_ONE, upper=5 * US)
-    assert evaluate(within) == [("delay", 5, "met")]
-    across = DelayConstraint(name="D", source=MADE, target=OUT, matching=Matching.ONE_TO_ONE, upper=99 * US)
-    assert evaluate(across) == [("delay", None, "unknown")]
-
-
-def test_repetition():
-    # The consumer starts at 5 after every 20; by its response time of 10 and its 5 it might start 5 later.
-    repetition = RepetitionConstraint(name="R", event=EVENTS[2].name, span=2, lower=35 * US, upper=45 * US, jitter=5 * US)
-    assert evaluate(repetition) == [("repetition", 45, "met"), ("repetition", 35, "met"), ("jitter", 5, "met")]
+def test_of_a_chain_and_of_events(constraint, expected):
+    assert evaluate(constraint) == expected
 
 
 @pytest.mark.parametrize(
-    ("period", "lower", "upper", "value", "verdict"),
+    ("limits", "expected"),
     # The consumer is activated every 20 and starts up to 5 later: after ideal points every 20, or within limits that allow 40 for two.
-    [(20, None, None, 5, "met"), (None, 35, 45, 5, "met"), (10, None, None, None, "unknown"), (None, 41, 45, None, "unknown")],
+    [
+        ({"period": 20}, (5, "met")),
+        ({"lower": 35, "upper": 45}, (5, "met")),
+        ({"period": 10}, (None, "unknown")),
+        ({"lower": 41, "upper": 45}, (None, "unknown")),
+    ],
 )
-def test_ideal_points_at_another_distance_are_left_further_and_further_behind(period, lower, upper, value, verdict):
-    limits = {name: each and each * US for name, each in {"period": period, "lower": lower, "upper": upper}.items()}
-    repetition = RepetitionConstraint(name="R", event=EVENTS[2].name, span=2, jitter=5 * US, **limits)
-    assert evaluate(repetition)[-1] == ("jitter", value, verdict)
-
-
-@pytest.mark.parametrize(
-    ("lower", "upper", "verdict"),
-    # Two periods are 40, and starts move by up to 5: the true value, 40, is between 35 and 45.
-    [(None, 44, "unknown"), (None, 35, "unknown"), (None, 34, "missed"), (36, None, "unknown"), (46, None, "missed")],
-)
-def test_a_bound_beyond_a_limit_is_unknown(lower, upper, verdict):
-    repetition = RepetitionConstraint(
-        name="R", event=EVENTS[2].name, span=2, lower=lower and lower * US, upper=upper and upper * US
-    )
-    assert [found[2] for found in evaluate(repetition)] == [verdict]
-
-
-def test_a_constraint_without_a_limit_is_not_met():
-    assert evaluate(LatencyConstraint(name="L", chain="chain")) == [("LatencyConstraint", None, "unknown")]
+def test_ideal_points_at_another_distance_are_left_further_and_further_behind(limits, expected):
+    assert evaluate(repetition(jitter=5, **limits))[-1] == ("jitter", *expected)
 
 
 def test_repetition_of_sporadic_events():
     sporadic = RelativePeriodic(name="A", distance=Boundaries(lower=20 * US, upper=50 * US))
     built = system([("A", None, [ticks(1)])], [at("A", START), at("A", END)], stimuli=[sporadic])
-    repetition = RepetitionConstraint(name="R", event="A start", lower=20 * US, upper=50 * US, jitter=US)
-    assert evaluate(repetition, built=built) == [
+    stated = replace(repetition("A start", lower=20, upper=50, jitter=1), span=1)
+    assert evaluate(stated, built=built) == [
         ("repetition", 50, "met"),
         ("repetition", 20, "met"),
         ("jitter", None, "unknown"),
@@ -147,7 +150,7 @@ def test_how_long_data_are_valid(limits, expected):
     built = system(
         [("writer", 10, [Call(runnable="make")]), ("reader", 20, [read("L"), ticks(1)], "core", 5)],
         [at("writer", END), at("reader", START)],
-        runnables=[Runnable(name="make", activities=(ticks(1), write("L")))],
+        runnables=[MAKE],
     )
     assert evaluate(built=built, data_ages=[DataAgeConstraint(name="A", runnable="make", label="L", **limits)]) == expected
 
@@ -161,7 +164,7 @@ def test_data_that_several_processes_write_have_no_age():
             ("reader", 20, [read("L"), ticks(1)], "core", 5),
         ],
         [at("writer", END), at("reader", START)],
-        runnables=[Runnable(name="make", activities=(ticks(1), write("L")))],
+        runnables=[MAKE],
     )
     for limits in ({"latest": 100 * US}, {"latest_cycle": 5}):
         age = DataAgeConstraint(name="A", runnable="make", label="L", **limits)
@@ -178,7 +181,7 @@ def test_data_that_several_processes_read_by_different_means_have_an_age_in_each
             ("receiver", 20, [receive, ticks(1)], "core", 18),
         ],
         [at("writer", END), at("reader", START)],
-        runnables=[Runnable(name="make", activities=(ticks(1), write("L")))],
+        runnables=[MAKE],
     )
     age = DataAgeConstraint(name="A", runnable="make", label="L", latest=5 * US)
     assert evaluate(built=built, data_ages=[age]) == [("data age", 4, "met"), ("data age", 7, "missed")]
@@ -241,10 +244,7 @@ def test_a_delay_of_events_that_do_not_occur_equally_often(kind, source, target,
     tasks = [("A", 40, body(kind)), ("B", None, [ticks(2)])]
     stimuli, runnables = [InterProcess(name="B")], [Runnable(name="r", activities=(ticks(2),))]
     built = system(tasks, events, stimuli=stimuli, runnables=runnables)
-    delays = [
-        DelayConstraint(name=matching, source=source, target=target, matching=matching, upper=upper * US)
-        for matching in Matching
-    ]
+    delays = [replace(delay(source, target, matching=matching, upper=upper), name=matching) for matching in Matching]
     assert [verdict for _, _, verdict in evaluate(*delays, built=built)] == [reaction, one_to_one, one_to_one]
 
 
@@ -255,8 +255,8 @@ def test_what_others_activate_too_does_not_belong_to_one_source():
         ("B", None, [ticks(2)]),
     ]
     built = system(tasks, (at("A", START), at("B", START)), stimuli=[InterProcess(name="B")])
-    delay = DelayConstraint(name="D", source="A start", target="B start", matching=Matching.ONE_TO_ONE, upper=99 * US)
-    assert evaluate(delay, built=built) == [("delay", None, "unknown")]
+    stated = delay("A start", "B start", matching=Matching.ONE_TO_ONE, upper=99)
+    assert evaluate(stated, built=built) == [("delay", None, "unknown")]
 
 
 def test_a_runnable_that_a_job_executes_several_times_repeats_within_it():
@@ -265,22 +265,20 @@ def test_a_runnable_that_a_job_executes_several_times_repeats_within_it():
         [RunnableEvent(name="r start", runnable="r", change=RunnableChange.START)],
         runnables=[Runnable(name="r", activities=(ticks(2),))],
     )
-    repetition = RepetitionConstraint(name="R", event="r start", lower=30 * US)
-    assert evaluate(repetition, built=built) == [("repetition", None, "unknown")]
+    stated = replace(repetition("r start", lower=30), span=1)
+    assert evaluate(stated, built=built) == [("repetition", None, "unknown")]
 
 
 def test_the_activation_of_the_job_that_reads_answers_nothing():
     # X keeps A off from 0 to 9 or 10, and A keeps B off, which is activated at 0 and at 40: that is 30 or 31 after the start of A.
     tasks = [("X", 120, [ticks(10, 9)]), ("A", 60, [ticks(5)]), ("B", 40, [ticks(1)])]
     built = system(tasks, (at("A", START), at("B", ACTIVATION)))
-    delay = DelayConstraint(name="D", source="A start", target="B activate", upper=29 * US)
-    assert [verdict for _, _, verdict in evaluate(delay, built=built)] == ["unknown"]
+    assert [verdict for _, _, verdict in evaluate(delay("A start", "B activate", upper=29), built=built)] == ["unknown"]
 
 
 def test_data_within_a_job_do_not_reach_what_comes_before():
     built = system(
         [("X", 40, [ticks(9, 4)]), ("A", 40, [ticks(3), write("L"), read("L")])], (at("A", START), at("A", ACTIVATION))
     )
-    delay = DelayConstraint(name="D", source="A start", target="A activate", upper=30 * US)
     # A starts 4 to 9 after its activation, and is activated 31 to 36 later.
-    assert [verdict for _, _, verdict in evaluate(delay, built=built)] == ["missed"]
+    assert [verdict for _, _, verdict in evaluate(delay("A start", "A activate", upper=30), built=built)] == ["missed"]

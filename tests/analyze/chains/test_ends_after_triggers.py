@@ -3,10 +3,11 @@
 from dataclasses import replace
 
 import pytest
+from hand_made_systems import READ, WRITE, access, changed
 from test_chain_systems import END, at, evaluate, read, system, ticks
 
 from amalthea_uros import analyze_system
-from amalthea_uros.perf.activities import AccessKind, Communication, LabelAccess, Trigger
+from amalthea_uros.perf.activities import Trigger
 from amalthea_uros.perf.constraints import Constraints, DelayConstraint, Matching
 from amalthea_uros.perf.events import LabelChange, LabelEvent
 from amalthea_uros.perf.software import Preemption
@@ -40,8 +41,7 @@ def test_the_next_job_responds_to_the_end_of_a_job_that_has_triggered(cores, lea
 
 def test_what_cannot_preempt_the_job_responds_after_its_end():
     built = triggering()
-    tasks = tuple(replace(task, preemption=Preemption.NON_PREEMPTIVE) for task in built.software.tasks)
-    _, values, _, _ = evaluate(replace(built, software=replace(built.software, tasks=tasks)))
+    _, values, _, _ = evaluate(changed(built, preemption=Preemption.NON_PREEMPTIVE))
     # W keeps the core up to its end at 10, R executes after that.
     assert values["min_first_to_first"] <= 2
 
@@ -63,9 +63,8 @@ def test_a_delay_from_such_an_end(matching, verdict):
 
 
 def test_what_was_written_before_the_end_does_not_come_from_it():
-    written = LabelAccess(label="L", kind=AccessKind.WRITE, communication=Communication.EXPLICIT)
     # W writes at 0 and ends at 10; the reader of 5 reads that from 0 + 50 at the latest, but what follows the end of W from 100 on.
-    tasks = [("W", 100, [written, ticks(10)]), ("R", 50, [read("L"), ticks(5)])]
+    tasks = [("W", 100, [access("L", WRITE), ticks(10)]), ("R", 50, [read("L"), ticks(5)])]
     _, values, _, _ = evaluate(system(tasks, (at("W", END), at("R", END))))
     assert values["max_reduced_reaction_time"] >= 105 - 10
 
@@ -80,12 +79,7 @@ def test_what_responds_after_the_end_may_be_meant_as_its_response():
 
 def test_what_is_written_at_the_instant_of_the_end_may_be_meant_by_what_follows_it():
     # W reads S of the job before it, executes 4 and writes S and L at the instant of its end; R reads L every 40, the first time at 4.
-    explicit = Communication.EXPLICIT
-    body = [
-        LabelAccess(label="S", kind=AccessKind.READ, communication=explicit),
-        ticks(4),
-        *(LabelAccess(label=label, kind=AccessKind.WRITE, communication=explicit) for label in "SL"),
-    ]
+    body = [access("S", READ), ticks(4), access("S", WRITE), access("L", WRITE)]
     written = LabelEvent(name="written", label="L", process="W", change=LabelChange.WRITE)
     built = system([("W", 80, body), ("R", 40, [read("L"), ticks(2)])], (at("W", END), written, at("R", END)))
     _, values, _, _ = evaluate(built)
