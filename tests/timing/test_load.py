@@ -7,7 +7,7 @@ from effort import every, examples
 from hand_made_systems import of_parts
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from support import MODEL, ROOT, SHARED, analysis_of, corpus, hand_written
+from support import ROOT, SHARED, analysis_of, corpus, hand_written
 
 from amalthea_uros import analyze_system, build_model, check, extract, load
 from amalthea_uros.errors import ReadError
@@ -275,106 +275,3 @@ def test_activations_at_once_are_those_of_the_analysis(stimulus, limit):
     assume(activations is not None)
     found = check(build_model(system), ["TIM-ACTIVATION-LIMIT"])
     assert bool(found) is (activations.eta_plus(1) > limit)
-
-
-# What is not known
-
-
-CLOCKED = 'frequencyDomain="clock?type=FrequencyDomain"'
-
-
-def model(tmp_path, task, others="", stimulus="P?type=PeriodicStimulus", domain=CLOCKED):
-    """One task on one core of 1 MHz, every millisecond."""
-    path = tmp_path / "model.amxmi"
-    path.write_text(
-        MODEL.format(
-            f"""
-<hwModel>
-  <domains xsi:type="am:FrequencyDomain" name="clock"><defaultValue value="1" unit="MHz"/></domains>
-  <structures name="ECU"><modules xsi:type="am:ProcessingUnit" name="core" {domain}/></structures>
-</hwModel>
-<osModel>
-  <operatingSystems name="OS"><taskSchedulers name="S"/></operatingSystems>
-</osModel>
-<stimuliModel>
-  <stimuli xsi:type="am:PeriodicStimulus" name="P"><recurrence value="1" unit="ms"/></stimuli>
-  <stimuli xsi:type="am:InterProcessStimulus" name="I"/>
-  <stimuli xsi:type="am:CustomStimulus" name="C"/>
-</stimuliModel>
-<swModel>
-  <tasks name="T" stimuli="{stimulus}"><activityGraph>{task}</activityGraph></tasks>
-  {others}
-</swModel>
-<mappingModel>
-  <schedulerAllocation scheduler="S?type=TaskScheduler" responsibility="core?type=ProcessingUnit"/>
-  <taskAllocation task="T?type=Task" scheduler="S?type=TaskScheduler"/>
-</mappingModel>
-"""
-        )
-    )
-    return load(path)
-
-
-UNBOUNDED = '<items xsi:type="am:Ticks"><default xsi:type="am:DiscreteValueGaussDistribution" mean="1"/></items>'
-NEED = (
-    '<items xsi:type="am:ExecutionNeed"><needs key="X"><value xsi:type="am:DiscreteValueConstant" value="1"/></needs></items>'
-)
-TICK = '<items xsi:type="am:Ticks"><default xsi:type="am:DiscreteValueConstant" value="100"/></items>'
-
-
-def call(name):
-    return f'<items xsi:type="am:RunnableCall" runnable="{name}?type=Runnable"/>'
-
-
-def calls(name, *called):
-    return f'<runnables name="{name}"><activityGraph>{TICK}{"".join(map(call, called))}</activityGraph></runnables>'
-
-
-def test_a_known_load(tmp_path):
-    # 100 ticks of 1 us in each ms.
-    assert total(model(tmp_path, TICK)) == {"core": Fraction(1, 10)}
-
-
-@pytest.mark.parametrize(
-    "parts",
-    [
-        pytest.param({"task": TICK + f'<items xsi:type="am:WhileLoop">{TICK}</items>'}, id="loop"),
-        pytest.param({"task": TICK + NEED}, id="need"),
-        pytest.param({"task": call("A"), "others": calls("A", "B") + calls("B", "A")}, id="circle"),
-        pytest.param({"task": call("A"), "others": calls("A", "A")}, id="itself"),
-        # What is incomplete may take any time.
-        pytest.param({"task": TICK + '<items xsi:type="am:WaitEvent"/>'}, id="wait"),
-        pytest.param({"task": TICK + '<items xsi:type="am:EnforcedMigration"/>'}, id="migration"),
-        pytest.param({"task": TICK + '<items xsi:type="am:Ticks"/>'}, id="no ticks"),
-        pytest.param({"task": TICK + UNBOUNDED}, id="no bound"),
-        pytest.param({"task": TICK + '<items xsi:type="am:RunnableCall"/>'}, id="no runnable"),
-        pytest.param({"task": TICK + call("nowhere")}, id="unresolved"),
-        pytest.param({"stimulus": ""}, id="no stimulus"),
-        pytest.param({"stimulus": "I?type=InterProcessStimulus"}, id="never triggered"),
-        pytest.param({"stimulus": "C?type=CustomStimulus"}, id="custom"),
-        # What is known of one stimulus is not all.
-        pytest.param({"stimulus": "P?type=PeriodicStimulus C?type=CustomStimulus"}, id="partly custom"),
-        pytest.param({"domain": ""}, id="no clock"),
-    ],
-)
-def test_a_process_of_which_something_is_not_known_is_left_out(parts, tmp_path):
-    assert total(model(tmp_path, **{"task": TICK} | parts)) == {}
-
-
-def test_a_task_that_triggers_itself_is_left_out(tmp_path):
-    trigger = '<items xsi:type="am:InterProcessTrigger" stimulus="I?type=InterProcessStimulus"/>'
-    found = model(tmp_path, TICK + trigger, "", "P?type=PeriodicStimulus I?type=InterProcessStimulus")
-    assert not SystemContext(extract(found).system).rates
-
-
-def test_calls_may_be_nested_deeper_than_recursion_goes(tmp_path):
-    depth = 3000
-    runnables = "".join(calls(f"R{number}", *([f"R{number + 1}"] if number + 1 < depth else [])) for number in range(depth))
-    # Each of them takes a tenth of a millisecond.
-    assert total(model(tmp_path, call("R0"), runnables)) == {"core": depth / Fraction(10)}
-
-
-def test_runnables_that_many_call_are_looked_at_once(tmp_path):
-    # Each calls the next one twice: 2^200 executions.
-    runnables = "".join(calls(f"R{number}", *[f"R{number + 1}"] * 2) for number in range(200)) + calls("R200")
-    assert total(model(tmp_path, call("R0"), runnables)) == {"core": Fraction(2**201 - 1, 10)}
