@@ -49,10 +49,20 @@ def changed(old, new):
     return GOOD.replace(old, new)
 
 
-def test_the_good_one_is_good(tmp_path):
-    path = tmp_path / "app.yaml"
-    path.write_text(GOOD)
-    assert read_description(path).application.nodes[0].timers[0].name == "Timer"
+@pytest.fixture
+def described(tmp_path):
+    """The description of a text."""
+
+    def read(text):
+        path = tmp_path / "app.yaml"
+        path.write_text(text)
+        return read_description(path)
+
+    return read
+
+
+def timer_of(description):
+    return description.application.nodes[0].timers[0]
 
 
 @pytest.mark.parametrize(
@@ -63,9 +73,16 @@ def test_a_mistake_with_its_place(told, row):
     assert (line, column, row["rule"], row["message"], row.get("help", "")) in told(changed(row["change"], row["to"]))
 
 
-def test_a_value_that_stands_for_several_is_reported_once(told):
-    # A single time is both the best case and the worst case.
-    assert len(told(changed("execution_time: 4 us", "execution_time: 4"))) == 1
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        # A single time is both the best case and the worst case.
+        pytest.param("execution_time: 4 us", "execution_time: 4", id="a value that stands for several"),
+        pytest.param("execution_time: 12 us", "execution_time: 1,5 us", id="a decimal comma"),
+    ],
+)
+def test_a_mistake_is_reported_once(told, old, new):
+    assert len(told(changed(old, new))) == 1
 
 
 def test_all_mistakes_in_one_run(told):
@@ -132,10 +149,9 @@ class TestNumberOfValues:
         assert "expanded aliases" in message
 
 
-def test_aliases_that_do_not(tmp_path):
-    path = tmp_path / "app.yaml"
-    path.write_text(changed("execution_time: 12 us", "execution_time: &cost 12 us").replace("4 us", "*cost"))
-    assert read_description(path).application.nodes[0].timers[0].execution_time.max == 12_000_000
+def test_aliases_that_do_not(described):
+    text = changed("execution_time: 12 us", "execution_time: &cost 12 us").replace("4 us", "*cost")
+    assert timer_of(described(text)).execution_time.max == 12_000_000
 
 
 def test_a_file_that_is_not_there(tmp_path):
@@ -145,28 +161,21 @@ def test_a_file_that_is_not_there(tmp_path):
         read_description(tmp_path)
 
 
-def test_words_that_older_yaml_took_for_something_else(tmp_path):
-    path = tmp_path / "app.yaml"
-    path.write_text(changed("name: app", "name: on").replace("name: Timer", "name: 1:30").replace("name: node", "name: no"))
-    description = read_description(path)
-    assert (description.name, description.application.nodes[0].name) == ("on", "no")
-    assert description.application.nodes[0].timers[0].name == "1:30"
+@pytest.mark.parametrize("name", ["on", "no", "1:30", "1.10", "007", "1e3", ".inf", "2024-01-01"])
+def test_names_are_what_is_written(described, name):
+    """Also words that older YAML took for something else."""
+    assert timer_of(described(changed("name: Timer", f"name: {name}"))).name == name
 
 
-def test_a_platform_alone_and_an_offset_of_nothing(tmp_path):
-    path = tmp_path / "app.yaml"
+def test_a_platform_alone_and_an_offset_of_nothing(described):
     text = changed("{platform: single-core}", "single-core")
-    path.write_text(text.replace("execution_time: 4 us", "execution_time: 4 us, offset: 0 ms"))
-    hardware = read_description(path).hardware
-    assert hardware.platform == "single-core"
-    assert hardware.location().line == 3
+    hardware = described(text.replace("execution_time: 4 us", "execution_time: 4 us, offset: 0 ms")).hardware
+    assert (hardware.platform, hardware.location().line) == ("single-core", 3)
 
 
-def test_places_of_values(tmp_path):
-    path = tmp_path / "app.yaml"
-    path.write_text(GOOD)
-    timer = read_description(path).application.nodes[0].timers[0]
-    assert (timer.location().line, timer.location().column) == (10, 11)
+def test_places_of_values(described):
+    timer = timer_of(described(GOOD))
+    assert (timer.name, timer.location().line, timer.location().column) == ("Timer", 10, 11)
     assert (timer.location("period").column, timer.execution_time.location().column) == (33, 55)
     # What is not stated stands where its section does.
     assert timer.location("offset") == timer.location()
@@ -182,19 +191,15 @@ def test_a_chain_of_aliases_that_nests_deeply(told):
     assert "nested more than 40 levels deep" in message
 
 
-def test_merged_keys_and_extensions(tmp_path):
+def test_merged_keys_and_extensions(described):
     """Own keys win over merged ones, and earlier mappings over later ones (https://yaml.org/type/merge.html)."""
-    path = tmp_path / "app.yaml"
-    path.write_text(
-        GOOD
-        + """\
+    extended = """\
 x-slow: &slow {period: 100 ms, execution_time: 1 ms, offset: 3 ms}
 x-core: &core {period: 50 ms, core: Core_0, deadline: 7 ms}
 tasks:
   - {name: T, <<: [*slow, *core], deadline: 9 ms, x-owner: {team: brakes}}
 """
-    )
-    (task,) = read_description(path).tasks
+    (task,) = described(GOOD + extended).tasks
     milliseconds = 10**9
     assert (task.period, task.offset, task.deadline) == (100 * milliseconds, 3 * milliseconds, 9 * milliseconds)
     assert task.core == "Core_0"
@@ -208,65 +213,57 @@ def test_a_mistake_in_a_merged_mapping_is_reported_once(told):
     assert [(line, message) for line, _, _, message, _ in told(text)] == [(11, "unknown key 'prio'")]
 
 
-@pytest.mark.parametrize("name", ["1.10", "007", "1e3", ".inf", "2024-01-01"])
-def test_names_are_what_is_written(tmp_path, name):
-    path = tmp_path / "app.yaml"
-    path.write_text(changed("name: Timer", f"name: {name}"))
-    assert read_description(path).application.nodes[0].timers[0].name == name
-
-
 def test_no_path_of_a_chain_is_empty(told):
     text = GOOD + "chains:\n  - {name: c, parallel: [[], [Timer]]}\n"
     assert told(text) == [(12, 26, "YML012", "parallel: expected at least 1 item, found 0", "")]
 
 
-class TestTheRest:
-    """What is wrong besides keys and words that are not understood is reported in the same run, but not their consequences."""
-
-    @pytest.fixture
-    def all_told(self, tmp_path):
-        def tell(text):
-            path = tmp_path / "app.yaml"
-            path.write_text(text)
-            with pytest.raises(ReadError) as caught:
-                describe(path)
-            return [(finding.rule, finding.message) for finding in caught.value.findings]
-
-        return tell
-
-    UNDEFINED = "requirements:\n  - {process: Nothing, response_time: 1 ms}\n"
-
-    def test_an_unknown_section_and_a_wrong_word(self, all_told):
-        text = changed("middleware:\n", "middleware:\n  policy: RMS\n") + "note: hello\n" + self.UNDEFINED
-        assert all_told(text) == [
-            ("YML012", "policy: expected 'FixedPriorityPreemptive' or 'OSEK', found 'RMS'"),
-            ("YML010", "unknown key 'note'"),
-            ("APP001", "undefined process or runnable 'Nothing'"),
-        ]
-
-    def test_what_a_misspelled_section_defines_is_defined(self, all_told):
-        text = GOOD + "taskz:\n  - {name: T, period: 1 s, execution_time: 1 ms}\n  - {name: U, period: 3}\n"
-        assert all_told(text + "requirements:\n  - {process: T, response_time: 1 ms}\n") == [
-            ("YML010", "unknown key 'taskz'"),
-            ("YML012", "period: '3' has no unit; write a time such as '10 ms'"),
-        ]
-
-    def test_a_key_that_is_missing_because_it_is_misspelled(self, all_told):
-        text = GOOD + "tasks:\n  - {name: T, how_often: 1 s, execution_time: 1 ms}\n" + self.UNDEFINED
-        assert all_told(text) == [
-            ("YML010", "unknown key 'how_often'"),
-            ("APP001", "undefined process or runnable 'Nothing'"),
-        ]
-
-    def test_an_unknown_list_may_define_names(self, all_told):
-        assert all_told(GOOD + "things: [{name: Nothing}]\n" + self.UNDEFINED) == [("YML010", "unknown key 'things'")]
-
-    def test_a_duplicate_key(self, all_told):
-        assert all_told(GOOD + "name: other\n" + self.UNDEFINED) == [
-            ("YML003", "duplicate key 'name' (first defined on line 2)"),
-            ("APP001", "undefined process or runnable 'Nothing'"),
-        ]
+UNDEFINED = "requirements:\n  - {process: Nothing, response_time: 1 ms}\n"
+UNDEFINED_NAME = ("APP001", "undefined process or runnable 'Nothing'")
 
 
-def test_a_decimal_comma_is_reported_once(told):
-    assert len(told(changed("execution_time: 12 us", "execution_time: 1,5 us"))) == 1
+@pytest.mark.parametrize(
+    ("text", "findings"),
+    [
+        pytest.param(
+            changed("middleware:\n", "middleware:\n  policy: RMS\n") + "note: hello\n" + UNDEFINED,
+            [
+                ("YML012", "policy: expected 'FixedPriorityPreemptive' or 'OSEK', found 'RMS'"),
+                ("YML010", "unknown key 'note'"),
+                UNDEFINED_NAME,
+            ],
+            id="an unknown section and a wrong word",
+        ),
+        pytest.param(
+            GOOD
+            + "taskz:\n  - {name: T, period: 1 s, execution_time: 1 ms}\n  - {name: U, period: 3}\n"
+            + UNDEFINED.replace("Nothing", "T"),
+            [
+                ("YML010", "unknown key 'taskz'"),
+                ("YML012", "period: '3' has no unit; write a time such as '10 ms'"),
+            ],
+            id="what a misspelled section defines is defined",
+        ),
+        pytest.param(
+            GOOD + "tasks:\n  - {name: T, how_often: 1 s, execution_time: 1 ms}\n" + UNDEFINED,
+            [("YML010", "unknown key 'how_often'"), UNDEFINED_NAME],
+            id="a key that is missing because it is misspelled",
+        ),
+        pytest.param(
+            GOOD + "things: [{name: Nothing}]\n" + UNDEFINED,
+            [("YML010", "unknown key 'things'")],
+            id="an unknown list may define names",
+        ),
+        pytest.param(
+            GOOD + "name: other\n" + UNDEFINED,
+            [("YML003", "duplicate key 'name' (first defined on line 2)"), UNDEFINED_NAME],
+            id="a duplicate key",
+        ),
+    ],
+)
+def test_what_is_wrong_besides_is_reported_but_not_its_consequences(tmp_path, text, findings):
+    path = tmp_path / "app.yaml"
+    path.write_text(text)
+    with pytest.raises(ReadError) as caught:
+        describe(path)
+    assert [(finding.rule, finding.message) for finding in caught.value.findings] == findings

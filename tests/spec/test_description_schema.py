@@ -57,22 +57,8 @@ def places(value, path=()):
 
 VALUES = st.sampled_from(
     [
-        *(
-            "10 ms",
-            "0 ms",
-            "-1 ms",
-            "+2 us",
-            ".5 s",
-            "1e-3 s",
-            "-0 ms",
-            "1e3 us",
-            "10",
-            "ms",
-            "10 msec",
-            "1,5 ms",
-            "00 ms",
-            "1 s\n",
-        ),
+        *("10 ms", "0 ms", "-1 ms", "+2 us", ".5 s", "1e-3 s", "-0 ms", "1e3 us"),
+        *("10", "ms", "10 msec", "1,5 ms", "00 ms", "1 s\n"),
         *("4 B", "0 B", "-4 B", "50 Hz", "0 Hz", "250 kbit/s", "250 kbps"),
         *("A", "", " A", "A ", "a b", "x" * 200, "x" * 201, "preemptive", "LET", "any", "0x120", "0xg", "1.5", "-1.5"),
         *(0, 1, -1, 2, 10**6 + 1, 2**31, True, None, [], {}, ["A"], [1], {"min": "1 ms"}, {"min": "1 ms", "max": "2 ms"}),
@@ -81,13 +67,18 @@ VALUES = st.sampled_from(
 )
 
 
+def drawn_place(data, content):
+    """What holds a value anywhere in a content, and the key of it there."""
+    *outer, last = data.draw(st.sampled_from([path for path in places(content) if path]))
+    for key in outer:
+        content = content[key]
+    return content, last
+
+
 @given(st.data())
 def test_what_the_schema_refuses_the_reader_refuses(data):
     content = copy.deepcopy(data.draw(st.sampled_from(SAMPLES)))
-    *outer, last = data.draw(st.sampled_from([path for path in places(content) if path]))
-    holder = content
-    for key in outer:
-        holder = holder[key]
+    holder, last = drawn_place(data, content)
     match data.draw(st.sampled_from(["replace", "remove", "add"])):
         case "remove":
             del holder[last]
@@ -125,14 +116,8 @@ PARTS = [value for sample in SAMPLES for value in (copy.deepcopy(sample["applica
 def test_parts_of_samples_in_wrong_places_are_no_false_alarms(data):
     """An editor must not underline what `amuros check` accepts, wherever a part of another file was pasted."""
     content = copy.deepcopy(data.draw(st.sampled_from(SAMPLES)))
-    *outer, last = data.draw(st.sampled_from([path for path in places(content) if path]))
-    holder = content
-    for key in outer:
-        holder = holder[key]
-    part = copy.deepcopy(data.draw(st.sampled_from(PARTS)))
-    *inner, _ = data.draw(st.sampled_from([path for path in places(part) if path]))
-    for key in inner:
-        part = part[key]
+    holder, last = drawn_place(data, content)
+    part, _ = drawn_place(data, copy.deepcopy(data.draw(st.sampled_from(PARTS))))
     if isinstance(holder, list):
         holder.append(part)
     else:
