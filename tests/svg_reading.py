@@ -6,6 +6,8 @@ from itertools import combinations
 from lxml import etree
 
 SVG = "{http://www.w3.org/2000/svg}"
+#: A name with everything that means something in XML.
+NASTY = """<Task & "friends'>"""
 SIZES = {"title": 16, "small": 11}
 #: The average of the characters of names and numbers in DejaVu Sans.
 EM = 0.58
@@ -76,3 +78,12 @@ def scale(picture):
     """From numbers at the time axis to pixels."""
     (first, left), *_, (last, right) = tick_labels(picture)
     return lambda value: left + (value - first) / (last - first) * (right - left)
+
+
+def contents(picture):
+    """What is written, but for what is rotated."""
+    return [text.content for text in texts(picture)]
+
+
+def tooltips(picture):
+    return [node.text for node in parsed(picture).iter(f"{SVG}title")]

@@ -1,7 +1,9 @@
-"""Each format has its writer, and each result can be shown."""
+"""Each format has its writer, each result can be shown, and changes of files are exact for programs such as `patch`."""
 
 from dataclasses import is_dataclass
 from importlib import import_module
+from io import StringIO
+from pathlib import Path
 from pkgutil import iter_modules
 
 import pytest
@@ -9,9 +11,11 @@ import pytest
 from amalthea_uros import services
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.diagnostics import Finding, Severity
-from amalthea_uros.report import formats
+from amalthea_uros.report import fields, formats
 from amalthea_uros.report.documents import DOCUMENTS
+from amalthea_uros.report.fields.declaration import ALSO, TIME_SUFFIX, declared
 from amalthea_uros.report.wording.findings import findings_text
+from amalthea_uros.services.files import FileChange, FilesDiff
 
 MODULES = [import_module(f"{services.__name__}.{module.name}") for module in iter_modules(services.__path__)]
 RESULTS = {
@@ -50,3 +54,63 @@ def test_numbers_in_sentences():
     assert findings_text(found[:1]) == "1 finding: 1 warning"
     assert findings_text([]) == "no findings"
     assert (counted(1, "unresolved reference"), counted(1200, "object")) == ("1 unresolved reference", "1,200 objects")
+
+
+for module in iter_modules(fields.__path__):
+    import_module(f"{fields.__name__}.{module.name}")
+
+
+def attributes(kind):
+    """The attributes of a class: fields of data classes and named tuples, and properties."""
+    found = set(dir(kind))
+    for base in kind.__mro__:
+        found.update(getattr(base, "__annotations__", {}), getattr(base, "_fields", ()))
+    return found
+
+
+@pytest.mark.parametrize("kind", declared(), ids=lambda kind: kind.__name__)
+def test_each_field_comes_from_an_attribute(kind):
+    sources = [field.removesuffix(TIME_SUFFIX) if isinstance(field, str) else field[1] for field in declared()[kind]]
+    first = {source.partition(".")[0] for source in sources if isinstance(source, str)}
+    assert first - attributes(kind) == set()
+
+
+@pytest.mark.parametrize("kind", declared(), ids=lambda kind: kind.__name__)
+def test_each_name_is_given_once(kind):
+    names = [field if isinstance(field, str) else field[0] for field in declared()[kind]]
+    named = [name for name in names if name != ALSO]
+    assert len(named) == len(set(named))
+
+
+class Screen(StringIO):
+    def isatty(self):
+        return True
+
+
+def written(before, after, stream, name="m.amxmi"):
+    formats.write("text", FilesDiff((FileChange(Path(name), before, after),), "canonical"), stream)
+    return stream.getvalue()
+
+
+def test_a_pipe_gets_the_characters_of_the_file():
+    assert written("\t\x1b[31mold\r\n", "new\n", StringIO()).endswith("@@ -1 +1 @@\n-\t\x1b[31mold\r\n+new\n")
+
+
+def test_a_terminal_gets_escapes_of_hidden_characters_except_tabs():
+    assert written("\t\x1b[31mold\r\n", "new\n", Screen()).endswith("@@ -1 +1 @@\n-\t\\x1b[31mold\\r\n+new\n")
+
+
+def test_only_a_line_feed_ends_a_line():
+    """As for `patch`: a line separator or form feed in a comment is part of its line."""
+    assert "@@ -1,2 +1,2 @@\n a\u2028b\x0cc\n-old\n+new\n" in written(
+        "a\u2028b\x0cc\nold\n", "a\u2028b\x0cc\nnew\n", StringIO()
+    )
+
+
+def test_a_last_line_without_a_line_end_is_marked():
+    """As in POSIX.1-2017, diff, "Diff Default Output Format"."""
+    assert written("old", "new\n", StringIO()).endswith("-old\n\\ No newline at end of file\n+new\n")
+
+
+def test_the_name_of_a_file_stays_in_its_line():
+    assert "--- a\\nb.amxmi\n" in written("old\n", "new\n", StringIO(), "a\nb.amxmi")

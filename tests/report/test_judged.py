@@ -6,8 +6,9 @@ import pytest
 from support import ROOT
 
 from amalthea_uros import analyze, task, taskset
+from amalthea_uros.analyze.results.chains import LatencyQuantity
 from amalthea_uros.judge.verdict import Verdict
-from amalthea_uros.report.documents.judged import judged_items, limits_table, why
+from amalthea_uros.report.documents.judged import decisive_quantity, judged_items, limits_table, requirements_of, why
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
 
@@ -67,3 +68,15 @@ def test_shares_order_tasks_of_different_periods():
         priorities="rate monotonic",
     )
     assert [item.name for item in judged_items(analyze(system))] == ["slow", "fast"]
+
+
+def test_a_chain_is_not_met_if_its_jitter_is_unknown():
+    # Reactions from 1.016 to 20.029 ms over all phases, which are met with a limit of 25 ms; of 15 ms of jitter, that is unknown.
+    analysis = analyze(ADVANCED.read_text().replace("reaction: 25 ms", "reaction: 25 ms, jitter: 15 ms"))
+    jitter, reaction = requirements_of("factor-to-output", analysis)
+    assert (jitter.quantity, jitter.verdict) == ("reaction jitter", Verdict.UNKNOWN)
+    assert (reaction.quantity, reaction.verdict) == ("reaction", Verdict.MET)
+    assert decisive_quantity("factor-to-output", analysis) is LatencyQuantity.MAX_REDUCED_REACTION_TIME
+    claims = dict(cells(analysis, "what", "claim"))
+    assert claims["reaction of factor-to-output"] == "exact"
+    assert claims["reaction jitter of factor-to-output"] == "bound"

@@ -1,16 +1,15 @@
 """Jobs from events, also where a trace begins or ends amid them."""
 
-import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from traces import table as table_of
 
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.report.pictures.chain_paths import ChainStep, DrawnPath
 from amalthea_uros.report.pictures.from_events import UNKNOWN_CORE, chain_path, jobs_of
-from amalthea_uros.report.pictures.gantt import GanttChart, gantt
 from amalthea_uros.report.pictures.jobs import CoreRows, Job, ProcessRow, RunnableSpan, State, StateSpan
-from amalthea_uros.trace.table import NO_NOTE, Entity, EntityKind, EventKind, EventTable
+from amalthea_uros.trace.table import Entity, EntityKind, EventKind
 
 STIMULUS, CORE_0, CORE_1, TASK, ISR, RUNNABLE, INNER, CHAIN = range(8)
 ENTITIES = (
@@ -28,9 +27,7 @@ K = EventKind
 
 def table(*events):
     """Events as (time, kind, source, source instance, target, target instance[, note])."""
-    columns = list(zip(*((*event, NO_NOTE)[:7] for event in events), strict=True)) or [()] * 7
-    types = (np.int64, np.int16, np.int32, np.int64, np.int32, np.int64, np.int64)
-    return EventTable(ENTITIES, *(np.array(column, dtype) for column, dtype in zip(columns, types, strict=True)))
+    return table_of(ENTITIES, events)
 
 
 def event(time, kind, target=TASK, instance=0, source=CORE_0):
@@ -105,11 +102,10 @@ def test_what_was_seen_counts_more_than_what_an_event_implies():
 
 
 def test_jobs_that_end_before_a_window_or_begin_after_it_are_left_out():
-    assert jobs_of(table(*PREEMPTION), start=60, end=80) == ()
-    [core] = jobs_of(table(*PREEMPTION), start=35, end=80)
-    assert [row.name for row in core.rows] == ["Task"]
-    [core] = jobs_of(table(*PREEMPTION), start=0, end=10)
-    assert [row.name for row in core.rows] == ["Task"]
+    assert jobs_of(table()) == jobs_of(table(*PREEMPTION), start=60, end=80) == ()
+    for start, end in ((35, 80), (0, 10)):
+        [core] = jobs_of(table(*PREEMPTION), start=start, end=end)
+        assert [row.name for row in core.rows] == ["Task"]
 
 
 def test_deadlines_are_relative_to_the_activation_and_unknown_without_it():
@@ -165,10 +161,6 @@ def test_runnables_at_the_ends_of_a_trace_are_cut():
     assert only(*events).runnables == (RunnableSpan("outer", 0, 10), RunnableSpan("outer", 10, 30))
 
 
-def test_no_events_are_no_jobs():
-    assert jobs_of(table()) == ()
-
-
 def step(time, process, occurrence, number):
     return (time, K.CHAIN_STEP, process, 0, CHAIN, occurrence, number)
 
@@ -207,12 +199,6 @@ def test_a_window_shows_what_the_whole_trace_shows_there(lengths, start, width):
     ]
     for state in (State.ACTIVE, State.RUNNING):
         assert sum(right - left for found, left, right in shown if found is state) == states[start:end].count(state)
-
-
-def test_a_chart_is_drawn_from_events():
-    assert "Interrupt, job 4: running on Core_0 for 10 ps from 20 ps to 30 ps" in gantt(
-        GanttChart("x", 0, 60, jobs_of(table(*PREEMPTION)))
-    )
 
 
 def test_a_process_that_does_not_run_in_the_window_is_on_the_core_that_is_stated():

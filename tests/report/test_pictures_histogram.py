@@ -3,7 +3,7 @@
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from svg_reading import SVG, assert_readable, parsed, rectangles, scale, texts
+from svg_reading import SVG, assert_readable, contents, parsed, rectangles, scale
 
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.report.pictures.histogram import HistogramPicture, Mark, MarkKind, histogram, short_time_text
@@ -16,10 +16,6 @@ COUNTS = (*range(10), *range(10, 0, -1))
 
 def drawn(counts=COUNTS, edges=EDGES, marks=()):
     return histogram(HistogramPicture("Response time", edges, "simulated", counts, tuple(marks)))
-
-
-def contents(picture):
-    return [text.content for text in texts(picture)]
 
 
 def bars(picture):

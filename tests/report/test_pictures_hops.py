@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 from support import ROOT
-from svg_reading import SVG, assert_readable, parsed, scale, texts
+from svg_reading import NASTY, SVG, assert_readable, contents, parsed, scale
 
 from amalthea_uros import LatencyQuantity, analyze_files
 from amalthea_uros.analyze.explanations.chains import explain_chain
@@ -13,7 +13,6 @@ from amalthea_uros.report.pictures.chain_hops import MOST_HOPS, draw_hops
 from amalthea_uros.units import MILLISECOND
 
 MS = MILLISECOND
-NASTY = """<Task & "friends'>"""
 
 
 def explanation(sample, chain, quantity=LatencyQuantity.MAX_REDUCED_REACTION_TIME):
@@ -23,10 +22,6 @@ def explanation(sample, chain, quantity=LatencyQuantity.MAX_REDUCED_REACTION_TIM
 @pytest.fixture(scope="module")
 def thesis():
     return explanation("bodas-test-advanced.yaml", "factor-to-output")
-
-
-def contents(picture):
-    return [text.content for text in texts(picture)]
 
 
 def bars(picture, process):

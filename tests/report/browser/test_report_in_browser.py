@@ -9,9 +9,13 @@ import pytest
 from support import ROOT
 
 from amalthea_uros import report
+from amalthea_uros.report.pictures.gantt import GanttChart, gantt
+from amalthea_uros.report.pictures.jobs import CoreRows, Job, ProcessRow, State, StateSpan
+from amalthea_uros.units import MICROSECOND as US
 
 CHROMIUM, DRIVER = shutil.which("chromium"), shutil.which("chromedriver")
 AXE = ROOT / "tests" / "node" / "node_modules" / "axe-core" / "axe.min.js"
+ZOOM = ROOT / "templates" / "report" / "zoom.js"
 SAMPLE = ROOT / "samples" / "bodas-test-advanced.yaml"
 selenium = pytest.importorskip("selenium.webdriver")
 wait = pytest.importorskip("selenium.webdriver.support.wait")
@@ -84,43 +88,66 @@ def test_the_page_is_not_wider_than_the_window(opened, scheme, width):
 def test_colours_follow_the_reader_and_the_button(opened):
     emulate = {"features": [{"name": "prefers-color-scheme", "value": "dark"}]}
     opened.execute_cdp_cmd("Emulation.setEmulatedMedia", emulate)
-    dark = (
-        opened.execute_script(COLOUR, "body", "background-color"),
-        opened.execute_script(COLOUR, ".amuros-picture .paper", "fill"),
-    )
-    assert dark[0] == dark[1]
+
+    def colours():
+        drawn = (("body", "background-color"), (".amuros-picture .paper", "fill"))
+        return [opened.execute_script(COLOUR, *each) for each in drawn]
+
+    dark = colours()
+    assert dark[0] == dark[1] != "rgb(255, 255, 255)"
     element(opened, "#theme").click()
-    light = (
-        opened.execute_script(COLOUR, "body", "background-color"),
-        opened.execute_script(COLOUR, ".amuros-picture .paper", "fill"),
-    )
-    assert light == ("rgb(255, 255, 255)", "rgb(255, 255, 255)")
+    assert colours() == ["rgb(255, 255, 255)"] * 2
     assert element(opened, "#theme").text == "Dark colours"
     element(opened, "#theme").click()
-    assert opened.execute_script(COLOUR, "body", "background-color") == dark[0]
+    assert colours() == dark
+
+
+#: The places and widths of the boxes of the chart, after they were drawn.
+BOXES = (
+    "const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(() => done(Array.from("
+    "document.querySelector('svg[data-zoom]').querySelectorAll('[data-plot] rect'),"
+    " (box) => [+box.getAttribute('x'), +box.getAttribute('width')]).flat())));"
+)
+WHEEL = (
+    "const box = arguments[0].getBoundingClientRect();"
+    "arguments[0].dispatchEvent(new WheelEvent('wheel', {deltaY: -120, ctrlKey: true, cancelable: true,"
+    " clientX: box.x + box.width / 2, clientY: box.y + box.height / 2}))"
+)
 
 
 def test_the_gantt_chart_is_zoomed_by_keyboard_and_mouse(opened):
     picture = element(opened, "svg[data-zoom]")
-    boxes = (
-        "return Array.from(document.querySelector('svg[data-zoom]').querySelectorAll('[data-plot] rect'),"
-        " (box) => +box.getAttribute('width'))"
-    )
-    before = pytest.approx(opened.execute_script(boxes))
-    # The picture is drawn anew with the next frame.
-    soon = wait.WebDriverWait(opened, 5, poll_frequency=0.05)
-    opened.execute_script("arguments[0].focus()", picture)
-    opened.switch_to.active_element.send_keys("+")
-    soon.until(lambda _: opened.execute_script(boxes) != before)
-    opened.switch_to.active_element.send_keys("0")
-    soon.until(lambda _: opened.execute_script(boxes) == before)
-    opened.execute_script(
-        "const box = arguments[0].getBoundingClientRect();"
-        "arguments[0].dispatchEvent(new WheelEvent('wheel', {deltaY: -120, ctrlKey: true, cancelable: true,"
-        " clientX: box.x + box.width / 2, clientY: box.y + box.height / 2}))",
-        picture,
-    )
-    soon.until(lambda _: opened.execute_script(boxes) != before)
+    before = pytest.approx(opened.execute_async_script(BOXES))
+    picture.send_keys("+")
+    assert opened.execute_async_script(BOXES) != before
+    picture.send_keys("0")
+    assert opened.execute_async_script(BOXES) == before
+    opened.execute_script(WHEEL, picture)
+    assert opened.execute_async_script(BOXES) != before
+
+
+def test_zoom_keeps_the_middle_and_all_names(browser, tmp_path):
+    jobs = tuple(Job(number, (StateSpan(State.RUNNING, 20 * number * US, (20 * number + 10) * US),)) for number in range(5))
+    chart = gantt(GanttChart("a chart", 0, 100 * US, (CoreRows("Core_0", (ProcessRow("Task", jobs),)),)))
+    path = tmp_path / "chart.html"
+    path.write_text(f"<!doctype html><meta charset=utf-8><body>{chart}<script>{ZOOM.read_text()}</script>")
+    browser.get(path.as_uri())
+    picture = element(browser, "svg[data-zoom]")
+
+    def shown():
+        labels = browser.find_elements("css selector", "svg > text, g[data-axis] text")
+        return browser.execute_async_script(BOXES), [label.get_attribute("textContent") for label in labels]
+
+    boxes, labels = shown()
+    picture.send_keys("+")
+    zoomed, _ = shown()
+    assert zoomed[1::2] == pytest.approx([1.5 * width for width in boxes[1::2]])
+    # The job from 40 us to 50 us ends in the middle, which stays where it is.
+    assert sum(zoomed[4:6]) == pytest.approx(sum(boxes[4:6]), abs=0.1)
+    picture.send_keys("0")
+    assert shown() == (boxes, labels)
+    picture.send_keys("nn")
+    assert element(browser, ".amuros-tip").text == "Task, job 1: running for 10 us from 20 us to 30 us"
 
 
 def test_the_skip_link_is_first_and_everything_has_a_visible_focus(opened):
