@@ -80,7 +80,7 @@ def test_the_order_of_tasks_in_a_file_does_not_count():
     tasks = [{"name": name, "C": 1, "T": 20, "D": 20, "O": 0} for name in "ABCD"]
 
     def proposed(system):
-        found = optimize(system, goals=["jitter"], vary=["offsets"], designs=40, seed=3)
+        found = optimize(system, goals=["jitter"], vary=["offsets"], designs=15, seed=3)
         return [proposal.changes for proposal in found.proposals]
 
     system = system_of(tasks)

@@ -360,9 +360,9 @@ def test_a_gap_is_wherever_the_clock_steps_back(tmp_path_factory, steps):
 
 
 def test_damaged_names_of_channels_are_bounded(tmp_path):
-    frames, log = read(tmp_path / "run.log", "".join(f"(1436509052.000000) can{number} 123#\n" for number in range(40_000)))
+    frames, log = read(tmp_path / "run.log", "".join(f"(1436509052.000000) can{number} 123#\n" for number in range(2000)))
     assert sum(kind is not GAP for *_, kind, _ in frames) == 256
-    assert told(log, "CAN001") == 40_000 - 256
+    assert told(log, "CAN001") == 2000 - 256
     # Of the channels with the most frames only a few pairs are compared.
     assert len(log.findings) <= 7
 
