@@ -24,6 +24,10 @@ class Author:
             self.describe(text)
         return [(f.location.line, f.rule, f.message) for f in caught.value.findings if f.severity == "error"]
 
+    def reported(self, text, *rules):
+        """The messages of some rules about a description that is valid."""
+        return [finding.message for finding in self.describe(text).findings if finding.rule in rules]
+
 
 @pytest.fixture
 def author(tmp_path):

@@ -106,14 +106,8 @@ def test_each_process_has_its_own_overhead_or_that_of_the_system(author):
 def test_the_model_keeps_it(author):
     system = author.describe(ALL).system
     assert extract(build_model(system)).system == system
-    assert {runnable.name for runnable in system.software.runnables if runnable.is_overhead} == {
-        "E_Activation",
-        "E_Termination",
-        "S_Activation",
-        "T_Activation",
-        "I_Activation",
-        "I_Termination",
-    }
+    overheads = {runnable.name for runnable in system.software.runnables if runnable.is_overhead}
+    assert overheads == {*(f"{name}_Activation" for name in "ESTI"), "E_Termination", "I_Termination"}
 
 
 def test_whom_it_delays_is_an_assumption_of_each_result(author):
@@ -155,38 +149,29 @@ def test_in_an_interrupt_it_delays_all_tasks(author):
     ("old", "new", "rule", "message"),
     [
         (
-            "runs_in: executor",
-            "runs_in: executor, overhead: 0",
-            "APP003",
-            "'overhead' of 'Inside' has no effect, because it runs in",
+            *("runs_in: executor", "runs_in: executor, overhead: 0"),
+            *("APP003", "'overhead' of 'Inside' has no effect, because it runs in"),
         ),
         (
-            "name: I, period: 5 ms, execution_time: 7 us",
-            "name: I, period: 5 ms, runnables: [{name: T_Activation, execution_time: 1 us}]",
-            "APP002",
-            "runnable 'T_Activation' has the name of an overhead of the operating system",
+            *("name: I, period: 5 ms, execution_time: 7 us", "name: T_Activation, sporadic: 5 ms, execution_time: 7 us"),
+            *("APP002", "'T_Activation' is the interrupt that activates 'T'"),
+        ),
+        (
+            *(
+                "I, period: 5 ms, execution_time: 7 us",
+                "I, period: 5 ms, runnables: [{name: T_Activation, execution_time: 1 us}]",
+            ),
+            *("APP002", "runnable 'T_Activation' has the name of an overhead of the operating system"),
         ),
         ("overhead: 6 us", "overhead: 6", "YML012", "'6' has no unit"),
         ("overhead: 6 us", "overhead: -6 us", "YML012", "must not be negative"),
     ],
 )
 def test_a_mistake(author, old, new, rule, message):
-    (found, *_) = author.findings(ALL.replace(old, new))
+    text = ALL.replace("termination: 10 us, isr", "termination: 10 us, activations_run_in: interrupt, isr")
+    (found, *_) = author.findings((text if "interrupt that" in message else ALL).replace(old, new))
     assert found[1] == rule
     assert message in found[2]
-
-
-def test_names_of_overheads_are_taken(author):
-    (found,) = author.findings(
-        HEAD
-        + """
-os: {overhead: {activation: 1 us, activations_run_in: interrupt}}
-tasks:
-  - {name: A, period: 1 ms, execution_time: 1 us}
-  - {name: A_Activation, period: 1 ms, execution_time: 1 us}
-"""
-    )
-    assert found[1:] == ("APP002", "'A_Activation' is the interrupt that activates 'A'")
 
 
 def test_rounds_of_executors_have_overhead(author):

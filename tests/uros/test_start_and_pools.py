@@ -4,7 +4,7 @@ import pytest
 
 from amalthea_uros.units import MILLISECOND as MS
 from amalthea_uros.units import parse_time
-from amalthea_uros.uros.application.entities import CreatedEntity, response_cycles
+from amalthea_uros.uros.application.entities import response_cycles
 
 APP = """
     amuros: 1
@@ -44,23 +44,10 @@ def test_each_cycle_checks_for_the_response(response, cycles):
 
 def test_entities_in_the_order_of_creation(author):
     start = author.describe(app()).initialisation
-    assert start.entities == tuple(
-        CreatedEntity(kind=kind, name=name)
-        for kind, name in [
-            ("session", "client"),
-            ("participant", "node"),
-            ("topic", "out"),
-            ("publisher", "out"),
-            ("datawriter", "out"),
-            ("topic", "a"),
-            ("subscriber", "a"),
-            ("datareader", "a"),
-            ("topic", "b"),
-            ("subscriber", "b"),
-            ("datareader", "b"),
-            ("replier", "Ask"),
-        ]
-    )
+    assert [f"{entity.kind} {entity.name}" for entity in start.entities] == [
+        *("session client", "participant node", "topic out", "publisher out", "datawriter out"),
+        *("topic a", "subscriber a", "datareader a", "topic b", "subscriber b", "datareader b", "replier Ask"),
+    ]
     # A cycle for each request, then 10 to 102 that check for the response.
     assert (start.min_cycles, start.max_cycles) == (12 * 11, 12 * 103)
     assert start.max_time == (12 * 103 - 1) * MS

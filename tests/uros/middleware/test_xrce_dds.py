@@ -17,18 +17,16 @@ SENT = (MessageKind.PUBLICATION, MessageKind.REQUEST_OUT, MessageKind.RESPONSE_O
 RECEIVED = (MessageKind.DELIVERY, MessageKind.REQUEST_IN, MessageKind.RESPONSE_IN)
 
 
-def middleware(**content):
-    return Middleware.model_validate(plain(nodes_of(content)[0]))
+def profile_with(**content):
+    return profile_of(Middleware.model_validate(plain(nodes_of(content)[0])))
 
 
 def lengths(kind, content, best_effort=False, **keys):
-    described = middleware(**keys)
-    return [part.length for part in profile_of(described).parts(kind, content, reliable=not best_effort)]
+    return [part.length for part in profile_with(**keys).parts(kind, content, reliable=not best_effort)]
 
 
 def largest(kind, best_effort=False, **keys):
-    described = middleware(**keys)
-    return profile_of(described).largest_content(kind, reliable=not best_effort)
+    return profile_with(**keys).largest_content(kind, reliable=not best_effort)
 
 
 @pytest.mark.parametrize(
@@ -57,8 +55,7 @@ def test_the_headers_of_each_kind(kind, headers):
 
 
 def test_only_reliable_messages_are_acknowledged():
-    described = middleware()
-    profile = profile_of(described)
+    profile = profile_with()
     for reliable, acknowledgement in ((True, 13), (False, None)):
         for content, fragments in ((8, 1), (1000, 3 if reliable else 1)):
             parts = profile.parts(MessageKind.PUBLICATION, content, reliable=reliable)
@@ -120,8 +117,7 @@ def test_the_longest_reliable_messages(kind, keys, longest):
 @pytest.mark.parametrize("transport", [{}, SERIAL, CAN_FD], ids=str)
 @pytest.mark.parametrize("kind", [*SENT, *RECEIVED])
 def test_the_longest_content_is_the_last_that_fits(kind, transport):
-    described = middleware(transport=transport, multithread=True)
-    profile = profile_of(described)
+    profile = profile_with(transport=transport, multithread=True)
     mtu = 63 if "can_fd" in transport else 512
     for reliable, buffers in ((False, 1), (True, 4)):
         limit = profile.largest_content(kind, reliable=reliable)
@@ -153,35 +149,30 @@ def test_an_overhead_that_is_stated_counts_as_it_always_has():
     ],
 )
 def test_how_long_a_sender_waits(keys, content, timeout):
-    described = middleware(**keys)
-    profile = profile_of(described)
+    profile = profile_with(**keys)
     kind = MessageKind.PUBLICATION
     assert profile.times_out_after(kind, content, reliable=True) == timeout
     assert profile.times_out_after(kind, content, reliable=False) is None
 
 
 def test_waiting_as_in_the_sources():
-    waiting = profile_of(middleware()).waiting
+    waiting = profile_with().waiting
     assert (waiting.messages_per_wait, waiting.resolution, waiting.slots) == (1, MILLISECOND, 8)
-    assert (waiting.stored_data_ends_wait, waiting.guard_conditions_end_wait, waiting.polls_without_messages) == (
-        False,
-        False,
-        True,
-    )
+    ends = waiting.stored_data_ends_wait, waiting.guard_conditions_end_wait
+    assert (ends, waiting.polls_without_messages) == ((False, False), True)
     # 1000 ms in executor.c, although the comment in the header says 100 ms.
     assert waiting.default_timeout == SECOND
 
 
 def test_several_threads_wait_for_each_other_only_if_they_are_protected():
     for multithread in (False, True):
-        described = middleware(multithread=multithread)
-        sending = profile_of(described).sending
+        sending = profile_with(multithread=multithread).sending
         assert (sending.holds_session_while_waiting, sending.is_protected) == (multithread, multithread)
 
 
 def test_heartbeats():
     # HEARTBEAT of 13 B; the client sends one after 100 ms by default, the agent after 200 ms.
     for keys, interval in (({}, 100), ({"limits": {"UCLIENT_MIN_HEARTBEAT_TIME_INTERVAL": "1 ms"}}, 1)):
-        described = middleware(**keys)
-        assert profile_of(described).heartbeat == (13, interval * MILLISECOND, True)
-        assert profile_of(described).sending.resends_after == interval * MILLISECOND
+        profile = profile_with(**keys)
+        assert profile.heartbeat == (13, interval * MILLISECOND, True)
+        assert profile.sending.resends_after == interval * MILLISECOND

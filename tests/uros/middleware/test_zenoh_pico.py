@@ -59,11 +59,8 @@ def test_the_longest_content_is_joined_from_fragments(kind, reliable):
 def test_waiting():
     waiting = PROFILE.waiting
     assert (waiting.messages_per_wait, waiting.slots) == (None, None)
-    assert (waiting.stored_data_ends_wait, waiting.guard_conditions_end_wait, waiting.polls_without_messages) == (
-        True,
-        True,
-        False,
-    )
+    ends = waiting.stored_data_ends_wait, waiting.guard_conditions_end_wait
+    assert (ends, waiting.polls_without_messages) == ((True, True), False)
 
 
 def test_keep_alives():
