@@ -1,10 +1,15 @@
 """Tables of events from rows, what tables say, and random traces that obey the state charts of BTF."""
 
+import io
 from collections.abc import Iterable, Sequence
+from pathlib import Path
 from random import Random
 
 import numpy as np
 
+from amalthea_uros.diagnostics import Finding
+from amalthea_uros.trace.readers import open_trace
+from amalthea_uros.trace.sinks import WriteOptions, open_sink
 from amalthea_uros.trace.table import NO_NOTE, Entity, EntityKind, EventKind, EventTable
 from amalthea_uros.trace.vocabulary import OS_EVENTS
 
@@ -27,6 +32,22 @@ def said(tables: EventTable | Iterable[EventTable]) -> list[tuple]:
             entities = part.entities
             rows.append((time, kind, entities[source], job, entities[target], instance, entities[note] if owner else note))
     return rows
+
+
+def encoded(suffix: str, *tables: EventTable, **options) -> bytes:
+    """The file of some tables in the format of a suffix."""
+    stream = io.BytesIO()
+    with open_sink(stream, tables[0].entities, WriteOptions(**options), suffix=suffix) as sink:
+        for part in tables:
+            sink.write(part)
+    return stream.getvalue()
+
+
+def decoded(path: Path, content: str | bytes) -> tuple[list[tuple], tuple[Finding, ...]]:
+    """The events of a file with this content, and what is found in it."""
+    path.write_bytes(content if isinstance(content, bytes) else content.encode())
+    reader = open_trace(path)
+    return said(list(reader)), reader.findings
 
 
 def chunks(whole: EventTable, size: int) -> list[EventTable]:

@@ -1,12 +1,13 @@
 """Reading BTF of all versions, and what is found in files with mistakes."""
 
 import gzip
+from functools import partial
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from test_btf_writer import ENTITIES, LINES, PREEMPTION, in_nanoseconds
-from traces import chunks, random_trace, said, table
+from traces import chunks, decoded, random_trace, said, table
 
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.errors import InvalidArgumentError, ReadError
@@ -20,25 +21,12 @@ HEADER = "#version 2.3.0\n#timescale ns\n"
 
 @pytest.fixture
 def read(tmp_path):
-    def read(text):
-        path = tmp_path / "run.btf"
-        path.write_bytes(text.encode())
-        reader = open_trace(path)
-        return said(list(reader)), reader.findings
-
-    return read
+    return partial(decoded, tmp_path / "run.btf")
 
 
-def test_a_preemption(read):
-    rows, findings = read(HEADER + LINES)
-    assert rows == said(table(ENTITIES, in_nanoseconds(PREEMPTION)))
-    assert findings == ()
-
-
-def test_blanks_and_line_ends_of_other_systems(read):
-    rows, findings = read("\ufeff" + HEADER + "\r\n" + LINES.replace(",", ", ").replace("\n", " \r\n"))
-    assert rows == said(table(ENTITIES, in_nanoseconds(PREEMPTION)))
-    assert findings == ()
+def test_a_preemption_also_with_blanks_and_line_ends_of_other_systems(read):
+    for text in (HEADER + LINES, "\ufeff" + HEADER + "\r\n" + LINES.replace(",", ", ").replace("\n", " \r\n")):
+        assert read(text) == (said(table(ENTITIES, in_nanoseconds(PREEMPTION))), ())
 
 
 def test_numbers_of_types_and_entities(read):
@@ -154,16 +142,15 @@ def test_the_same_mistake_in_many_lines_is_one_finding(read):
     assert "(1000 times, this is the first)" in finding.message
 
 
-def test_a_timescale_that_does_not_exist(read):
-    rows, [finding] = read("#version 2.3.0\n#timescale minutes\n5,Core_1,0,T,Task_A,0,start\n")
-    assert rows[0][0] == 5000
-    assert (finding.rule, finding.location.line) == ("TRC005", 2)
-
-
-def test_a_timescale_that_comes_too_late(read):
-    rows, findings = read("#version 2.3.0\n5,Core_1,0,T,Task_A,0,start\n#timescale s\n6,Core_1,0,T,Task_A,0,terminate\n")
+@pytest.mark.parametrize(
+    ("before", "between", "lines"),
+    [("#version 2.3.0\n#timescale minutes\n", "", [2]), ("#version 2.3.0\n", "#timescale s\n", [2, 3])],
+    ids=["does not exist", "comes too late"],
+)
+def test_a_timescale_that_is_not_taken(read, before, between, lines):
+    rows, findings = read(f"{before}5,Core_1,0,T,Task_A,0,start\n{between}6,Core_1,0,T,Task_A,0,terminate\n")
     assert [row[0] for row in rows] == [5000, 6000]
-    assert [(finding.rule, finding.location.line) for finding in findings] == [("TRC005", 2), ("TRC005", 3)]
+    assert [(finding.rule, finding.location.line) for finding in findings] == [("TRC005", line) for line in lines]
 
 
 def test_a_damaged_packed_file_is_read_up_to_the_damage(tmp_path):
@@ -217,6 +204,4 @@ def test_what_is_written_is_read_again(tmp_path_factory, random, names, numeric,
         for part in chunks(trace, size):
             sink.write(part)
     reader = open_trace(path)
-    assert said(list(reader)) == said(trace)
-    assert reader.findings == ()
-    assert list(reader.entities) == trace.entities
+    assert (said(list(reader)), reader.findings, list(reader.entities)) == (said(trace), (), trace.entities)

@@ -4,11 +4,11 @@ import io
 from datetime import UTC, datetime, timedelta, timezone
 
 import pytest
-from traces import table
+from traces import encoded, table
 
 from amalthea_uros._version import __version__
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.trace.sinks import WriteOptions, open_sink
+from amalthea_uros.trace.sinks import open_sink
 from amalthea_uros.trace.table import Entity, EntityKind, EventKind
 
 K = EventKind
@@ -59,11 +59,23 @@ LINES = """\
 """
 
 
+#: What a picture shows of it in a row of the core and of each task.
+SLICES = {
+    "Core_1": [(100, 200, "Task_A"), (200, 300, "Task_B"), (300, 400, "Task_A")],
+    "Task_A": [
+        (0, 100, "active"),
+        (100, 200, "running"),
+        (100, 200, "Run_1"),
+        (200, 300, "ready"),
+        (300, 400, "running"),
+        (300, 400, "Run_1"),
+    ],
+    "Task_B": [(200, 200, "active"), (200, 300, "running")],
+}
+
+
 def written(entities, rows, **options):
-    stream = io.BytesIO()
-    with open_sink(stream, entities, WriteOptions(**options), suffix=".btf") as sink:
-        sink.write(table(entities, rows))
-    return stream.getvalue().decode()
+    return encoded(".btf", table(entities, rows), **options).decode()
 
 
 def events(text):

@@ -2,8 +2,7 @@
 
 import gzip
 import re
-from contextlib import suppress
-from itertools import pairwise
+from itertools import accumulate, pairwise
 from random import Random
 
 import pytest
@@ -15,9 +14,13 @@ from amalthea_uros.errors import InvalidArgumentError, ReadError
 from amalthea_uros.trace.can.candump_lines import parse, read_lines
 from amalthea_uros.trace.can.frames import XL
 from amalthea_uros.trace.can.logs import open_can_log
-from amalthea_uros.trace.files import UnreadableError
 
 HEAD = "(1436509052.000000) can0 "
+
+
+def line(time: int, channel: str = "can0", frame: str = "123#11") -> str:
+    """A line at a time in microseconds."""
+    return f"({1436509052 + time // 10**6}.{time % 10**6:06}) {channel} {frame}\n"
 
 
 @pytest.fixture
@@ -123,16 +126,34 @@ def test_frames_without_time_are_refused_with_what_to_do(log):
     assert "candump" in finding.help
 
 
-def test_times_are_exact(log):
-    frames, found = log("(1700000000.000001) can0 123#\n(1700000000.999999) can0 123#\n(1700000001.000000) can0 123#\n")
-    assert [time for time, *_ in frames] == [US, 999999 * US, SECOND]
-    assert (found.origin, found.resolution) == (1700000000 * SECOND, US)
+FIRST = " (000.000000)  can0  123   [0] "
 
 
-def test_nanoseconds_of_newer_versions(log):
-    frames, found = log("(1700000000.000000001) can0 123#\n(1700000000.123456789) can0 123##4\n")
-    assert [time for time, *_ in frames] == [1000, 123456789000]
-    assert found.resolution == 1000
+@pytest.mark.parametrize(
+    ("lines", "times", "found"),
+    [
+        (
+            ["(1700000000.000001) can0 123#", "(1700000000.999999) can0 123#", "(1700000001.000000) can0 123#"],
+            *([US, 999999 * US, SECOND], []),
+        ),
+        # Nanoseconds of newer versions.
+        (["(1700000000.000000001) can0 123#", "(1700000000.123456789) can0 123##4"], [1000, 123456789000], []),
+        # Since the first frame, and differences, which are added up.
+        ([FIRST, " (000.001234)  can0  123   [0] ", " (001.000000)  can0  123   [0] "], [0, 1234 * US, SECOND], []),
+        ([FIRST, " (000.002000)  can0  123   [0] ", " (000.001000)  can0  123   [0] "], [0, 2 * MS, 3 * MS], ["CAN005"]),
+        # Dates have no zone.
+        (
+            [" (2026-09-21 10:00:00.123456)  can0  123   [0] ", " (2026-09-21 11:00:00.000000)  can0  123   [0] "],
+            *([123456 * US, 3600 * SECOND], ["CAN005"]),
+        ),
+    ],
+    ids=["seconds", "nanoseconds", "since the first", "differences", "dates"],
+)
+def test_times_are_exact(log, lines, times, found):
+    frames, opened = log("\n".join(lines) + "\n")
+    assert [time for time, *_ in frames] == times
+    assert rules(opened) == found
+    assert opened.resolution == (1000 if times[0] == 1000 else US)
 
 
 @pytest.mark.parametrize(
@@ -168,9 +189,7 @@ def test_dropped_frames_are_a_gap_at_the_time_of_the_frame_before(log):
         f"{HEAD}123#11\nDROPCOUNT: dropped 12 CAN frames on 'can0,123:7FF' socket (total drops 12)\n(1436509053.000000) can0 123#\n"
     )
     assert [(time, channel, kind) for time, channel, _, kind, _ in frames] == [
-        (0, "can0", DATA),
-        (0, "can0", GAP),
-        (SECOND, "can0", DATA),
+        *((0, "can0", DATA), (0, "can0", GAP), (SECOND, "can0", DATA))
     ]
     assert rules(found) == ["CAN003"]
 
@@ -238,10 +257,9 @@ def test_a_time_that_cannot_be_right_does_not_move_all_others(log):
 
 
 def test_blocks_do_not_cut_lines(tmp_path):
-    lines = [
-        f"(1436509052.{number % 10**6:06}) can{number % 3} {number % 2048:03X}#{number:016X}\n" for number in range(60_000)
-    ]
+    lines = (line(number, f"can{number % 3}", f"{number % 2048:03X}#{number:016X}") for number in range(60_000))
     frames, _ = read(tmp_path / "run.log", "".join(lines))
+    assert rows(open_can_log(tmp_path / "run.log"))[-9:] == frames[-9:]
     assert [data for *_, data in frames] == [number.to_bytes(8, "big") for number in range(60_000)]
     assert [channel for _, channel, *_ in frames[:3]] == ["can0", "can1", "can2"]
 
@@ -274,18 +292,6 @@ def test_columns_and_single_lines_are_read_alike(seconds, fraction, channel, fra
     assert line.stamp.time == int(lines.seconds[0]) * SECOND + int(lines.fraction[0]) * 1000
     assert (line.channel, line.identifier, line.data) == (names[0], lines.identifier[0], lines.payloads()[0])
     assert line.kind is DATA
-
-
-@given(st.text(max_size=80))
-def test_any_text_is_a_line_or_not(text):
-    with suppress(UnreadableError):
-        parse(text)
-
-
-def test_reading_twice_is_the_same(tmp_path):
-    text = f"{HEAD}123#11\n{HEAD}123##411\n"
-    first, _ = read(tmp_path / "run.log", text)
-    assert rows(open_can_log(tmp_path / "run.log")) == first
 
 
 LINES = [
@@ -340,7 +346,7 @@ def test_every_line_is_a_frame_or_in_a_finding(tmp_path):
     assert lost == told(log, "CAN001")
 
 
-@given(content=st.binary(max_size=300), packed=st.booleans())
+@given(content=st.binary(max_size=300) | st.text(max_size=80), packed=st.booleans())
 def test_any_bytes(tmp_path_factory, content, packed):
     path = tmp_path_factory.mktemp("logs") / ("run.log.gz" if packed else "run.log")
     read(path, content)
@@ -348,12 +354,8 @@ def test_any_bytes(tmp_path_factory, content, packed):
 
 @given(steps=st.lists(st.integers(-5, 5), max_size=30))
 def test_a_gap_is_wherever_the_clock_steps_back(tmp_path_factory, steps):
-    times, time = [], 500_000
-    for step in steps:
-        time += step
-        times.append(time)
-    path = tmp_path_factory.mktemp("logs") / "run.log"
-    frames, _ = read(path, "".join(f"(1436509052.{time:06}) can0 123#\n" for time in times))
+    times = list(accumulate(steps, initial=500_000))
+    frames, _ = read(tmp_path_factory.mktemp("logs") / "run.log", "".join(map(line, times)))
     # A step of one microsecond is within the resolution.
     expected = sum(later < earlier - 1 for earlier, later in pairwise(times))
     assert sum(kind is GAP for _, _, _, kind, _ in frames) == expected
@@ -367,18 +369,10 @@ def test_damaged_names_of_channels_are_bounded(tmp_path):
     assert len(log.findings) <= 7
 
 
-def line(time: int, channel: str = "can0", frame: str = "123#11") -> str:
-    return f"({1436509052 + time // 10**6}.{time % 10**6:06}) {channel} {frame}\n"
-
-
 def test_a_step_back_is_a_gap_at_the_time_after_it(tmp_path):
-    frames, log = read(tmp_path / "run.log", line(0) + line(900_000) + line(100_000) + line(200_000))
-    assert [(time, kind is GAP) for time, _, _, kind, _ in frames] == [
-        (0, False),
-        (900_000 * US, False),
-        (100_000 * US, True),
-        (100_000 * US, False),
-        (200_000 * US, False),
+    frames, log = read(tmp_path / "run.log", "".join(map(line, (0, 900_000, 100_000, 200_000))))
+    assert [(time // MS, kind is GAP) for time, _, _, kind, _ in frames] == [
+        *((0, False), (900, False), (100, True), (100, False), (200, False))
     ]
     assert [(finding.rule, finding.location.line) for finding in log.findings] == [("CAN009", 3)]
 

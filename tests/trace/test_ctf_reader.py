@@ -21,6 +21,7 @@ from amalthea_uros.trace.ctf.types import ArrayType, IntegerType, StringType
 from amalthea_uros.trace.files import TraceProblems, UnreadableError
 from amalthea_uros.trace.readers import format_of, open_trace
 from amalthea_uros.trace.state_charts import check_trace
+from amalthea_uros.trace.table import EventKind
 
 A, B, IDLE = (0x2000, "A"), (0x2100, "B"), (0x1000, "idle")
 BABELTRACE = shutil.which(os.environ.get("BABELTRACE2", "babeltrace2"))
@@ -86,30 +87,25 @@ def test_zephyr(tmp_path):
     assert check_trace(path) == ()
 
 
-def test_a_thread_that_becomes_ready_before_it_has_left_the_core_begins_a_new_job(read):
-    events = [
-        zephyr_event(time, name, A) for time, name in [(1, "thread_switched_in"), (5, "thread_pending"), (7, "thread_ready")]
-    ]
-    assert read(events)[0] == ["1 resume A#0", "7 terminate A#0", "7 activate A#1", "7 start A#1"]
-
-
-def test_a_thread_made_ready_by_an_interrupt_after_it_has_blocked(read):
-    e = zephyr_event
-    events = [
-        e(1, "thread_switched_in", A),
-        e(5, "thread_pending", A),
-        e(6, "isr_enter"),
-        e(7, "thread_ready", A),
-        e(8, "isr_exit"),
-    ]
-    assert read(events)[0] == [
-        "1 resume A#0",
-        "6 terminate A#0",
-        "6 start ISR#0",
-        "7 activate A#1",
-        "8 terminate ISR#0",
-        "8 start A#1",
-    ]
+@pytest.mark.parametrize(
+    ("events", "lines"),
+    [
+        (
+            [(1, "thread_switched_in"), (5, "thread_pending"), (7, "thread_ready")],
+            ["1 resume A#0", "7 terminate A#0", "7 activate A#1", "7 start A#1"],
+        ),
+        (
+            [(1, "thread_switched_in"), (5, "thread_pending"), (6, "isr_enter"), (7, "thread_ready"), (8, "isr_exit")],
+            [
+                *("1 resume A#0", "6 terminate A#0", "6 start ISR#0"),
+                *("7 activate A#1", "8 terminate ISR#0", "8 start A#1"),
+            ],
+        ),
+    ],
+    ids=["by itself", "by an interrupt"],
+)
+def test_a_thread_that_becomes_ready_before_it_has_left_the_core_begins_a_new_job(read, events, lines):
+    assert read([zephyr_event(time, name, A) for time, name in events])[0] == lines
 
 
 def test_two_cores(read):
@@ -124,21 +120,16 @@ def test_two_cores(read):
     assert findings == []
 
 
-def test_threads_of_the_same_name_and_without_one(read):
-    threads = [(1, "A"), (2, "A"), (3, ""), (4, "unknown")]
-    lines, _ = read([zephyr_event(number, "thread_ready", (number, name)) for number, name in threads])
-    assert [line.split(" ", 2)[2] for line in lines] == ["A#0", "A (0x2)#0", "thread 0x3#0", "thread 0x4#0"]
+def test_threads_of_the_same_name_without_one_and_at_the_same_address(read):
+    threads = [(1, "A"), (2, "A"), (3, ""), (4, "unknown"), (1, "B")]
+    lines, _ = read([zephyr_event(time, "thread_ready", thread) for time, thread in enumerate(threads)])
+    assert [line.split(" ", 2)[2] for line in lines] == ["A#0", "A (0x2)#0", "thread 0x3#0", "thread 0x4#0", "B#0"]
 
 
 def test_a_thread_that_is_created_has_not_executed_before(read):
     """It gets its name after its creation; without the creation the first job would go on with an unknown start."""
     events = [zephyr_event(1, "thread_create", (1, "unknown")), zephyr_event(2, "thread_switched_in", (1, "A"))]
     assert read(events)[0] == ["2 start A#0"]
-
-
-def test_another_thread_at_the_same_address(read):
-    lines, _ = read([zephyr_event(time, "thread_ready", (1, name)) for time, name in [(1, "A"), (2, "B")]])
-    assert lines == ["1 activate A#0", "2 activate B#0"]
 
 
 def test_a_clock_that_overflows(read):
@@ -164,19 +155,13 @@ def test_a_clock_that_starts_again_early(read):
     assert int(lines[-1].split()[0]) - times[-1] == pytest.approx(-wrap % 2**32, abs=1)
 
 
-def test_a_file_that_ends_within_an_event_is_read_up_to_there(read):
-    events = [zephyr_event(1, "thread_ready", A), zephyr_event(2, "thread_ready", B)[:-3]]
-    lines, findings = read(events)
-    assert lines == ["1 activate A#0", "1 gap"]
-    assert findings == ["TRC020"]
-
-
-def test_an_unknown_event_ends_a_stream_without_packets(read):
-    lines, findings = read(
-        [zephyr_event(1, "thread_ready", A), struct.pack("<IB", 2, 0xEE), zephyr_event(3, "thread_ready", B)]
-    )
-    assert lines == ["1 activate A#0", "1 gap"]
-    assert findings == ["TRC020"]
+@pytest.mark.parametrize(
+    "rest",
+    [[zephyr_event(2, "thread_ready", B)[:-3]], [struct.pack("<IB", 2, 0xEE), zephyr_event(3, "thread_ready", B)]],
+    ids=["the end is missing", "unknown event"],
+)
+def test_a_stream_without_packets_is_read_up_to_the_damage(read, rest):
+    assert read([zephyr_event(1, "thread_ready", A), *rest]) == (["1 activate A#0", "1 gap"], ["TRC020"])
 
 
 T = 5 * 10**9
@@ -280,8 +265,7 @@ def test_lost_events_and_packets_are_gaps(tmp_path):
         w.packet(T + 2000, starts(w, 2000), 4, 5),
     ]
     reader = open_trace(w.write(tmp_path / "trace", packets))
-    tables = list(reader)
-    notes = [note for table in tables for kind, note in zip(table.kind, table.note, strict=True) if kind == 90]
+    notes = [note for table in reader for kind, note in zip(table.kind, table.note, strict=True) if kind == EventKind.GAP]
     # The five lost events may have been before the packet or in it, so that neither is crossed. Two packets are missing at its end.
     assert notes == [5, 0]
     assert rules(reader) == ["TRC022", "TRC022"]

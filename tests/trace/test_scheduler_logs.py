@@ -137,24 +137,21 @@ TRACEALYZER_EVENTS = """\
 9000 activate Control#1
 """
 
-LOGS = {
-    "ftrace text (NuttX)": NUTTX,
-    "TRACE32 task events": TRACE32,
-    "SystemView CSV": SYSTEMVIEW,
-    "Tracealyzer CSV": TRACEALYZER,
+#: The logs and their events.
+KNOWN = {
+    "ftrace text (NuttX)": (NUTTX, NUTTX_EVENTS),
+    "TRACE32 task events": (TRACE32, TRACE32_EVENTS),
+    "SystemView CSV": (SYSTEMVIEW, SYSTEMVIEW_EVENTS),
+    "Tracealyzer CSV": (TRACEALYZER, TRACEALYZER_EVENTS),
 }
-EVENTS = {
-    "ftrace text (NuttX)": NUTTX_EVENTS,
-    "TRACE32 task events": TRACE32_EVENTS,
-    "SystemView CSV": SYSTEMVIEW_EVENTS,
-    "Tracealyzer CSV": TRACEALYZER_EVENTS,
-}
+LOGS = {name: log for name, (log, _) in KNOWN.items()}
+EVENTS = {name: events.splitlines() for name, (_, events) in KNOWN.items()}
 
 
 @pytest.fixture
 def write(tmp_path):
-    def write(text, name="run.txt"):
-        path = tmp_path / name
+    def write(text):
+        path = tmp_path / "run.txt"
         path.write_text(text)
         return path
 
@@ -168,7 +165,7 @@ def test_what_becomes_of_the_events(tmp_path, name, suffix):
     path.write_bytes(gzip.compress(LOGS[name].encode()) if suffix.endswith("gz") else LOGS[name].encode())
     assert format_of(path).name == name
     reader = open_trace(path)
-    assert told(reader) == EVENTS[name].splitlines()
+    assert told(reader) == EVENTS[name]
     # Nothing is wrong but the loss that a recorder states, and the states follow each other as BTF wants it.
     assert [finding.rule for finding in check_trace(path)] == (["TRC022"] if "OVERFLOW" in LOGS[name] else [])
 
@@ -196,24 +193,11 @@ def test_a_thread_that_leaves_another_core_than_it_entered_is_a_loss(write):
 
 
 def test_a_thread_that_blocks_in_a_runnable_waits(write):
-    events = [
-        "+0; A; activate;",
-        "+1; A; switch;",
-        "+2; step; runnablestart;",
-        "+3; A; wait;",
-        "+4; A; release;",
-        "+5; A; switch;",
-    ]
-    assert told(open_trace(write("\n".join([*events, "+6; step; runnablestop;"])))) == [
-        "0 activate A#0",
-        "1 start A#0",
-        "2 runnable_start step#0 by A#0",
-        "3 runnable_suspend step#0 by A#0",
-        "3 wait A#0",
-        "4 release A#0",
-        "5 resume A#0",
-        "5 runnable_resume step#0 by A#0",
-        "6 runnable_terminate step#0 by A#0",
+    events = ["A; activate", "A; switch", "step; runnablestart", "A; wait", "A; release", "A; switch", "step; runnablestop"]
+    assert told(open_trace(write("".join(f"+{time}; {event};\n" for time, event in enumerate(events))))) == [
+        *("0 activate A#0", "1 start A#0", "2 runnable_start step#0 by A#0"),
+        *("3 runnable_suspend step#0 by A#0", "3 wait A#0"),
+        *("4 release A#0", "5 resume A#0", "5 runnable_resume step#0 by A#0", "6 runnable_terminate step#0 by A#0"),
     ]
 
 
@@ -238,11 +222,9 @@ def test_a_line_that_cannot_be_used_is_reported_and_the_others_are_read(write, n
     path = write(LOGS[name] + line + "\n")
     reader = open_trace(path)
     lines = told(reader)
-    assert lines[: len(EVENTS[name].splitlines())] == EVENTS[name].splitlines()
+    assert lines[: len(EVENTS[name])] == EVENTS[name]
     # A line that may have been an event is a loss, over which nothing goes on.
-    assert [line.split()[1] for line in lines[len(EVENTS[name].splitlines()) :]] == (
-        ["gap"] if rule in ("TRC002", "TRC004") else []
-    )
+    assert [line.split()[1] for line in lines[len(EVENTS[name]) :]] == (["gap"] if rule in ("TRC002", "TRC004") else [])
     assert rule in [finding.rule for finding in reader.findings]
 
 

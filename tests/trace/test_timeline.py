@@ -1,16 +1,14 @@
 """What a picture of a trace shows, independent of its format and as JSON of Chrome's trace viewer."""
 
-import io
 import json
 from decimal import Decimal
 from itertools import pairwise
 
 from hypothesis import given
 from hypothesis import strategies as st
-from test_btf_writer import CORE, ENTITIES, PREEMPTION, RUN, STI_A, TASK_A, TASK_B
-from traces import chunks, random_trace, table
+from test_btf_writer import CORE, ENTITIES, PREEMPTION, RUN, SLICES, STI_A, TASK_A, TASK_B
+from traces import chunks, encoded, random_trace, table
 
-from amalthea_uros.trace.sinks import open_sink
 from amalthea_uros.trace.table import Entity, EntityKind, EventKind
 from amalthea_uros.trace.viewers.timeline import Timeline, TrackChange
 
@@ -37,16 +35,12 @@ def slices(marks, track):
 
 def test_a_preemption():
     shown = marks(PREEMPTION)
-    assert slices(shown, CORE) == [(100, 200, 0, TASK_A), (200, 300, 0, TASK_B), (300, 400, 0, TASK_A)]
-    assert slices(shown, TASK_A) == [
-        (0, 100, 0, "active"),
-        (100, 200, 0, "running"),
-        (100, 200, 1, RUN),
-        (200, 300, 0, "ready"),
-        (300, 400, 0, "running"),
-        (300, 400, 1, RUN),
-    ]
-    assert slices(shown, TASK_B) == [(200, 200, 0, "active"), (200, 300, 0, "running")]
+    for track in (CORE, TASK_A, TASK_B):
+        found = slices(shown, track)
+        # Runnables are in the states of their task.
+        assert all(depth == (what == RUN) for _, _, depth, what in found)
+        named = [what if isinstance(what, str) else ENTITIES[what].name for *_, what in found]
+        assert [(*each[:2], name) for each, name in zip(found, named, strict=True)] == SLICES[ENTITIES[track].name]
 
 
 def test_polling_and_waiting():
@@ -118,12 +112,8 @@ def test_what_is_open_ends_where_events_are_lost():
     assert slices(shown, TASK_A) == [(0, 1, 0, "active"), (1, 5, 0, "running")]
 
 
-def events(entities, *tables):
-    stream = io.BytesIO()
-    with open_sink(stream, entities, suffix=".json") as sink:
-        for part in tables:
-            sink.write(part)
-    return json.loads(stream.getvalue(), parse_float=Decimal)["traceEvents"]
+def events(*tables):
+    return json.loads(encoded(".json", *tables), parse_float=Decimal)["traceEvents"]
 
 
 def json_slices(found):
@@ -137,24 +127,14 @@ def json_slices(found):
 
 
 def test_a_preemption_in_exact_times():
-    shown = json_slices(events(ENTITIES, table(ENTITIES, PREEMPTION)))
-    assert [entry for entry in shown if entry[0] == "Task_A"] == [
-        ("Task_A", 0, 100, "active"),
-        ("Task_A", 100, 200, "running"),
-        ("Task_A", 100, 200, "Run_1"),
-        ("Task_A", 200, 300, "ready"),
-        ("Task_A", 300, 400, "running"),
-        ("Task_A", 300, 400, "Run_1"),
-    ]
-    assert [entry[1:] for entry in shown if entry[0] == "Core_1"] == [
-        (100, 200, "Task_A"),
-        (200, 300, "Task_B"),
-        (300, 400, "Task_A"),
-    ]
+    shown = json_slices(events(table(ENTITIES, PREEMPTION)))
+    assert {name: [each for track, *each in shown if track == name] for name in SLICES} == {
+        name: list(map(list, slices)) for name, slices in SLICES.items()
+    }
 
 
 def test_no_thread_is_the_idle_one_or_the_main_one_of_its_process():
-    shown = events(ENTITIES, table(ENTITIES, PREEMPTION))
+    shown = events(table(ENTITIES, PREEMPTION))
     threads = {(event["pid"], event["tid"]) for event in shown if event["ph"] == "X"}
     assert len(threads) == 3
     assert not {tid for _, tid in threads} & {0, *(pid for pid, _ in threads)}
@@ -164,7 +144,7 @@ def test_arrows_along_a_chain():
     entities = [*ENTITIES, Entity(EntityKind.CHAIN, 'The "chain"')]
     steps = [(1, TASK_A, 5, 0), (2, TASK_B, 5, 1), (3, TASK_A, 6, 0)]
     rows = [(time, EventKind.CHAIN_STEP, task, 0, 7, number, step) for time, task, number, step in steps]
-    first, second, other = (event for event in events(entities, table(entities, rows)) if event["ph"] == "X")
+    first, second, other = (event for event in events(table(entities, rows)) if event["ph"] == "X")
     assert first["name"] == 'The "chain"'
     assert first["bind_id"] == second["bind_id"] != other["bind_id"]
     assert [event["flow_out"] for event in (first, second, other)] == [True] * 3
@@ -174,7 +154,7 @@ def test_arrows_along_a_chain():
 @given(st.randoms(use_true_random=False), st.integers(1, 40))
 def test_a_slice_comes_after_those_around_it(random, size):
     trace = random_trace(random, steps=150)
-    shown = json_slices(events(trace.entities, *chunks(trace, size)))
+    shown = json_slices(events(*chunks(trace, size)))
     timeline = Timeline()
     marks = [*timeline.marks(trace), *timeline.finish()]
     assert len(shown) == sum(mark.change is TrackChange.BEGIN for mark in marks)

@@ -2,13 +2,13 @@
 
 import csv
 import io
+from functools import partial
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from traces import chunks, random_trace, said, table
+from traces import chunks, decoded, encoded, random_trace, said, table
 
-from amalthea_uros.trace.readers import open_trace
 from amalthea_uros.trace.sinks import open_sink
 from amalthea_uros.trace.table import Entity, EntityKind, EventKind
 
@@ -20,26 +20,13 @@ TEXT = HEADER + '5,start,C,Core,0,T,"A ""b"", c",3,\n6,chain_step,T,"A ""b"", c"
 
 @pytest.fixture
 def read(tmp_path):
-    def read(text):
-        path = tmp_path / "run.csv"
-        path.write_text(text, newline="")
-        reader = open_trace(path)
-        return said(list(reader)), reader.findings
-
-    return read
+    return partial(decoded, tmp_path / "run.csv")
 
 
-def test_the_form():
-    stream = io.BytesIO()
-    with open_sink(stream, [CORE, TASK, CHAIN], suffix=".csv") as sink:
-        sink.write(table([CORE, TASK, CHAIN], ROWS))
-    assert stream.getvalue().decode() == TEXT
-
-
-def test_reading(read):
-    rows, findings = read(TEXT)
-    assert rows == said(table([CORE, TASK, CHAIN], ROWS))
-    assert findings == ()
+def test_the_form(read):
+    trace = table([CORE, TASK, CHAIN], ROWS)
+    assert encoded(".csv", trace).decode() == TEXT
+    assert read(TEXT) == (said(trace), ())
 
 
 @pytest.mark.parametrize(
@@ -82,16 +69,11 @@ def test_what_is_written_is_read_again(tmp_path_factory, random, names, size, su
     with open_sink(path, trace.entities) as sink:
         for part in chunks(trace, size):
             sink.write(part)
-    reader = open_trace(path)
-    assert said(list(reader)) == said(trace)
-    assert reader.findings == ()
+    assert decoded(path, path.read_bytes()) == (said(trace), ())
 
 
 @given(st.lists(names, min_size=12, max_size=12, unique=True), st.randoms(use_true_random=False))
 def test_other_programs_read_the_same_names(names, random):
     trace = random_trace(random, names=names)
-    stream = io.BytesIO()
-    with open_sink(stream, trace.entities, suffix=".csv") as sink:
-        sink.write(trace)
-    rows = csv.DictReader(io.StringIO(stream.getvalue().decode(), newline=""))
+    rows = csv.DictReader(io.StringIO(encoded(".csv", trace).decode(), newline=""))
     assert [row["target"] for row in rows] == [trace.entities[target].name for target in trace.target]

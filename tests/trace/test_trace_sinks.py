@@ -97,11 +97,8 @@ def test_devices_are_written_and_links_remain(tmp_path):
 
 
 def test_an_encoder_that_refuses_leaves_nothing(tmp_path):
-    with (
-        pytest.raises(InvalidArgumentError),
-        open_sink(tmp_path / "run.btf", ENTITIES, WriteOptions(timescale="ms")) as sink,
-    ):
-        sink.write(TRACE)
+    with pytest.raises(InvalidArgumentError):
+        write(tmp_path / "run.btf", options=WriteOptions(timescale="ms"))
     assert list(tmp_path.iterdir()) == []
 
 
