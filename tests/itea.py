@@ -14,6 +14,14 @@ def model(number, content, root="central:AMALTHEA", attributes=""):
     return f'<?xml version="1.0" encoding="UTF-8"?>\n<{root} {XMI} {spaces} {attributes}>{content}</{root}>\n'
 
 
+def nested(path, attributes=""):
+    """Elements inside each other, such as "swModel/runnables/runnableItems sw:Group", the last one with attributes."""
+    tags = [part.partition(" ") for part in path.split("/")]
+    starts = [f'<{tag} xsi:type="{kind}">' if kind else f"<{tag}>" for tag, _, kind in tags]
+    starts[-1] = f"{starts[-1][:-1]} {attributes}>"
+    return "".join(starts) + "".join(f"</{tag}>" for tag, _, _ in reversed(tags))
+
+
 def write(folder, number, **files):
     """Write files (`__` in the names stands for a dot, `_` before the end for a hyphen) and return their paths."""
     paths = []

@@ -1,7 +1,7 @@
 """ITEA 1.2.0 -> ITEA 1.3.0."""
 
 import pytest
-from itea import all_of, messages, model, only, write
+from itea import all_of, messages, model, nested, only, write
 from migration import migrated
 
 TARGET = "ITEA 1.3.0"
@@ -11,116 +11,61 @@ def step(folder, **files):
     return migrated(write(folder, "1.2.0", **files), TARGET)
 
 
-#: What is written: content of the model, path of tags, attributes that are added.
+#: What is written: the object, and the attributes that are added.
 DEFAULTS = [
-    ("<hwModel><system><quartzes/></system></hwModel>", "quartzes", {"type": "DYNAMIC"}),
-    ("<hwModel><memoryTypes/></hwModel>", "memoryTypes", {"type": "RAM"}),
-    ("<propertyConstraintsModel><memTypeDefinitions/></propertyConstraintsModel>", "memTypeDefinitions", {"type": "RAM"}),
-    ("<hwModel><networkTypes/></hwModel>", "networkTypes", {"schedPolicy": "RROBIN"}),
+    ("hwModel/system/quartzes", {"type": "DYNAMIC"}),
+    ("hwModel/memoryTypes", {"type": "RAM"}),
+    ("propertyConstraintsModel/memTypeDefinitions", {"type": "RAM"}),
+    ("hwModel/networkTypes", {"schedPolicy": "RROBIN"}),
+    ("hwModel/networkTypes hw:Bus", {"busType": "CAN", "schedPolicy": "RROBIN"}),
+    ("hwModel/system/ports hw:ComplexPort", {"direction": "R"}),
+    ("hwModel/system/ports", {}),
+    ("hwModel/system/ports/pins hw:ComplexPin", {"direction": "R", "type": "ANALOG"}),
+    ("hwModel/system/features hw:FeatureTypes", {"value": "floatingPointUnit"}),
+    ("mappingModel", {"addressMappingType": "none"}),
+    ("constraintsModel/runnableSequencingConstraints", {"orderType": "successor"}),
+    ("constraintsModel/runnableSequencingConstraints/runnableGroups", {"groupingType": "allOfThem"}),
+    ("swModel/processPrototypes", {"preemption": "cooperative"}),
+    ("swModel/processPrototypes/accessPrecedenceSpec", {"orderType": "ignoreWR"}),
+    ("swModel/processPrototypes/orderPrecedenceSpec", {"orderType": "order"}),
+    ("swModel/runnables/runnableItems sw:SemaphoreAccess", {"accessEnum": "request"}),
+    ("swModel/isrs/callGraph/graphEntries sw:CallSequence/calls sw:WaitEvent", {"maskType": "AND"}),
     (
-        '<hwModel><networkTypes xsi:type="hw:Bus"/></hwModel>',
-        "networkTypes",
-        {"busType": "CAN", "schedPolicy": "RROBIN"},
-    ),
-    ('<hwModel><system><ports xsi:type="hw:ComplexPort"/></system></hwModel>', "ports", {"direction": "R"}),
-    ("<hwModel><system><ports/></system></hwModel>", "ports", {}),
-    (
-        '<hwModel><system><ports><pins xsi:type="hw:ComplexPin"/></ports></system></hwModel>',
-        "pins",
-        {"direction": "R", "type": "ANALOG"},
-    ),
-    (
-        '<hwModel><system><features xsi:type="hw:FeatureTypes"/></system></hwModel>',
-        "features",
-        {"value": "floatingPointUnit"},
-    ),
-    ("<mappingModel/>", "mappingModel", {"addressMappingType": "none"}),
-    (
-        "<constraintsModel><runnableSequencingConstraints/></constraintsModel>",
-        "runnableSequencingConstraints",
-        {"orderType": "successor"},
-    ),
-    (
-        "<constraintsModel><runnableSequencingConstraints><runnableGroups/></runnableSequencingConstraints></constraintsModel>",
-        "runnableGroups",
-        {"groupingType": "allOfThem"},
-    ),
-    ("<swModel><processPrototypes/></swModel>", "processPrototypes", {"preemption": "cooperative"}),
-    (
-        "<swModel><processPrototypes><accessPrecedenceSpec/></processPrototypes></swModel>",
-        "accessPrecedenceSpec",
-        {"orderType": "ignoreWR"},
-    ),
-    (
-        "<swModel><processPrototypes><orderPrecedenceSpec/></processPrototypes></swModel>",
-        "orderPrecedenceSpec",
-        {"orderType": "order"},
-    ),
-    (
-        '<swModel><runnables><runnableItems xsi:type="sw:SemaphoreAccess"/></runnables></swModel>',
-        "runnableItems",
-        {"accessEnum": "request"},
-    ),
-    (
-        '<swModel><isrs><callGraph><graphEntries xsi:type="sw:CallSequence"><calls xsi:type="sw:WaitEvent"/></graphEntries>'
-        "</callGraph></isrs></swModel>",
-        "calls",
-        {"maskType": "AND"},
-    ),
-    (
-        '<propertyConstraintsModel><allocationConstraints><hwConstraint xsi:type="propertyconstraints:HwCoreProperty"/>'
-        "</allocationConstraints></propertyConstraintsModel>",
-        "hwConstraint",
+        "propertyConstraintsModel/allocationConstraints/hwConstraint propertyconstraints:HwCoreProperty",
         {"comparator": "equal"},
     ),
     (
-        '<propertyConstraintsModel><mappingConstraints><hwConstraint xsi:type="propertyconstraints:HwMemoryConjunction"/>'
-        "</mappingConstraints></propertyConstraintsModel>",
-        "hwConstraint",
+        "propertyConstraintsModel/mappingConstraints/hwConstraint propertyconstraints:HwMemoryConjunction",
         {"conjunction": "and"},
     ),
 ]
 
 
-@pytest.mark.parametrize(("content", "tag", "written"), DEFAULTS)
-def test_what_was_the_default_is_written(tmp_path, content, tag, written):
-    models, notes = step(tmp_path, m__amxmi=content)
-    [node] = all_of(models, tag)
+@pytest.mark.parametrize(("path", "written"), DEFAULTS)
+def test_what_was_the_default_is_written(tmp_path, path, written):
+    models, notes = step(tmp_path, m__amxmi=nested(path))
+    [node] = all_of(models, path.rpartition("/")[2].partition(" ")[0])
     assert node.attributes == written
     about = {note.attribute for note in notes if note.kind == "defaulted" and note.origin == node.origin}
     assert about == set(written)
 
 
-TIMES = [
-    ("stimuli", '<stimuliModel><stimuli xsi:type="stimuli:Periodic"><offset value="1"/></stimuli></stimuliModel>', "offset"),
-    ("single", '<stimuliModel><stimuli xsi:type="stimuli:Single"><activation/></stimuli></stimuliModel>', "activation"),
-    ("runnable", "<swModel><runnables><deadline/></runnables></swModel>", "deadline"),
-    ("activations", '<swModel><activations xsi:type="sw:SingleActivation"><max/></activations></swModel>', "max"),
-    ("clocks", '<stimuliModel><clocks xsi:type="stimuli:ClockSinusFunction"><shift/></clocks></stimuliModel>', "shift"),
-    (
-        "entry",
-        '<stimuliModel><clocks xsi:type="stimuli:ClockMultiplierList"><entries><time/></entries></clocks></stimuliModel>',
-        "time",
-    ),
-    (
-        "chain",
-        '<constraintsModel><timingConstraints xsi:type="constraints:DelayConstraint"><upper/></timingConstraints>'
-        "</constraintsModel>",
-        "upper",
-    ),
-    (
-        "age",
-        '<constraintsModel><dataAgeConstraints><dataAge xsi:type="constraints:DataAgeTime"><minimumTime/></dataAge>'
-        "</dataAgeConstraints></constraintsModel>",
-        "minimumTime",
-    ),
-]
-
-
-@pytest.mark.parametrize(("content", "tag"), [case[1:] for case in TIMES], ids=[case[0] for case in TIMES])
-def test_times_without_unit_are_picoseconds(tmp_path, content, tag):
-    models, _ = step(tmp_path, m__amxmi=content)
-    assert all_of(models, tag)[0].get("unit") == "ps"
+@pytest.mark.parametrize(
+    "path",
+    [
+        "stimuliModel/stimuli stimuli:Periodic/offset",
+        "stimuliModel/stimuli stimuli:Single/activation",
+        "swModel/runnables/deadline",
+        "swModel/activations sw:SingleActivation/max",
+        "stimuliModel/clocks stimuli:ClockSinusFunction/shift",
+        "stimuliModel/clocks stimuli:ClockMultiplierList/entries/time",
+        "constraintsModel/timingConstraints constraints:DelayConstraint/upper",
+        "constraintsModel/dataAgeConstraints/dataAge constraints:DataAgeTime/minimumTime",
+    ],
+)
+def test_times_without_unit_are_picoseconds(tmp_path, path):
+    models, _ = step(tmp_path, m__amxmi=nested(path))
+    assert all_of(models, path.rpartition("/")[2])[0].get("unit") == "ps"
 
 
 @pytest.mark.parametrize(

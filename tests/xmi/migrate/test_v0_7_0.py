@@ -1,7 +1,7 @@
 """ITEA 1.3.0 -> 0.7.0."""
 
 import pytest
-from itea import all_of, messages, model, only, write
+from itea import all_of, messages, model, nested, only, write
 from migration import migrated
 
 from amalthea_uros.xmi.tree.results import tree_text
@@ -13,71 +13,59 @@ def step(folder, **files):
     return migrated(write(folder, "1.3.0", **files), TARGET)
 
 
-#: Content of the model, tag, class afterwards.
-CLASSES = [
-    ('<swModel><activations xsi:type="sw:Periodic" name="x"/></swModel>', "activations", "PeriodicActivation"),
-    ('<stimuliModel><stimuli xsi:type="stimuli:Periodic"/></stimuliModel>', "stimuli", "Periodic"),
-    ('<componentsModel><components xsi:type="components:Composite"/></componentsModel>', "components", "Composite"),
-    ('<hwModel><networkTypes xsi:type="hw:Bus"/></hwModel>', "networkTypes", "Bus"),
-]
+@pytest.mark.parametrize(
+    ("path", "class_name"),
+    [
+        ("swModel/activations sw:Periodic", "PeriodicActivation"),
+        ("stimuliModel/stimuli stimuli:Periodic", "Periodic"),
+        ("componentsModel/components components:Composite", "Composite"),
+        ("hwModel/networkTypes hw:Bus", "Bus"),
+    ],
+)
+def test_classes_lose_their_package(tmp_path, path, class_name):
+    models, _ = step(tmp_path, m__amxmi=nested(path))
+    assert class_name in {node.type for node in models.walk()}
 
 
-@pytest.mark.parametrize(("content", "tag", "class_name"), CLASSES)
-def test_classes_lose_their_package(tmp_path, content, tag, class_name):
-    models, _ = step(tmp_path, m__amxmi=content)
-    assert all_of(models, tag)[0].type == class_name
-
-
-#: Content, reference to it, text of the reference afterwards.
+#: Object, reference to it, text of the reference afterwards.
 REFERENCES = [
-    ('<swModel><events name="e v"/></swModel>', "e+v?type=sw.OSEvent", "e+v?type=OsEvent"),
-    ('<swModel><activations xsi:type="sw:Periodic" name="a"/></swModel>', "a?type=sw.Periodic", "a?type=PeriodicActivation"),
-    ('<hwModel><memoryTypes name="m"/></hwModel>', "m?type=hw.MemType", "m?type=MemoryType"),
-    ('<hwModel><system name="s"/></hwModel>', "s?type=hw.System", "s?type=HwSystem"),
-    ('<hwModel><system><components name="c"/></system></hwModel>', "c?type=hw.Component", "c?type=HwComponent"),
-    ('<hwModel><system><ports name="p"/></system></hwModel>', "p?type=hw.Port", "p?type=HwPort"),
-    ('<osModel><osOverheads name="o"/></osModel>', "o?type=os.OSInstructions", "o?type=OsInstructions"),
-    ("", "gone?type=hw.MemType", "gone?type=MemoryType"),
-    ("", "gone?type=sw.Label", "gone?type=Label"),
+    ("swModel/events", "e+v?type=sw.OSEvent", "e+v?type=OsEvent"),
+    ("swModel/activations sw:Periodic", "e+v?type=sw.Periodic", "e+v?type=PeriodicActivation"),
+    ("hwModel/memoryTypes", "e+v?type=hw.MemType", "e+v?type=MemoryType"),
+    ("hwModel/system", "e+v?type=hw.System", "e+v?type=HwSystem"),
+    ("hwModel/system/components", "e+v?type=hw.Component", "e+v?type=HwComponent"),
+    ("hwModel/system/ports", "e+v?type=hw.Port", "e+v?type=HwPort"),
+    ("osModel/osOverheads", "e+v?type=os.OSInstructions", "e+v?type=OsInstructions"),
+    ("hwModel", "gone?type=hw.MemType", "gone?type=MemoryType"),
+    ("hwModel", "gone?type=sw.Label", "gone?type=Label"),
 ]
 
 
-@pytest.mark.parametrize(("content", "text", "after"), REFERENCES)
-def test_references_name_the_new_class(tmp_path, content, text, after):
+@pytest.mark.parametrize(("path", "text", "after"), REFERENCES)
+def test_references_name_the_new_class(tmp_path, path, text, after):
     holder = f"""<configModel><customProperties key="k"><value xsi:type="common:ReferenceObject" value="{text}"/>
         </customProperties></configModel>"""
-    models, _ = step(tmp_path, m__amxmi=content + holder)
+    models, _ = step(tmp_path, m__amxmi=nested(path, 'name="e v"') + holder)
     assert after in tree_text(models.trees[0])
 
 
-#: Content, tag, attribute before and after.
-ATTRIBUTES = [
-    ('<hwModel><system><ports xsi:type="hw:ComplexPort" isMaster="true"/></system></hwModel>', "ports", "master"),
-    ('<swModel><labels isBuffered="buffered"/></swModel>', "labels", "buffered"),
-    (
-        '<swModel><runnables><runnableItems xsi:type="sw:SenderReceiverRead" isBuffered="true"/></runnables></swModel>',
-        "runnableItems",
-        "buffered",
-    ),
-    (
-        '<swModel><runnables><runnableItems xsi:type="sw:Group"><items><runnableItem xsi:type="sw:SemaphoreAccess" '
-        'accessEnum="release"/></items></runnableItems></runnables></swModel>',
-        "runnableItem",
-        "access",
-    ),
-    (
-        '<swModel><isrs><callGraph><graphEntries xsi:type="sw:ModeSwitch"><entries isDefault="true"/></graphEntries></callGraph>'
-        "</isrs></swModel>",
-        "entries",
-        "default",
-    ),
-]
-
-
-@pytest.mark.parametrize(("content", "tag", "attribute"), ATTRIBUTES)
-def test_attributes_are_renamed(tmp_path, content, tag, attribute):
-    models, notes = step(tmp_path, m__amxmi=content)
-    assert list(all_of(models, tag)[0].attributes) == [attribute]
+@pytest.mark.parametrize(
+    ("path", "before", "after"),
+    [
+        ("hwModel/system/ports hw:ComplexPort", 'isMaster="true"', "master"),
+        ("swModel/labels", 'isBuffered="buffered"', "buffered"),
+        ("swModel/runnables/runnableItems sw:SenderReceiverRead", 'isBuffered="true"', "buffered"),
+        (
+            "swModel/runnables/runnableItems sw:Group/items/runnableItem sw:SemaphoreAccess",
+            'accessEnum="release"',
+            "access",
+        ),
+        ("swModel/isrs/callGraph/graphEntries sw:ModeSwitch/entries", 'isDefault="true"', "default"),
+    ],
+)
+def test_attributes_are_renamed(tmp_path, path, before, after):
+    models, notes = step(tmp_path, m__amxmi=nested(path, before))
+    assert [list(node.attributes) for node in models.walk() if node.attributes] == [[after]]
     assert len(messages(notes, "renamed")) == 1
 
 
