@@ -111,10 +111,7 @@ def test_the_last_part_removed(neat):
 def test_a_new_order(neat):
     neat[Task, "Brake (left)"].activity_graph.items.reverse()
     gone, come = changes(neat)
-    assert (
-        gone[2:] == come[2:] == '        <items xsi:type="am:RunnableCall" runnable="Read?type=Runnable"/>'
-        or gone[2:] == come[2:]
-    )
+    assert gone[2:] == come[2:]
 
 
 def test_a_rename_reaches_every_reference(neat):
@@ -177,14 +174,7 @@ def test_canonical_form_keeps_comments_and_unknown_content(ugly):
     path = ugly.documents[0].path
     amuros.save(ugly, canonical=True)
     text = path.read_text()
-    for kept in (
-        "<!-- made by hand -->",
-        "<!-- the only task -->",
-        "<!-- then -->",
-        "<!-- the end -->",
-        "<deep/>",
-        "vendorNote=",
-    ):
+    for kept in ("made by hand", "the only task", "<!-- then", "the end", "<deep/>", "vendorNote="):
         assert text.count(kept) == 1
     assert meaning(amuros.load(path)) == meaning(ugly)
 

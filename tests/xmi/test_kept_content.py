@@ -1,7 +1,7 @@
 """What a model does not know is written again so that everything is read as before, and what would not be is not written."""
 
 import pytest
-from effort import examples
+from effort import every, examples
 from hypothesis import given
 from hypothesis import strategies as st
 from scrambler import Scrambler
@@ -122,7 +122,7 @@ class Hostile(Scrambler):
         ]
 
 
-@examples(36)
+@examples(16)
 @given(model=models(12), rng=st.randoms(use_true_random=False))
 def test_the_canonical_form_of_any_file_is_a_fixed_point(model, rng):
     document = model.documents[0]
@@ -132,7 +132,7 @@ def test_the_canonical_form_of_any_file_is_a_fixed_point(model, rng):
     assert said(parse(once)) == said(parse(text))
 
 
-@pytest.mark.parametrize("path", hand_written()[:40] + corpus("jdom")[:10])
+@pytest.mark.parametrize("path", every(5, hand_written()[:40]) + corpus("jdom")[:10])
 def test_the_canonical_form_of_published_models_is_a_fixed_point(path):
     once = document_text(load(path).documents[0], canonical=True)
     assert canonical(once) == once
@@ -158,15 +158,17 @@ def test_unknown_content_takes_its_namespace_to_another_file(tmp_path):
 class TestReadingBack:
     """A text that would be read as another model is not written."""
 
-    def test_a_value_that_was_removed_while_a_second_one_is_kept(self):
-        model = parse(stimulus(FIRST, SECOND))
-        (found,) = model.all(PeriodicStimulus)
-        found.recurrence = None
+    def test_a_value_that_was_removed_while_a_second_one_is_kept(self, tmp_path):
+        path = tmp_path / "m.amxmi"
+        path.write_text(stimulus(FIRST, SECOND))
+        model = load(path)
+        model[PeriodicStimulus, "S"].recurrence = None
         with pytest.raises(WriteError) as caught:
-            document_text(model.documents[0])
+            save(model)
         (finding,) = caught.value.findings
         assert finding.rule == "XMI106"
         assert "'recurrence'" in finding.message
+        assert [(file.name, file.read_text()) for file in tmp_path.iterdir()] == [("m.amxmi", stimulus(FIRST, SECOND))]
 
     @pytest.mark.parametrize("raw", ["<open>", "<tasks name='x'/>"])
     @pytest.mark.parametrize("is_canonical", [True, False])
@@ -177,12 +179,3 @@ class TestReadingBack:
         task.name = "U"
         with pytest.raises(WriteError, match="XMI106"):
             document_text(model.documents[0], canonical=is_canonical)
-
-    def test_nothing_is_written(self, tmp_path):
-        path = tmp_path / "m.amxmi"
-        path.write_text(stimulus(FIRST, SECOND))
-        model = load(path)
-        next(iter(model.all(PeriodicStimulus))).recurrence = None
-        with pytest.raises(WriteError):
-            save(model)
-        assert [(file.name, file.read_text()) for file in tmp_path.iterdir()] == [("m.amxmi", stimulus(FIRST, SECOND))]

@@ -1,14 +1,26 @@
-"""Text between tags is found wherever it stands, although files without any are read without looking at their white space."""
+"""Text between the elements is found, and a `>` in values is not taken for the end of a tag."""
 
-from __future__ import annotations
-
-from pathlib import Path
+from xml.parsers import expat
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from support import model_text
 
 from amalthea_uros import load
+from amalthea_uros.xmi.emf import handlers
+from amalthea_uros.xmi.emf.handlers import has_character_data
 
-_NAMESPACES = 'xmlns:xmi="http://www.omg.org/XMI" xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xmi:version="2.0"'
+VALUE = '<swModel>\n\t<!-- nothing -->\n<labels xmi:id="a%3Eb?type=Label" name="a>b"/></swModel>'
+
+
+@pytest.mark.parametrize("text", ['<a name="Size > 3" b="x">\n  <b name="c>"/>\n</a>\n', '<a name=">"/>', VALUE])
+def test_models_have_white_space_only_whatever_their_values_contain(text, tmp_path):
+    assert not has_character_data(text)
+    if text is VALUE:
+        path = tmp_path / "m.amxmi"
+        path.write_text(model_text(text))
+        assert not load(path).findings
 
 
 @pytest.mark.parametrize(("version", "rule"), [("3.3.0", "XMI015"), ("0.7.2", "XMI009")])
@@ -17,22 +29,39 @@ _NAMESPACES = 'xmlns:xmi="http://www.omg.org/XMI" xmlns:xsi="http://www.w3.org/2
     [
         "<swModel>word</swModel>",
         "<swModel> <labels name='L'/> word</swModel>",
+        "<swModel><labels name='\"'/>word</swModel>",
         "<swModel><![CDATA[word]]></swModel>",
-        "<swModel>\n  <!-- a comment --> word\n</swModel>",
+        '<swModel>\n  <!-- say "hello --> word\n</swModel>',
+        '<swModel><!-- <b name="c -->word</swModel>',
         "<swModel>&#119;ord</swModel>",
-        "<swModel><?tool data?>word</swModel>",
+        '<swModel><?say "hello?>word</swModel>',
     ],
 )
-def test_text_is_reported(tmp_path: Path, text: str, version: str, rule: str) -> None:
+def test_text_is_found_after_tags_comments_and_instructions_and_reported(text, version, rule, tmp_path):
+    assert has_character_data(text)
     path = tmp_path / "m.amxmi"
-    path.write_text(f'<am:Amalthea xmlns:am="http://app4mc.eclipse.org/amalthea/{version}" {_NAMESPACES}>{text}</am:Amalthea>')
+    path.write_text(model_text(text, version))
     assert [finding.rule for finding in load(path).findings if finding.rule == rule] == [rule]
 
 
-def test_a_greater_than_sign_in_a_value_is_no_text(tmp_path: Path) -> None:
-    path = tmp_path / "m.amxmi"
-    model = (
-        f'<am:Amalthea xmlns:am="http://app4mc.eclipse.org/amalthea/3.3.0" {_NAMESPACES}>\n  <swModel>\n    <labels name="a>b" '
-    )
-    path.write_text(f'{model}xmi:id="a%3Eb?type=Label"/>\n  </swModel>\n</am:Amalthea>\n')
-    assert not load(path).findings
+PIECES = [
+    *("<b/>", '<b c="d"/>', '<b c=">"/>', "<b c='\"'/>", """<b c="'>x"/>"""),
+    *('<!-- " -->', "<!-- > < ' -->", '<?d "?>', " ", "text", '"', "'", ">"),
+]
+
+
+@given(st.lists(st.sampled_from(PIECES), max_size=8))
+def test_no_text_is_missed(pieces):
+    text = f"<a>{''.join(pieces)}</a>"
+    found = []
+    parser = expat.ParserCreate()
+    parser.CharacterDataHandler = lambda data: found.append(data.strip())
+    parser.Parse(text, True)
+    assert has_character_data(text) or not any(found)
+
+
+def test_many_values_with_such_characters_are_not_all_looked_at(monkeypatch):
+    looked_at = []
+    monkeypatch.setattr(handlers, "_is_in_value", lambda *place: looked_at.append(place) or True)
+    assert has_character_data('<b c=">d"/>' * 100_000)
+    assert len(looked_at) <= 2_000
