@@ -4,6 +4,9 @@ from collections.abc import Mapping
 
 import amalthea_uros as amuros
 from amalthea_uros.am import Preemption, Runnable, Task, Time
+from amalthea_uros.timing.basics.time_base import max_time, min_time
+from amalthea_uros.timing.demand.multiframe import MultiframeDemand
+from amalthea_uros.units import MILLISECOND
 
 model: amuros.Model = amuros.load("model.amxmi")
 found: Task | None = model.find(Task, "Executor_Task")
@@ -39,3 +42,8 @@ Task(nme="t")  # type: ignore[call-arg]
 task.preemption = "preemptive"  # type: ignore[assignment]
 task.activity_graph = Runnable()  # type: ignore[assignment]
 task.prority = 1  # type: ignore[attr-defined]
+
+# A time is no demand, whose unit depends on the core.
+MultiframeDemand.constant(MILLISECOND)  # type: ignore[arg-type]
+max_time(MILLISECOND, 3)  # type: ignore[arg-type]
+min_time(MILLISECOND, 3)  # type: ignore[arg-type]

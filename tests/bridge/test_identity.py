@@ -37,14 +37,14 @@ def file(tmp_path_factory):
 
 
 @given(system=systems())
-@examples(24)
+@examples(12)
 def test_every_system_comes_back(file, system):
     assert there_and_back(system, file) == system
     assert validate(file.read_bytes(), "3.3.0") == []
 
 
 @given(system=systems(most=1), version=st.sampled_from(VERSIONS))
-@examples(24)
+@examples(12)
 def test_a_system_comes_back_from_an_older_version_or_is_refused_by_name(file, system, version):
     file.unlink(missing_ok=True)
     try:

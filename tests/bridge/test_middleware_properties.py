@@ -83,7 +83,7 @@ def test_acknowledgements_in_files_of_the_first_builds_are_known_by_their_names(
 
 
 @given(data=st.data())
-@examples(18)
+@examples(8)
 def test_any_executor_comes_back_from_its_text(data):
     executor = data.draw(EXECUTORS)
     assert from_text(Executor, to_text(executor, without=("task",)), task=executor.task) == executor

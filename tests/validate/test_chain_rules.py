@@ -5,7 +5,7 @@ from fractions import Fraction
 from itertools import permutations
 
 import pytest
-from effort import every
+from effort import every, examples
 from hypothesis import given
 from hypothesis import strategies as st
 from support import ROOT, analysis_of, corpus, hand_written
@@ -165,6 +165,7 @@ def systems(draw):
     )
 
 
+@examples(8)
 @given(systems())
 def test_the_gaps_of_random_chains(system):
     dataflow = Dataflow(system)

@@ -73,7 +73,7 @@ def test_a_sample_comes_back(sample, version, tmp_path):
 
 
 @given(model=strategies.models(versions=("3.0.0", "3.3.0")), version=st.sampled_from(OLDER))
-@examples(15)
+@examples(8)
 def test_a_random_model_comes_back_or_is_refused(model, version):
     with TemporaryDirectory() as folder:
         path = Path(folder) / "model.amxmi"
@@ -82,7 +82,7 @@ def test_a_random_model_comes_back_or_is_refused(model, version):
 
 
 @given(system=systems(most=1), version=st.sampled_from(OLDER))
-@examples(15)
+@examples(8)
 def test_a_random_system_comes_back_or_is_refused(system, version):
     with TemporaryDirectory() as folder:
         path = Path(folder) / "model.amxmi"
