@@ -1,6 +1,6 @@
 """The rules of the profile app4mc about hardware: each branch of their conditions, bounds, and what is not stated."""
 
-from app4mc_excerpts import ECU, assert_said, cases, connection, messages, module, port
+from excerpts import ECU, assert_said, cases, connection, messages, module, port
 
 CONNECTIONS = [
     ("AM-HW-Connection", ECU.format("", connection("w", None, None)), ["has no port1", "has no port2"]),

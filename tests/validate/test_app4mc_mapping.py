@@ -1,7 +1,7 @@
 """The rules of the profile app4mc about allocations: each branch of their conditions, bounds, and what is not stated."""
 
 import pytest
-from app4mc_excerpts import assert_said, call, cases, messages, process, runnable
+from excerpts import assert_said, call, cases, messages, process, runnable
 
 SYSTEM = """<hwModel><structures name="ECU"><modules t="ProcessingUnit" name="a"/>
 <modules t="ProcessingUnit" name="b"/><modules t="Memory" name="RAM"/>

@@ -1,7 +1,7 @@
 """The rules of the profile app4mc about names, values and chains, and what holds for all of them."""
 
 import pytest
-from app4mc_excerpts import ECU, assert_said, cases, messages, module, port
+from excerpts import ECU, assert_said, cases, messages, module, port
 
 from amalthea_uros.validate import registry
 from amalthea_uros.validate.rule import RuleProfile

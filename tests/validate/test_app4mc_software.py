@@ -1,6 +1,6 @@
 """The rules of the profile app4mc about software: each branch of their conditions, bounds, and what is not stated."""
 
-from app4mc_excerpts import assert_said, call, cases, messages, process, runnable
+from excerpts import assert_said, call, cases, messages, process, runnable
 
 PARAMETERS = (
     "".join(f'<parameters name="{kind}" direction="{kind}"/>' for kind in ("in", "out", "inout")) + '<parameters name="free"/>'

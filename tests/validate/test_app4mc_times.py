@@ -1,7 +1,7 @@
 """In which roles times have to be above zero, which ones may be zero, and which ones are free."""
 
 import pytest
-from app4mc_excerpts import assert_said, messages
+from excerpts import assert_said, messages
 
 STIMULUS = '<stimuliModel><stimuli t="{}" name="S">{}</stimuli></stimuliModel>'
 CLOCK = '<stimuliModel><clocks t="{}" name="C">{}</clocks></stimuliModel>'

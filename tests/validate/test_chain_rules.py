@@ -6,10 +6,10 @@ from itertools import permutations
 
 import pytest
 from effort import every, examples
+from excerpts import access, call, found, runnable
 from hypothesis import given
 from hypothesis import strategies as st
 from support import ROOT, analysis_of, corpus, hand_written
-from test_rules import model
 
 from amalthea_uros import build_model, check, load
 from amalthea_uros.errors import ReadError, UnknownError
@@ -232,23 +232,11 @@ def system(first="", then="", *, others="", stimulus="", chains=None, events="")
 <constraintsModel>{chains}</constraintsModel>"""
 
 
-def found(excerpt, folder, rule=RULE):
-    return [finding.message for finding in check(model(excerpt, folder), [rule])]
-
-
-def access(kind, label="L"):
-    return f'<items t="LabelAccess" data="{label}?type=Label" access="{kind}"/>'
-
-
 def mask(kind, events="E?type=OsEvent", attributes=""):
     return f'<items t="{kind}" {attributes}><eventMask events="{events}"/></items>'
 
 
-def runnable(name, *items):
-    return f'<runnables name="{name}"><activityGraph>{"".join(items)}</activityGraph></runnables>'
-
-
-CALL = '<items t="RunnableCall" runnable="R?type=Runnable"/>'
+CALL = call("R")
 SERVER = '<items t="{}" serverRunnable="R?type=Runnable"/>'
 SET_MODE = '<items t="ModeLabelAccess" data="K?type=ModeLabel" access="set" value="1"/>'
 IS_ONE = '<entries t="ModeValueCondition" label="K?type=ModeLabel" relation="EQUAL" value="1"/>'
@@ -262,7 +250,7 @@ GAP = ["no data flow or trigger connects 'start of T' to 'end of U'"]
         (system(), GAP),
         (system(access("write"), access("read")), []),
         (system(access("read"), access("write")), GAP),
-        (system(access("write"), access("read", "M")), GAP),
+        (system(access("write"), access("read", label="M")), GAP),
         # Data in runnables, and by sender-receiver communication.
         (system(CALL, access("read"), others=runnable("R", access("write"))), []),
         (
@@ -295,7 +283,7 @@ GAP = ["no data flow or trigger connects 'start of T' to 'end of U'"]
     ],
 )
 def test_what_carries(excerpt, expected, tmp_path):
-    assert found(excerpt, tmp_path) == expected
+    assert found(RULE, excerpt, tmp_path) == expected
 
 
 def gap(first, then):
@@ -324,12 +312,12 @@ def gap(first, then):
 def test_the_order_within_a_job(first, then, is_carried, tmp_path):
     chains = f'<eventChains name="C" {chain(first, then)}</eventChains>'
     excerpt = system(CALL, others=runnable("R", access("write")), chains=chains)
-    assert found(excerpt, tmp_path) == ([] if is_carried else gap(first, then))
+    assert found(RULE, excerpt, tmp_path) == ([] if is_carried else gap(first, then))
 
 
 def test_a_runnable_that_is_called_again_may_come_before_itself(tmp_path):
     chains = f'<eventChains name="C" {chain("end of R", "start of R")}</eventChains>'
-    assert found(system(CALL + CALL, others=runnable("R"), chains=chains), tmp_path) == []
+    assert found(RULE, system(CALL + CALL, others=runnable("R"), chains=chains), tmp_path) == []
 
 
 CARRIED = (access("write"), access("read"))
@@ -354,21 +342,21 @@ A, B, W, D = "start of T", "end of U", "L is written", "L is read"
 def test_the_parts_of_a_chain(items, attributes, expected, tmp_path):
     chains = f'<eventChains name="C" {chain(A, B, items, attributes)}</eventChains>'
     # D comes behind W, in another task; nothing leads from U back to T.
-    told = found(system(*CARRIED, chains=chains), tmp_path)
+    told = found(RULE, system(*CARRIED, chains=chains), tmp_path)
     assert sorted(told) == sorted(expected)
 
 
 def test_branches_that_start_elsewhere_than_their_chain(tmp_path):
     branches = chain(B, B, part(A, A), 'itemType="parallel"')
     chains = f'<eventChains name="C" {branches}</eventChains>'
-    assert found(system(*CARRIED, chains=chains), tmp_path) == gap(B, A)
+    assert found(RULE, system(*CARRIED, chains=chains), tmp_path) == gap(B, A)
 
 
 def test_sets_of_events(tmp_path):
     events = '<events t="EventSet" name="all" events="start+of+T?type=ProcessEvent L+is+written?type=LabelEvent"/>'
     chains = f'<eventChains name="C" stimulus="all?type=EventSet" response="{reference(B)}"/>'
-    assert found(system(*CARRIED, chains=chains, events=events), tmp_path) == []
-    assert found(system(access("write"), chains=chains, events=events), tmp_path) == gap(A, B) + gap(W, B)
+    assert found(RULE, system(*CARRIED, chains=chains, events=events), tmp_path) == []
+    assert found(RULE, system(access("write"), chains=chains, events=events), tmp_path) == gap(A, B) + gap(W, B)
 
 
 def test_many_candidates_are_not_tried(tmp_path):
@@ -379,9 +367,9 @@ def test_many_candidates_are_not_tried(tmp_path):
         for kind in ("write", "read")
     )
     chains = f'<eventChains name="C" {chain(D, W)}</eventChains>'
-    assert found(system(others=tasks, chains=chains), tmp_path) == []
+    assert found(RULE, system(others=tasks, chains=chains), tmp_path) == []
     few = tasks[: tasks.index('<tasks name="write1"')]
-    assert found(system(others=few, chains=chains), tmp_path) == gap(D, W)
+    assert found(RULE, system(others=few, chains=chains), tmp_path) == gap(D, W)
 
 
 # Clocks
@@ -452,4 +440,4 @@ TOLD = ["'C' goes through 'A' and 'B', which have no common clock"]
     ],
 )
 def test_chains_through_several_controllers(excerpt, expected, tmp_path):
-    assert found(excerpt, tmp_path, "TIM-SEPARATE-CLOCKS") == expected
+    assert found("TIM-SEPARATE-CLOCKS", excerpt, tmp_path) == expected

@@ -8,8 +8,8 @@ import json
 import re
 
 import pytest
+from excerpts import model
 from support import SHARED, model_text
-from test_rules import model
 
 from amalthea_uros import check, load
 from amalthea_uros.diagnostics import Severity

@@ -5,6 +5,7 @@ import sys
 from importlib import import_module
 
 import pytest
+from excerpts import model
 from support import ROOT, model_text
 
 from amalthea_uros import check, check_files, load
@@ -14,21 +15,6 @@ from amalthea_uros.validate.engine import run
 from amalthea_uros.validate.rule import CHECKS, ModelCheck, RuleProfile
 
 IDS = list(registry.ids())
-
-
-def model(excerpt, folder, version="3.3.0", beside=None):
-    path = folder / "model.amxmi"
-    path.write_text(model_text(excerpt, version))
-    other = folder / "beside.amxmi"
-    if beside is not None:
-        other.write_text(model_text(beside))
-        return load(other, path)
-    return load(path)
-
-
-def found(rule, excerpt, folder, version="3.3.0"):
-    """What a rule says of an excerpt of a model."""
-    return [finding.message for finding in check(model(excerpt, folder, version), [rule])]
 
 
 @pytest.mark.parametrize("identifier", IDS)
@@ -57,7 +43,11 @@ def found_in(rule, example, folder):
         path = folder / "model.amxmi"
         path.write_text(example)
         return check(load(path), [rule.id])
-    read = model(example, folder, rule.example_version if example == rule.fails else "3.3.0", rule.beside)
+    version = rule.example_version if example == rule.fails else "3.3.0"
+    (folder / "model.amxmi").write_text(model_text(example, version))
+    if rule.beside is not None:
+        (folder / "beside.amxmi").write_text(model_text(rule.beside))
+    read = load(folder)
     check_of_rule = registry.check(rule.id)
     if not (isinstance(check_of_rule, ModelCheck) and check_of_rule.is_about_files):
         # The examples are models of which everything is understood.

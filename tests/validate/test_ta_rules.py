@@ -1,7 +1,7 @@
 """The rules of APP4MC's TA profile, by what the reference says of them beyond their examples."""
 
 import pytest
-from test_rules import found
+from excerpts import found
 
 # Gauss distributions
 

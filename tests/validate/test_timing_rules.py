@@ -2,26 +2,13 @@
 
 import pytest
 from effort import every
+from excerpts import access, call, found, graph, model, runnable
 from support import corpus, hand_written
-from test_rules import found, model
 
 from amalthea_uros import check, extract, load
 from amalthea_uros.errors import ReadError
 from amalthea_uros.perf.activities import AccessKind, LabelAccess
 from amalthea_uros.timing.dataflow.links import Dataflow
-
-
-def graph(*items):
-    return f"<activityGraph>{''.join(items)}</activityGraph>"
-
-
-def call(runnable, inner=""):
-    return f'<items t="RunnableCall" runnable="{runnable}?type=Runnable">{inner}</items>'
-
-
-def runnable(name, *items):
-    return f'<runnables name="{name}">{graph(*items)}</runnables>'
-
 
 TICK = '<items t="Ticks"><default t="DiscreteValueConstant" value="100"/></items>'
 
@@ -772,10 +759,6 @@ def test_sizes_of_memories(size, label, expected, tmp_path):
 
 
 # Labels that several cores write
-
-
-def access(kind="write", attributes="", label="L"):
-    return f'<items t="LabelAccess" data="{label}?type=Label" access="{kind}" {attributes}/>'
 
 
 def semaphore(operation, name="X"):

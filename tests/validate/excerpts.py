@@ -1,4 +1,4 @@
-"""Excerpts of models for the rules of the profile app4mc, and what these say of them."""
+"""Excerpts of models for rules, and what these say of them; classes are written as in `support.model_text`."""
 
 import pytest
 from support import model_text
@@ -6,13 +6,22 @@ from support import model_text
 from amalthea_uros import check, load
 
 
+def model(excerpt, folder, version="3.3.0", *others):
+    """A model of files with these contents."""
+    paths = [folder / f"{number}.amxmi" for number in range(1 + len(others))]
+    for path, content in zip(paths, (excerpt, *others), strict=True):
+        path.write_text(model_text(content, version))
+    return load(*paths)
+
+
+def found(rule, excerpt, folder, version="3.3.0"):
+    """What a rule says of an excerpt of a model."""
+    return [finding.message for finding in check(model(excerpt, folder, version), [rule])]
+
+
 def messages(folder, rule, *excerpts, version="3.3.0"):
-    """What a rule says of a model whose files have these contents."""
-    paths = [folder / f"{number}.amxmi" for number in range(len(excerpts))]
-    for path, excerpt in zip(paths, excerpts, strict=True):
-        path.write_text(model_text(excerpt, version))
-    read = load(*paths)
-    # Nothing is wrong that is not meant to be.
+    """The same of a model of several files, in which nothing is wrong that is not meant to be."""
+    read = model(excerpts[0], folder, version, *excerpts[1:])
     assert not read.findings or any("gone" in excerpt for excerpt in excerpts), read.findings
     return [finding.message for finding in check(read, [rule])]
 
@@ -46,12 +55,20 @@ def connection(name, first, second, tag="connections"):
 
 
 def runnable(name, *items, parameters="", features=""):
-    return f'<runnables name="{name}" {features}><activityGraph>{"".join(items)}</activityGraph>{parameters}</runnables>'
+    return f'<runnables name="{name}" {features}>{graph(*items)}{parameters}</runnables>'
+
+
+def graph(*items):
+    return f"<activityGraph>{''.join(items)}</activityGraph>"
 
 
 def call(called, arguments=""):
     return f'<items t="RunnableCall" runnable="{called}?type=Runnable">{arguments}</items>'
 
 
+def access(kind="write", attributes="", label="L"):
+    return f'<items t="LabelAccess" data="{label}?type=Label" access="{kind}" {attributes}/>'
+
+
 def process(tag, name, *items):
-    return f'<{tag} name="{name}"><activityGraph>{"".join(items)}</activityGraph></{tag}>'
+    return f'<{tag} name="{name}">{graph(*items)}</{tag}>'
