@@ -195,15 +195,21 @@ def test_verdicts_are_decided_in_one_room():
 
 
 def decisions(tree):
-    """Where a member of a verdict is a value, and neither compared nor the key or value of a table at the top of a module."""
-    harmless = {id(part) for node in ast.walk(tree) if isinstance(node, ast.Compare) for part in ast.walk(node)}
-    tables = (node for node in tree.body if isinstance(node, ast.Assign | ast.AnnAssign))
-    harmless |= {id(part) for node in tables for part in ast.walk(node)}
+    """Where a member of a verdict is a value, and neither compared, looked up, nor in a table at the top of a module."""
+    read = [node for node in ast.walk(tree) if isinstance(node, ast.Compare) or is_look_up(node)]
+    read += [node.iter for node in ast.walk(tree) if isinstance(node, ast.comprehension)]
+    read += [node for node in tree.body if isinstance(node, ast.Assign | ast.AnnAssign)]
+    harmless = {id(part) for node in read for part in ast.walk(node)}
     for node in ast.walk(tree):
         is_member = isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and is_verdict(node.value.id)
         is_made = isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and is_verdict(node.func.id)
         if (is_member or is_made) and id(node) not in harmless:
             yield node
+
+
+def is_look_up(node):
+    """Whether a call counts or names what has a verdict."""
+    return isinstance(node, ast.Call) and ast.unparse(node.func).endswith(("judged_in", "_with_verdict"))
 
 
 def is_verdict(name):
