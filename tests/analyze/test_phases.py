@@ -145,7 +145,7 @@ def test_too_many_jobs_are_too_many_phases(monkeypatch):
 THESIS = [row for problem in DESIGN.get("thesis", ()) for row in problem["rows"] if "breaks" not in row]
 
 
-@pytest.mark.parametrize("row", every(6, THESIS), ids=lambda row: str(row["change"]))
+@pytest.mark.parametrize("row", every(10, THESIS), ids=lambda row: str(row["change"]))
 def test_the_application_of_the_thesis_with_changes(row, analyze):
     text = SAMPLE.read_text().replace("1 ms, 10 ms", "500 us, 1 ms, 2 ms, 5 ms, 10 ms")
     keys = {
@@ -176,7 +176,7 @@ PERIODS = [
 ]
 
 
-@pytest.mark.parametrize(("problem", "row"), every(8, PERIODS))
+@pytest.mark.parametrize(("problem", "row"), every(11, PERIODS))
 def test_other_periods(problem, row, analyze):
     *periods, worst, best = row
     # Rate monotonic; at equal periods the executor, then the timer, then the subscription.

@@ -543,7 +543,7 @@ class TestEventsThatActivate:
         )
 
 
-@examples(16)
+@examples(10)
 @given(systems(most=1), st.sampled_from(MemoryModel))
 def test_no_system_is_too_strange(system, memory):
     analysis = analyze_system(system, Settings(memory=memory))

@@ -50,7 +50,7 @@ def systems(draw):
     return replace(built, stimuli=Stimuli(stimuli=periodic), software=replace(built.software, tasks=modes))
 
 
-@examples(60)
+@examples(40)
 @given(systems())
 def test_no_simulated_response_exceeds_its_bound(built):
     observed = {

@@ -98,7 +98,7 @@ TASKS = st.lists(
 ).filter(lambda tasks: sum(demand / period for period, demand, _ in tasks) <= 1)
 
 
-@examples(36)
+@examples(20)
 @given(TASKS, st.data())
 def test_no_order_exceeds_the_bound(tasks, data):
     offsets = [data.draw(st.integers(0, period - 1)) for period, _, _ in tasks]

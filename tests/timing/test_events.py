@@ -13,7 +13,7 @@ from amalthea_uros.timing.dataflow.events import EventLocator, raises
 
 
 @given(systems())
-@examples(30)
+@examples(14)
 def test_they_are_those_that_a_look_at_each_activity_finds(system):
     locator = EventLocator(system)
     try:

@@ -236,7 +236,7 @@ def systems(draw):
     )
 
 
-@examples(12)
+@examples(10)
 @given(systems())
 def test_the_load_of_random_systems(system):
     model = build_model(system)

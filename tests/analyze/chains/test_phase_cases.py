@@ -4,6 +4,7 @@ from dataclasses import replace
 from math import gcd
 
 import pytest
+from effort import examples
 from hypothesis import given
 from hypothesis import strategies as st
 from support import ROOT
@@ -46,7 +47,7 @@ def systems(draw):
         for index in range(draw(st.integers(0, 2))):
             runnable = f"{name}_{index}"
             prescaler = draw(PRESCALERS)
-            is_unknown = combinations * prescaler <= 30 and draw(st.sampled_from([True, True, False]))
+            is_unknown = combinations * prescaler <= 12 and draw(st.sampled_from([True, True, False]))
             combinations *= prescaler if is_unknown else 1
             least = draw(st.integers(0, 3))
             inner = [ticks(least + draw(st.sampled_from([0, 0, 1])), least)]
@@ -90,6 +91,7 @@ def everything(analysis):
     }
 
 
+@examples(10)
 @given(systems())
 def test_the_results_are_those_of_all_combinations(built):
     found = everything(analyze_system(built))
