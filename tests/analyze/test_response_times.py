@@ -10,12 +10,13 @@ from hypothesis import strategies as st
 from support import SHARED
 from unit_player import UnitTask, longest_responses
 
-from amalthea_uros.analyze.response_times import non_preemptive, priority_levels, schedule
+from amalthea_uros.analyze.response_times import fixed_priority, non_preemptive, priority_levels, schedule
+from amalthea_uros.analyze.response_times.busy_window import Interference
 from amalthea_uros.analyze.response_times.core_schedule import CoreSchedule
 from amalthea_uros.analyze.response_times.schedule import PeriodicTask
 from amalthea_uros.analyze.response_times.task import AnalysedTask
 from amalthea_uros.timing.demand.multiframe import DemandFrame, MultiframeDemand
-from amalthea_uros.timing.event_models.models import PeriodicEvents
+from amalthea_uros.timing.event_models.models import EventPattern, PeriodicEvents
 
 
 def vectors(name, accept=lambda case: True):
@@ -235,3 +236,43 @@ class TestDemandThatIsNotTheSameInEachJob:
         windows = [range(first, first + count) for first in range(1, 2 * prescaler + 1)]
         assert max(sum(map(demand.worst_of, jobs)) for jobs in windows) == demand.max_demand(count)
         assert min(sum(map(demand.best_of, jobs)) for jobs in windows) == demand.min_demand(count)
+
+
+# Sums that do not fit into 64 bits do not wrap.
+
+
+LONGEST = 2**54
+
+
+def seldom(distinct):
+    """More than 2^64 together, though each job comes so seldom that the load is small."""
+    return [
+        AnalysedTask(
+            name=str(number),
+            events=PeriodicEvents(2**40 + distinct * number),
+            demand=MultiframeDemand((DemandFrame(worst=LONGEST, best=LONGEST, prescaler=2**30),)),
+            priority=1 + number,
+        )
+        for number in range(1030)
+    ]
+
+
+DISTINCT = {"a row for each task": 1, "one row": 0}
+
+
+@pytest.mark.parametrize("distinct", DISTINCT.values(), ids=DISTINCT.keys())
+def test_sums_of_a_window_do_not_wrap(distinct):
+    assert Interference.of(seldom(distinct)).in_window(1) == 1030 * LONGEST
+
+
+@pytest.mark.parametrize("distinct", DISTINCT.values(), ids=DISTINCT.keys())
+def test_response_times_do_not_wrap(distinct):
+    last = AnalysedTask(name="last", events=PeriodicEvents(2**59), demand=MultiframeDemand.constant(1))
+    response, _ = fixed_priority.response_time(last, Interference.of(seldom(distinct)))
+    assert response.worst is None
+    assert response.best == 1
+
+
+def test_a_fixed_demand_beyond_all_limits():
+    often = AnalysedTask(name="often", events=EventPattern(1, (0,)), demand=MultiframeDemand.constant(2**54))
+    assert Interference.of([often]).window(1, 2**40) is None

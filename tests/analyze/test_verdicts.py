@@ -1,15 +1,16 @@
 """Verdicts: what is met, missed, lost, overloaded or unknown; all numbers are worked out by hand."""
 
+from dataclasses import replace
 from fractions import Fraction
 
 import pytest
-from hand_made_systems import changed, one_core, reallocated, ticks
+from hand_made_systems import Proc, changed, one_core, reallocated, system, ticks
 
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.activities import Call, Loop, Trigger
 from amalthea_uros.perf.constraints import Bound, Constraints, CountLimit, CountMetric, Requirement, TimeLimit, TimeMetric
 from amalthea_uros.perf.distributions import Boundaries
-from amalthea_uros.perf.os import Policy
+from amalthea_uros.perf.os import Policy, Scheduler
 from amalthea_uros.perf.software import Runnable
 from amalthea_uros.perf.stimuli import InterProcess, Periodic, RelativePeriodic
 from amalthea_uros.units import MICROSECOND as US
@@ -190,3 +191,18 @@ class TestSummary:
     def test_an_unknown_policy_leaves_everything_unknown(self):
         summary = analyze_system(one_core(("T", 100, [ticks(1)]), policy=Policy.PFAIR)).summary
         assert (summary.schedulable, [item.name for item in summary.unknown]) == ("unknown", ["T"])
+
+
+# A scheduler serves by the deadlines that allocations state; limits only judge.
+
+
+@pytest.mark.parametrize("policy", [Policy.DEADLINE_MONOTONIC, Policy.EARLIEST_DEADLINE_FIRST])
+@pytest.mark.parametrize(("deadline", "verdicts"), [(None, ["unknown", "unknown"]), (10, ["met", "met"])])
+def test_a_response_time_limit_is_no_deadline_of_the_scheduler(policy, deadline, verdicts):
+    """A stricter limit of A changes nothing in the order of A and B, each of which executes 3: both respond within 6."""
+    tasks = [Proc(name, (ticks(3),), period, deadline=deadline) for name, period in (("A", 20), ("B", 30))]
+    found = system(*tasks, schedulers=(Scheduler(name="s0", policy=policy, cores=("c0",)),))
+    limits = [TimeLimit(metric=TimeMetric.RESPONSE_TIME, value=value * US, bound=Bound.UPPER) for value in (6, 7)]
+    requirements = tuple(Requirement(name=name, process=name, limit=limit) for name, limit in zip("AB", limits, strict=True))
+    analysis = analyze_system(replace(found, constraints=Constraints(requirements=requirements)))
+    assert [str(each.verdict) for each in analysis.requirements] == verdicts

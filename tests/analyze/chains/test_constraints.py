@@ -1,11 +1,13 @@
 """Timing constraints on the producer and the consumer, all computed by hand: 5 every 10, and 5 after it every 20."""
 
 from dataclasses import replace
+from fractions import Fraction
 
 import pytest
 from test_chain_systems import ACTIVATION, END, START, at, producer_and_consumer, read, system, ticks, write
 
-from amalthea_uros import analyze_system
+from amalthea_uros.analyze.sensitivity import sensitivity
+from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.activities import AccessKind, Call, SenderReceiverAccess, Trigger
 from amalthea_uros.perf.constraints import (
     ChainEnd,
@@ -25,6 +27,7 @@ from amalthea_uros.perf.distributions import Boundaries
 from amalthea_uros.perf.events import EventChain, RunnableChange, RunnableEvent
 from amalthea_uros.perf.software import Runnable
 from amalthea_uros.perf.stimuli import Counter, InterProcess, RelativePeriodic
+from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import MICROSECOND as US
 
 EVENTS = (at("producer", START), at("producer", END), at("consumer", START), at("consumer", END))
@@ -282,3 +285,28 @@ def test_data_within_a_job_do_not_reach_what_comes_before():
     )
     # A starts 4 to 9 after its activation, and is activated 31 to 36 later.
     assert [verdict for _, _, verdict in evaluate(delay("A start", "A activate", upper=30), built=built)] == ["missed"]
+
+
+# Sensitivity where a latency does not grow with the execution times.
+
+
+def test_a_factor_covers_all_smaller_ones():
+    # Reader starts after Other, 3 us and the time of Other after each release of Writer, which writes after 4 us. While Other takes
+    # less than 1 us, Reader misses the data and uses them 10 us later, after 13 us + Other + 0.1 us: above 0.7 us, that is more than
+    # 13.8 us. From 1 us on, the latency is short again.
+    built = system(
+        [
+            ("Writer", 100, [ticks(40), write("x")], "one", 0),
+            ("Other", 100, [ticks(5)], "two", 30),
+            ("Reader", 100, [read("x"), ticks(1)], "two", 30),
+        ],
+        (at("Writer", START), at("Reader", END)),
+        cores=("one", "two"),
+        unit=US // 10,
+    )
+    limit = LatencyConstraint(name="limit", chain="chain", kind=LatencyKind.REACTION, maximum=138 * US // 10)
+    built = replace(built, constraints=Constraints(constraints=(limit,)))
+    analysis = analyze_system(built)
+    assert [str(each.verdict) for each in analysis.requirements] == ["met"]
+    assert analyze_system(built, Settings(factors={"Other": Fraction(8, 5)})).summary.schedulable != "yes"
+    assert float(sensitivity(analysis).processes["Other"]) == pytest.approx(1.4, rel=2e-3)
