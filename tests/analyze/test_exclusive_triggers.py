@@ -32,11 +32,11 @@ def by_mode(*branches):
     return Switch(cases=tuple(Case(activities=tuple(branch)) for branch in branches[:-1]), default=tuple(branches[-1]))
 
 
-def analysed(*activities, **triggered):
-    """A with some activities after its own, and the tasks that it triggers with the ticks of their jobs, the highest first."""
+def analysed(*activities, period=100, others=(), **triggered):
+    """A with some activities after its own, and the tasks that it triggers with their ticks or activities, the highest first."""
     stimuli = [InterProcess(name=f"trigger {name}") for name in triggered]
-    tasks = [(name, None, [ticks(demand)]) for name, demand in triggered.items()]
-    return analyze_system(one_core(("A", 100, [ticks(10), *activities]), *tasks, stimuli=stimuli))
+    tasks = [(name, None, [ticks(body)] if isinstance(body, int) else body) for name, body in triggered.items()]
+    return analyze_system(one_core(("A", period, [ticks(10), *activities]), *tasks, *others, stimuli=stimuli))
 
 
 def percent(analysis):
@@ -46,12 +46,8 @@ def percent(analysis):
 
 def test_an_overload_of_a_little_is_not_shown_as_a_full_core():
     # 10 us and one of 9,991 us in each 10 ms.
-    stimuli = [InterProcess(name=f"trigger {name}") for name in "BC"]
-    activities = [ticks(10), by_chance([trigger("B")], [trigger("C")])]
-    triggered = [(name, None, [ticks(9_991)]) for name in "BC"]
-    analysis = analyze_system(one_core(("A", 10_000, activities), *triggered, stimuli=stimuli))
-    reasons = {process.name: process.reason for process in analysis.processes if process.reason}
-    assert reasons["C"] == "overload: tasks at this priority or higher need 100.01 % of the core"
+    analysis = analysed(by_chance([trigger("B")], [trigger("C")]), B=9_991, C=9_991, period=10_000)
+    assert analysis["C"].reason == "overload: tasks at this priority or higher need 100.01 % of the core"
 
 
 def test_one_of_two_triggers_by_chance():
@@ -92,28 +88,13 @@ def test_both_branches_trigger_the_same_task():
 
 
 def test_what_is_triggered_further_belongs_to_the_path():
-    stimuli = [InterProcess(name=f"trigger {name}") for name in "BCD"]
-    system = one_core(
-        ("A", 100, [ticks(10), by_chance([trigger("B")], [trigger("C")])]),
-        ("B", None, [ticks(20), trigger("D")]),
-        ("C", None, [ticks(50)]),
-        ("D", None, [ticks(35)]),
-        stimuli=stimuli,
-    )
+    analysis = analysed(by_chance([trigger("B")], [trigger("C")]), B=[ticks(20), trigger("D")], C=50, D=35)
     # 10 + 20 + 35, or 10 + 50.
-    assert percent(analyze_system(system)) == (60, 62.5, 65, 65)
+    assert percent(analysis) == (60, 62.5, 65, 65)
 
 
 def test_a_task_below_those_that_exclude_each_other_is_not_overloaded():
-    stimuli = [InterProcess(name=f"trigger {name}") for name in "BC"]
-    system = one_core(
-        ("A", 100, [ticks(10), by_chance([trigger("B")], [trigger("C")])]),
-        ("B", None, [ticks(50)]),
-        ("C", None, [ticks(50)]),
-        ("D", 100, [ticks(30)]),
-        stimuli=stimuli,
-    )
-    found = analyze_system(system).processes["D"]
+    found = analysed(by_chance([trigger("B")], [trigger("C")]), B=50, C=50, others=[("D", 100, [ticks(30)])]).processes["D"]
     # At worst a job of each: 10 + 50 + 30.
     assert (found.response.worst, found.verdict) == (90 * US, Verdict.MET)
 
@@ -145,15 +126,13 @@ def within(inner):
 
 
 def paths(activities):
-    """The demand of every path through some activities, with what it triggers."""
+    """What is executed and triggered on every path through some activities."""
     for parts in product(*map(list, map(paths_of, activities))):
-        yield sum(parts)
+        yield [leaf for part in parts for leaf in part]
 
 
 def paths_of(activity):
     match activity:
-        case Trigger(stimulus=stimulus):
-            yield DEMANDS[stimulus.removeprefix("trigger ")]
         case Group(activities=inner):
             yield from paths(inner)
         case ProbabilitySwitch(branches=branches):
@@ -163,30 +142,19 @@ def paths_of(activity):
             for inner in (*(case.activities for case in cases), default):
                 yield from paths(inner)
         case _:
-            yield activity.demand.ticks.value
+            yield [activity]
+
+
+def demand(leaf):
+    return DEMANDS[leaf.stimulus.removeprefix("trigger ")] if isinstance(leaf, Trigger) else leaf.demand.ticks.value
 
 
 @examples(36)
 @given(st.lists(st.recursive(LEAVES, within, max_leaves=7), max_size=3))
 def test_the_load_of_random_paths(activities):
     found = percent(analysed(*activities, **DEMANDS))
-    every = [10 + demand for demand in paths(activities)]
-    used = {each.stimulus for each in _triggers(activities)}
+    every = [10 + sum(map(demand, path)) for path in paths(activities)]
+    used = {leaf.stimulus for path in paths(activities) for leaf in path if isinstance(leaf, Trigger)}
     if len(used) == len(DEMANDS):
         assert (found[0], found[2]) == (min(every), max(every))
     assert found[3] <= max(every)
-
-
-def _triggers(activities):
-    for activity in activities:
-        match activity:
-            case Trigger():
-                yield activity
-            case Group(activities=inner):
-                yield from _triggers(inner)
-            case ProbabilitySwitch(branches=branches):
-                for branch in branches:
-                    yield from _triggers(branch.activities)
-            case Switch(cases=cases, default=default):
-                for inner in (*(case.activities for case in cases), default):
-                    yield from _triggers(inner)

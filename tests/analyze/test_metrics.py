@@ -424,10 +424,6 @@ class TestRequirements:
         # 12 + 12 us, and below that 4 + 12.
         assert self.result(rows, TimeMetric.RESPONSE_TIME, 40, runnable="T0.base", activities=shared).value == 40 * US
 
-    def test_a_runnable_that_nobody_calls(self):
-        result = self.result(self.ROWS, TimeMetric.RESPONSE_TIME, 10, runnable="T1.extra")
-        assert (result.verdict, result.reason) == ("unknown", "no process of the model calls 'T1.extra'")
-
     def test_a_metric_that_runnables_do_not_have(self):
         result = self.result(self.ROWS, TimeMetric.LATENESS, 10, runnable="T0.base")
         assert (result.verdict, result.reason) == ("unknown", "the lateness of 'T0.base' is not computed")

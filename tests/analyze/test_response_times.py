@@ -60,28 +60,24 @@ def test_liu_and_layland_1973(case):
     periods = [round(10**9 * 2 ** (index / count)) for index in range(count)]
     wcets = [(then - first) for first, then in pairwise([*periods, 2 * periods[0]])]
     assert sum(wcet / period for wcet, period in zip(wcets, periods, strict=True)) == pytest.approx(bound, rel=1e-8)
-    tasks = [
-        AnalysedTask(name=f"t{index}", events=PeriodicEvents(period), demand=MultiframeDemand.constant(wcet), priority=-index)
-        for index, (period, wcet) in enumerate(zip(periods, wcets, strict=True))
-    ]
+    tasks = [fixed(f"t{rank}", *row, -rank) for rank, row in enumerate(zip(periods, wcets, strict=True))]
     responses = priority_levels.response_times(tasks)
     assert all(response.worst <= period for response, period in zip(responses, periods, strict=True))
 
 
+def fixed(name, period, wcet, priority):
+    return AnalysedTask(name=name, events=PeriodicEvents(period), demand=MultiframeDemand.constant(wcet), priority=priority)
+
+
 def test_lehoczky_1990_has_its_worst_response_at_the_fifth_job():
-    t1 = AnalysedTask(name="t1", events=PeriodicEvents(70), demand=MultiframeDemand.constant(26), priority=2)
-    t2 = AnalysedTask(name="t2", events=PeriodicEvents(100), demand=MultiframeDemand.constant(62), priority=1)
-    _, response = priority_levels.response_times([t1, t2])
+    _, response = priority_levels.response_times([fixed("t1", 70, 26, 2), fixed("t2", 100, 62, 1)])
     assert (response.worst, response.jobs) == (118, 7)
     assert response.terms["earlier arrival"] == -4 * 100
 
 
 def test_davis_2007_a_later_frame_waits_longest():
     # The example by which the older analysis is refuted, in bits of 1/125 of a millisecond: 1, 1, 1 ms every 2.5, 3.5, 3.5 ms.
-    frames = [
-        AnalysedTask(name=name, events=PeriodicEvents(period), demand=MultiframeDemand.constant(1000), priority=priority)
-        for name, period, priority in (("A", 2500, 3), ("B", 3500, 2), ("C", 3500, 1))
-    ]
+    frames = [fixed("A", 2500, 1000, 3), fixed("B", 3500, 1000, 2), fixed("C", 3500, 1000, 1)]
     assert [response.worst for response in non_preemptive.response_times(frames)] == [2000, 3000, 3500]
 
 
@@ -103,19 +99,16 @@ def test_schedules_job_by_job(case):
 
 
 def test_overload_is_a_result_with_a_reason():
-    high = AnalysedTask(name="high", events=PeriodicEvents(10), demand=MultiframeDemand.constant(6), priority=2)
-    low = AnalysedTask(name="low", events=PeriodicEvents(10), demand=MultiframeDemand.constant(5), priority=1)
-    first, second = priority_levels.response_times([high, low])
-    assert first.worst == 6
-    assert second.worst is None
+    tasks = [fixed("high", 10, 6, 2), fixed("low", 10, 5, 1)]
+    first, second = priority_levels.response_times(tasks)
+    assert (first.worst, second.worst) == (6, None)
     assert "110.0 %" in second.reason
-    assert all(response.worst is None for response in non_preemptive.response_times([high, low])[1:])
+    assert all(response.worst is None for response in non_preemptive.response_times(tasks)[1:])
 
 
 def test_a_processor_that_is_exactly_full():
-    high = AnalysedTask(name="high", events=PeriodicEvents(4), demand=MultiframeDemand.constant(2), priority=2)
-    low = AnalysedTask(name="low", events=PeriodicEvents(8), demand=MultiframeDemand.constant(4), priority=1)
-    assert [response.worst for response in priority_levels.response_times([high, low])] == [2, 8]
+    tasks = [fixed("high", 4, 2, 2), fixed("low", 8, 4, 1)]
+    assert [response.worst for response in priority_levels.response_times(tasks)] == [2, 8]
 
 
 TASKS = st.lists(st.tuples(st.sampled_from([4, 5, 6, 8, 10, 12]), st.integers(1, 4), st.integers(0, 3)), min_size=1, max_size=4)
@@ -206,25 +199,8 @@ class TestDemandThatIsNotTheSameInEachJob:
 
     EXECUTOR = MultiframeDemand((DemandFrame(worst=12, best=12), DemandFrame(worst=13, best=13, prescaler=20)))
 
-    def test_consecutive_jobs(self):
-        assert [self.EXECUTOR.max_demand(count) for count in (1, 2, 20, 21)] == [25, 37, 12 * 20 + 13, 12 * 21 + 26]
-        assert [self.EXECUTOR.min_demand(count) for count in (1, 19, 20)] == [12, 12 * 19, 12 * 20 + 13]
-
-    def test_the_control_function_of_the_thesis(self):
-        # Figures 6.5 and 6.6: 16 us with the simple model; 16 to 29 us with the advanced one.
-        def respond(executor):
-            tasks = [
-                PeriodicTask(name="executor", period=1000, offset=0, demand=executor, priority=2),
-                PeriodicTask(name="control", period=1000, offset=0, demand=MultiframeDemand.constant(4), priority=1),
-            ]
-            return CoreSchedule.of(tasks, with_slices=False).response_times()["control"]
-
-        simple, advanced = respond(MultiframeDemand.constant(12)), respond(self.EXECUTOR)
-        assert (simple.best, simple.worst) == (16, 16)
-        assert (advanced.best, advanced.worst) == (16, 29)
-
     def test_it_is_not_a_25_us_task(self):
-        low = AnalysedTask(name="low", events=PeriodicEvents(10_000), demand=MultiframeDemand.constant(1000), priority=1)
+        low = fixed("low", 10_000, 1000, 1)
         executor = AnalysedTask(name="executor", events=PeriodicEvents(1000), demand=self.EXECUTOR, priority=2)
         _, response = priority_levels.response_times([executor, low])
         # Two activations in the window of 1,037 us, of which one takes a message.

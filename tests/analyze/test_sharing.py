@@ -128,19 +128,6 @@ def test_no_schedule_of_a_server_is_worse_than_the_bound(rows, offsets, budget, 
         assert seen <= response.worst
 
 
-def test_a_server_by_hand():
-    # 2 in each 5: in the worst case nothing for 6, then 2, nothing for 3, 1 more: 6 + 2 + 3 + 1.
-    task = AnalysedTask(name="T", events=PeriodicEvents(100), demand=MultiframeDemand.constant(3))
-    (response,) = priority_levels.response_times([task], supply=Supply(budget=2, period=5, wait=6))
-    assert response.worst == 12
-
-
-def test_spuri_1996_deadlines_decide_and_not_periods():
-    # 1 every 4 by 4, 3 every 6 by 5: the first waits for the second one where its deadline is later.
-    tasks = shared(EqualPriority.EDF, [(4, 1, 4), (6, 3, 5)])
-    assert [response.worst for response in priority_levels.response_times(tasks)] == [3, 4]
-
-
 def test_slices_keep_one_that_demands_too_much_from_the_others():
     greedy, modest = priority_levels.response_times(shared(EqualPriority.ROUND_ROBIN, [(10, 11, 2), (100, 10, 2)]))
     assert greedy.worst is None

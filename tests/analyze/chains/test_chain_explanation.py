@@ -98,13 +98,22 @@ def check_all_hops(communication, drawn, controllers):
 
 def test_the_worst_message_of_the_thesis():
     """Taken one tick after the callback ran, 19 ticks before it runs again; the next control function also waits for a message."""
-    analysis = analysis_of(ROOT / "samples" / "bodas-test-advanced.yaml")
-    executor, callback, control = check_sums(explain_chain(analysis, "factor-to-output"))
+    explanation = explain_chain(analysis_of(ROOT / "samples" / "bodas-test-advanced.yaml"), "factor-to-output")
+    executor, callback, control = check_sums(explanation)
     assert (executor.process, executor.release, executor.start, executor.write) == ("Executor_Task", 0, 0, 25 * US)
     assert (callback.process, callback.release, callback.start) == ("Message_Factor", 19_000 * US, 19_016 * US)
     # 12 and 13 for the executor with a message, and 4 of its own.
     assert (control.process, control.release, control.start) == ("Control_Function", 20_000 * US, 20_025 * US)
     assert (control.write, control.wait, control.run) == (20_029 * US, 20_025 * US - 19_018 * US, 4 * US)
+    # The callback runs every 20 ms; the executor, 12 us without a message, and the control function, 4 us, run before it.
+    assert [(cause.kind, cause.process, cause.time // US) for cause in callback.wait_causes] == [
+        (CauseKind.NEXT_JOB, "", 19_000 - 25),
+        (CauseKind.INTERFERENCE, "Executor_Task", 12),
+        (CauseKind.INTERFERENCE, "Control_Function", 4),
+    ]
+    assert (callback.period, callback.one_in, control.period) == (20_000 * US, 1, 1_000 * US)
+    assert [(limit.limit, limit.margin) for limit in explanation.requirements] == [(25_000 * US, 4_971 * US)]
+    assert sum(explanation.share(hop.wait + hop.run) for hop in explanation.hops) == 1
 
 
 def played(tasks, until):
@@ -150,21 +159,6 @@ def test_the_causes_are_what_the_core_executes(drawn):
             for now in range(each.begin // US, each.end // US):
                 assert executed[each.core, now + origin] == (each.process, each.job)
         previous = hop.write
-
-
-def test_why_the_worst_message_of_the_thesis_waits():
-    """The callback runs every 20 ms; the executor, 12 us without a message, and the control function, 4 us, run before it."""
-    analysis = analysis_of(ROOT / "samples" / "bodas-test-advanced.yaml")
-    explanation = explain_chain(analysis, "factor-to-output")
-    _, callback, control = explanation.hops
-    assert [(cause.kind, cause.process, cause.time // US) for cause in callback.wait_causes] == [
-        (CauseKind.NEXT_JOB, "", 19_000 - 25),
-        (CauseKind.INTERFERENCE, "Executor_Task", 12),
-        (CauseKind.INTERFERENCE, "Control_Function", 4),
-    ]
-    assert (callback.period, callback.one_in, control.period) == (20_000 * US, 1, 1_000 * US)
-    assert [(limit.limit, limit.margin) for limit in explanation.requirements] == [(25_000 * US, 4_971 * US)]
-    assert sum(explanation.share(hop.wait + hop.run) for hop in explanation.hops) == 1
 
 
 def test_logical_execution_time_is_waiting():

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import pytest
+from hand_made_systems import changed
 from test_chain_systems import END, START, at, read, system, ticks, write
 
 from amalthea_uros import analyze_system
@@ -84,9 +85,7 @@ def test_only_the_worst_load_has_what_may_be_suppressed():
 
 def test_suppressed_activations_overload_nothing_for_certain():
     built = writer_and_reader()
-    heavy = replace(built.software.tasks[0], activities=(ticks(20),))
-    built = replace(built, software=replace(built.software, tasks=(heavy, *built.software.tasks[1:])))
-    analysis = analyze_system(built)
+    analysis = analyze_system(changed(built, "W", activities=(ticks(20),)))
     assert not analysis.processors["core"].is_overloaded
     assert {str(process.verdict) for process in analysis.processes} == {"unknown"}
 
