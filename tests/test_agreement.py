@@ -45,7 +45,7 @@ def disagreements(path: Path, duration: Time = USUAL) -> list[str]:
     return found
 
 
-@pytest.mark.parametrize("path", named(4, files(ROOT / "samples", ".amxmi", ".yaml"), ROOT))
+@pytest.mark.parametrize("path", named(9, files(ROOT / "samples", ".amxmi", ".yaml"), ROOT))
 def test_samples(path):
     assert disagreements(path) == []
 
@@ -56,7 +56,7 @@ def test_vectors(vectors):
     if not folder.exists():
         pytest.skip("the files are not at hand")
     duration = SHORT if vectors in SHORT_PERIODS else USUAL
-    examined = every(25, files(folder, ".amxmi", ".iprx"))
+    examined = every(60, files(folder, ".amxmi", ".iprx"))
     wrong = {path.name: texts[:3] for path in examined if (texts := disagreements(path, duration))}
     assert wrong == {}
 
@@ -64,5 +64,5 @@ def test_vectors(vectors):
 def test_published_models():
     if not SHARED.exists():
         pytest.skip("the models are not at hand")
-    wrong = {path.name: texts[:3] for path in every(40, files(SHARED / "corpus", ".amxmi")) if (texts := disagreements(path))}
+    wrong = {path.name: texts[:3] for path in every(80, files(SHARED / "corpus", ".amxmi")) if (texts := disagreements(path))}
     assert wrong == {}

@@ -25,7 +25,7 @@ from amalthea_uros.units import MILLISECOND as MS
 
 DURATION = 600 * US
 #: Begins and ends amid jobs and critical sections.
-WINDOWS = [(0, DURATION), *((start * US, 400 * US) for start in (1, 27, 33, 48, 61, 102, 203))]
+WINDOWS = [(0, DURATION), *((start * US, 400 * US) for start in every(3, (27, 33, 48, 61, 102, 203, 1)))]
 
 
 def play(system, duration=DURATION, traced=None, sinks=()):
@@ -66,11 +66,12 @@ def test_files_say_what_was_simulated(name, tmp_path):
 
 
 @pytest.mark.parametrize("part", range(6))
-@pytest.mark.parametrize("window", [(0, 2500 * US), (777 * US, 1500 * US)], ids=["whole", "part"])
-def test_models_with_every_construct(part, window):
-    for path in every(4, constructs()[part::6]):
-        _, tables = play(open_system([path]).system, 2500 * US, window)
-        assert (path.name, problems(tables)) == (path.name, [])
+def test_models_with_every_construct(part):
+    for path in every(20, constructs()[part::6]):
+        built = open_system([path]).system
+        for window in ((0, 1000 * US), (777 * US, 1500 * US)):
+            _, tables = play(built, window[1], window)
+            assert (path.name, window, problems(tables)) == (path.name, window, [])
 
 
 @pytest.mark.parametrize("path", sorted((ROOT / "samples").glob("*.yaml")), ids=lambda path: path.name)
@@ -125,9 +126,10 @@ def test_decisions_of_a_scheduler_are_its_events():
 
 def test_many_events_while_a_job_executes():
     often = Proc("often", (ticks(1),), 1, priority=1, task={"activation_limit": 2})
-    _, tables = play(system(Proc("long", (ticks(60_000),), 100_000, priority=2), often), 100_000 * US)
-    assert len(of(tables, EventKind.TRIGGER, "time")) == 100_001
-    assert len(of(tables, EventKind.ACTIVATION_LOST, "time")) >= 59_998
+    # The interpreted kernel keeps 4096 rows of events at a time.
+    _, tables = play(system(Proc("long", (ticks(6_000),), 10_000, priority=2), often), 10_000 * US)
+    assert len(of(tables, EventKind.TRIGGER, "time")) == 10_001
+    assert len(of(tables, EventKind.ACTIVATION_LOST, "time")) >= 5_998
     assert problems(tables) == []
 
 
