@@ -53,7 +53,6 @@ class Thread:
     is_ready: bool = True
     since: int = 0
     turn: int = 0
-    done: bool = False
 
 
 @dataclass
@@ -113,7 +112,9 @@ class Kernel:
 
     def _ask(self, thread):
         thread.turn += 1
-        match next(thread.steps):
+        match next(thread.steps, None):
+            case None:
+                self.threads.remove(thread)
             case Run(work):
                 thread.work = work
             case Until(end):

@@ -11,14 +11,13 @@ from amalthea_uros.errors import AmurosError
 from amalthea_uros.services.analyze import analyze_files
 from amalthea_uros.services.simulate import simulate_files
 from amalthea_uros.simulate.options import Mode, Options
-from amalthea_uros.units import Time
 
-#: Long enough for some jobs of usual periods; the processes of some vectors have periods of a few microseconds.
-USUAL, SHORT = 100 * 10**9, 3 * 10**9
-SHORT_PERIODS = ("constructs", "constructs2", "verdicts")
+#: Long enough for some jobs of usual periods.
+DURATION = 100 * 10**9
 #: Larger models take seconds.
 LARGEST = 200_000
-VECTORS = ("verdicts", "constructs", "constructs2", "am2inc", "iprx", "migration")
+#: The others have tests of their own, which compare the same.
+VECTORS = ("am2inc", "iprx", "migration")
 
 
 def files(folder: Path, *suffixes: str) -> list[Path]:
@@ -32,13 +31,13 @@ def named(step: int, paths: list[Path], root: Path) -> list[object]:
     return [pytest.param(path, id=str(path.relative_to(root))) for path in every(step, paths)]
 
 
-def disagreements(path: Path, duration: Time = USUAL) -> list[str]:
+def disagreements(path: Path) -> list[str]:
     """What simulations of a file show against its analysis; files that cannot be read or simulated have none."""
     found = []
     try:
         analysis = analyze_files(path).analysis
         for mode in (Mode.WORST, Mode.BEST, Mode.SAMPLED):
-            simulation = simulate_files(path, Options(duration=duration, mode=mode)).simulation
+            simulation = simulate_files(path, Options(duration=DURATION, mode=mode)).simulation
             found += [f"{mode}: {text}" for text in contradictions(analysis, simulation)]
     except AmurosError:
         return found
@@ -55,9 +54,8 @@ def test_vectors(vectors):
     folder = SHARED / "vectors" / vectors
     if not folder.exists():
         pytest.skip("the files are not at hand")
-    duration = SHORT if vectors in SHORT_PERIODS else USUAL
     examined = every(60, files(folder, ".amxmi", ".iprx"))
-    wrong = {path.name: texts[:3] for path in examined if (texts := disagreements(path, duration))}
+    wrong = {path.name: texts[:3] for path in examined if (texts := disagreements(path))}
     assert wrong == {}
 
 

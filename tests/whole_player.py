@@ -10,11 +10,14 @@ from collections import defaultdict, deque
 from dataclasses import dataclass, field
 from itertools import count
 
+from executor_kernel import Kernel, Listen, Run, Signal, Until
+
 US, MS, S = 1000, 1_000_000, 1_000_000_000
 ACKNOWLEDGEMENT = 13
 #: Client heartbeats follow a silence of 100 ms, those of the agent come every 200 ms while something is not acknowledged.
 SILENCE, AGENT_HEARTBEAT = 100 * MS, 200 * MS
 GIVES_UP = 1000 * MS
+NEVER = 10**18
 
 
 @dataclass
@@ -28,71 +31,14 @@ class Seen:
     lost: set = field(default_factory=set)
 
 
-class Thread:
-    def __init__(self, name, priority, body):
-        self.name, self.priority, self.body = name, priority, body
-        self.left, self.ticket, self.since = 0, 0, 0
-
-
-class Machine:
-    """A core with threads of fixed priorities, and things that happen at times."""
-
-    def __init__(self):
-        self.now, self.happenings, self.number, self.threads = 0, [], count(), []
-
-    def at(self, time, action):
-        heapq.heappush(self.happenings, (max(time, self.now), next(self.number), action))
-
-    def start(self, name, priority, body):
-        thread = Thread(name, priority, body)
-        self.threads.append(thread)
-        self.go_on(thread)
-        return thread
-
-    def go_on(self, thread):
-        """Let a thread go on until it executes or waits: it yields ("run", time), or ("wait", until) to be woken before."""
-        thread.ticket += 1
-        for what, time in thread.body:
-            if what == "run":
-                if time:
-                    thread.left, thread.since = time, next(self.number)
-                    return
-            else:
-                ticket = thread.ticket
-                if time is not None:
-                    self.at(time, lambda ticket=ticket: self.wake(thread, ticket))
-                return
-        self.threads.remove(thread)
-
-    def wake(self, thread, ticket=None):
-        if not thread.left and (ticket is None or ticket == thread.ticket):
-            self.go_on(thread)
-
-    def run(self, until):
-        while self.now < until:
-            while self.happenings and self.happenings[0][0] <= self.now:
-                heapq.heappop(self.happenings)[2]()
-            next_time = min(self.happenings[0][0] if self.happenings else until, until)
-            ready = [each for each in self.threads if each.left]
-            if not ready:
-                self.now = next_time
-                continue
-            thread = max(ready, key=lambda each: (each.priority, -each.since))
-            step = min(thread.left, next_time - self.now)
-            thread.left -= step
-            self.now += step
-            if not thread.left:
-                self.go_on(thread)
-
-
 class Wire:
     """Frames one after the other: of the lowest identifier first, and in the order of queueing."""
 
-    def __init__(self, machine):
-        self.machine, self.queue, self.busy = machine, [], False
+    def __init__(self, kernel):
+        self.kernel, self.queue, self.busy, self.number = kernel, [], False, count()
 
     def send(self, rank, time, done):
-        heapq.heappush(self.queue, (rank, next(self.machine.number), time, done))
+        heapq.heappush(self.queue, (rank, next(self.number), time, done))
         self._next()
 
     def _next(self):
@@ -106,7 +52,7 @@ class Wire:
             done()
             self._next()
 
-        self.machine.at(self.machine.now + time(), end)
+        self.kernel.at(self.kernel.now + time(), end)
 
 
 class Player:
@@ -119,10 +65,11 @@ class Player:
     """
 
     def __init__(self, plan, chance):
-        self.plan, self.chance, self.machine, self.seen = plan, chance, Machine(), Seen()
-        self.tx = Wire(self.machine)
-        self.rx = Wire(self.machine) if plan["wire"] in ("serial", "udp", "tcp") else self.tx
-        self.inbox, self.pool, self.labels, self.waits_for = deque(), {}, defaultdict(lambda: -1), None
+        self.plan, self.chance, self.kernel, self.seen, self.number = plan, chance, Kernel(), Seen(), count()
+        self.tx = Wire(self.kernel)
+        self.rx = Wire(self.kernel) if plan["wire"] in ("serial", "udp", "tcp") else self.tx
+        self.inbox, self.labels, self.waits_for = deque(), defaultdict(lambda: -1), None
+        self.arrived, self.written = Signal(), Signal()
         self.handles = plan["handles"]
         self.pool = {each["name"]: deque() for each in self.handles}
         self.due = {each["name"]: each["phase"] for each in self.handles if each["kind"] == "timer"}
@@ -131,7 +78,7 @@ class Player:
         self.tick_phase = chance.randrange(plan["tick"]) if plan["tick"] else 0
 
     def play(self, until):
-        plan, machine = self.plan, self.machine
+        plan = self.plan
         for handle in self.handles:
             if handle["kind"] == "subscription":
                 self._publish_on_host(handle, handle["phase"], 0)
@@ -141,8 +88,8 @@ class Player:
             self._foreign(frame, self.chance.randrange(frame["period"]))
         if any(each.get("reliable") for each in self.handles):
             self._agent_heartbeat(self.chance.randrange(AGENT_HEARTBEAT))
-        self.executor = machine.start("Executor", plan["priority"], self._executor())
-        machine.run(until)
+        self.kernel.start(self._executor(), plan["priority"])
+        self.kernel.play(until)
         return self.seen
 
     # The host, the agent and the wire
@@ -154,19 +101,19 @@ class Player:
     def _publish_on_host(self, handle, time, number):
         def publish():
             key = (handle["name"], number)
-            self.published[key] = self.machine.now
-            self.machine.at(self.machine.now + self._between(self.plan["to_controller"]), lambda: self._enter(handle, key))
+            self.published[key] = self.kernel.now
+            self.kernel.at(self.kernel.now + self._between(self.plan["to_controller"]), lambda: self._enter(handle, key))
             pause = self.chance.choice((1, 1, 1, self.chance.uniform(1, 3)))
             self._publish_on_host(handle, time + int(handle["period"] * pause), number + 1)
 
-        self.machine.at(time, publish)
+        self.kernel.at(time, publish)
 
     def _enter(self, handle, key):
         length = 12 + handle["size"]
-        queued = self.machine.now
+        queued = self.kernel.now
 
         def done():
-            self.seen.sent[f"{handle['topic']}_topic_to_{handle['name']}"].append(self.machine.now - queued)
+            self.seen.sent[f"{handle['topic']}_topic_to_{handle['name']}"].append(self.kernel.now - queued)
             self._received(("data", handle, key), length)
 
         self._send(self.rx, length, done, incoming=True)
@@ -201,7 +148,7 @@ class Player:
             return lambda: time
 
         def at_a_tick():
-            end = self.machine.now + time
+            end = self.kernel.now + time
             late = -(end - self.tick_phase) % tick
             return time + late
 
@@ -212,23 +159,23 @@ class Player:
             self.tx.send(0, lambda: self._between(frame["time"]), _nothing)
             self._foreign(frame, time + frame["period"])
 
-        self.machine.at(time, send)
+        self.kernel.at(time, send)
 
     def _received(self, item, length):
         """A message has arrived: it passes the driver, the interrupt and a task of the middleware."""
         waited = self.chance.randrange(self.plan["tick"] + 1) if self.plan["tick"] else 0
-        self.machine.at(self.machine.now + self._between(self.plan["link"]) + waited, lambda: self._interrupt(item))
+        self.kernel.at(self.kernel.now + self._between(self.plan["link"]) + waited, lambda: self._interrupt(item))
 
     def _interrupt(self, item):
         stages = [(cost, priority) for cost, priority in self.plan["stages"]]
 
         def passing():
             for cost, _ in stages[:1]:
-                yield "run", self._between(cost)
+                yield Run(self._between(cost))
             self._handled(item, stages[1:])
 
         if stages:
-            self.machine.start("isr", stages[0][1], passing())
+            self.kernel.start(passing(), stages[0][1])
         else:
             self._handled(item, [])
 
@@ -237,16 +184,13 @@ class Player:
             ((cost, priority),) = stages
 
             def handling():
-                yield "run", self._between(cost)
+                yield Run(self._between(cost))
                 self._handled(item, [])
 
-            self.machine.start("middleware", priority, handling())
+            self.kernel.start(handling(), priority)
             return
-        self.inbox.append((self.machine.now, item))
-        if self.is_reading:
-            self._wake()
-
-    is_reading = False
+        self.inbox.append((self.kernel.now, item))
+        self.kernel.wake(self.arrived)
 
     def _agent_heartbeat(self, time):
         def beat():
@@ -254,13 +198,9 @@ class Player:
                 self._send(self.rx, ACKNOWLEDGEMENT, lambda: self._received(("heartbeat", None, None), ACKNOWLEDGEMENT), True)
             self._agent_heartbeat(time + AGENT_HEARTBEAT)
 
-        self.machine.at(time, beat)
+        self.kernel.at(time, beat)
 
     # The client
-
-    def _wake(self):
-        thread, ticket = self.executor, self.executor.ticket
-        self.machine.at(self.machine.now, lambda: self.machine.wake(thread, ticket))
 
     def _write(self, length, done):
         """Write a message; a driver that blocks returns when it is on the wire."""
@@ -272,11 +212,11 @@ class Player:
         def end():
             done()
             written.append(True)
-            self._wake()
+            self.kernel.wake(self.written)
 
         self._send(self.tx, length, end, incoming=False)
         while not written:
-            yield "wait", None
+            yield Listen(self.written, NEVER)
 
     def _read(self):
         """Read a message if one is there; whether it was data."""
@@ -300,7 +240,7 @@ class Player:
         return True
 
     def _wait(self):
-        now = self.machine.now
+        now = self.kernel.now
         timeout = self.plan["timeout"] if self.receives else 0
         pending = [max(0, due - now) for due in self.due.values()] if self.receives else []
         end = now + min([timeout, *pending]) // MS * MS
@@ -308,35 +248,33 @@ class Player:
             while self.inbox:
                 if (yield from self._read()):
                     return
-            if self.machine.now >= end:
+            if self.kernel.now >= end:
                 return
-            self.is_reading = True
-            yield "wait", end
-            self.is_reading = False
+            yield Listen(self.arrived, end)
 
     # The executor
 
     def _executor(self):
-        plan, invocation = self.plan, self.machine.now
-        yield "wait", plan["begin"]
-        invocation = self.machine.now
+        plan, invocation = self.plan, self.kernel.now
+        yield Until(plan["begin"])
+        invocation = self.kernel.now
         while True:
             yield from self._round()
             if plan["loop"] == "spin_period":
                 invocation += plan["period"]
-                left = (invocation - self.machine.now) // MS * MS
+                left = (invocation - self.kernel.now) // MS * MS
                 if left > 0:
-                    yield "wait", self.machine.now + left
+                    yield Until(self.kernel.now + left)
             elif plan["sleep"]:
-                yield "wait", self.machine.now + plan["sleep"]
+                yield Until(self.kernel.now + plan["sleep"])
 
     def _round(self):
         overhead = self.plan["overhead"]
         before = self._between((0, overhead))
-        yield "run", before
+        yield Run(before)
         yield from self._wait()
         ready = [each for each in self.handles if self._is_ready(each)]
-        yield "run", overhead - before
+        yield Run(overhead - before)
         taken = {}
         if self.plan["semantics"] == "LET":
             for handle in ready:
@@ -346,63 +284,61 @@ class Player:
             yield from self._call(handle, *found)
 
     def _is_ready(self, handle):
-        return self.due[handle["name"]] <= self.machine.now if handle["kind"] == "timer" else bool(self.pool[handle["name"]])
+        return self.due[handle["name"]] <= self.kernel.now if handle["kind"] == "timer" else bool(self.pool[handle["name"]])
 
     def _take(self, handle):
         name = handle["name"]
         if handle["kind"] == "timer":
             due = self.due[name]
-            self.seen.lateness[name].append(self.machine.now - due)
+            self.seen.lateness[name].append(self.kernel.now - due)
             # What is due again meanwhile is left out: the grid is kept.
-            skipped = (self.machine.now - due) // handle["period"]
+            skipped = (self.kernel.now - due) // handle["period"]
             if skipped:
                 self.seen.lost.add(name)
             self.due[name] = due + (skipped + 1) * handle["period"]
             return due, None
-        yield "run", self.plan["take"]
+        yield Run(self.plan["take"])
         return self.pool[name].popleft()
 
     def _call(self, handle, release, key):
         name = handle["name"]
         value = (key[1], self.published[key]) if key else self.labels["command"]
-        yield "run", self._between(handle["cost"])
+        yield Run(self._between(handle["cost"]))
         if handle.get("writes"):
             self.labels[handle["writes"]] = value
             self._output(f"{name}-{handle['writes']}", value, key)
         for topic, size, reliable in handle.get("publishes", ()):
             yield from self._publish(name, topic, size, reliable, value, key)
-        self.seen.responses[name].append(self.machine.now - release)
+        self.seen.responses[name].append(self.kernel.now - release)
 
     def _publish(self, callback, topic, size, reliable, value, key):
         length = 8 + -(-(4 + size) // 4) * 4
-        begin, number = self.machine.now, next(self.machine.number)
+        begin, number = self.kernel.now, next(self.number)
 
         def on_wire():
-            self.seen.sent[f"{topic}_topic_from_{callback}"].append(self.machine.now - begin)
+            self.seen.sent[f"{topic}_topic_from_{callback}"].append(self.kernel.now - begin)
             late = self._between(self.plan["link"])
-            at_agent = self.machine.now + late
-            self.machine.at(
+            at_agent = self.kernel.now + late
+            self.kernel.at(
                 at_agent + self._between(self.plan["to_host"]), lambda: self._output(f"{callback}-/{topic}", value, key)
             )
             if reliable:
-                self.machine.at(at_agent + self._between(self.plan["acknowledgement"]), lambda: self._acknowledge(number))
+                self.kernel.at(at_agent + self._between(self.plan["acknowledgement"]), lambda: self._acknowledge(number))
 
         yield from self._write(length, on_wire)
         if not reliable or not self.plan["waits"]:
             return
-        self.waits_for, end, silent = number, self.machine.now + GIVES_UP, self.machine.now
-        while self.waits_for is not None and self.machine.now < end:
+        self.waits_for, end, silent = number, self.kernel.now + GIVES_UP, self.kernel.now
+        while self.waits_for is not None and self.kernel.now < end:
             if self.inbox:
-                silent = self.machine.now
+                silent = self.kernel.now
                 yield from self._read()
                 continue
-            if self.machine.now >= silent + SILENCE:
-                silent = self.machine.now
+            if self.kernel.now >= silent + SILENCE:
+                silent = self.kernel.now
                 yield from self._write(ACKNOWLEDGEMENT, lambda: None)
                 continue
-            self.is_reading = True
-            yield "wait", min(end, silent + SILENCE)
-            self.is_reading = False
+            yield Listen(self.arrived, min(end, silent + SILENCE))
         if self.waits_for is not None:
             self.seen.lost.add(topic)
         self.waits_for = None
@@ -417,26 +353,26 @@ class Player:
     def _activate(self, task, time):
         def job():
             value = self.labels[task["reads"]] if task.get("reads") else None
-            yield "run", self._between(task["cost"]) - 1
+            yield Run(self._between(task["cost"]) - 1)
             if task.get("reads"):
                 self._output(f"{task['name']}", value, None)
 
         def activate():
-            self.machine.start(task["name"], task["priority"], _started(job))
+            self.kernel.start(_started(job), task["priority"])
             self._activate(task, time + task["period"])
 
-        self.machine.at(time, activate)
+        self.kernel.at(time, activate)
 
     def _output(self, end, value, key):
         """An output based on a message; the ways of that message and of earlier ones that have not ended end here."""
         if value == -1:
             return
-        self.pending_outputs[end].append((value, self.machine.now))
+        self.pending_outputs[end].append((value, self.kernel.now))
 
 
 def _started(job):
     """A job that reads when it begins to execute, which is when its first bit of execution is over at the latest."""
-    yield "run", 1
+    yield Run(1)
     yield from job()
 
 
