@@ -3,70 +3,42 @@
 import textwrap
 
 import pytest
-from support import MODEL
+from opponent.models import writing
+from opponent.models.writing import Parts
 
 from amalthea_uros import analyze_files, check_files
 from amalthea_uros.services.chains import find_paths
 
-RATE = '<stimuli xsi:type="am:PeriodicStimulus" name="every 10 ms"><recurrence value="10" unit="ms"/></stimuli>'
-PLATFORM = """
-<hwModel>
-  <definitions xsi:type="am:ProcessingUnitDefinition" name="PU"/>
-  <structures name="ECU">
-    <modules xsi:type="am:ProcessingUnit" name="C" frequencyDomain="F?type=FrequencyDomain"
-      definition="PU?type=ProcessingUnitDefinition"/>
-  </structures>
-  <domains xsi:type="am:FrequencyDomain" name="F"><defaultValue value="100" unit="MHz"/></domains>
-</hwModel>
-<osModel>
-  <operatingSystems name="OS">
-    <taskSchedulers name="S"><schedulingAlgorithm xsi:type="am:FixedPriorityPreemptive"/></taskSchedulers>
-  </operatingSystems>
-</osModel>
-<mappingModel>
-  <schedulerAllocation scheduler="S?type=TaskScheduler" responsibility="C?type=ProcessingUnit"/>
-  <taskAllocation task="Writer?type=Task" scheduler="S?type=TaskScheduler" schedulingParameters="p"/>
-  <taskAllocation task="Reader?type=Task" scheduler="S?type=TaskScheduler" schedulingParameters="p"/>
-</mappingModel>
-"""
-CHAIN = """
-<eventModel>
-  <events xsi:type="am:ProcessEvent" name="in" eventType="start" entity="Writer?type=Task"/>
-  <events xsi:type="am:ProcessEvent" name="out" eventType="terminate" entity="Reader?type=Task"/>
-  <events xsi:type="am:LabelEvent" name="written" eventType="write" entity="L?type=Label"/>
-</eventModel>
-<constraintsModel>
-  <eventChains name="chain" stimulus="in?type=ProcessEvent" response="out?type=ProcessEvent"/>
-</constraintsModel>
-"""
+PERIODIC = "every?type=PeriodicStimulus"
+BY_EVENT = "reaction?type=EventStimulus"
 
 
-def two_tasks(write, read, stimulus, more=""):
-    """A task that writes a label, and one that takes it in some way or other."""
-    ticks = '<items xsi:type="am:Ticks"><default xsi:type="am:DiscreteValueConstant" value="100"/></items>'
-    tasks = "".join(
-        f'<tasks name="{name}" stimuli="{trigger}"><activityGraph>{ticks}{activity}</activityGraph></tasks>'
-        for name, trigger, activity in (
-            ("Writer", "every+10+ms?type=PeriodicStimulus", write),
-            ("Reader", stimulus, read),
-        )
-    )
-    software = f'<swModel>{tasks}<labels name="L"/></swModel>'
-    return MODEL.format(
-        software + PLATFORM.replace(' schedulingParameters="p"', "") + f"<stimuliModel>{RATE}{more}</stimuliModel>" + CHAIN
-    )
+def two_tasks(write, read, trigger=PERIODIC):
+    """A task that writes a label, and one that takes it in some way or other; a chain from the one to the other."""
+    parts = Parts(cores={"C": "100.0"}, schedulers=[writing.scheduler("S", "FixedPriorityPreemptive")])
+    parts.allocations.append(writing.scheduler_allocation("S", "C"))
+    for name, stimulus, activity in (("Writer", PERIODIC, write), ("Reader", trigger, read)):
+        parts.tasks.append(writing.task(name, stimulus, writing.ticks(100, 100) + activity))
+        parts.allocations.append(writing.task_allocation(name, "S", {}))
+    parts.data.append(writing.label("L"))
+    parts.stimuli.append(writing.stimulus("Periodic", "every", "", writing.time("recurrence", 10_000)))
+    if trigger == BY_EVENT:
+        parts.stimuli.append(writing.stimulus("Event", "reaction", 'triggeringEvents="written?type=LabelEvent"'))
+    parts.events += [
+        writing.process_event("in", "Writer", "Task", "start"),
+        writing.process_event("out", "Reader", "Task", "terminate"),
+        '<events xsi:type="am:LabelEvent" name="written" eventType="write" entity="L?type=Label"/>',
+    ]
+    parts.chains.append(writing.chain("chain", "in?type=ProcessEvent", "out?type=ProcessEvent", ()))
+    return parts.text()
 
 
 def access(kind):
-    return f'<items xsi:type="am:LabelAccess" data="L?type=Label" access="{kind}"/>'
+    return writing.item("LabelAccess", f'data="L?type=Label" access="{kind}"')
 
 
 def sender_receiver(kind):
-    return f'<items xsi:type="am:SenderReceiver{kind}" label="L?type=Label"/>'
-
-
-PERIODIC = "every+10+ms?type=PeriodicStimulus"
-REACTION = '<stimuli xsi:type="am:EventStimulus" name="reaction" triggeringEvents="written?type=LabelEvent"/>'
+    return writing.item(f"SenderReceiver{kind}", 'label="L?type=Label"')
 
 
 def answers(path, start, end):
@@ -83,10 +55,10 @@ def answers(path, start, end):
 @pytest.mark.parametrize(
     ("model", "links", "link"),
     [
-        (two_tasks(access("write"), access("read"), PERIODIC), ("L",), "data L"),
-        (two_tasks(sender_receiver("Write"), sender_receiver("Read"), PERIODIC), ("L",), "data L"),
-        (two_tasks(access("write"), "", "reaction?type=EventStimulus", REACTION), ("reaction",), "a trigger reaction"),
-        (two_tasks(sender_receiver("Write"), "", "reaction?type=EventStimulus", REACTION), ("reaction",), "a trigger reaction"),
+        (two_tasks(access("write"), access("read")), ("L",), "data L"),
+        (two_tasks(sender_receiver("Write"), sender_receiver("Read")), ("L",), "data L"),
+        (two_tasks(access("write"), "", BY_EVENT), ("reaction",), "a trigger reaction"),
+        (two_tasks(sender_receiver("Write"), "", BY_EVENT), ("reaction",), "a trigger reaction"),
     ],
     ids=["label", "sender-receiver", "event stimulus", "event stimulus on sender-receiver"],
 )
@@ -96,7 +68,7 @@ def test_a_link_in_a_model(model, links, link, tmp_path):
     assert answers(path, "Writer", "Reader") == {"paths": [(links,)], "routes": (f"in -[{link}]-> out",), "gaps": set()}
 
 
-@pytest.mark.parametrize("model", [two_tasks("", access("read"), PERIODIC), two_tasks(access("write"), "", PERIODIC)])
+@pytest.mark.parametrize("model", [two_tasks("", access("read")), two_tasks(access("write"), "")])
 def test_no_link_in_a_model(model, tmp_path):
     path = tmp_path / "model.amxmi"
     path.write_text(model)
@@ -148,12 +120,12 @@ def test_a_topic_within_an_application(callbacks, ends, routes, links, tmp_path)
     path = application(tmp_path, callbacks, "state")
     assert answers(path, *ends) == {"paths": [links], "routes": (routes,), "gaps": set()}
     # The message passes the agent: nobody stated how long that takes, so that no limit is met.
-    (requirement,) = analyze_files(path).analysis.requirements
-    assert (requirement.verdict, analyze_files(path).analysis.chains["loop"].values) == ("unknown", ())
+    analysis = analyze_files(path).analysis
+    (requirement,) = analysis.requirements
+    assert (requirement.verdict, analysis.chains["loop"].values) == ("unknown", ())
     assert "leaves the system" in requirement.reason
 
 
-@pytest.mark.parametrize(("callbacks", "ends"), [("own-task", ("Publish", "On_State"))])
-def test_another_topic_than_that_of_the_application(callbacks, ends, tmp_path):
-    found = answers(application(tmp_path, callbacks, "other"), *ends)
+def test_another_topic_than_that_of_the_application(tmp_path):
+    found = answers(application(tmp_path, "own-task", "other"), "Publish", "On_State")
     assert (found["paths"], found["gaps"]) == ([], {"TIM-CHAIN-CARRIED", "UR130"})
