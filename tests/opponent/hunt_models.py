@@ -17,9 +17,8 @@ from statistics import median
 from opponent.generator import nested_model
 from opponent.models.claims import Tally, false_claims
 from opponent.models.facts import facts_of
-from opponent.models.generator import RandomModel, random_model
+from opponent.models.generator import RandomModel, random_model, richer_model
 from opponent.models.limits import limits_of, with_limits
-from opponent.models.richer import richer_model
 from opponent.models.shrinking import kind_of, shrunk
 
 Found = tuple[int, list[str], Tally]

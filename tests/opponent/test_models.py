@@ -7,8 +7,7 @@ import pytest
 from effort import every
 from opponent.generator import nested_model
 from opponent.models.claims import Tally, false_claims
-from opponent.models.generator import random_model
-from opponent.models.richer import richer_model
+from opponent.models.generator import random_model, richer_model
 from opponent.to_perf import read_system
 
 from amalthea_uros.analyze.system import analyze_system

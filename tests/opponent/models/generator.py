@@ -1,4 +1,4 @@
-"""Random models, as text, with the constructs of ../shared/vectors/constructs2 and those that nobody can analyse."""
+"""Random models, as text, with the constructs of ../shared/vectors/constructs2, those that nobody can analyse, and further ones."""
 
 from __future__ import annotations
 
@@ -13,12 +13,18 @@ from opponent.models.erasing import erased
 from opponent.models.reading import UnplayableError
 from opponent.models.writing import Parts, item, ticks, time
 
-#: What is in some models; a model has one to four of them.
+#: What is in some models; a plain model has one to four of them.
 FEATURES = (
     "modes", "stimulus condition", "channel", "burst", "arrival curve", "variable rate", "synthetic times", "single",
     "trigger", "custom event", "server", "EDF", "deadline monotonic", "round robin", "scheduler overhead", "isr", "isr overhead",
     "activation overhead", "core frequency", "start-up", "exclusive triggers", "several links", "mode switch", "group",
     "non-preemptive", "jitter", "sporadic", "two stimuli", "migration", "counter",
+)  # fmt: skip
+#: What is in richer models, besides up to two of the other features.
+FURTHER = (
+    "equal periods", "data in runnables", "nested calls", "switch in a runnable", "unordered group", "chance", "cooperative",
+    "few activations", "two chains", "long chain", "semaphore", "ceiling",
+    "non-preemptive", "calls", "timed", "label events", "runnable events", "nested chain", "parallel chain",
 )  # fmt: skip
 RELATIONS = ("EQUAL", "NOT_EQUAL", "LESS_THAN", "GREATER_THAN", "LESS_THAN_OR_EQUAL", "GREATER_THAN_OR_EQUAL")
 #: Of the models, those of which something is not told.
@@ -70,7 +76,18 @@ class RandomModel:
 
 def random_model(seed: int) -> RandomModel:
     """The model of a number."""
-    return Generator(Random(seed)).model()
+    rng = Random(seed)
+    return Generator(rng, set(rng.sample(FEATURES, rng.choice((1, 2, 2, 3, 4))))).model()
+
+
+def richer_model(seed: int, always: frozenset[str] = frozenset()) -> RandomModel:
+    """The model of a number, with constraints: every third one is a plain one, unless it has some features always."""
+    if seed % 3 == 0 and not always:
+        return constrained(random_model(seed // 3), seed)
+    rng = Random(seed)
+    constant = {"constant times"} if rng.random() < 0.5 else set()
+    further, others = rng.sample(FURTHER, rng.choice((2, 3, 4))), rng.sample(FEATURES, rng.choice((0, 0, 1, 2)))
+    return constrained(Generator(rng, {*always, *constant, *further, *others}).model(), seed)
 
 
 def constrained(model: RandomModel, seed: int) -> RandomModel:
@@ -84,19 +101,17 @@ def constrained(model: RandomModel, seed: int) -> RandomModel:
 class Generator:
     """Makes a model, part by part."""
 
-    def __init__(self, rng: Random) -> None:
-        self.rng, self.parts = rng, Parts()
-        self.features = self._features()
+    def __init__(self, rng: Random, features: set[str]) -> None:
+        self.rng, self.parts, self.features = rng, Parts(), features
         if rng.random() < 0.25:
             self.features = {f for f in self.features if f not in POLICIES}
         self.plans: list[Plan] = []
         self.used: set[str] = set()
         self.runnables = 0
 
-    def _features(self) -> set[str]:
-        return set(self.rng.sample(FEATURES, self.rng.choice((1, 2, 2, 3, 4))))
-
     def _period(self) -> int:
+        if self.plans and self.has("equal periods", chance=0.8):
+            return self.plans[0].period
         return self.rng.choice(PERIODS)
 
     def has(self, *names: str, chance: float = 1.0) -> bool:
@@ -172,10 +187,21 @@ class Generator:
 
     def _ticks(self) -> str:
         least = self.rng.randint(1, 4)
-        return ticks(least, least if self.rng.random() < 0.6 else least + self.rng.randint(1, 3))
+        is_constant = "constant times" in self.features or self.rng.random() < 0.6
+        return ticks(least, least if is_constant else least + self.rng.randint(1, 3))
 
     def _item(self, plan: Plan) -> str:
         rng = self.rng
+        if self.has("calls", "nested calls", chance=0.5):
+            return self._call()
+        if self.has("unordered group", chance=0.4):
+            return writing.group(self._ticks() + self._call() + self._ticks(), is_ordered=False)
+        if self.has("chance", chance=0.4):
+            return self._chance()
+        if self.has("cooperative", chance=0.3):
+            return item("SchedulePoint")
+        if self.features & {"semaphore", "ceiling"} and self.policy == "FixedPriorityPreemptive" and rng.random() < 0.4:
+            return self._locked(plan)
         if self.has("modes", "mode switch", chance=0.3):
             return item(
                 "ModeLabelAccess", f'data="{rng.choice("MN")}?type=ModeLabel" access="set" value="{rng.randrange(3)}" step="1"'
@@ -197,14 +223,48 @@ class Generator:
             return self._call()
         return self._ticks()
 
+    def _chance(self) -> str:
+        rng = self.rng
+        return writing.chance((rng.randint(1, 3), self._ticks() if rng.random() < 0.7 else self._call()) for _ in range(2))
+
     def _call(self) -> str:
-        name, condition = f"r{self.runnables}", ""
+        """A call of a runnable, which can call another one."""
+        if not self.has("nested calls", "switch in a runnable", chance=0.6):
+            has_condition = self.has("modes", chance=0.3)
+            condition = f"<executionCondition>{self._condition()}</executionCondition>" if has_condition else ""
+            return self._runnable(self._ticks(), condition)
+        inner = self._runnable(self._ticks())
+        content = self._ticks() + inner if self.rng.random() < 0.6 else inner + self._ticks()
+        if self.has("switch in a runnable", chance=0.7):
+            content += self._switch()
+        return self._runnable(content)
+
+    def _switch(self) -> str:
+        if not self.features & {"modes", "stimulus condition", "mode switch"}:
+            return self._chance()
+        branch = f'<entries name="e0">{self._ticks()}<condition>{self._condition()}</condition></entries>'
+        return item("Switch", content=branch + f"<defaultEntry>{self._ticks()}</defaultEntry>")
+
+    def _runnable(self, content: str, condition: str = "", *, is_counted: bool = True) -> str:
+        """A call of a new runnable."""
+        name = f"r{self.runnables}"
         self.runnables += 1
-        if self.has("modes", chance=0.3):
-            condition = f"<executionCondition>{self._condition()}</executionCondition>"
-        self.parts.runnables.append(writing.runnable(name, self._ticks(), condition))
-        counter = writing.counter(2, 0) if self.has("counter", chance=0.5) else ""
+        self.parts.runnables.append(writing.runnable(name, content, condition))
+        counter = writing.counter(2, 0) if is_counted and self.has("counter", chance=0.4) else ""
         return item("RunnableCall", f'runnable="{name}?type=Runnable"', counter)
+
+    def _locked(self, plan: Plan) -> str:
+        """An execution with a semaphore of a core, or two, one within the other; ISRs have none."""
+        if plan.is_isr or self.has("server", "migration"):
+            return self._ticks()
+        names = [f"{plan.core}{which}" for which in "ab"[: self.rng.choice((1, 1, 2))]]
+        content = self._ticks()
+        for name in reversed(names):
+            if not any(f'name="{name}"' in text for text in self.parts.semaphores):
+                self.used |= self.features & {"semaphore"}
+                self.parts.semaphores.append(writing.semaphore(name, has_ceiling=self.has("ceiling")))
+            content = writing.semaphore_access(name, "request") + content + writing.semaphore_access(name, "release")
+        return writing.group(content)
 
     # Activations.
 
@@ -307,29 +367,115 @@ class Generator:
 
     def _chain(self) -> None:
         rng = self.rng
-        if rng.random() < 0.25:
+        if rng.random() < 0.1:
             return
-        path = rng.sample(self.plans, 2 if rng.random() < 0.6 else min(3, len(self.plans)))
-        path.sort(key=lambda plan: plan.name) if rng.random() < 0.5 else None
+        most = 4 if self.has("long chain") else 3
+        path = rng.sample(self.plans, min(len(self.plans), rng.randint(2, most)))
+        if rng.random() < 0.5:
+            # Along triggers, which go from earlier processes to later ones.
+            path.sort(key=lambda plan: plan.name)
+        first = self._path(path, "L")
+        if len(self.plans) > len(path) and self.has("parallel chain"):
+            aside = rng.choice([plan for plan in self.plans if plan not in path])
+            between = self._path([path[0], aside, path[-1]], "B")
+            self._state_parallel("both", [first, [first[0], *between[1:-1], first[-1]]])
+        self._state_chain("chain", first)
+        if self.has("two chains"):
+            # From the same stimulus to another response, or from another process.
+            others = [plan for plan in self.plans if plan not in path] or self.plans[:1]
+            other = [path[0] if rng.random() < 0.7 else path[-1], rng.choice(others)]
+            if other[0] is not other[1]:
+                events = self._path(other, "P")
+                self._state_chain("other", [first[0], *events[1:]] if other[0] is path[0] else events)
+
+    def _path(self, path: list[Plan], label: str) -> list[str]:
+        """References to the events of a way through some processes, which share data."""
+        rng = self.rng
+        between = [self._process_event(plan, "terminate") for plan in path[1:]]
+        steps = [[self._process_event(path[0], rng.choice(("start", "activate", "terminate")))]]
+        if self.has("runnable events", chance=0.6):
+            call, name = self._named_runnable(self._ticks())
+            path[0].items.insert(0, call)
+            steps = [[self._runnable_event(path[0], name, rng.choice(("start", "terminate")))]]
         for n, (source, target) in enumerate(pairwise(path)):
-            is_linked = any(f'"s{target.name}?' in text or f'"E{target.name}?' in text for text in source.items)
-            if not is_linked or self.has("several links", chance=0.7) or rng.random() < 0.3:
-                self._share(source, target, f"L{n}")
+            is_explicit = self.has("label events", chance=0.7)
+            if is_explicit or not _is_linked(source, target) or self.has("several links", chance=0.7) or rng.random() < 0.3:
+                self._share(source, target, f"{label}{n}", "explicit" if is_explicit else "")
                 if self.has("several links", chance=0.6):
-                    self._share_mode(source, target, f"K{n}")
-        ends = [rng.choice(("start", "start", "activate", "terminate")), rng.choice(("terminate", "terminate", "start"))]
-        changes = [ends[0], *["terminate"] * (len(path) - 2), ends[1]]
-        for n, (plan, change) in enumerate(zip(path, changes, strict=True)):
-            self.parts.events.append(writing.process_event(f"v{n}", plan.name, plan.kind, change))
-        events = [f"v{n}?type=ProcessEvent" for n in range(len(path))]
-        self.parts.chains.append(writing.chain("chain", events[0], events[-1], starmap(writing.step, pairwise(events))))
+                    self._share_mode(source, target, f"K{label}{n}")
+            if is_explicit:
+                steps.append(
+                    [self._label_event(source, f"{label}{n}", "write"), self._label_event(target, f"{label}{n}", "read")]
+                )
+            elif n + 2 < len(path):
+                steps.append([between[n]])
+        if self.has("runnable events", chance=0.4):
+            call, name = self._named_runnable(self._ticks())
+            path[-1].items.append(call)
+            steps.append([self._runnable_event(path[-1], name, "terminate")])
+        else:
+            steps.append([self._process_event(path[-1], rng.choice(("terminate", "terminate", "start")))])
+        return list(dict.fromkeys(event for step in steps for event in step))
+
+    def _event(self, kind: str, name: str, attributes: str) -> str:
+        reference = f"{name}?type={kind}"
+        text = f'<events xsi:type="am:{kind}" xmi:id="{reference}" name="{name}" {attributes}/>'
+        if text not in self.parts.events:
+            self.parts.events.append(text)
+        return reference
+
+    def _process_event(self, plan: Plan, change: str) -> str:
+        entity = f"{plan.name}?type={plan.kind}"
+        return self._event("ProcessEvent", f"{plan.name}.{change}", f'eventType="{change}" entity="{entity}"')
+
+    def _runnable_event(self, plan: Plan, runnable: str, change: str) -> str:
+        attributes = f'eventType="{change}" entity="{runnable}?type=Runnable" process="{plan.name}?type={plan.kind}"'
+        return self._event("RunnableEvent", f"{runnable}.{change}", attributes)
+
+    def _label_event(self, plan: Plan, label: str, change: str) -> str:
+        attributes = f'eventType="{change}" entity="{label}?type=Label" process="{plan.name}?type={plan.kind}"'
+        return self._event("LabelEvent", f"{label}.{change}.{plan.name}", attributes)
+
+    def _state_chain(self, name: str, events: list[str]) -> None:
+        """A chain of events; its first two steps can be a chain of their own."""
+        items = list(starmap(writing.step, pairwise(events)))
+        if len(items) > 2 and self.has("nested chain"):
+            self._stated(f"{name} part", events[:3], items[:2])
+            reference = f"{name}+part?type=EventChain"
+            items[:2] = [f'<items xsi:type="am:EventChainReference" eventChain="{reference}"/>']
+        self._stated(name, events, items)
         self.used.add("chain")
 
-    def _share(self, source: Plan, target: Plan, label: str) -> None:
+    def _state_parallel(self, name: str, ways: list[list[str]]) -> None:
+        """Ways between the same events, one or all of which have to be completed."""
+        branches = "".join(
+            f'<items xsi:type="am:EventChainContainer"><eventChain name="" stimulus="{events[0]}" response="{events[-1]}" '
+            f'itemType="sequence" minItemsCompleted="1">{"".join(starmap(writing.step, pairwise(events)))}</eventChain></items>'
+            for events in ways
+        )
+        self.parts.chains.append(
+            f'<eventChains xmi:id="{name}?type=EventChain" name="{name}" stimulus="{ways[0][0]}" response="{ways[0][-1]}" '
+            f'itemType="parallel" minItemsCompleted="{self.rng.randint(1, 2)}">{branches}</eventChains>'
+        )
+
+    def _stated(self, name: str, events: list[str], items: list[str]) -> None:
+        self.parts.chains.append(writing.chain(name, events[0], events[-1], items))
+
+    def _named_runnable(self, content: str) -> tuple[str, str]:
+        name = f"r{self.runnables}"
+        return self._runnable(content, is_counted=False), name
+
+    def _share(self, source: Plan, target: Plan, label: str, how: str = "") -> None:
         self.parts.data.append(writing.label(label))
-        how = self.rng.choice(("explicit", "explicit", "implicit"))
+        how = how or self.rng.choice(("explicit", "explicit", "implicit"))
+        how = "timed" if self.has("timed", chance=0.6) and how == "implicit" else how
+        in_runnables = self.has("data in runnables")
         for plan, access in ((source, "write"), (target, "read")):
             text = writing.label_access(label, access, how)
+            if in_runnables:
+                text = self._runnable("".join([self._ticks(), text] if self.rng.random() < 0.5 else [text, self._ticks()]))
+                if self.has("nested calls", chance=0.5):
+                    text = self._runnable(text + self._ticks())
             plan.items.insert(self.rng.randint(0, len(plan.items)), text)
 
     def _share_mode(self, source: Plan, target: Plan, label: str) -> None:
@@ -367,14 +513,16 @@ class Generator:
             if self.has("migration", chance=0.5) and self.policy == "FixedPriorityPreemptive" and not self.has("server"):
                 other = "c1" if plan.core == "c0" else "c0"
                 body += item("EnforcedMigration", f'resourceOwner="S{other}?type=TaskScheduler"') + self._ticks()
-            parts.tasks.append(writing.task(plan.name, stimuli, body, self._mode(plan), self._limit()))
+            parts.tasks.append(writing.task(plan.name, stimuli, body, self._mode(), self._limit()))
             parts.allocations.append(self._allocation(plan, priority))
 
-    def _mode(self, _plan: Plan) -> str:
+    def _mode(self) -> str:
+        if self.has("cooperative", chance=0.6):
+            return "cooperative"
         return "non_preemptive" if self.has("non-preemptive", chance=0.5) else "preemptive"
 
     def _limit(self) -> int:
-        return 99
+        return self.rng.choice((1, 1, 2)) if self.has("few activations", chance=0.6) else 99
 
     def _allocation(self, plan: Plan, priority: int) -> str:
         rng, scheduler = self.rng, f"S{plan.core}"
@@ -414,3 +562,8 @@ class Generator:
             overheads += f"<isrCategory2Overhead>{before}{after}</isrCategory2Overhead>"
         if overheads:
             parts.overheads.append(f'<osOverheads xmi:id="ov?type=OsOverhead" name="ov">{overheads}</osOverheads>')
+
+
+def _is_linked(source: Plan, target: Plan) -> bool:
+    """Whether a process triggers another one."""
+    return any(f'"s{target.name}?' in text or f'"E{target.name}?' in text for text in source.items)
