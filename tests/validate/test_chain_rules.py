@@ -1,12 +1,12 @@
 """The rules on event chains, against what the analysis of chains takes as carrying an effect."""
 
 import re
-from fractions import Fraction
 from itertools import permutations
 
 import pytest
 from effort import every, examples
 from excerpts import access, call, found, runnable
+from hand_made_systems import of_parts
 from hypothesis import given
 from hypothesis import strategies as st
 from support import ROOT, analysis_of, corpus, hand_written
@@ -40,12 +40,9 @@ from amalthea_uros.perf.events import (
     RunnableEvent,
     StimulusEvent,
 )
-from amalthea_uros.perf.hardware import Clock, Core, Hardware, Structure
-from amalthea_uros.perf.mapping import Mapping, TaskAllocation
-from amalthea_uros.perf.os import OperatingSystem, Os, Policy, Scheduler
-from amalthea_uros.perf.software import Channel, Label, Runnable, Software, Task
-from amalthea_uros.perf.stimuli import EventTriggered, InterProcess, Periodic, Stimuli
-from amalthea_uros.perf.system import System
+from amalthea_uros.perf.mapping import TaskAllocation
+from amalthea_uros.perf.software import Channel, Label, Runnable, Task
+from amalthea_uros.perf.stimuli import EventTriggered, InterProcess, Periodic
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.timing.dataflow.routes import UnlinkedError, routes
 from amalthea_uros.units import MILLISECOND as MS
@@ -108,22 +105,14 @@ def bodies(runnables):
 def event(name):
     """An event of any kind that occurs in jobs."""
     process, runnable = st.sampled_from(TASKS), st.sampled_from(RUNNABLES)
-    some_process = st.none() | process
+    anyone, named = st.none() | process, st.just(name)
     moments = st.sampled_from([ProcessChange.ACTIVATE, ProcessChange.START, ProcessChange.TERMINATE])
     ends = st.sampled_from([RunnableChange.START, RunnableChange.TERMINATE])
-    changes = st.none() | st.sampled_from(LabelChange)
-    named = st.just(name)
+    label = {"label": st.sampled_from(LABELS), "runnable": st.none() | runnable, "process": anyone}
     return st.one_of(
         st.builds(ProcessEvent, name=named, process=process, change=moments),
-        st.builds(RunnableEvent, name=named, runnable=runnable, process=some_process, change=ends),
-        st.builds(
-            LabelEvent,
-            name=named,
-            label=st.sampled_from(LABELS),
-            runnable=st.none() | runnable,
-            process=st.none() | process,
-            change=changes,
-        ),
+        st.builds(RunnableEvent, name=named, runnable=runnable, process=anyone, change=ends),
+        st.builds(LabelEvent, name=named, change=st.none() | st.sampled_from(LabelChange), **label),
         st.builds(ChannelEvent, name=named, channel=st.just("C0"), change=st.none() | st.sampled_from(ChannelChange)),
         st.builds(StimulusEvent, name=named, stimulus=st.sampled_from(["periodic", "triggered"])),
     )
@@ -135,32 +124,17 @@ def systems(draw):
     pairs = list(permutations([event.name for event in every], 2))
     chains = tuple(EventChain(name=f"{first} to {then}", stimulus=first, response=then) for first, then in pairs)
     stimuli = {"T0": ("periodic",), "T1": ("triggered",), "T2": ("reacting",)}
-    return System(
-        hardware=Hardware(
-            clocks=(Clock(name="clock", frequency=Fraction(10**6)),),
-            structures=(Structure(name="ECU", cores=(Core(name="core", clock="clock"),)),),
-        ),
-        os=Os(
-            systems=(
-                OperatingSystem(
-                    name="OS", schedulers=(Scheduler(name="S", policy=Policy.FIXED_PRIORITY_PREEMPTIVE, cores=("core",)),)
-                ),
-            )
-        ),
-        stimuli=Stimuli(
-            stimuli=(
-                Periodic(name="periodic", period=10 * MS),
-                InterProcess(name="triggered"),
-                EventTriggered(name="reacting", events=("custom",)),
-            )
-        ),
-        software=Software(
-            tasks=tuple(Task(name=task, stimuli=stimuli[task], activities=draw(bodies(RUNNABLES))) for task in TASKS),
-            runnables=tuple(Runnable(name=name, activities=draw(bodies(RUNNABLES[:n]))) for n, name in enumerate(RUNNABLES)),
-            labels=tuple(Label(name=name) for name in LABELS),
-            channels=tuple(Channel(name=name) for name in CHANNELS),
-        ),
-        mapping=Mapping(tasks=tuple(TaskAllocation(task=task, scheduler="S", priority=n) for n, task in enumerate(TASKS))),
+    return of_parts(
+        [Task(name=task, stimuli=stimuli[task], activities=draw(bodies(RUNNABLES))) for task in TASKS],
+        [TaskAllocation(task=task, scheduler="core", priority=n) for n, task in enumerate(TASKS)],
+        [
+            Periodic(name="periodic", period=10 * MS),
+            InterProcess(name="triggered"),
+            EventTriggered(name="reacting", events=("custom",)),
+        ],
+        runnables=[Runnable(name=name, activities=draw(bodies(RUNNABLES[:n]))) for n, name in enumerate(RUNNABLES)],
+        labels=[Label(name=name) for name in LABELS],
+        channels=[Channel(name=name) for name in CHANNELS],
         events=Events(events=every, chains=chains),
     )
 
