@@ -107,7 +107,9 @@ def of_parts(tasks, allocations, stimuli, *, cores=("core",), schedulers=None, p
     parts : of the operating system (`os_parts`), of the software by name, and of the system itself
     """
     schedulers = schedulers or [Scheduler(name=core, policy=policy, cores=(core,)) for core in cores]
-    software = {name: tuple(parts.pop(name)) for name in ("isrs", "runnables", "labels", "channels", "os_events") if name in parts}
+    software = {
+        name: tuple(parts.pop(name)) for name in ("isrs", "runnables", "labels", "channels", "os_events") if name in parts
+    }
     os_parts = dict(parts.pop("os_parts", {}))
     controllers = tuple(os_parts.pop("interrupt_controllers", ()))
     operating_system = OperatingSystem(

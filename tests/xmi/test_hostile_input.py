@@ -413,7 +413,7 @@ def mutated(rng: random.Random, data: bytes) -> bytes:
 
 def test_changed_bytes_are_refused_or_kept(tmp_path):
     rng, path, read = random.Random(0), tmp_path / "changed.amxmi", 0
-    for _ in every(20, range(5000)):
+    for _ in every(30, range(5000)):
         data = mutated(rng, VALID)
         if is_read(path, data):
             read += 1

@@ -42,7 +42,7 @@ def said(model) -> object:
     return meaning(document.root, version=document.version)
 
 
-@examples(24)
+@examples(12)
 @given(scrambled())
 def test_an_ugly_file_says_the_same_also_in_canonical_form_and_stays_as_it_is(case):
     loaded, model, _ = case
@@ -244,7 +244,7 @@ def check_edit(loaded, rng) -> None:
     assert sorted(set(marks) - set(gone)) == sorted(MARK.findall(new_source.text))
 
 
-@examples(36)
+@examples(20)
 @given(scrambled())
 def test_an_edit_changes_what_was_edited_and_nothing_else(case):
     loaded, _, rng = case

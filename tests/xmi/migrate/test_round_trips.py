@@ -1,11 +1,12 @@
 """A model that is taken back to an older version and migrated again says the same, or is refused."""
 
+from itertools import product
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import pytest
 import strategies
-from effort import examples
+from effort import every, examples
 from hypothesis import given
 from hypothesis import strategies as st
 from migration import MAX_SIZE
@@ -63,8 +64,9 @@ def there_and_back(path, version):
     return True
 
 
-@pytest.mark.parametrize("version", OLDER)
-@pytest.mark.parametrize("sample", SAMPLES, ids=lambda path: path.stem)
+@pytest.mark.parametrize(
+    ("sample", "version"), every(2, list(product(SAMPLES, OLDER))), ids=lambda value: getattr(value, "stem", value)
+)
 def test_a_sample_comes_back(sample, version, tmp_path):
     path = tmp_path / "model.amxmi"
     save(build_model(describe(sample).system), path)
