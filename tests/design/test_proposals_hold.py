@@ -1,6 +1,5 @@
 """Proposals hold in the simulation of their designs, and the same seed gives the same proposals."""
 
-import pickle
 from dataclasses import replace
 
 from design_systems import system_of
@@ -8,8 +7,7 @@ from effort import examples
 from hypothesis import given
 from hypothesis import strategies as st
 
-from amalthea_uros import analyze_system, optimize, simulate
-from amalthea_uros.design.optimize.choices import Wishes
+from amalthea_uros import optimize, simulate
 from amalthea_uros.design.optimize.judged import Effort
 from amalthea_uros.design.optimize.problem import Conclusion
 from amalthea_uros.design.optimize.search import search
@@ -51,15 +49,6 @@ def test_no_deadline_is_missed_in_the_simulation_of_a_proposal(system):
         assert not found.search.best
     again = optimize(system, proposals=2)
     assert [each.changes for each in again.proposals] == [each.changes for each in found.proposals]
-
-
-def test_what_judges_designs_can_be_sent_to_other_processes():
-    system = system_of([{"name": "A", "C": 1, "T": 4, "D": 4}, {"name": "B", "C": 2, "T": 8, "D": 8}])
-    plan = plan_optimization(system, Wishes())
-    designs = [*designs_with(plan.problem.space, 0), *designs_with(plan.problem.space, 2)]
-    sent = pickle.loads(pickle.dumps(plan.evaluator))
-    assert list(sent(designs)) == list(plan.evaluator(designs))
-    assert plan.evaluator.judged((), analyze_system(system)) == plan.evaluator.evaluate(())
 
 
 def test_designs_are_counted_as_they_are_listed():

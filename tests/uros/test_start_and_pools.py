@@ -67,9 +67,3 @@ def test_what_the_application_needs(author):
         "RMW_UXRCE_MAX_GUARD_CONDITION": (1, 4),  # of the timer
         "RMW_UXRCE_MAX_HISTORY": (3, 8),  # both subscriptions and the service
     }
-
-
-def test_a_pool_that_is_too_small(author):
-    assert author.findings(app("RMW_UXRCE_MAX_SUBSCRIPTIONS: 1")) == [
-        (7, "UR120", "RMW_UXRCE_MAX_SUBSCRIPTIONS is 1, but the application needs 2")
-    ]

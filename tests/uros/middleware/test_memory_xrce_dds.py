@@ -26,20 +26,16 @@ def limits(nodes=4, publishers=4, subscriptions=4, services=4, clients=4, histor
     return {f"RMW_UXRCE_MAX_{name}": count for name, count in zip(names, counts, strict=True)} | others
 
 
-def memory(ware, data=DATA):
-    return XrceDds(data, ware).memory(application())
+def memory(data=DATA, **stated):
+    return XrceDds(data, middleware(limits=stated)).memory(application())
 
 
-def options(app, ware):
-    return XrceDds(DATA, ware).options(app)
+def options(app, **keys):
+    return {option.name.removeprefix("RMW_UXRCE_"): option for option in XrceDds(DATA, middleware(**keys)).options(app)}
 
 
-def needed(app, ware=None):
-    return {option.name.removeprefix("RMW_UXRCE_"): option.needed for option in options(app, ware or middleware())}
-
-
-def available(ware):
-    return {option.name.removeprefix("RMW_UXRCE_"): option.available for option in options(application(), ware)}
+def needed(app, **keys):
+    return {name: option.needed for name, option in options(app, **keys).items()}
 
 
 @pytest.mark.parametrize(
@@ -56,33 +52,32 @@ def available(ware):
     ids=["defaults", "ESP-IDF", "STM32", "Arduino very low memory", "host"],
 )
 def test_the_memory_of_known_builds(stated, session, history, entities):
-    sizes = [use.size for use in memory(middleware(limits=stated))]
+    sizes = [use.size for use in memory(**stated)]
     assert sizes == pytest.approx([session, history, entities], rel=0.1)
     assert sizes[:2] == [session, history]
 
 
 def test_half_the_mtu_is_half_the_session_and_history():
-    whole, half = (memory(middleware(limits={"UCLIENT_CUSTOM_TRANSPORT_MTU": size})) for size in ("512 B", "256 B"))
+    whole, half = (memory(UCLIENT_CUSTOM_TRANSPORT_MTU=size) for size in ("512 B", "256 B"))
     assert 2 * half[0].size == whole[0].size
     assert 2 * (half[1].size - 8 * 64) == whole[1].size - 8 * 64
 
 
 def test_a_slot_more_costs_the_longest_message():
-    one, two = (memory(middleware(limits={"RMW_UXRCE_MAX_HISTORY": slots}))[1].size for slots in (1, 2))
+    one, two = (memory(RMW_UXRCE_MAX_HISTORY=slots)[1].size for slots in (1, 2))
     # 2048 B were measured, without the slot itself (micro-ROS.github.io, memory profiling).
     assert two - one == 2048 + 64
 
 
 def test_the_graph_costs_an_input_stream_more():
-    uses = memory(middleware(limits={"RMW_UXRCE_GRAPH": True}))
-    assert (uses[-1].name, uses[-1].size) == ("graph of nodes and topics", 512 * 4)
+    graph = memory(RMW_UXRCE_GRAPH=True)[-1]
+    assert (graph.name, graph.size) == ("graph of nodes and topics", 512 * 4)
 
 
 def test_streams_of_different_length_count_only_together():
-    both = {"RMW_UXRCE_STREAM_HISTORY_INPUT": 2, "RMW_UXRCE_STREAM_HISTORY_OUTPUT": 8}
-    assert memory(middleware(limits=both))[0].size == 512 * (2 + 8 + 2)
-    alone = {"RMW_UXRCE_STREAM_HISTORY_INPUT": 2}
-    assert memory(middleware(limits=alone))[0].size == 512 * (4 + 4 + 2)
+    alone, both = {"RMW_UXRCE_STREAM_HISTORY_INPUT": 2}, {"RMW_UXRCE_STREAM_HISTORY_OUTPUT": 8}
+    assert memory(**alone, **both)[0].size == 512 * (2 + 8 + 2)
+    assert memory(**alone)[0].size == 512 * (4 + 4 + 2)
 
 
 def test_every_timer_has_a_guard_condition():
@@ -97,7 +92,7 @@ def test_topics_do_not_count_nodes_and_names():
     publishers = [{"topic": "s", "message_size": "4 B"}]
     found = needed(application(subscriptions=same, publishers=publishers))
     assert (found["MAX_TOPICS"], found["MAX_PUBLISHERS"], found["MAX_SUBSCRIPTIONS"], found["MAX_NODES"]) == (4, 1, 3, 1)
-    assert available(middleware(limits=limits(publishers=7, subscriptions=2)))["MAX_TOPICS"] == 9
+    assert options(application(), limits=limits(publishers=7, subscriptions=2))["MAX_TOPICS"].available == 9
 
 
 def test_entities_behind_actions_parameters_and_lifecycles():
@@ -117,8 +112,8 @@ def test_entities_behind_actions_parameters_and_lifecycles():
 
 
 def test_a_wait_set_per_executor():
-    several = middleware(executors=[{"name": "A"}, {"name": "B"}, {"name": "C"}])
-    assert needed(application(timers=[TIMER]), several)["MAX_WAIT_SETS"] == 3
+    several = [{"name": "A"}, {"name": "B"}, {"name": "C"}]
+    assert needed(application(timers=[TIMER]), executors=several)["MAX_WAIT_SETS"] == 3
     assert needed(application(publishers=[{"topic": "p", "message_size": "4 B"}]))["MAX_WAIT_SETS"] == 0
 
 
@@ -137,7 +132,7 @@ LOOP = {"spin_some": "100 ms"}
 )
 def test_slots_for_messages_that_wait(ware, slots):
     two = application(subscriptions=[TOPIC, TOPIC | {"name": "R"}])
-    assert needed(two, middleware(**ware))["MAX_HISTORY"] == slots
+    assert needed(two, **ware)["MAX_HISTORY"] == slots
 
 
 def test_messages_wait_while_a_reliable_publication_does():
@@ -146,7 +141,7 @@ def test_messages_wait_while_a_reliable_publication_does():
             subscriptions=[TOPIC, TOPIC | {"name": "R"}],
             publishers=[{"topic": "p", "message_size": "4 B", "reliability": reliability}],
         )
-        return needed(app, middleware(executor={"loop": LOOP}, reliable={"waits": waits}))["MAX_HISTORY"]
+        return needed(app, executor={"loop": LOOP}, reliable={"waits": waits})["MAX_HISTORY"]
 
     assert (slots("best-effort"), slots("reliable"), slots("reliable", waits=False)) == (1, 2, 1)
 
@@ -173,8 +168,7 @@ def test_only_the_mtu_of_the_transport_counts(wire, stated, transport, option, m
 def test_a_best_effort_message_needs_one_buffer(size, mtu):
     # 12 B of headers, padded to four bytes: an Int32 of 4 B has 16 B on the wire (micro_ros_arduino issue 20).
     app = application(publishers=[{"topic": "p", "message_size": f"{size} B", "reliability": "best-effort"}])
-    (option,) = (each for each in options(app, middleware()) if each.name == "UCLIENT_CUSTOM_TRANSPORT_MTU")
-    assert option.needed == mtu
+    assert needed(app)["UCLIENT_CUSTOM_TRANSPORT_MTU"] == mtu
 
 
 @pytest.mark.parametrize(
@@ -184,8 +178,7 @@ def test_a_best_effort_message_needs_one_buffer(size, mtu):
 )
 def test_a_reliable_message_that_arrives_needs_all_its_fragments(size, history):
     app = application(subscriptions=[TOPIC | {"message_size": f"{size} B"}])
-    (option,) = (each for each in options(app, middleware()) if each.name == "RMW_UXRCE_STREAM_HISTORY")
-    assert option.smallest == history
+    assert options(app)["STREAM_HISTORY"].smallest == history
 
 
 @pytest.mark.parametrize(
@@ -196,9 +189,7 @@ def test_a_reliable_message_that_arrives_needs_all_its_fragments(size, history):
 )
 def test_a_reliable_message_that_leaves_needs_all_its_fragments_with_several_threads(multithread, history):
     app = application(publishers=[{"topic": "p", "message_size": "2000 B"}])
-    found = options(app, middleware(multithread=multithread))
-    (option,) = (each for each in found if each.name == "RMW_UXRCE_STREAM_HISTORY")
-    assert option.smallest == history
+    assert options(app, multithread=multithread)["STREAM_HISTORY"].smallest == history
 
 
 def test_lengths_of_names_have_a_slash_and_a_terminator():
@@ -210,6 +201,5 @@ def test_lengths_of_names_have_a_slash_and_a_terminator():
 
 def test_a_profile_can_have_other_defaults():
     other = DATA.model_copy(update={"options": {"MTU": 256, "RMW_UXRCE_MAX_HISTORY": 2}})
-    assert [use.size for use in memory(middleware(), other)][:2] == [256 * 10, 2 * (256 * 4 + 64)]
-    stated = middleware(limits={"RMW_UXRCE_MAX_HISTORY": 1})
-    assert memory(stated, other)[1].size == 256 * 4 + 64
+    assert [use.size for use in memory(other)][:2] == [256 * 10, 2 * (256 * 4 + 64)]
+    assert memory(other, RMW_UXRCE_MAX_HISTORY=1)[1].size == 256 * 4 + 64

@@ -39,21 +39,6 @@ def test_a_publication_has_headers_of_12_bytes_and_is_aligned_to_4(content, leng
     assert lengths(MessageKind.PUBLICATION, content, best_effort=True) == [length]
 
 
-@pytest.mark.parametrize(
-    ("kind", "headers"),
-    [
-        (MessageKind.DELIVERY, 12),
-        (MessageKind.REQUEST_OUT, 12),
-        (MessageKind.RESPONSE_IN, 16),
-        # With the identity of the sample, 24 B.
-        (MessageKind.REQUEST_IN, 36),
-        (MessageKind.RESPONSE_OUT, 36),
-    ],
-)
-def test_the_headers_of_each_kind(kind, headers):
-    assert lengths(kind, 8) == [headers + 8]
-
-
 def test_only_reliable_messages_are_acknowledged():
     profile = profile_with()
     for reliable, acknowledgement in ((True, 13), (False, None)):
@@ -153,15 +138,6 @@ def test_how_long_a_sender_waits(keys, content, timeout):
     kind = MessageKind.PUBLICATION
     assert profile.times_out_after(kind, content, reliable=True) == timeout
     assert profile.times_out_after(kind, content, reliable=False) is None
-
-
-def test_waiting_as_in_the_sources():
-    waiting = profile_with().waiting
-    assert (waiting.messages_per_wait, waiting.resolution, waiting.slots) == (1, MILLISECOND, 8)
-    ends = waiting.stored_data_ends_wait, waiting.guard_conditions_end_wait
-    assert (ends, waiting.polls_without_messages) == ((False, False), True)
-    # 1000 ms in executor.c, although the comment in the header says 100 ms.
-    assert waiting.default_timeout == SECOND
 
 
 def test_several_threads_wait_for_each_other_only_if_they_are_protected():

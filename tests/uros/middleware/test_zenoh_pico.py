@@ -56,13 +56,6 @@ def test_the_longest_content_is_joined_from_fragments(kind, reliable):
     assert sum(length - 5 for length in lengths(limit, kind, reliable)) == 4096
 
 
-def test_waiting():
-    waiting = PROFILE.waiting
-    assert (waiting.messages_per_wait, waiting.slots) == (None, None)
-    ends = waiting.stored_data_ends_wait, waiting.guard_conditions_end_wait
-    assert (ends, waiting.polls_without_messages) == ((True, True), False)
-
-
 def test_keep_alives():
     # A third of the lease of 10 s, rounded down.
     assert PROFILE.heartbeat == (1, 10 * SECOND // 3, False)
