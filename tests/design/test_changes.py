@@ -294,7 +294,8 @@ def test_the_analysis_takes_changes_into_account():
     system = open_system([ROOT / "samples" / "bodas-test-advanced.yaml"]).system
 
     def response(*changes):
-        changed = apply(system, Settings(), [parse_change(change) for change in changes])
+        settings = Settings(phases={"Message_Factor": 0})
+        changed = apply(system, settings, [parse_change(change) for change in changes])
         return analyze_system(*changed).processes["Control_Function"].response.worst
 
     # The executor takes 12 us, and 13 us more with a message; Control_Function has 4 us at a lower priority.

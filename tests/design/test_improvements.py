@@ -71,7 +71,7 @@ def test_the_changes_of_the_thesis(shorter):
 
 def test_periods_that_are_not_on_offer_in_a_description():
     """A model does not say which periods the platform offers, so parts of the period are tried."""
-    found = effects(improvements(analyze_files(SAMPLES / "bodas-test-advanced.amxmi"), CHAIN))
+    found = effects(improvements(analyze_files(SAMPLES / "bodas-test-advanced.amxmi", PHASE), CHAIN))
     assert found["period of Message_Factor 20 ms -> 2 ms"] == (20_029, 2_016)
 
 
@@ -89,7 +89,7 @@ def test_a_longer_period_is_no_proposal(shorter):
 @pytest.mark.parametrize(
     ("chain", "quantity"),
     every(
-        3,
+        4,
         list(
             product(
                 ("speed-to-torque", "height-to-log"), (LatencyQuantity.MAX_REDUCED_REACTION_TIME, LatencyQuantity.MAX_DATA_AGE)
