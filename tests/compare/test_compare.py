@@ -348,8 +348,7 @@ def with_limit(limit):
 
 
 @pytest.mark.parametrize(
-    ("metric", "bound"),
-    [(perf.TimeMetric.START_TO_START, perf.Bound.UPPER), (perf.TimeMetric.RESPONSE_TIME, perf.Bound.LOWER)],
+    ("metric", "bound"), [(perf.TimeMetric.START_TO_START, perf.Bound.UPPER), (perf.TimeMetric.RESPONSE_TIME, perf.Bound.LOWER)]
 )
 def test_a_limit_of_another_quantity_does_not_replace_a_deadline(metric, bound):
     # Both are 1 ms, as the period.

@@ -215,11 +215,7 @@ ROWS = [
     RunOutcome(CampaignRun(3, 7), {}, "failed").row(),
 ]
 COLUMNS = ["run", "seed", "a", "b", "c", "d", "error"]
-TABLE = [
-    [1, 5, 1, 0.5, 'x, "y"', None, None],
-    [2, 6, 2**70, None, None, "é", None],
-    [3, 7, None, None, None, None, "failed"],
-]
+TABLE = [[1, 5, 1, 0.5, 'x, "y"', None, None], [2, 6, 2**70, None, None, "é", None], [3, 7, None, None, None, None, "failed"]]
 
 
 def test_a_table_as_csv_and_json(tmp_path):

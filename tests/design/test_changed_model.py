@@ -75,13 +75,9 @@ def test_only_the_lines_of_the_value_differ(tmp_path):
     path, target = SAMPLES / "executor.amxmi", tmp_path / "changed.amxmi"
     amuros.what_if(path, ["Control_Function.priority=7"]).save(target)
     old, new = path.read_text().splitlines(), target.read_text().splitlines()
-    different = [(one, other) for one, other in zip(old, new, strict=True) if one != other]
-    assert len(different) == 1
-    assert 'value="7"' in different[0][1]
-
-
-def test_a_change_to_the_value_that_is_there_gives_the_same_file(tmp_path):
-    path, target = SAMPLES / "executor.amxmi", tmp_path / "same.amxmi"
+    ((_, different),) = [(one, other) for one, other in zip(old, new, strict=True) if one != other]
+    assert 'value="7"' in different
+    # The value that is there already.
     amuros.what_if(path, ["Control_Function.priority=2"]).save(target)
     assert target.read_bytes() == path.read_bytes()
 

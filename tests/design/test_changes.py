@@ -5,6 +5,7 @@ from dataclasses import replace
 from fractions import Fraction
 
 import pytest
+from hand_made_systems import ticks
 from hypothesis import given
 from hypothesis import strategies as st
 from support import ROOT
@@ -22,12 +23,26 @@ MHZ = Fraction(10**6)
 MS = 10**9
 
 
-def demand(ticks):
-    return activities.Execute(demand=activities.Demand(distributions.Constant(ticks)))
-
-
 def core(name, clock):
     return hardware.Core(name=name, clock=clock)
+
+
+def scheduler(name, *cores):
+    return os.Scheduler(name=name, policy=os.Policy.FIXED_PRIORITY_PREEMPTIVE, cores=cores)
+
+
+def duration(name, time):
+    return os.Parameter(name, (os.Duration(time),))
+
+
+def runnable(name, *times):
+    return software.Runnable(name=name, activities=tuple(map(ticks, times)))
+
+
+def calling(name, *runnables):
+    return software.Task(
+        name=name, stimuli=("tick",), activities=tuple(activities.Call(runnable=called) for called in runnables)
+    )
 
 
 #: Two cores with clocks of 1 and 3 MHz, each with a scheduler; a third scheduler for both; a server below the first.
@@ -41,19 +56,12 @@ SYSTEM = System(
             os.OperatingSystem(
                 name="OS",
                 schedulers=(
-                    os.Scheduler(name="S0", policy=os.Policy.FIXED_PRIORITY_PREEMPTIVE, cores=("C0",)),
-                    os.Scheduler(name="S1", policy=os.Policy.FIXED_PRIORITY_PREEMPTIVE, cores=("C1", "C2")),
-                    os.Scheduler(name="S2", policy=os.Policy.FIXED_PRIORITY_PREEMPTIVE, cores=("C2",)),
+                    *(scheduler("S0", "C0"), scheduler("S1", "C1", "C2"), scheduler("S2", "C2")),
                     os.Scheduler(
                         name="Server",
                         policy=os.Policy.DEFERRABLE_SERVER,
                         parent=os.Parent(
-                            scheduler="S2",
-                            priority=1,
-                            parameters=(
-                                os.Parameter("maxBudget", (os.Duration(2 * MS),)),
-                                os.Parameter("period", (os.Duration(9 * MS),)),
-                            ),
+                            scheduler="S2", priority=1, parameters=(duration("maxBudget", 2 * MS), duration("period", 9 * MS))
                         ),
                     ),
                 ),
@@ -74,23 +82,14 @@ SYSTEM = System(
     ),
     software=software.Software(
         tasks=(
-            software.Task(name="A", stimuli=("tick",), activities=(activities.Call(runnable="RA"),)),
-            software.Task(
-                name="B", stimuli=("tick",), activities=(activities.Call(runnable="R1"), activities.Call(runnable="R2"))
-            ),
-            software.Task(name="Own", stimuli=("own",), activities=(activities.Loop(activities=(demand(10),)),)),
-            software.Task(name="Both", stimuli=("own", "tick"), activities=(demand(1), demand(2))),
+            *(calling("A", "RA"), calling("B", "R1", "R2")),
+            software.Task(name="Own", stimuli=("own",), activities=(activities.Loop(activities=(ticks(10),)),)),
+            software.Task(name="Both", stimuli=("own", "tick"), activities=(ticks(1), ticks(2))),
             software.Task(name="Event", stimuli=("sporadic",)),
             software.Task(name="Free"),
         ),
-        isrs=(software.Isr(name="I", stimuli=("sporadic",), activities=(demand(3),)),),
-        runnables=(
-            software.Runnable(name="RA", activities=(demand(4),)),
-            software.Runnable(name="R1", activities=(demand(5),)),
-            software.Runnable(name="R2", activities=(demand(6),)),
-            software.Runnable(name="Twice", activities=(demand(1), demand(2))),
-            software.Runnable(name="Nothing"),
-        ),
+        isrs=(software.Isr(name="I", stimuli=("sporadic",), activities=(ticks(3),)),),
+        runnables=(*(runnable("RA", 4), runnable("R1", 5), runnable("R2", 6), runnable("Twice", 1, 2), runnable("Nothing")),),
         modes=(software.Mode(name="Gear", literals=("first", "second")),),
         mode_labels=(
             software.ModeLabel(name="gear", mode="Gear", initial="first"),
@@ -108,6 +107,10 @@ SYSTEM = System(
         isrs=(mapping.IsrAllocation(isr="I", controller="IC0", priority=1),),
     ),
 )
+
+
+def changed(system, *changes):
+    return apply(system, Settings(), [parse_change(change) for change in changes])
 
 
 def differences(*changes):
@@ -157,7 +160,7 @@ def test_the_value_before_and_after_a_change(change):
 
 @pytest.mark.parametrize("change", VALUES)
 def test_a_change_keeps_all_other_values(change):
-    changed = apply(SYSTEM, Settings(), [parse_change(change)])
+    after = changed(SYSTEM, change)
     name, key = parse_change(change).object, parse_change(change).key
     related = {"capacity": "budget", "budget": "capacity", "scheduler": "core", "core": "scheduler", "controller": "core"}
     for other, (before, _) in VALUES.items():
@@ -166,13 +169,13 @@ def test_a_change_keeps_all_other_values(change):
             continue
         if {name, target.object} in ({"Own", "own"}, {"A", "RA"}):  # the same stimulus, the same demand
             continue
-        (difference,) = describe(changed.system, changed.settings, [target])
+        (difference,) = describe(after.system, after.settings, [target])
         assert difference.before == before, other
 
 
 @pytest.mark.parametrize("change", VALUES)
 def test_a_change_made_twice_is_the_change(change):
-    once = apply(SYSTEM, Settings(), [parse_change(change)])
+    once = changed(SYSTEM, change)
     assert apply(*once, [parse_change(change)]) == once
 
 
@@ -222,11 +225,11 @@ WRONG = {
 @pytest.mark.parametrize("change", WRONG)
 def test_wrong_changes_say_what_was_expected(change):
     with pytest.raises(InvalidArgumentError, match=re.escape(WRONG[change])):
-        apply(SYSTEM, Settings(), [parse_change(change)])
+        changed(SYSTEM, change)
 
 
 def test_a_shared_stimulus_is_changed_for_one_process_only():
-    system = apply(SYSTEM, Settings(), [parse_change("A.period=4ms")]).system
+    system = changed(SYSTEM, "A.period=4ms").system
     periods = {
         name: [system.stimuli_by_name[each].period for each in system.processes[name].stimuli] for name in ("A", "B", "Both")
     }
@@ -236,8 +239,8 @@ def test_a_shared_stimulus_is_changed_for_one_process_only():
 def test_a_shared_stimulus_to_which_an_event_refers_is_not_copied():
     system = replace(SYSTEM, events=events.Events(events=(events.StimulusEvent(name="e", stimulus="tick"),)))
     with pytest.raises(InvalidArgumentError, match=re.escape("change tick.period for all of them")):
-        apply(system, Settings(), [parse_change("A.period=4ms")])
-    periods = apply(system, Settings(), [parse_change("tick.period=4ms")]).system.stimuli_by_name
+        changed(system, "A.period=4ms")
+    periods = changed(system, "tick.period=4ms").system.stimuli_by_name
     assert periods["tick"].period == 4 * MS
 
 
@@ -269,21 +272,21 @@ def test_an_unknown_frequency_needs_ticks():
     clocks = tuple(replace(clock, frequency=None) for clock in SYSTEM.hardware.clocks)
     system = replace(SYSTEM, hardware=replace(SYSTEM.hardware, clocks=clocks))
     with pytest.raises(InvalidArgumentError, match="'A' is executed on a core of unknown frequency"):
-        apply(system, Settings(), [parse_change("A.execution_time=1us")])
+        changed(system, "A.execution_time=1us")
 
 
 def test_a_runnable_that_others_call_is_not_changed_for_one_task():
     both = replace(SYSTEM.software.tasks[0], name="A2")
     system = replace(SYSTEM, software=replace(SYSTEM.software, tasks=(*SYSTEM.software.tasks, both)))
     with pytest.raises(InvalidArgumentError, match=re.escape("change those of its runnables: RA.execution_time")):
-        apply(system, Settings(), [parse_change("A.execution_time=1tick")])
+        changed(system, "A.execution_time=1tick")
 
 
 def test_a_name_of_several_objects_means_the_one_that_has_the_key():
     task = software.Task(name="RA", stimuli=("own",))
     system = replace(SYSTEM, software=replace(SYSTEM.software, tasks=(*SYSTEM.software.tasks, task)))
-    changed = apply(system, Settings(), [parse_change("RA.execution_time=9ticks")]).system
-    assert changed.runnables["RA"].activities == (demand(9),)
+    after = changed(system, "RA.execution_time=9ticks").system
+    assert after.runnables["RA"].activities == (ticks(9),)
 
 
 def test_the_last_change_of_a_value_counts():
@@ -295,8 +298,8 @@ def test_the_analysis_takes_changes_into_account():
 
     def response(*changes):
         settings = Settings(phases={"Message_Factor": 0})
-        changed = apply(system, settings, [parse_change(change) for change in changes])
-        return analyze_system(*changed).processes["Control_Function"].response.worst
+        after = apply(system, settings, [parse_change(change) for change in changes])
+        return analyze_system(*after).processes["Control_Function"].response.worst
 
     # The executor takes 12 us, and 13 us more with a message; Control_Function has 4 us at a lower priority.
     assert response() == 29_000_000
@@ -308,9 +311,7 @@ def test_the_analysis_takes_changes_into_account():
 
 def test_the_phase_of_a_message():
     system = open_system([ROOT / "samples" / "bodas-test-advanced.yaml"]).system
-    assert apply(system, Settings(), [parse_change("Message_Factor.phase=5ms")]).settings == Settings(
-        phases={"Message_Factor": 5 * MS}
-    )
+    assert changed(system, "Message_Factor.phase=5ms").settings == Settings(phases={"Message_Factor": 5 * MS})
 
 
 @given(st.text(min_size=1), st.from_regex(r"[a-z_]+", fullmatch=True), st.text(min_size=1))

@@ -6,12 +6,12 @@ import shutil
 import subprocess
 
 import pytest
+from hand_made_systems import read, write
 from hypothesis import given
 from hypothesis import strategies as st
 from support import ROOT
 
 from amalthea_uros import analyze_files
-from amalthea_uros.perf.activities import AccessKind, LabelAccess
 from amalthea_uros.perf.software import Label, Software, Task
 from amalthea_uros.perf.system import System
 from amalthea_uros.report.basics.escape import visible
@@ -22,13 +22,8 @@ NASTY = ["end", 'a"]b', "x;y|z", "li\nne", "ü→日", "&amp;#35;", "\\N \\", "<
 
 def ring(*names):
     """Each task writes the label of its own name, which the next one reads."""
-    tasks = tuple(
-        Task(
-            name=name,
-            activities=(LabelAccess(label=name, kind=AccessKind.WRITE), LabelAccess(label=before, kind=AccessKind.READ)),
-        )
-        for name, before in zip(names, (*names[-1:], *names[:-1]), strict=True)
-    )
+    before = (*names[-1:], *names[:-1])
+    tasks = tuple(Task(name=name, activities=(write(name), read(other))) for name, other in zip(names, before, strict=True))
     return System(software=Software(tasks=tasks, labels=tuple(Label(name=name) for name in names)))
 
 

@@ -152,12 +152,7 @@ def test_runnables_run_while_their_job_does():
 
 
 def test_runnables_at_the_ends_of_a_trace_are_cut():
-    events = (
-        event(0, K.RESUME),
-        call(10, K.RUNNABLE_TERMINATE),
-        call(10, K.RUNNABLE_START, RUNNABLE, 1),
-        event(30, K.PREEMPT),
-    )
+    events = (event(0, K.RESUME), call(10, K.RUNNABLE_TERMINATE), call(10, K.RUNNABLE_START, RUNNABLE, 1), event(30, K.PREEMPT))
     assert only(*events).runnables == (RunnableSpan("outer", 0, 10), RunnableSpan("outer", 10, 30))
 
 

@@ -4,16 +4,14 @@ import re
 from itertools import combinations, pairwise
 
 import pytest
+from hand_made_systems import of_parts, read, write
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from support import ROOT
 from svg_reading import NASTY, assert_readable, contents, tooltips
 
 from amalthea_uros import analyze_files
-from amalthea_uros.perf.activities import AccessKind, LabelAccess
-from amalthea_uros.perf.hardware import Core, Hardware, Structure
-from amalthea_uros.perf.mapping import Mapping, TaskAllocation
-from amalthea_uros.perf.os import OperatingSystem, Os, Scheduler
+from amalthea_uros.perf.mapping import TaskAllocation
 from amalthea_uros.perf.software import Label, Software, Task
 from amalthea_uros.perf.system import System
 from amalthea_uros.report.pictures.system_layout import BOX, LayoutWire, lay_out
@@ -23,23 +21,14 @@ SAMPLES = sorted((ROOT / "samples").glob("*.yaml"))
 
 
 def writing(name, *labels, reading=()):
-    accesses = [LabelAccess(label=label, kind=AccessKind.WRITE) for label in labels]
-    return Task(name=name, activities=(*accesses, *(LabelAccess(label=label, kind=AccessKind.READ) for label in reading)))
+    return Task(name=name, activities=(*map(write, labels), *map(read, reading)))
 
 
 def system_of(*tasks, cores=1):
     names = [f"Core_{number}" for number in range(cores)]
-    labels = {access.label for task in tasks for access in task.activities}
-    return System(
-        hardware=Hardware(structures=(Structure(name="ECU", cores=tuple(Core(name=name) for name in names)),)),
-        os=Os(systems=(OperatingSystem(name="OS", schedulers=tuple(Scheduler(name=f"S_{n}", cores=(n,)) for n in names)),)),
-        software=Software(tasks=tasks, labels=tuple(Label(name=name) for name in sorted(labels))),
-        mapping=Mapping(
-            tasks=tuple(
-                TaskAllocation(task=task.name, scheduler=f"S_{names[i % cores]}", priority=i) for i, task in enumerate(tasks)
-            )
-        ),
-    )
+    labels = sorted({access.label for task in tasks for access in task.activities})
+    allocations = [TaskAllocation(task=task.name, scheduler=names[i % cores], priority=i) for i, task in enumerate(tasks)]
+    return of_parts(tasks, allocations, (), cores=names, labels=[Label(name=name) for name in labels])
 
 
 def test_processes_are_ordered_by_priority_on_their_cores():

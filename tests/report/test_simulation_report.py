@@ -85,12 +85,7 @@ def test_the_first_line_names_model_duration_seed_and_mode():
 SILENT = replace(CONTROL, jobs=0, metrics={}, core=None, deadline=None, verdict=None)
 LATE = limit(at=Fraction(20 * MS), reason="2 without a target")
 SHARE = limit(
-    name="share",
-    quantity="load",
-    limit=Fraction(1, 2),
-    value=Fraction(1, 4),
-    is_time=False,
-    verdict=ObservedVerdict.OK,
+    name="share", quantity="load", limit=Fraction(1, 2), value=Fraction(1, 4), is_time=False, verdict=ObservedVerdict.OK
 )
 
 

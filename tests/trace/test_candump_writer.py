@@ -46,13 +46,7 @@ def test_the_form(tmp_path):
         "(0000000061.000000) can0 18000005#01000000\n"
     )
     assert yaml.safe_load((tmp_path / "run.log.markers.yaml").read_text()) == {
-        name: {
-            "start": start,
-            "end": start + 1,
-            "counter": "bytes 0..3",
-            "kind": "process",
-            "quantity": "gross_execution_time",
-        }
+        name: {"start": start, "end": start + 1, "counter": "bytes 0..3", "kind": "process", "quantity": "gross_execution_time"}
         for name, start in (("A", 0x18000003), ("I", 0x18000005))
     }
 

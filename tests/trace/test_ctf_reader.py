@@ -96,10 +96,7 @@ def test_zephyr(tmp_path):
         ),
         (
             [(1, "thread_switched_in"), (5, "thread_pending"), (6, "isr_enter"), (7, "thread_ready"), (8, "isr_exit")],
-            [
-                *("1 resume A#0", "6 terminate A#0", "6 start ISR#0"),
-                *("7 activate A#1", "8 terminate ISR#0", "8 start A#1"),
-            ],
+            [*("1 resume A#0", "6 terminate A#0", "6 start ISR#0"), *("7 activate A#1", "8 terminate ISR#0", "8 start A#1")],
         ),
     ],
     ids=["by itself", "by an interrupt"],

@@ -114,8 +114,7 @@ class TestEqualPriorities:
         assert not assembly.findings
 
     @pytest.mark.parametrize(
-        ("os", "b"),
-        [("{rtos: freertos}", 4), ("{rtos: freertos, time_slice: 0}", 5), ("{rtos: osek}", 5), ("{}", 5)],
+        ("os", "b"), [("{rtos: freertos}", 4), ("{rtos: freertos, time_slice: 0}", 5), ("{rtos: osek}", 5), ("{}", 5)]
     )
     def test_there_is_no_time_slice_without_need(self, author, os, b):
         (scheduler,) = author.describe(TASKS.format(os=os, a=5, b=b)).system.os.systems[0].schedulers

@@ -37,14 +37,7 @@ CONTROL = ("Control_Callback",)
 
 
 def test_a_round_has_one_message_at_most_and_each_timer_once():
-    assert rounds(SLEEPING) == {
-        (),
-        COMMAND,
-        MAP,
-        CONTROL,
-        (*COMMAND, *CONTROL),
-        (*MAP, *CONTROL),
-    }
+    assert rounds(SLEEPING) == {(), COMMAND, MAP, CONTROL, (*COMMAND, *CONTROL), (*MAP, *CONTROL)}
 
 
 def test_the_order_of_the_handles_is_the_order_of_the_calls():

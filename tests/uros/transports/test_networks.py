@@ -97,22 +97,12 @@ def test_each_frame_has_an_interrupt_and_each_message_a_round(author):
     found = simulate_system(author.describe(text).system, Options(duration=10 * SECOND, mode=Mode.WORST))
     messages = found["cmd_vel_topic_to_Drive"].jobs
     assert found["Receive"].jobs == messages
-    others = sum(found[name].jobs for name in found_in(found, "_acknowledgement", "heartbeat_of_agent") if to_controller(name))
+    to_controller = "odom_topic_from_Drive_acknowledgement", "heartbeat_of_agent", "heartbeat_of_client_acknowledgement"
+    others = sum(found[name].jobs for name in to_controller)
     # A frame of 60 bytes has up to 133 bytes with escaped ones, in 4 chunks of 42; one of 13 has 39.
     assert found["Receive_Other"].jobs == pytest.approx(3 * messages + others, abs=4)
-    # 50 messages and 10 timers per second, and a timeout.
+    # 50 messages and 10 timers per second, and a timeout; without an interrupt, the wire itself begins the rounds.
     assert found["Exec"].jobs == pytest.approx(610, abs=3)
-
-
-def found_in(found, *parts):
-    return [process.name for process in found.processes if any(part in process.name for part in parts)]
-
-
-def to_controller(name):
-    return name in ("odom_topic_from_Drive_acknowledgement", "heartbeat_of_agent", "heartbeat_of_client_acknowledgement")
-
-
-def test_without_an_interrupt_the_wire_itself_begins_the_rounds(author):
     system = author.describe(app("serial: {baud_rate: 921600}", "loop: {spin: 1 s}")).system
     assert not system.software.isrs
     found = simulate_system(system, Options(duration=10 * SECOND, mode=Mode.WORST))

@@ -224,8 +224,5 @@ def test_the_longest_frame_exists():
 )
 def test_frames_of_a_message(length, count):
     assert frames(length) == count
-
-
-def test_bus_time_of_a_message():
-    # Two frames of 135 bits at 4 us each.
-    assert transmission_time(CanBus(bit_rate=250_000), 14) == 1080 * US
+    # Each of 135 bits at 4 us.
+    assert transmission_time(CanBus(bit_rate=250_000), length) == count * 540 * US
