@@ -6,7 +6,7 @@ The steps are counted as lines that are executed, so that nothing depends on the
 import sys
 
 import pytest
-from hand_made_systems import READ, US, WRITE, access, of_parts, ticks
+from hand_made_systems import READ, US, WRITE, access, chain, of_parts, ticks
 
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros.analyze.constraints.requirements import evaluate_requirements
@@ -17,7 +17,7 @@ from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import Call, Demand, Execute, RaiseEvent, Trigger
 from amalthea_uros.perf.constraints import Constraints, DataAgeConstraint, Requirement, TimeLimit, TimeMetric
 from amalthea_uros.perf.distributions import Boundaries
-from amalthea_uros.perf.events import CustomEvent, EventChain, Events, LabelChange, LabelEvent, Segment, Sequence
+from amalthea_uros.perf.events import CustomEvent, Events, LabelChange, LabelEvent
 from amalthea_uros.perf.mapping import TaskAllocation
 from amalthea_uros.perf.software import Label, Runnable, Software, Task
 from amalthea_uros.perf.stimuli import EventTriggered, InterProcess, Periodic
@@ -94,15 +94,7 @@ def losses(number):
 def guesses(number):
     """Chains whose events no activity raises."""
     events = [LabelEvent(name=f"e{n}", label="x", runnable=f"t{n}", change=LabelChange.WRITE) for n in range(number)]
-    chains = [
-        EventChain(
-            name=f"e{n}",
-            stimulus=f"e{n - 1}",
-            response=f"e{n}",
-            items=Sequence((Segment(stimulus=f"e{n - 1}", response=f"e{n}"),)),
-        )
-        for n in range(1, number)
-    ]
+    chains = [chain(f"e{n}", f"e{n - 1}", f"e{n}") for n in range(1, number)]
     return system([[ticks(9)] for _ in range(number)], events=Events(events=tuple(events), chains=tuple(chains)))
 
 
@@ -159,12 +151,10 @@ def test_the_certainty_of_a_schedule_is_found_in_one_look():
 def test_activities_that_are_too_many_are_walked_once(monkeypatch):
     walks = []
 
-    def counted(process, *context):
-        walks.append(process.name)
-        return positions(process, *context)
-
     positions = dataflow_events.positions
-    monkeypatch.setattr(dataflow_events, "positions", counted)
+    monkeypatch.setattr(
+        dataflow_events, "positions", lambda process, *context: walks.append(process.name) or positions(process, *context)
+    )
     nested = tuple(Runnable(name=f"r{n}", activities=(Call(runnable=f"r{n + 1}"),)) for n in range(200))
     deep = Task(name="deep", activities=(Call(runnable="r0"),))
     locator = EventLocator(System(software=Software(tasks=(deep,), runnables=nested)))
@@ -183,12 +173,8 @@ def test_a_core_is_analysed_again_only_if_its_activations_have_changed(monkeypat
     ]
     cores = []
 
-    def counted(core, solution):
-        cores.append(core)
-        return responses_on(core, solution)
-
     responses_on = propagation.responses_on
-    monkeypatch.setattr(propagation, "responses_on", counted)
+    monkeypatch.setattr(propagation, "responses_on", lambda core, solution: cores.append(core) or responses_on(core, solution))
     solve(TimingContext.of(system(bodies, stimuli=stimuli)))
     assert cores.count("c0") == cores.count("c3") == 1
     assert cores.count("c1") == cores.count("c2") == 2

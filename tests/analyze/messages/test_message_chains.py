@@ -7,7 +7,7 @@ the other way round: CMD + ACK. On the other wire /odom is alone: ODOM.
 from dataclasses import replace
 
 import pytest
-from hand_made_systems import ticks
+from hand_made_systems import changed, reallocated, ticks
 from message_board import ACK, CMD, MS, ODOM, US, Publication, Span, Wire, WireKind, board, message_chains, tick
 
 from amalthea_uros.analyze.chains.message_chains import evaluate_executors_and_messages
@@ -47,10 +47,20 @@ def solution(found):
 def with_sender(found, task, transmission):
     """The system, in which a task queues a transmission."""
     fired = (*found.processes[task].activities, Trigger(stimulus="sent"))
-    changes = {task: {"activities": fired}, transmission: {"stimuli": ("sent",)}}
-    tasks = tuple(replace(each, **changes.get(each.name, {})) for each in found.software.tasks)
-    stimuli = (*found.stimuli.stimuli, InterProcess(name="sent"))
-    return replace(found, software=replace(found.software, tasks=tasks), stimuli=replace(found.stimuli, stimuli=stimuli))
+    found = changed(changed(found, task, activities=fired), transmission, stimuli=("sent",))
+    return with_stimulus(found, InterProcess(name="sent"))
+
+
+def with_stimulus(found, stimulus):
+    return replace(found, stimuli=replace(found.stimuli, stimuli=(*found.stimuli.stimuli, stimulus)))
+
+
+def with_transmissions(found, *transmissions):
+    return replace(found, network=replace(found.network, transmissions=transmissions))
+
+
+def with_limits(found, *limits):
+    return replace(found, constraints=Constraints(constraints=limits))
 
 
 def response_of(found, name):
@@ -146,8 +156,8 @@ def test_arrivals_vary_by_what_varies_before_them():
     found = board()
     assert arrival_jitter(solution(found)) == {"cmd": MS + ACK * US}
     unknown, *others = found.network.transmissions
-    network = replace(found.network, transmissions=(replace(unknown, agent=Span(least=MS)), *others))
-    assert arrival_jitter(solution(replace(found, network=network))) == {"cmd": ACK * US}
+    found = with_transmissions(found, replace(unknown, agent=Span(least=MS)), *others)
+    assert arrival_jitter(solution(found)) == {"cmd": ACK * US}
 
 
 def test_arrivals_are_unknown_if_the_wire_is():
@@ -181,7 +191,7 @@ def test_a_round_as_a_whole_is_no_member_of_a_chain():
 def test_a_task_that_publishes_is_bounded_if_it_does_not_wait_for_the_acknowledgement(waits):
     found = board(("by task", "sensor_start", "odom_at_host"))
     waiting = [replace(each, waits=waits and each.name == "odom_out") for each in found.network.transmissions]
-    found = replace(found, network=replace(found.network, transmissions=tuple(waiting)))
+    found = with_transmissions(found, *waiting)
     assert "does not publish" in message_chains(found)["by task"].reason
     chain = message_chains(with_sender(found, "sensor", "odom_out"))["by task"]
     # To the end of the job, which pwm preempts once.
@@ -193,8 +203,8 @@ def test_a_task_that_publishes_is_bounded_if_it_does_not_wait_for_the_acknowledg
 def test_a_task_of_its_own_that_waits_has_no_known_response_time(waits):
     """Its job is suspended until the acknowledgement comes, which its execution time does not contain."""
     found = with_sender(board(), "sensor", "odom_out")
-    sent = tuple(replace(each, waits=waits and each.name == "odom_out") for each in found.network.transmissions)
-    analysis = analyze_system(replace(found, network=replace(found.network, transmissions=sent)))
+    sent = (replace(each, waits=waits and each.name == "odom_out") for each in found.network.transmissions)
+    analysis = analyze_system(with_transmissions(found, *sent))
     response, reason = analysis.processes["sensor"].response, analysis.processes["sensor"].reason
     # 20 us of its own, and pwm once.
     assert (response and response.worst) == (None if waits else 70 * US)
@@ -213,7 +223,7 @@ def test_limits_are_judged_by_the_hops():
         LatencyConstraint(name=f"limit {index}", chain="to pwm", kind=kind, maximum=limit * MS)
         for index, (kind, limit, _) in enumerate(limits)
     )
-    analysis = analyze_system(replace(found, constraints=Constraints(constraints=constraints)))
+    analysis = analyze_system(with_limits(found, *constraints))
     assert [analysis.requirements[each.name].verdict for each in constraints] == [verdict for *_, verdict in limits]
     assert analysis.chains["to pwm"].value(LatencyQuantity.MAX_REDUCED_REACTION_TIME).value == chain.worst
     assert list(analysis.message_chains) == [chain]
@@ -221,16 +231,15 @@ def test_limits_are_judged_by_the_hops():
 
 def test_an_unknown_chain_is_never_met():
     limit = LatencyConstraint(name="limit", chain="to pwm", kind=LatencyKind.REACTION, maximum=10**15)
-    found = replace(board(TO_PWM, agent=Span(least=MS)), constraints=Constraints(constraints=(limit,)))
-    analysis = analyze_system(found)
+    analysis = analyze_system(with_limits(board(TO_PWM, agent=Span(least=MS)), limit))
     assert analysis.requirements["limit"].verdict is Verdict.UNKNOWN
     assert [finding.rule for finding in analysis.findings if finding.rule.startswith("CHN")] == ["CHN009"]
 
 
 def test_chains_with_limits_come_first():
     limit = LatencyConstraint(name="limit", chain="to pwm", kind=LatencyKind.REACTION, maximum=200 * MS)
-    found = replace(board(TO_HOST, TO_PWM), constraints=Constraints(constraints=(limit,)))
-    assert [chain.name for chain in analyze_system(found).message_chains] == ["to pwm", "to host"]
+    found = analyze_system(with_limits(board(TO_HOST, TO_PWM), limit))
+    assert [chain.name for chain in found.message_chains] == ["to pwm", "to host"]
 
 
 def test_a_message_never_waits_for_one_of_the_thread_that_its_driver_keeps():
@@ -239,11 +248,8 @@ def test_a_message_never_waits_for_one_of_the_thread_that_its_driver_keeps():
     sent = Periodic(name="late", period=200 * MS, jitter=Uniform(lower=0, upper=400 * MS))
     times = {}
     for keeps in (False, True):
-        found = board(TO_HOST, wire=replace(wire, keeps_sender=keeps))
-        tasks = tuple(replace(task, stimuli=("late",)) if task.name == "odom_out" else task for task in found.software.tasks)
-        stimuli = replace(found.stimuli, stimuli=(*found.stimuli.stimuli, sent))
-        found = replace(found, software=replace(found.software, tasks=tasks), stimuli=stimuli)
-        times[keeps] = sending_times(solution(found))["odom_out"].most
+        found = changed(board(TO_HOST, wire=replace(wire, keeps_sender=keeps)), "odom_out", stimuli=("late",))
+        times[keeps] = sending_times(solution(with_stimulus(found, sent)))["odom_out"].most
     assert times == {False: 3 * ODOM * US, True: ODOM * US}
 
 
@@ -251,12 +257,8 @@ def test_another_sender_on_the_wire_is_waited_for():
     wire = Wire(name="UART", kind=WireKind.SERIAL, cores=("c1", "c2"), keeps_sender=True)
     found = board(TO_HOST, wire=wire)
     other = replace(found.transmissions["odom_out"], name="odom_ack", topic="other")
-    network = replace(found.network, transmissions=(*found.network.transmissions[:2], other))
-    tasks = replace(
-        found.mapping,
-        tasks=tuple(replace(each, scheduler="tx") if each.task == "odom_ack" else each for each in found.mapping.tasks),
-    )
-    assert sending_times(solution(replace(found, network=network, mapping=tasks)))["odom_out"].most == (ODOM + ACK) * US
+    found = reallocated(with_transmissions(found, *found.network.transmissions[:2], other), "odom_ack", scheduler="tx")
+    assert sending_times(solution(found))["odom_out"].most == (ODOM + ACK) * US
 
 
 @pytest.mark.parametrize(
@@ -331,9 +333,7 @@ def test_messages_that_come_faster_than_rounds_read_them_keep_a_publication_unti
 
 def test_a_publication_has_no_bound_if_its_write_has_none():
     # More is sent than the wire can carry, so that the timeout begins at an unknown time.
-    found = board(publication=RELIABLE)
-    tasks = [replace(each, activities=(ticks(300_000),)) if each.name == "odom_out" else each for each in found.software.tasks]
-    found = replace(found, software=replace(found.software, tasks=tuple(tasks)))
+    found = changed(board(publication=RELIABLE), "odom_out", activities=(ticks(300_000),))
     assert sending_times(solution(found))["odom_out"].most is None
     result = evaluate_executors_and_messages(solution(found))[0]["Executor"]
     assert result.handles["cmd"].response.worst is None
@@ -357,8 +357,7 @@ def with_timer_only_executor(sleep):
     allocation = next(each for each in found.mapping.tasks if each.task == "Executor")
     mapping = replace(found.mapping, tasks=(*found.mapping.tasks, replace(allocation, task="Fast", priority=6)))
     iterations = RelativePeriodic(name="iterations", distance=Constant(MS), has_maximum=False)
-    stimuli = replace(found.stimuli, stimuli=(*found.stimuli.stimuli, iterations))
-    return replace(found, executors=(reader, fast), software=software, mapping=mapping, stimuli=stimuli)
+    return with_stimulus(replace(found, executors=(reader, fast), software=software, mapping=mapping), iterations)
 
 
 @pytest.mark.parametrize(("sleep", "is_bounded"), [(10 * MS, True), (100 * MS, False)])
