@@ -113,10 +113,7 @@ def of_parts(tasks, allocations, stimuli, *, cores=("core",), schedulers=None, p
     os_parts = dict(parts.pop("os_parts", {}))
     controllers = tuple(os_parts.pop("interrupt_controllers", ()))
     operating_system = OperatingSystem(
-        name="OS",
-        schedulers=tuple(schedulers),
-        interrupt_controllers=controllers,
-        overhead=parts.pop("overhead", None),
+        name="OS", schedulers=tuple(schedulers), interrupt_controllers=controllers, overhead=parts.pop("overhead", None)
     )
     structure = Structure(name="ECU", cores=tuple(Core(name=core, clock="clock") for core in cores))
     clock = Clock(name="clock", frequency=Fraction(frequency))
@@ -353,10 +350,7 @@ SYSTEMS = {
         Proc("above", (ticks(1),), 11, 2, priority=2),
         schedulers=[
             Scheduler(
-                name="s0",
-                policy=Policy.PRIORITY_BASED_ROUND_ROBIN,
-                cores=("c0",),
-                parameters=(_time("timeSliceLength", 2),),
+                name="s0", policy=Policy.PRIORITY_BASED_ROUND_ROBIN, cores=("c0",), parameters=(_time("timeSliceLength", 2),)
             )
         ],
         runnables=NESTED,

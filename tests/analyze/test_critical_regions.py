@@ -176,8 +176,7 @@ class TestCriticalSections:
 class TestNonInterruptibleGroups:
     def test_block_everything_on_the_core(self):
         found = analyse(
-            process("hi", 2, 20, execute(1), offset=1),
-            process("lo", 1, 50, group(execute(5), interruptible=False)),
+            process("hi", 2, 20, execute(1), offset=1), process("lo", 1, 50, group(execute(5), interruptible=False))
         )
         # lo runs from 0 to 5; hi comes at 1: 5.
         assert found["hi"][1] >= 5

@@ -17,14 +17,7 @@ from unit_player import UnitTask
 from amalthea_uros.analyze.response_times import metrics
 from amalthea_uros.analyze.results.processes import Metric
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.perf.activities import (
-    Call,
-    Chance,
-    Loop,
-    ProbabilitySwitch,
-    SemaphoreAccess,
-    SemaphoreOperation,
-)
+from amalthea_uros.perf.activities import Call, Chance, Loop, ProbabilitySwitch, SemaphoreAccess, SemaphoreOperation
 from amalthea_uros.perf.constraints import Bound, Constraints, Requirement, TimeLimit, TimeMetric
 from amalthea_uros.perf.distributions import Uniform
 from amalthea_uros.perf.mapping import TaskAllocation

@@ -486,10 +486,7 @@ class TestModes:
 
     def test_branches_that_exclude_each_other_are_no_certain_overload(self):
         # 8 of 10 in one mode, 16 of 20 in the other: never both.
-        tasks = [
-            ("A", 10, [self.alternatives(1, on=8)], on(priority=2)),
-            ("B", 20, [self.alternatives(1, off=16)], on()),
-        ]
+        tasks = [("A", 10, [self.alternatives(1, on=8)], on(priority=2)), ("B", 20, [self.alternatives(1, off=16)], on())]
         found = analyze_system(system([root()], tasks))
         assert [process.verdict for process in found.processes] == [Verdict.MET, Verdict.UNKNOWN]
         core = found.processors["core"]

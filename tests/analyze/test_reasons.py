@@ -23,11 +23,7 @@ def analysed(schedulers, **allocation):
 @pytest.mark.parametrize(
     ("schedulers", "allocation", "reason"),
     [
-        (
-            [root(), PARTITION, OTHER],
-            {"scheduler": "partition"},
-            "its scheduler 'partition', below 'root', has no priority",
-        ),
+        ([root(), PARTITION, OTHER], {"scheduler": "partition"}, "its scheduler 'partition', below 'root', has no priority"),
         ([root("PfairPD2")], {}, "there is no analysis for the policy PfairPD2 of its scheduler 'root'"),
         ([root()], {"cores": ("elsewhere",)}, "its affinity is to elsewhere, but its scheduler 'root' is responsible for core"),
         ([Scheduler(name="root", policy=Policy.OSEK)], {}, "its scheduler 'root' is not responsible for a core"),

@@ -167,11 +167,7 @@ def test_more_load_never_shortens_a_response_time(rows):
         AnalysedTask(name=t.name, events=t.events, demand=MultiframeDemand.constant(t.demand.worst + 1), priority=t.priority)
         for t in tasks
     ]
-    for less, greater in zip(
-        priority_levels.response_times(tasks),
-        priority_levels.response_times(more),
-        strict=True,
-    ):
+    for less, greater in zip(priority_levels.response_times(tasks), priority_levels.response_times(more), strict=True):
         assert greater.worst is None or (less.worst is not None and less.worst <= greater.worst)
 
 

@@ -153,10 +153,7 @@ class TestWhatIsNotKnown:
         ("change", "reason"),
         [
             ({"stimuli": Stimuli()}, "the stimulus 'every low' is not defined in the model"),
-            (
-                {"stimuli": Stimuli(stimuli=(Custom(name="every low"),))},
-                "the rate of the stimulus 'every low' is unbounded",
-            ),
+            ({"stimuli": Stimuli(stimuli=(Custom(name="every low"),))}, "the rate of the stimulus 'every low' is unbounded"),
             ({"mapping": Mapping()}, "it is not allocated to a scheduler"),
         ],
     )

@@ -34,10 +34,7 @@ def analysed(tasks, priorities, offsets=None):
             period,
             offset,
             priority=priority,
-            task={
-                "preemption": Preemption.PREEMPTIVE if is_preemptive else Preemption.NON_PREEMPTIVE,
-                "activation_limit": 100,
-            },
+            task={"preemption": Preemption.PREEMPTIVE if is_preemptive else Preemption.NON_PREEMPTIVE, "activation_limit": 100},
         )
         for name, (period, demand, is_preemptive), priority, offset in zip(names, tasks, priorities, offsets, strict=True)
     ]

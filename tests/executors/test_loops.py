@@ -308,9 +308,7 @@ def test_executors_of_a_session_keep_each_other_from_it():
 def test_a_requirement_on_a_callback_is_judged_by_its_handle(limit, verdict):
     model = looping(message("a", 5_000_000, 500))
     requirement = Requirement(
-        name="r",
-        runnable="On_a",
-        limit=TimeLimit(metric=TimeMetric.RESPONSE_TIME, bound=Bound.UPPER, value=limit * MS),
+        name="r", runnable="On_a", limit=TimeLimit(metric=TimeMetric.RESPONSE_TIME, bound=Bound.UPPER, value=limit * MS)
     )
     found = analyze_system(replace(model, constraints=Constraints(requirements=(requirement,))))
     assert found.requirements["r"].verdict is verdict

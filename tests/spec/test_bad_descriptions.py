@@ -87,12 +87,7 @@ def test_a_mistake_is_reported_once(told, old, new):
 
 def test_all_mistakes_in_one_run(told):
     text = changed("platform:", "platfrm:").replace("1 ms", "1 mss").replace("node\n", "node\n      tmers: []\n")
-    assert [(line, rule) for line, _, rule, _, _ in told(text)] == [
-        (3, "YML010"),
-        (5, "YML012"),
-        (9, "YML010"),
-        (11, "YML012"),
-    ]
+    assert [(line, rule) for line, _, rule, _, _ in told(text)] == [(3, "YML010"), (5, "YML012"), (9, "YML010"), (11, "YML012")]
 
 
 @pytest.mark.parametrize(
@@ -238,10 +233,7 @@ UNDEFINED_NAME = ("APP001", "undefined process or runnable 'Nothing'")
             GOOD
             + "taskz:\n  - {name: T, period: 1 s, execution_time: 1 ms}\n  - {name: U, period: 3}\n"
             + UNDEFINED.replace("Nothing", "T"),
-            [
-                ("YML010", "unknown key 'taskz'"),
-                ("YML012", "period: '3' has no unit; write a time such as '10 ms'"),
-            ],
+            [("YML010", "unknown key 'taskz'"), ("YML012", "period: '3' has no unit; write a time such as '10 ms'")],
             id="what a misspelled section defines is defined",
         ),
         pytest.param(

@@ -112,8 +112,7 @@ def test_half_a_sine_covers_its_amplitude_times_period_over_pi():
 
 
 @pytest.mark.parametrize(
-    "clock",
-    [steps((0, 1), period=0), steps((0, -1)), function(Curve.SINE, -1, 1, 1), function(Curve.SINE, 1, -1, 5)],
+    "clock", [steps((0, 1), period=0), steps((0, -1)), function(Curve.SINE, -1, 1, 1), function(Curve.SINE, 1, -1, 5)]
 )
 def test_invalid_clocks_are_refused(clock):
     with pytest.raises(UnknownError, match=r"clock '(steps|curve)' is"):

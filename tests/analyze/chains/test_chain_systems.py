@@ -12,14 +12,7 @@ from test_methods import cases
 
 from amalthea_uros import Settings, analyze_system, describe, extract, load
 from amalthea_uros.analyze.results.chains import LatencyQuantity
-from amalthea_uros.perf.activities import (
-    Call,
-    Communication,
-    RaiseEvent,
-    Receive,
-    Send,
-    Trigger,
-)
+from amalthea_uros.perf.activities import Call, Communication, RaiseEvent, Receive, Send, Trigger
 from amalthea_uros.perf.distributions import Boundaries
 from amalthea_uros.perf.events import (
     ChainReference,
@@ -71,10 +64,7 @@ def system(tasks, events, chains=None, stimuli=(), runnables=(), cores=("core",)
     return of_parts(
         [Task(name=name, stimuli=(name,), activities=tuple(body), activation_limit=NO_LOSSES) for name, _, body, _, _ in rows],
         [TaskAllocation(task=row[0], scheduler=row[3], priority=-number) for number, row in enumerate(rows)],
-        [
-            *(Periodic(name=name, period=period * unit, offset=at * unit) for name, period, _, _, at in rows if period),
-            *stimuli,
-        ],
+        [*(Periodic(name=name, period=period * unit, offset=at * unit) for name, period, _, _, at in rows if period), *stimuli],
         cores=cores,
         runnables=runnables,
         hardware=Hardware(clocks=(Clock(name="clock", frequency=Fraction(10**12, unit)),), structures=structures),
@@ -301,10 +291,7 @@ class TestWhatCarries:
         assert values["max_reduced_reaction_time"] == 20
 
     def test_a_channel(self):
-        tasks = [
-            ("sender", 10, [ticks(1), Send(channel="C")]),
-            ("receiver", 10, [Receive(channel="C"), ticks(1)]),
-        ]
+        tasks = [("sender", 10, [ticks(1), Send(channel="C")]), ("receiver", 10, [Receive(channel="C"), ticks(1)])]
         events = (ChannelEvent(name="sent", channel="C", change=ChannelChange.SEND), at("receiver", END))
         chain, values, _, _ = evaluate(system(tasks, events))
         assert chain.routes == ("sent -[data C]-> receiver terminate",)
@@ -412,20 +399,14 @@ class TestWhatCarries:
     def test_counters_let_only_some_jobs_take_part(self):
         runnable = Runnable(name="take", activities=(write("L"),))
         counter = Counter(prescaler=3, offset=2)
-        tasks = [
-            ("A", 10, [ticks(1), Call(runnable="take", counter=counter)]),
-            ("B", 10, [read("L"), ticks(1)]),
-        ]
+        tasks = [("A", 10, [ticks(1), Call(runnable="take", counter=counter)]), ("B", 10, [read("L"), ticks(1)])]
         _, values, claims, _ = evaluate(system(tasks, [at("A", START), at("B", END)], runnables=[runnable]))
         assert claims == {"exact"}
         assert (values["max_reduced_reaction_time"], values["max_reaction_time"]) == (2, 32)
         assert values["max_reduced_data_age"] == 22
 
     def test_several_cores(self):
-        tasks = [
-            ("A", 10, [ticks(4), write("L")], "one"),
-            ("B", 10, [read("L"), ticks(1)], "two"),
-        ]
+        tasks = [("A", 10, [ticks(4), write("L")], "one"), ("B", 10, [read("L"), ticks(1)], "two")]
         events = [at("A", START), at("B", END)]
         _, values, claims, _ = evaluate(system(tasks, events, cores=("one", "two")))
         assert claims == {"exact"}
@@ -467,11 +448,7 @@ def of_form(*chains, more=()):
     [
         pytest.param([form()], (DIRECT,), [], id="both ends alone"),
         pytest.param(
-            [
-                form(references("one", "two")),
-                form(name="one", response=WRITTEN),
-                form(name="two", stimulus=WRITTEN),
-            ],
+            [form(references("one", "two")), form(name="one", response=WRITTEN), form(name="two", stimulus=WRITTEN)],
             (WHOLE,),
             [],
             id="references",

@@ -65,10 +65,7 @@ def repetition(event=EVENTS[2].name, **limits):
         # From the start of the producer at 0 or 10 to the end of the consumer at 10 or 30.
         (latency(minimum=10, maximum=20), [("reaction", 20, "met"), ("reaction", 10, "met")]),
         (latency(minimum=11, maximum=19), [("reaction", 20, "missed"), ("reaction", 10, "missed")]),
-        (
-            replace(latency(minimum=10, maximum=10), kind=LatencyKind.AGE),
-            [("data age", 10, "met"), ("data age", 10, "met")],
-        ),
+        (replace(latency(minimum=10, maximum=10), kind=LatencyKind.AGE), [("data age", 10, "met"), ("data age", 10, "met")]),
         (replace(latency(maximum=9), kind=LatencyKind.AGE), [("data age", 10, "missed")]),
         (replace(latency(maximum=1), chain="none"), [("reaction", None, "unknown")]),
         # Without a limit it is not met.
@@ -112,11 +109,7 @@ def test_repetition_of_sporadic_events():
     sporadic = RelativePeriodic(name="A", distance=Boundaries(lower=20 * US, upper=50 * US))
     built = system([("A", None, [ticks(1)])], [at("A", START), at("A", END)], stimuli=[sporadic])
     stated = replace(repetition("A start", lower=20, upper=50, jitter=1), span=1)
-    assert evaluate(stated, built=built) == [
-        ("repetition", 50, "met"),
-        ("repetition", 20, "met"),
-        ("jitter", None, "unknown"),
-    ]
+    assert evaluate(stated, built=built) == [("repetition", 50, "met"), ("repetition", 20, "met"), ("jitter", None, "unknown")]
 
 
 def test_events_that_should_come_together():

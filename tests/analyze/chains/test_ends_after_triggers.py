@@ -21,10 +21,7 @@ from amalthea_uros.units import MILLISECOND as MS
 
 def triggering(cores=("core",), *, constraints=()):
     """R, the higher priority, for 2 at the start of each W, which executes 10 every 100."""
-    tasks = [
-        ("R", None, [ticks(2)], cores[0]),
-        ("W", 100, [Trigger(stimulus="R"), ticks(10)], cores[-1]),
-    ]
+    tasks = [("R", None, [ticks(2)], cores[0]), ("W", 100, [Trigger(stimulus="R"), ticks(10)], cores[-1])]
     built = system(tasks, (at("W", END), at("R", END)), stimuli=(InterProcess(name="R"),), cores=cores)
     return replace(built, constraints=Constraints(constraints=constraints))
 

@@ -143,10 +143,7 @@ class TestCounters:
             Runnable(name="outer", activities=(Call(runnable="inner", counter=Counter(prescaler=3)),)),
             Runnable(name="inner", activities=(write("L"),)),
         ]
-        tasks = [
-            ("A", 10, [ticks(1), Call(runnable="outer", counter=Counter(prescaler=2))]),
-            ("B", 10, [read("L"), ticks(1)]),
-        ]
+        tasks = [("A", 10, [ticks(1), Call(runnable="outer", counter=Counter(prescaler=2))]), ("B", 10, [read("L"), ticks(1)])]
         _, values, claims, _ = evaluate(system(tasks, [at("A", START), at("B", END)], runnables=runnables))
         assert claims == {"exact"}
         assert (values["max_reduced_reaction_time"], values["max_reaction_time"]) == (2, 62)

@@ -77,12 +77,7 @@ def build_job_chains(tasks, chain):
 
 
 def distribution(latencies):
-    return {
-        "count": len(latencies),
-        "min": int(latencies.min()),
-        "max": int(latencies.max()),
-        "sum": int(latencies.sum()),
-    }
+    return {"count": len(latencies), "min": int(latencies.min()), "max": int(latencies.max()), "sum": int(latencies.sum())}
 
 
 @pytest.mark.parametrize("case", cases())

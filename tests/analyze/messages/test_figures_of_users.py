@@ -29,12 +29,7 @@ application:
 
 
 def analysis(
-    loop="{spin_some: 100 ms, sleep: 10 ms}",
-    baud_rate=115200,
-    size=4,
-    reliability="best-effort",
-    interval="10 s",
-    period="5 s",
+    loop="{spin_some: 100 ms, sleep: 10 ms}", baud_rate=115200, size=4, reliability="best-effort", interval="10 s", period="5 s"
 ):
     text = APP.format(loop=loop, baud_rate=baud_rate, size=size, reliability=reliability, interval=interval, period=period)
     return analyze_system(describe_text(text).assembly.system)

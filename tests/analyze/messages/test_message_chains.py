@@ -107,10 +107,7 @@ def test_a_write_that_can_block_holds_up_its_callback_until_the_message_is_on_th
 
 @pytest.mark.parametrize(
     "changes",
-    [
-        {"agent": Span(least=MS)},
-        {"wire": Wire(name="UART", kind=WireKind.SERIAL, cores=("c1", "c2"), loses_messages=True)},
-    ],
+    [{"agent": Span(least=MS)}, {"wire": Wire(name="UART", kind=WireKind.SERIAL, cores=("c1", "c2"), loses_messages=True)}],
     ids=["unknown agent", "lost frames"],
 )
 def test_a_callback_waits_up_to_the_timeout_if_its_round_trip_has_no_bound(changes):
