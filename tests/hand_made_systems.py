@@ -224,14 +224,13 @@ def across_cores(semaphore, waiting=None):
     )
 
 
+BUDGET = (_time("capacity", 3), _time("period", 10))
+
+
 def _server(policy):
     return [
         Scheduler(name="s0", policy=Policy.OSEK, cores=("c0",)),
-        Scheduler(
-            name="server",
-            policy=policy,
-            parent=Parent(scheduler="s0", priority=2, parameters=(_time("capacity", 3), _time("period", 10))),
-        ),
+        Scheduler(name="server", policy=policy, parent=Parent(scheduler="s0", priority=2, parameters=BUDGET)),
     ]
 
 
@@ -253,6 +252,8 @@ NESTED = (
     Runnable(name="outer", activities=(ticks(1), Call(runnable="inner"), ticks(2))),
 )
 
+CALLING_NESTED = {"runnables": NESTED, "labels": (Label(name="data"),)}
+
 SYSTEMS = {
     "a lock without ceiling": three_on_one_lock(Semaphore(name="lock", kind=SemaphoreKind.MUTEX)),
     "a lock with ceiling": three_on_one_lock(Semaphore(name="lock", ceiling=True)),
@@ -270,8 +271,7 @@ SYSTEMS = {
             priority=2,
         ),
         Proc("sets", (ticks(10), SetEvent(events=("ready",), process="waits"), ticks(3)), 50, 20, priority=1),
-        runnables=NESTED,
-        labels=(Label(name="data"),),
+        **CALLING_NESTED,
         os_events=(OsEvent(name="ready"),),
     ),
     "a poll for an event that is parked": system(
@@ -283,8 +283,7 @@ SYSTEMS = {
         ),
         Proc("between", (Call(runnable="outer"),), 10, 5, priority=2),
         Proc("sets", (ticks(42), SetEvent(events=("ready",))), 100, priority=1, scheduler="s1"),
-        runnables=NESTED,
-        labels=(Label(name="data"),),
+        **CALLING_NESTED,
         os_events=(OsEvent(name="ready"),),
     ),
     "a client and a server": system(
@@ -304,22 +303,19 @@ SYSTEMS = {
         Proc("mid", (ticks(6),), 14, 3, priority=2),
         Proc("short", (ticks(4),), 9, 1, priority=3),
         schedulers=[Scheduler(name="s0", policy=Policy.FIXED_PRIORITY_PREEMPTIVE, cores=CORES)],
-        runnables=NESTED,
-        labels=(Label(name="data"),),
+        **CALLING_NESTED,
     ),
     "global earliest deadline first": system(
         Proc("long", (ticks(25),), 40, deadline=40),
         Proc("mid", (ticks(6),), 14, 3, deadline=14),
         Proc("short", (Call(runnable="inner"),), 9, 1, deadline=5),
         schedulers=[Scheduler(name="s0", policy=Policy.EARLIEST_DEADLINE_FIRST, cores=CORES)],
-        runnables=NESTED,
-        labels=(Label(name="data"),),
+        **CALLING_NESTED,
     ),
     "lost and waiting activations": system(
         Proc("slow", (Call(runnable="outer"), ticks(30)), 10, priority=1, task={"activation_limit": 2}),
         Proc("busy", (ticks(4),), 9, priority=2),
-        runnables=NESTED,
-        labels=(Label(name="data"),),
+        **CALLING_NESTED,
     ),
     "a deferrable server": _served(Policy.DEFERRABLE_SERVER),
     "a polling server": _served(Policy.POLLING_SERVER),
@@ -334,15 +330,13 @@ SYSTEMS = {
         ),
         Proc("mid", (ticks(3), SchedulePoint(), ticks(4)), 20, 2, priority=2, task={"preemption": Preemption.COOPERATIVE}),
         Proc("high", (ticks(2),), 15, 4, priority=3),
-        runnables=NESTED,
-        labels=(Label(name="data"),),
+        **CALLING_NESTED,
     ),
     "non-interruptible groups": system(
         Proc("low", (Group(activities=(Call(runnable="outer"), ticks(4)), interruptible=False), ticks(5)), 40, priority=1),
         Proc("high", (ticks(2),), 6, 1, priority=2),
         Proc("whole", (ticks(3),), 20, priority=3, task={"preemption": Preemption.NON_PREEMPTIVE}),
-        runnables=NESTED,
-        labels=(Label(name="data"),),
+        **CALLING_NESTED,
     ),
     "round robin": system(
         Proc("first", (ticks(7),), 30, priority=1),
@@ -353,15 +347,13 @@ SYSTEMS = {
                 name="s0", policy=Policy.PRIORITY_BASED_ROUND_ROBIN, cores=("c0",), parameters=(_time("timeSliceLength", 2),)
             )
         ],
-        runnables=NESTED,
-        labels=(Label(name="data"),),
+        **CALLING_NESTED,
     ),
     "scheduling that costs time": system(
         Proc("high", (ticks(2),), 10, 3, priority=2),
         Proc("low", (Call(runnable="outer"), ticks(5)), 30, priority=1),
         schedulers=[Scheduler(name="s0", policy=Policy.OSEK, cores=("c0",), overhead=(ticks(1),))],
-        runnables=NESTED,
-        labels=(Label(name="data"),),
+        **CALLING_NESTED,
     ),
     "triggers to another core": system(
         Proc("first", (access("in", READ), ticks(4), Trigger(stimulus="go"), access("data", WRITE), ticks(2)), 20, priority=1),

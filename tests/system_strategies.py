@@ -142,6 +142,10 @@ NUMBERS |= dict.fromkeys(("count", "occurrences"), POSITIVE)
 NUMBERS |= dict.fromkeys(("exceeding", "alpha", "beta"), st.integers(1, 999).map(float))
 
 
+#: Fields that are tuples of at least one.
+NOT_EMPTY = {"times", "points", "steps", "alternatives", "buckets", "values", "branches", "cases", "needs"}
+
+
 class Drawing:
     """Draws the objects of one system."""
 
@@ -243,24 +247,11 @@ class Drawing:
 
     def least(self, cls, name):
         """How many there are at least."""
-        needed = {
-            "literals": 0,
-            "times": 1,
-            "points": 1,
-            "steps": 1,
-            "alternatives": 1,
-            "buckets": 1,
-            "values": 1,
-            "branches": 1,
-        }
-        needed |= {"cases": 1, "needs": 1}
-        if (cls, name) in ((events.Sequence, "items"), (events.Parallel, "items"), (conditions.Condition, "alternatives")):
-            return 1
         if (cls, name) == (constraints.OrderConstraint, "groups"):
             return 2
-        if cls in (activities.SetEvent, activities.ClearEvent, activities.WaitEvent):
-            return 1
-        return needed.get(name, 0)
+        is_event_access = cls in (activities.SetEvent, activities.ClearEvent, activities.WaitEvent)
+        is_sequence = name == "items" and cls in (events.Sequence, events.Parallel)
+        return int(is_event_access or is_sequence or name in NOT_EMPTY)
 
     def text(self, cls, name):
         """A name that exists, or some words."""

@@ -23,20 +23,15 @@ from amalthea_uros.timing.response import Claim
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
 from amalthea_uros.units import time_text
+from amalthea_uros.uros.described import describe_text
 
 SAMPLE = ROOT / "samples" / "bodas-test-advanced.yaml"
 UNKNOWN = "Message_Factor is due regularly, in one of 20 jobs of Executor_Task, and its phase is unknown"
 DESIGN = json.loads((SHARED / "vectors" / "design.json").read_text()) if (SHARED / "vectors").exists() else {}
 
 
-@pytest.fixture(name="analyze")
-def fixture_analyze(tmp_path):
-    def analyze(text, settings=None):
-        path = tmp_path / "app.yaml"
-        path.write_text(text)
-        return analyze_system(describe(path).system, settings)
-
-    return analyze
+def analyze(text, settings=None):
+    return analyze_system(describe_text(text).assembly.system, settings)
 
 
 def sample(**changes):
@@ -71,14 +66,14 @@ class TestTheSample:
         assert found == {"Executor_Task": (1, 25), "Control_Function": (1, 4)}
         assert f"{UNKNOWN}: all phases are evaluated" in analysis.assumptions
 
-    def test_a_limit_that_only_the_modelled_phase_meets_is_missed(self, analyze):
+    def test_a_limit_that_only_the_modelled_phase_meets_is_missed(self):
         analysis = analyze(sample(limit=("reaction: 25 ms", "reaction: 15 ms")))
         result = analysis.requirements["factor-to-output_reaction"]
         assert (result.verdict, result.value / US) == (Verdict.MISSED, 20029)
         assert analysis.summary.schedulable == "no"
 
     @pytest.mark.parametrize("phase", range(0, 40, 3) if IS_THOROUGH else (0, 3, 20, 39))
-    def test_a_stated_phase(self, phase, analyze):
+    def test_a_stated_phase(self, phase):
         stated = analyze(sample(phase=("rate: 50 Hz", f"rate: 50 Hz, phase: {phase} ms")))
         for_once = analyze_system(describe(SAMPLE).system, Settings(phases={"Message_Factor": phase * MS}))
         assert stated.processes == for_once.processes
@@ -89,7 +84,7 @@ class TestTheSample:
         wait = -phase % 20 * 1000
         assert latency(stated) == wait + (1016 if wait != 19_000 else 1029)
 
-    def test_factors_are_those_of_all_phases(self, analyze):
+    def test_factors_are_those_of_all_phases(self):
         analysis = analyze(sample(limit=("reaction: 25 ms", "reaction: 20.058 ms")))
         # 20 ms + 29 us * factor <= 20.058 ms.
         system = analysis.solution.context.system
@@ -98,7 +93,7 @@ class TestTheSample:
         if IS_THOROUGH:
             assert 0 <= 2 - max_growth(analysis) < Fraction(4, 1000)
 
-    def test_proposals_do_not_depend_on_a_phase(self, analyze):
+    def test_proposals_do_not_depend_on_a_phase(self):
         limit = ("period: 1 ms, execution_time: {base", "period: 1 ms, deadline: 1 ms, execution_time: {base")
         more = ("rate: 50 Hz", "rate: 50 Hz, deadline: 31 us")
         proposal = propose_priorities(analyze(sample(limit=limit, more=more)))[0]
@@ -126,7 +121,7 @@ class TestTooManyPhases:
         assert "phase" in chain.why
         assert f"{UNKNOWN}: any job can be that one" in analysis.assumptions
 
-    def test_a_chain_needs_only_the_phases_of_its_own_jobs(self, analyze, monkeypatch):
+    def test_a_chain_needs_only_the_phases_of_its_own_jobs(self, monkeypatch):
         # 20 * 10 combinations; the chain passes the job that takes the factor.
         monkeypatch.setattr(phases, "MAX_COMBINATIONS", 100)
         other = "        - {name: Other, topic: other, rate: 100 Hz, message_size: 4 B, execution_time: 1 us}\n      timers:"
@@ -146,7 +141,7 @@ THESIS = [row for problem in DESIGN.get("thesis", ()) for row in problem["rows"]
 
 
 @pytest.mark.parametrize("row", every(10, THESIS), ids=lambda row: str(row["change"]))
-def test_the_application_of_the_thesis_with_changes(row, analyze):
+def test_the_application_of_the_thesis_with_changes(row):
     text = SAMPLE.read_text().replace("1 ms, 10 ms", "500 us, 1 ms, 2 ms, 5 ms, 10 ms")
     keys = {
         "Executor_Task.period": ("period: 1 ms, execution_time: {base", "period: {} us, execution_time: {{base"),
@@ -177,7 +172,7 @@ PERIODS = [
 
 
 @pytest.mark.parametrize(("problem", "row"), every(11, PERIODS))
-def test_other_periods(problem, row, analyze):
+def test_other_periods(problem, row):
     *periods, worst, best = row
     # Rate monotonic; at equal periods the executor, then the timer, then the subscription.
     order = sorted(zip(periods, (0, 2, 1), ("executor", "subscription", "timer"), strict=True), reverse=True)
@@ -222,7 +217,7 @@ chains:
 class TestWhatRunsWhenItIsDue:
     """Message_Factor in a task of 1 ms, below the control function."""
 
-    def test_it_does_not_run_in_the_other_activations_of_its_task(self, analyze):
+    def test_it_does_not_run_in_the_other_activations_of_its_task(self):
         every, due = (
             analyze(sample(task=("rate: 50 Hz", f"rate: 200 Hz, priority: 0, task_period: 1 ms, runs_when: {when}")))
             for when in ("activated", "due")
@@ -232,7 +227,7 @@ class TestWhatRunsWhenItIsDue:
         # Message and task are not synchronised: the message can wait for the callback for up to 4 ms.
         assert (latency(every), latency(due)) == (1016, 5029)
 
-    def test_its_phase_can_be_stated(self, analyze):
+    def test_its_phase_can_be_stated(self):
         # The task runs in the activation in which the message is taken, after the control function: the next one uses it.
         task = "rate: 50 Hz, priority: 0, task_period: 1 ms, runs_when: due, phase: 7 ms"
         assert latency(analyze(sample(task=("rate: 50 Hz", task)))) == 1016
@@ -241,7 +236,7 @@ class TestWhatRunsWhenItIsDue:
 class TestAnIntervalThatIsNoMultipleOfThePeriod:
     """A message every 2.5 ms is taken after 2 and after 3 activations of the executor in turn."""
 
-    def test_an_event_can_miss_an_activation_and_wait_for_three(self, analyze):
+    def test_an_event_can_miss_an_activation_and_wait_for_three(self):
         analysis = analyze(sample(rate=("rate: 50 Hz", "interval: 2.5 ms, task_period: 1 ms, priority: 0")))
         best, worst, claim = times(analysis, "Executor_Task")
         assert best <= 12

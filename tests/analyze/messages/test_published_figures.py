@@ -20,10 +20,10 @@ from dataclasses import dataclass
 
 import pytest
 
-from amalthea_uros import describe
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.executors.results import HopKind
 from amalthea_uros.units import MILLISECOND as MS
+from amalthea_uros.uros.described import describe_text
 
 
 @dataclass(frozen=True)
@@ -61,47 +61,41 @@ chains:
 """
 
 
-def shortest_of_string(folder, transport, length):
+def analysis(text):
+    return analyze_system(describe_text(text).assembly.system)
+
+
+def shortest_of_string(transport, length):
     """The shortest time in ms on the wire of a best-effort message with a string: its length, its characters and a terminator."""
-    path = folder / "app.yaml"
     text = APPLICATION.format(transport=transport).replace(
         "{topic: pong, message_size: 8 B}", f"{{topic: pong, message_size: {4 + length + 1} B, reliability: best-effort}}"
     )
-    path.write_text(text)
-    solution = analyze_system(describe(path).system).solution
-    return solution.bcet("pong_topic_from_on_ping") / MS
+    return analysis(text).solution.bcet("pong_topic_from_on_ping") / MS
 
 
-@pytest.fixture
-def wires(tmp_path):
+def wires(row):
     """The shortest times in ms on a wire: of the ping, of the pong, and of an acknowledgement."""
-
-    def shortest(row):
-        path = tmp_path / "app.yaml"
-        path.write_text(APPLICATION.format(transport=row.transport))
-        analysis = analyze_system(describe(path).system)
-        there, back = (hop.best / MS for hop in analysis.chains["ping"].hops if hop.kind is HopKind.WIRE)
-        solution = analysis.solution
-        answer = min(solution.bcet(name) for name in solution.context.system.transmissions if name.endswith("acknowledgement"))
-        return there, back, answer / MS
-
-    return shortest
+    found = analysis(APPLICATION.format(transport=row.transport))
+    there, back = (hop.best / MS for hop in found.chains["ping"].hops if hop.kind is HopKind.WIRE)
+    solution = found.solution
+    answer = min(solution.bcet(name) for name in solution.context.system.transmissions if name.endswith("acknowledgement"))
+    return there, back, answer / MS
 
 
 @pytest.mark.parametrize("row", [UDP, UART, CAN_FD], ids=["UDP", "UART", "CAN FD"])
-def test_no_published_time_is_shorter_than_the_wire(wires, row):
+def test_no_published_time_is_shorter_than_the_wire(row):
     there, back, _ = wires(row)
     assert back < row.client
     assert there < row.agent
     assert there + back < row.round_trip
 
 
-def test_the_wire_of_the_serial_line_is_what_its_bytes_take(wires):
+def test_the_wire_of_the_serial_line_is_what_its_bytes_take():
     # 12 + 8 bytes, 7 of the frame, 10 bits each; the acknowledgement has 13 + 7 bytes.
     assert wires(UART) == pytest.approx((27 * 10 / 115.2, 27 * 10 / 115.2, 20 * 10 / 115.2), abs=1e-6)
 
 
-def test_software_fitted_to_udp_and_two_acknowledgements_predict_the_round_trip_over_uart(wires):
+def test_software_fitted_to_udp_and_two_acknowledgements_predict_the_round_trip_over_uart():
     of_udp, of_uart = wires(UDP), wires(UART)
     client, agent = UDP.client - of_udp[1], UDP.agent - of_udp[0]
     assert of_udp[0] + of_udp[1] < 0.02 * UDP.round_trip
@@ -109,17 +103,17 @@ def test_software_fitted_to_udp_and_two_acknowledgements_predict_the_round_trip_
     assert predicted == pytest.approx(UART.round_trip, rel=0.10)
 
 
-def test_software_fitted_to_udp_and_the_published_time_per_message_predict_the_round_trip_over_can_fd(wires, tmp_path):
+def test_software_fitted_to_udp_and_the_published_time_per_message_predict_the_round_trip_over_can_fd():
     per_message = [length / rate for length, rate in CAN_FD_THROUGHPUT.items()]
     assert (min(per_message), max(per_message)) == pytest.approx((1.05, 1.43), abs=0.005)
     for length, rate in CAN_FD_THROUGHPUT.items():
-        assert shortest_of_string(tmp_path, CAN_FD.transport, length) < length / rate / 3
+        assert shortest_of_string(CAN_FD.transport, length) < length / rate / 3
     software = UDP.round_trip - sum(wires(UDP)[:2])
     assert software + 2 * min(per_message) < CAN_FD.round_trip < software + 2 * max(per_message)
     assert software + 2 * sum(per_message) / 3 == pytest.approx(CAN_FD.round_trip, rel=0.10)
 
 
 @pytest.mark.parametrize("length", UART_THROUGHPUT)
-def test_the_throughput_over_uart_is_that_of_the_frames(tmp_path, length):
+def test_the_throughput_over_uart_is_that_of_the_frames(length):
     # kB/s are bytes per ms.
-    assert length / shortest_of_string(tmp_path, UART.transport, length) == pytest.approx(UART_THROUGHPUT[length], rel=0.03)
+    assert length / shortest_of_string(UART.transport, length) == pytest.approx(UART_THROUGHPUT[length], rel=0.03)
