@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass, replace
 from random import Random
-from types import SimpleNamespace
 
 from hand_made_systems import Proc, system
 from looping_executors import combined, guard, message, timer
@@ -140,10 +139,7 @@ def _handles(random, prefix, varying, sending, delays, shape):
                 take=f"Take_{name}" if random.random() < 0.3 else None,
                 **parts,
             )
-            handle = replace(
-                handle,
-                kind=random.choice((HandleKind.SUBSCRIPTION, HandleKind.SUBSCRIPTION, HandleKind.SERVICE, HandleKind.CLIENT)),
-            )
+            handle = replace(handle, kind=random.choice(RECEIVING))
             delays[name] = random.choice((0, 0, 0, 3 * MS))
         found.append((handle, (low, most)))
     return found
@@ -170,9 +166,7 @@ def application(random: Random, executors=None) -> Application:
     """Anything; all times but those of handles are drawn for this application, and are constant in half of them."""
     varying = random.random() < 0.6
     count = executors or (2 if random.random() < 0.15 else 1)
-    shape = random.choice(
-        (("message",), ("timer",), ("message", "message", "timer"), ("message", "timer", "guard"), ("timer", "guard"))
-    )
+    shape = random.choice(SHAPES)
     waiting = WaitBehaviour(slots=random.choice((1, 2, 4, None)))
     if random.random() < 0.2:
         waiting = replace(
@@ -289,11 +283,3 @@ def _of_handle(seen, handle):
         elif handle.lost.most is not None and max(seen.lost) > handle.lost.most:
             found.append(f"{name}: lost {max(seen.lost)} in one go > {handle.lost.most}")
     return found
-
-
-def ratios(played, results):
-    """The worst response that was seen against its bound, for each handle with both."""
-    for one, result in zip(played, results, strict=True):
-        for entity, handle in zip(one.entities, result.handles, strict=True):
-            if handle.response.worst and entity.seen.responses:
-                yield SimpleNamespace(handle=handle, ratio=max(entity.seen.responses) / handle.response.worst)

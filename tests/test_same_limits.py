@@ -1,13 +1,11 @@
 """All commands that judge limits judge the same ones, and none says that a limit is met where another one does not."""
 
 import json
-from contextvars import copy_context
 
 import pytest
-from click.testing import CliRunner
+from command import amuros
 from support import SHARED
 
-from amalthea_uros.cli.main import cli
 from amalthea_uros.services.analyze import analyze_files
 from amalthea_uros.services.simulate import simulate_files
 from amalthea_uros.simulate.options import Options
@@ -31,14 +29,9 @@ def test_analysis_and_simulation_judge_the_same_limits(path):
     )
 
 
-def amuros(*arguments):
-    """Run a command within this process: it loads nothing again."""
-    return copy_context().run(CliRunner().invoke, cli, list(map(str, arguments)))
-
-
 def last_line(*arguments):
     run = amuros(*arguments)
-    return (run.stdout or run.stderr).rstrip().splitlines()[-1], run.exit_code
+    return (run.stdout or run.stderr).rstrip().splitlines()[-1], run.returncode
 
 
 @pytest.mark.parametrize(
@@ -62,26 +55,35 @@ def test_many_runs_praise_nothing_that_was_not_observed(model, found, code):
     assert json.loads(amuros(*command, "--output", "json").stdout)["summary"]["text"] == line
 
 
-HEAD = "amuros: 1\nname: app\nhardware: {platform: single-core, frequency: 100 MHz}\n"
-HIGH = "  - {name: H, period: 20 ms, execution_time: 6 ms, priority: 2}\n"
-LOW = "  - {name: U, period: 25 ms, execution_time: 15 ms, priority: 1, activation_limit: 2WITH}\n"
+HIGH = "{name: H, period: 20 ms, execution_time: 6 ms, priority: 2}"
+LOW = "{name: U, period: 25 ms, execution_time: 15 ms, priority: 1, activation_limit: 2}"
+
+
+def app_of(*tasks, isrs=(), requirements=()):
+    sections = {"isrs": isrs, "tasks": tasks, "requirements": requirements}
+    lists = (f"{name}: [{', '.join(entries)}]\n" for name, entries in sections.items() if entries)
+    return "amuros: 1\nname: app\nhardware: {platform: single-core, frequency: 100 MHz}\n" + "".join(lists)
+
+
+def low_with(more, old="}"):
+    return LOW.replace(old, more)
+
+
 #: The verdict on each system, and why: late, loses activations, overloaded; a lower limit that is met or missed.
 APPS = {
-    "yes": HEAD + "tasks:\n" + HIGH + LOW.replace("WITH", ", deadline: 30 ms"),
-    "no": HEAD + "tasks:\n" + HIGH + LOW.replace("WITH", ""),
-    "no, twice stated": HEAD
-    + "tasks:\n"
-    + HIGH
-    + LOW.replace("WITH", "")
-    + "requirements:\n  - {process: U, response_time: {max: 20 ms}}\n  - {process: U, response_time: {max: 26 ms}}\n",
-    "no, lost": HEAD + "tasks:\n" + HIGH + LOW.replace("activation_limit: 2WITH", "deadline: 40 ms"),
-    "no, overload": HEAD + "tasks:\n" + HIGH + LOW.replace("WITH", "").replace("15 ms", "20 ms"),
-    "unknown": HEAD
-    + "isrs:\n  - {name: I, sporadic: {min: 20 ms, max: 1 s}, execution_time: 6 ms, priority: 1}\n"
-    + "tasks:\n"
-    + LOW.replace("WITH", ", deadline: 20 ms"),
-    "yes, at least": HEAD + "tasks:\n" + HIGH + "requirements:\n  - {process: H, response_time: {min: 5 ms}}\n",
-    "no, at least": HEAD + "tasks:\n" + HIGH + "requirements:\n  - {process: H, response_time: {min: 7 ms}}\n",
+    "yes": app_of(HIGH, low_with(", deadline: 30 ms}")),
+    "no": app_of(HIGH, LOW),
+    "no, twice stated": app_of(
+        HIGH, LOW, requirements=[f"{{process: U, response_time: {{max: {limit} ms}}}}" for limit in (20, 26)]
+    ),
+    "no, lost": app_of(HIGH, low_with("deadline: 40 ms", "activation_limit: 2")),
+    "no, overload": app_of(HIGH, low_with("20 ms", "15 ms")),
+    "unknown": app_of(
+        low_with(", deadline: 20 ms}"),
+        isrs=["{name: I, sporadic: {min: 20 ms, max: 1 s}, execution_time: 6 ms, priority: 1}"],
+    ),
+    "yes, at least": app_of(HIGH, requirements=["{process: H, response_time: {min: 5 ms}}"]),
+    "no, at least": app_of(HIGH, requirements=["{process: H, response_time: {min: 7 ms}}"]),
 }
 #: The exit code of each verdict with each value of --fail-on.
 CODES = {
@@ -110,7 +112,7 @@ def test_all_commands_that_prove_agree(app, tmp_path):
         assert last_line("analyze", path, "-q", "--fail-on", fail_on) == (line, expected)
     assert last_line("report", path, "-o", tmp_path / "r.md", "--no-simulation", "-q") == (line, code)
     explained = amuros("analyze", path, "--explain", "H" if verdict != "unknown" else "U")
-    assert (explained.exit_code, line in explained.stderr) == (code, verdict != "yes")
+    assert (explained.returncode, line in explained.stderr) == (code, verdict != "yes")
     summary = json.loads(amuros("analyze", path, "--output", "json").stdout)["summary"]
     assert (summary["text"], summary["schedulable"]) == (line, verdict)
     assert (summary["failures"] > 0, summary["unknown"] > 0) == (verdict == "no", verdict == "unknown")
