@@ -6,7 +6,7 @@ different orders (deadlock), and semaphores on a core with round robin.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from random import Random
 from typing import Any
 
@@ -86,41 +86,30 @@ def some(rng: Random, probability: float) -> bool:
     return rng.random() < probability
 
 
-@dataclass(slots=True)
-class Style:
-    """With which probability a construct occurs at a place; most systems have few of them."""
+#: With which probability a construct occurs at a place, in systems that have it; most have few of them.
+USUAL = {
+    "group": 0.25,
+    "unordered": 0.5,
+    "mask": 0.15,
+    "switch": 0.15,
+    "call": 0.3,
+    "counter": 0.4,
+    "lock": 0.3,
+    "trigger": 0.35,
+    "point": 0.5,
+    "varying": 0.35,
+}
 
-    group: float = 0.0
-    unordered: float = 0.0
-    mask: float = 0.0
-    switch: float = 0.0
-    call: float = 0.0
-    counter: float = 0.0
-    lock: float = 0.0
-    trigger: float = 0.0
-    point: float = 0.0
-    varying: float = 0.0
 
-    @classmethod
-    def draw(cls, rng: Random) -> Style:
-        """Some constructs often, the others not at all."""
-        usual = {
-            "group": 0.25,
-            "unordered": 0.5,
-            "mask": 0.15,
-            "switch": 0.15,
-            "call": 0.3,
-            "counter": 0.4,
-            "lock": 0.3,
-            "trigger": 0.35,
-            "point": 0.5,
-            "varying": 0.35,
-        }
-        chosen = {name: probability for name, probability in usual.items() if some(rng, 0.4)}
-        # Counters and schedule points need others to occur at all.
-        if "call" in chosen or "trigger" in chosen:
-            chosen |= {"counter": usual["counter"]} if some(rng, 0.4) else {}
-        return cls(**chosen | ({"point": usual["point"]} if some(rng, 0.5) else {}))
+def drawn_style(rng: Random) -> dict[str, float]:
+    """Some constructs with their usual probability, the others never."""
+    chosen = {name for name in USUAL if some(rng, 0.4)}
+    # Counters and schedule points need others to occur at all.
+    if chosen & {"call", "trigger"} and some(rng, 0.4):
+        chosen.add("counter")
+    if some(rng, 0.5):
+        chosen.add("point")
+    return {name: probability if name in chosen else 0.0 for name, probability in USUAL.items()}
 
 
 @dataclass(slots=True)
@@ -136,8 +125,7 @@ class Place:
 
     def inside(self, **changes: Any) -> Place:
         """One level deeper."""
-        values = {name: getattr(self, name) for name in self.__slots__}
-        return Place(**(values | {"depth": self.depth + 1} | changes))
+        return replace(self, depth=self.depth + 1, **changes)
 
 
 @dataclass(slots=True)
@@ -145,24 +133,24 @@ class Generator:
     """Draws one system."""
 
     rng: Random
-    style: Style = field(init=False)
+    style: dict[str, float] = field(init=False)
     cores: dict[str, str] = field(default_factory=dict)
     semaphores: dict[str, dict[str, bool]] = field(default_factory=dict)
     runnables: dict[str, list[Item]] = field(default_factory=dict)
     runnable_cores: dict[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        self.style = Style.draw(self.rng)
+        self.style = drawn_style(self.rng)
 
     def system(self) -> PlainSystem:
         """The whole system."""
         rng = self.rng
         for index in range(1 if some(rng, 0.75) else 2):
             self.cores[f"core{index}"] = rng.choice(("FPP", "FPP", "FPP", "OSEK", "OSEK", "EDF", "RR"))
-            for letter in "AB" if self.style.lock else "":
+            for letter in "AB" if self.style["lock"] else "":
                 self.semaphores[f"s{index}{letter}"] = {"ceiling": some(rng, 0.6)}
         processes = self._processes()
-        for index in reversed(range(rng.randint(1, 4) if self.style.call else 0)):
+        for index in reversed(range(rng.randint(1, 4) if self.style["call"] else 0)):
             core = rng.choice(list(self.cores))
             self.runnable_cores[f"r{index}"] = core
             self.runnables[f"r{index}"] = self._body(Place(None, core, depth=1, first_runnable=index + 1))
@@ -218,7 +206,7 @@ class Generator:
 
     def _arrival(self, period: int, exotic: set[str], index: int) -> dict[str, Any]:
         rng = self.rng
-        if index and self.style.trigger and some(rng, self.style.trigger):
+        if index and self.style["trigger"] and some(rng, self.style["trigger"]):
             counter = self._counter() if some(rng, 0.3) else {}
             return {"trigger": counter}
         if "sporadic" in exotic and some(rng, 0.5):
@@ -240,7 +228,7 @@ class Generator:
             for _ in range(2 if some(rng, 0.15) else 1):
                 source = rng.choice(processes[:index])
                 body = self._somewhere(source["body"])
-                item: Item = {"trigger": process["name"], **(self._counter() if some(rng, self.style.counter) else {})}
+                item: Item = {"trigger": process["name"], **(self._counter() if some(rng, self.style["counter"]) else {})}
                 at = rng.randint(0, len(body))
                 body.insert(at, item)
                 if self._is_triggered_later(processes, index):
@@ -287,30 +275,30 @@ class Generator:
 
     def _execute(self) -> Item:
         least = self.rng.randint(1, 4)
-        return {"execute": [least, least + (self.rng.randint(0, 3) if some(self.rng, self.style.varying) else 0)]}
+        return {"execute": [least, least + (self.rng.randint(0, 3) if some(self.rng, self.style["varying"]) else 0)]}
 
     def _items(self, place: Place) -> list[Item]:
         """An item, or a critical section."""
         rng, style = self.rng, self.style
         is_deep = place.depth >= 3
-        if not is_deep and some(rng, style.group):
-            if some(rng, style.unordered):
+        if not is_deep and some(rng, style["group"]):
+            if some(rng, style["unordered"]):
                 return [{"group": [_whole(self._items(place.inside())) for _ in range(rng.randint(1, 3))], "ordered": False}]
             return [{"group": self._body(place.inside())}]
-        if not is_deep and some(rng, style.mask) and not place.is_masked:
+        if not is_deep and some(rng, style["mask"]) and not place.is_masked:
             return [{"group": self._body(place.inside(is_masked=True)), "interruptible": False}]
-        if not is_deep and some(rng, style.switch):
+        if not is_deep and some(rng, style["switch"]):
             weights = [rng.choice((1.0, 3.0)) for _ in range(rng.randint(2, 3))]
             return [{"switch": [[weight, self._body(place.inside()) if index else []] for index, weight in enumerate(weights)]}]
-        if some(rng, style.lock) and (semaphores := self._requestable(place)):
+        if some(rng, style["lock"]) and (semaphores := self._requestable(place)):
             chosen = rng.choice(semaphores)
             held = (*place.held, chosen)
             inner = [self._execute()] if is_deep or some(rng, 0.5) else self._body(place.inside(held=held))
             return [{"request": chosen}, *inner, {"release": chosen}]
-        if some(rng, style.call) and (callable_here := self._callable(place)):
-            counter = self._counter() if some(rng, style.counter) else {}
+        if some(rng, style["call"]) and (callable_here := self._callable(place)):
+            counter = self._counter() if some(rng, style["counter"]) else {}
             return [{"call": rng.choice(callable_here), **counter}]
-        if some(rng, style.point) and place.process is not None and place.process["preemption"] == "cooperative":
+        if some(rng, style["point"]) and place.process is not None and place.process["preemption"] == "cooperative":
             return [self._execute(), {"point": True}]
         return [self._execute()]
 
