@@ -95,7 +95,8 @@ def test_the_values_have_the_distribution(shape):
     distribution, probability = SHAPES[shape]
     # Values that are rounded down and up at random are hardly moved.
     found = np.sort(variate(distribution).of(EQUIDISTANT)) / WIDE
-    shares = (np.arange(len(found)) + 0.5) / len(found)
+    some = slice(None, None, 10)
+    found, shares = found[some], ((np.arange(len(found)) + 0.5) / len(found))[some]
     expected = np.array([probability(x) for x in found])
     # Where the density is infinite, the resolution of the values moves many of them to the same one.
     inside = (found > 1e-5) & (found < 1 - 1e-5)
