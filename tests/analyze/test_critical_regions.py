@@ -24,8 +24,12 @@ def group(*items, **how):
     return {"group": list(items), **how}
 
 
-def process(name, priority, period, *body, offset=0, preemption="preemptive", **more):
-    arrival = {"periodic": {"period": period, "offset": offset}}
+def process(name, priority, period, *body, offset=0, preemption="preemptive", jitter=None, latest=None, **more):
+    """A task; it is sporadic if it has a latest next arrival."""
+    if latest is None:
+        arrival = {"periodic": {"period": period, "offset": offset} | ({"jitter": jitter} if jitter else {})}
+    else:
+        arrival = {"sporadic": {"least": period, "most": latest, "offset": offset}}
     return {
         "name": name,
         "kind": "task",
@@ -38,16 +42,20 @@ def process(name, priority, period, *body, offset=0, preemption="preemptive", **
     }
 
 
-def analyse(*processes, policy="FPP", ceilings=None, runnables=None):
-    """The response times of processes: (best, worst, claim), or why they are unknown."""
+def analysis(*processes, policy="FPP", ceilings=None, runnables=None):
     plain = {
         "cores": {"core": policy},
         "semaphores": {name: {"ceiling": ceiling} for name, ceiling in (ceilings or {}).items()},
         "runnables": runnables or {},
         "processes": list(processes),
     }
+    return analyze_system(to_perf(plain))
+
+
+def analyse(*processes, **parts):
+    """The response times of processes: (best, worst, claim), or why they are unknown."""
     found = {}
-    for result in analyze_system(to_perf(plain)).processes:
+    for result in analysis(*processes, **parts).processes:
         response = result.response
         if response is None or response.worst is None:
             found[result.name] = result.reason
@@ -99,13 +107,9 @@ class TestCriticalSections:
     def test_are_told_in_the_same_order_in_each_run(self):
         names = [f"S{number}" for number in range(8)]
         sections = [item for name in names for item in locked(name, execute(1))]
-        plain = {
-            "cores": {"core": "FPP"},
-            "semaphores": {name: {"ceiling": False} for name in names},
-            "runnables": {},
-            "processes": [process("hi", 2, 50, *sections), process("lo", 1, 100, *sections)],
-        }
-        told = [text.split("'")[1] for text in analyze_system(to_perf(plain)).assumptions if "no priority ceiling" in text]
+        processes = process("hi", 2, 50, *sections), process("lo", 1, 100, *sections)
+        found = analysis(*processes, ceilings=dict.fromkeys(names, False))
+        told = [text.split("'")[1] for text in found.assumptions if "no priority ceiling" in text]
         assert told == names
 
     def test_nested_sections_are_one_stretch(self):
@@ -260,7 +264,7 @@ class TestOffsets:
         assert found == {"A": (3, 3, "exact"), "B": (3, 3, "exact")}
 
     def test_count_beside_a_sporadic_process(self):
-        sporadic = process("S", 3, 10, execute(1)) | {"arrival": {"sporadic": {"least": 10, "most": 20, "offset": 0}}}
+        sporadic = process("S", 3, 10, execute(1), latest=20)
         found = analyse(sporadic, process("A", 2, 10, execute(3)), process("B", 1, 10, execute(3), offset=5))
         # S delays each of them once; they never meet.
         assert found["A"][1] == found["B"][1] == 4
@@ -308,10 +312,9 @@ class TestStretches:
 
 def test_others_of_the_same_priority_can_be_avoided_in_the_best_case():
     # T1 needs 7, and T0 can take a turn of 3 in between: released just after the group of T0, it ends before the second one.
-    sporadic = {"arrival": {"sporadic": {"least": 20, "most": 31, "offset": 0}}}
     found = analyse(
         process("T0", 1, 10, group(execute(3), interruptible=False), execute(1), slice=3),
-        process("T1", 1, 20, execute(4), execute(3), slice=1) | sporadic,
+        process("T1", 1, 20, execute(4), execute(3), slice=1, latest=31),
         policy="RR",
     )
     assert found["T1"][0] <= 10
@@ -319,11 +322,10 @@ def test_others_of_the_same_priority_can_be_avoided_in_the_best_case():
 
 def test_an_earlier_job_can_be_the_longer_one_of_a_non_preemptive_task():
     # T1 takes 10 and then 3: what comes during the 10 goes first. Three jobs of T0 before the second job end, with the jitter: 17.
-    jittering = {"arrival": {"periodic": {"period": 11, "offset": 0, "jitter": 8}}}
     call = {"call": "r", "prescaler": 3, "offset": 0}
     found = analyse(
         process("T0", 8, 11, execute(4)),
-        process("T1", 3, 11, call, execute(3), preemption="non-preemptive") | jittering,
+        process("T1", 3, 11, call, execute(3), preemption="non-preemptive", jitter=8),
         runnables={"r": [execute(7)]},
     )
     assert found["T1"][1] >= 17
@@ -332,9 +334,8 @@ def test_an_earlier_job_can_be_the_longer_one_of_a_non_preemptive_task():
 def test_a_sporadic_process_can_pile_up_behind_a_blocking_one_before_a_known_release():
     # low runs from 0 to 10 without interruption; S comes at 1, 3, 5, ...: at 11, when middle comes, five jobs of S are pending, and
     # others come until 21. middle cannot run before 20.
-    sporadic = {"arrival": {"sporadic": {"least": 2, "most": 4, "offset": 1}}}
     found = analyse(
-        process("S", 3, 2, execute(1)) | sporadic,
+        process("S", 3, 2, execute(1), offset=1, latest=4),
         process("middle", 2, 100, execute(1), offset=11),
         process("low", 1, 100, execute(10), preemption="non-preemptive"),
     )
@@ -343,16 +344,12 @@ def test_a_sporadic_process_can_pile_up_behind_a_blocking_one_before_a_known_rel
 
 def test_the_load_of_what_is_below_proves_no_overload():
     # high has a tenth of the core and waits for low, which gets too little of it: nobody knows for how long, but high is no overload.
-    plain = {
-        "cores": {"core": "FPP"},
-        "semaphores": {"A": {"ceiling": False}},
-        "runnables": {},
-        "processes": [
-            process("high", 3, 10, *locked("A", execute(1))),
-            process("middle", 2, 10, execute(6)),
-            process("low", 1, 10, *locked("A", execute(6))),
-        ],
-    }
-    found = {each.name: (str(each.verdict), each.response.worst) for each in analyze_system(to_perf(plain)).processes}
+    whole = analysis(
+        process("high", 3, 10, *locked("A", execute(1))),
+        process("middle", 2, 10, execute(6)),
+        process("low", 1, 10, *locked("A", execute(6))),
+        ceilings={"A": False},
+    )
+    found = {each.name: (str(each.verdict), each.response.worst) for each in whole.processes}
     assert found["high"] == ("unknown", None)
     assert found["low"] == ("unbounded", None)

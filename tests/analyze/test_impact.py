@@ -40,33 +40,30 @@ def figure(value, goal=Preference.LOW, **others):
     return ComparedFigure(part=ResultPart.PROCESS, object="A", quantity="q", value=value, goal=goal, **others)
 
 
-def effect(before, after):
-    """The effect of a figure that changes."""
-    (row,) = compare([before], [after]).rows
-    return row.effect
+OVERLOAD = figure(None, is_overload=True)
+LESS, MORE = (figure(None, unit=FigureUnit.SHARE, at_least=Fraction(part, 4)) for part in (1, 2))
 
 
 @pytest.mark.parametrize(
-    ("goal", "expected"), [(Preference.LOW, Effect.WORSE), (Preference.HIGH, Effect.BETTER), (Preference.NONE, Effect.CHANGED)]
+    ("before", "after", "expected"),
+    [
+        # The goal says which values are better.
+        (figure(1), figure(2), Effect.WORSE),
+        (figure(1, Preference.HIGH), figure(2, Preference.HIGH), Effect.BETTER),
+        (figure(1, Preference.NONE), figure(2, Preference.NONE), Effect.CHANGED),
+        # A value that becomes unknown is worse, but nobody can say whether a value is better than an unknown one.
+        *((figure(1, goal), figure(None, goal), Effect.WORSE) for goal in Preference),
+        (figure(None), figure(1), Effect.UNKNOWN),
+        # Any value is better than an overload, and an overload is worse than unknown.
+        (OVERLOAD, figure(10**15), Effect.BETTER),
+        (figure(None), OVERLOAD, Effect.WORSE),
+        (OVERLOAD, figure(None), Effect.UNKNOWN),
+        # A known part of an unknown load is compared, too.
+        (LESS, MORE, Effect.UNKNOWN),
+    ],
 )
-def test_the_goal_says_which_values_are_better(goal, expected):
-    assert effect(figure(1, goal), figure(2, goal)) is expected
-
-
-@pytest.mark.parametrize("goal", Preference)
-def test_a_value_that_becomes_unknown_is_worse(goal):
-    assert effect(figure(1, goal), figure(None, goal)) is Effect.WORSE
-
-
-def test_nobody_can_say_whether_a_value_is_better_than_an_unknown_one():
-    assert effect(figure(None), figure(1)) is Effect.UNKNOWN
-
-
-def test_any_value_is_better_than_an_overload_and_an_overload_is_worse_than_unknown():
-    overload = figure(None, is_overload=True)
-    assert effect(overload, figure(10**15)) is Effect.BETTER
-    assert effect(figure(None), overload) is Effect.WORSE
-    assert effect(overload, figure(None)) is Effect.UNKNOWN
+def test_the_effect_of_a_figure_that_changes(before, after, expected):
+    assert [row.effect for row in compare([before], [after]).rows] == [expected]
 
 
 @pytest.mark.parametrize("before", GOOD + OPEN + BAD)
@@ -90,11 +87,6 @@ def test_what_only_one_side_has_is_neither_better_nor_worse():
     one = figure(1)
     assert [row.effect for row in compare([], [one]).rows] == [Effect.ADDED]
     assert [row.effect for row in compare([one], []).rows] == [Effect.REMOVED]
-
-
-def test_a_known_part_of_an_unknown_load_is_compared_too():
-    less, more = (figure(None, unit=FigureUnit.SHARE, at_least=Fraction(part, 4)) for part in (1, 2))
-    assert effect(less, more) is Effect.UNKNOWN
 
 
 def test_the_claim_of_a_row_is_the_weaker_one():
