@@ -6,7 +6,7 @@ from math import lcm
 
 import pytest
 from effort import every, examples
-from hand_made_systems import Proc, locked, system, ticks
+from hand_made_systems import Proc, changed, locked, system, ticks
 from hypothesis import example, given
 from hypothesis import strategies as st
 from support import ROOT, analysis_of
@@ -19,7 +19,7 @@ from amalthea_uros.analyze.response_times import priority_levels
 from amalthea_uros.analyze.response_times.task import AnalysedTask
 from amalthea_uros.analyze.sensitivity import max_growth, sensitivity
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.perf.activities import Trigger
+from amalthea_uros.perf.activities import Trigger, WaitEvent
 from amalthea_uros.perf.os import Semaphore
 from amalthea_uros.perf.software import Preemption
 from amalthea_uros.timing.basics.settings import Settings
@@ -123,6 +123,13 @@ def test_priorities_are_proposed_in_the_order_that_fits():
 def test_an_overload_has_no_proposal():
     (proposal,) = propose_priorities(analyze_system(tasks_on_a_core(("A", 100, 60, 100), ("B", 100, 60, 100))))
     assert (proposal.priorities, proposal.reason) == (None, "with any priorities, the tasks need 120.0 % of the core")
+
+
+def test_a_task_that_cannot_be_analysed_prevents_a_proposal():
+    built = changed(tasks_on_a_core(("A", 100, 60, 100), ("B", 100, 10, 100)), "A", activities=(WaitEvent(events=("E",)),))
+    (proposal,) = propose_priorities(analyze_system(built))
+    assert proposal.outcome is ProposalOutcome.EXCLUDED
+    assert proposal.reason.startswith("'A' could not be analysed: it waits for events")
 
 
 def player(rows, order, preemptive=True):

@@ -19,6 +19,7 @@ from amalthea_uros.perf.activities import (
     Case,
     Count,
     Demand,
+    ExecutionNeed,
     Group,
     RaiseEvent,
     Receive,
@@ -437,6 +438,29 @@ class TestCosts:
     def test_numbers_of_calls(self, times, expected):
         found = alone(Call(runnable="R", times=times), runnables=[Runnable(name="R", activities=(ticks(7),))])
         assert found == expected or (isinstance(found, str) and found.startswith(expected))
+
+    @pytest.mark.parametrize(
+        ("need", "expected"),
+        [
+            ("Matrix", (2 * 6, 2 * 6)),
+            # The inverse of instructions per cycle.
+            ("Vector", (4 * 6, 4 * 6)),
+            ("Other", "the type of the core 'core' does not define the ticks for 'Other'"),
+        ],
+    )
+    def test_needs_that_features_of_the_core_meet(self, need, expected):
+        features = (
+            hardware.Feature(category="Matrix", name="cost", value=2.0),
+            hardware.Feature(category="Vector", name="IPC_1", value=0.25),
+        )
+        built = system([root()], [("T", 1000, [ExecutionNeed(needs=((need, Constant(6)),))], on())])
+        whole = Hardware(
+            clocks=built.hardware.clocks,
+            core_types=(hardware.CoreType(name="type", features=features),),
+            structures=(Structure(name="ECU", cores=(Core(name="core", type="type", clock="clock"),)),),
+        )
+        (process,) = analyze_system(replace(built, hardware=whole)).processes
+        assert (process.reason or (process.bcet // US, process.wcet // US)) == expected
 
     def test_factors_of_single_processes(self):
         assert alone(ticks(5), settings=Settings(factors={"T": Fraction(3)})) == (5, 15)

@@ -130,6 +130,7 @@ def test_chains_that_should_end_together():
     # One takes 10 to 20, the other one 5.
     assert evaluate(constraint, chains=[short]) == [("spread at the response", 15, "missed")]
     assert evaluate(replace(constraint, end=ChainEnd.STIMULUS), chains=[short]) == [("spread at the stimulus", 0, "met")]
+    assert [verdict for *_, verdict in evaluate(replace(constraint, chains=("chain", "none")))] == ["unknown"]
 
 
 @pytest.mark.parametrize(
