@@ -202,7 +202,8 @@ def _by_schedule(process: ProcessResult, found: CoreSchedule, time_base: int) ->
     is_attained = process.response is not None and process.response.claim is Claim.EXACT
     spans = _spans(process.name, found)
     repeating = found.cycle // period
-    metrics = {name: span.metric(repeating, time_base, is_attained, found.has_idle_time) for name, span in spans.items()}
+    settles = found.has_idle_time
+    metrics = {name: span.metric(repeating, time_base, is_attained, settles) for name, span in spans.items()}
     means = _means(metrics, process, Fraction(period, time_base))
     return {
         name: metric if metric.mean is not None else replace(metric, mean=means.get(name)) for name, metric in metrics.items()
