@@ -19,6 +19,7 @@ from typing import IO, NoReturn
 from click import Context
 from click.testing import CliRunner
 from effort import IS_THOROUGH
+from shared_analyses import share
 
 SAMPLE = Path(__file__).parents[1] / "samples" / "bodas-test-advanced.yaml"
 
@@ -55,6 +56,10 @@ def warm_up() -> None:
             command, *options = words.split()
             outcome = CliRunner().invoke(cli, [command, str(SAMPLE), *options])
             assert outcome.exit_code == 0, outcome.output
+        # The schema of XML is read only where it is violated.
+        wrong = Path(folder, "wrong.amxmi")
+        wrong.write_text(SAMPLE.with_suffix(".amxmi").read_text().replace('unit="ms"', 'unit="hours"', 1))
+        assert CliRunner().invoke(cli, ["check", str(wrong)]).exit_code == 1
 
 
 def become(words: list[str], cwd: Path | None, streams: Sequence[int]) -> NoReturn:
@@ -68,6 +73,7 @@ def become(words: list[str], cwd: Path | None, streams: Sequence[int]) -> NoRetu
         # Errors appear line by line, as those of a new process do.
         sys.stderr = open(2, "w", buffering=1)  # noqa: SIM115
         sys.argv = ["amuros", *words]
+        share()
         runpy.run_module("amalthea_uros", run_name="__main__", alter_sys=True)
     except BaseException:
         traceback.print_exc()

@@ -1,10 +1,14 @@
+import gc
 import os
+import shutil
 import signal
 import sys
 from pathlib import Path
 
 from effort import IS_THOROUGH, PROFILE, THOROUGH, USUAL, sample
 from hypothesis import HealthCheck, Phase, settings
+
+from amalthea_uros.cli.process import GARBAGE_THRESHOLD
 
 settings.register_profile(
     "default",
@@ -36,6 +40,17 @@ os.environ.setdefault("NUMBA_CACHE_DIR", str(COMPILED / "numba"))
 sys.dont_write_bytecode, sys.pycache_prefix = False, os.environ["PYTHONPYCACHEPREFIX"]
 
 
+# Collecting tests makes many objects and no garbage; they stay to the end, and are not looked at again. Later, garbage is collected as
+# rarely as by the command.
+gc.disable()
+
+
+def pytest_collection_finish():
+    gc.freeze()
+    gc.set_threshold(GARBAGE_THRESHOLD)
+    gc.enable()
+
+
 def pytest_collection_modifyitems(config, items):
     """Leave out what a usual run does not try."""
     if not IS_THOROUGH:
@@ -43,3 +58,11 @@ def pytest_collection_modifyitems(config, items):
         known = set(kept)
         config.hook.pytest_deselected(items=[item for item in items if item not in known])
         items[:] = kept
+
+
+def pytest_unconfigure(config):
+    """Remove what the processes of the run shared; the last one to end is the one that started the workers."""
+    from shared_analyses import FOLDER
+
+    if not hasattr(config, "workerinput"):
+        shutil.rmtree(FOLDER, ignore_errors=True)

@@ -49,10 +49,13 @@ def printed(line: str) -> str:
         client.write_text(_CLIENT)
         client.chmod(0o700)
         environment = _environment(folder) | {_ADDRESS: f"{folder}/socket"}
+        copies = []
         with subprocess.Popen(line, shell=True, env=environment, stdout=out, stderr=out) as shell:
             while shell.poll() is None:
                 if select.select([server], [], [], 0.01)[0]:
-                    _answer(server)
+                    copies.append(_answer(server))
+        for copy in copies:
+            os.waitpid(copy, 0)
         out.seek(0)
         return out.read().decode()
 
@@ -69,15 +72,17 @@ def _server(address: str) -> socket.socket:
     return server
 
 
-def _answer(server: socket.socket) -> None:
-    """Let a copy of this process run a command, and another one tell the client how that ended."""
+def _answer(server: socket.socket) -> int:
+    """Let a copy of this process run a command, and another one, which is returned, tell the client how that ended."""
     connection, _ = server.accept()
     with connection:
         request, streams, _, _ = socket.recv_fds(connection, _REQUEST, 3)
-        if os.fork() == 0:
+        teller = os.fork()
+        if teller == 0:
             _run(connection, request, streams)
         for stream in streams:
             os.close(stream)
+        return teller
 
 
 def _run(connection: socket.socket, request: bytes, streams: list[int]) -> NoReturn:

@@ -7,7 +7,10 @@ import sys
 from pathlib import Path
 
 import pytest
+from command import warm_up
+from effort import IS_THOROUGH
 from forked_commands import printed
+from shared_analyses import share
 from support import ROOT
 
 from amalthea_uros._internal.addresses import DOCUMENTATION, REPOSITORY
@@ -24,6 +27,9 @@ def samples(tmp_path, monkeypatch):
         if path.is_file():
             shutil.copy(path, tmp_path)
     monkeypatch.chdir(tmp_path)
+    if not IS_THOROUGH:
+        warm_up()
+        share(monkeypatch.setattr)
     return tmp_path
 
 
