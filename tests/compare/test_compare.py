@@ -187,10 +187,6 @@ def test_an_object_has_the_name_that_the_user_says():
     found = compare(APP, measured, names=Names(renamed={"tTaskB": "Control_Function"}))
     assert found.holds
     assert {row.series.name for row in found.compared} == {"tTaskB"}
-
-
-def test_what_was_not_measured_is_told():
-    found = compare(APP, control(57))
     assert [(row.object, row.verdict) for row in found.not_compared] == [("Executor_Task", "not measured")]
 
 
@@ -332,6 +328,9 @@ def test_limits_are_judged_by_what_was_measured():
     assert (limit.verdict, limit.samples, limit.margin) == ("observed_ok", 1, 23 * MICROSECOND)
     (limit,) = missed.missed
     assert (limit.name, limit.value, limit.samples) == ("Control_Function_response_time", 81 * MICROSECOND, 2)
+    # Of other quantities nothing was measured.
+    unseen = compare(APP, control(4, quantity="net_execution_time")).limits
+    assert {(limit.verdict, "not measured" in limit.reason) for limit in unseen} == {("not_observed", True)}
 
 
 def test_a_baseline_counts_for_limits():
@@ -355,12 +354,6 @@ def test_a_limit_of_another_quantity_does_not_replace_a_deadline(metric, bound):
     limit = perf.TimeLimit(metric=metric, bound=bound, value=MILLISECOND)
     found = compare(with_limit(limit), control(1200))
     assert ("Control_Function", "response time, period") in {(limit.object, limit.quantity) for limit in found.missed}
-
-
-def test_limits_of_what_was_not_measured_are_not_observed():
-    found = compare(APP, control(4, quantity="net_execution_time"))
-    assert {limit.verdict for limit in found.limits} == {"not_observed"}
-    assert all("not measured" in limit.reason for limit in found.limits)
 
 
 def test_limits_of_numbers_are_not_judged_by_times():
