@@ -101,31 +101,26 @@ def test_remote_and_error_frames(tmp_path, suffix):
     assert rules(log) == ["CAN004"]
 
 
-def test_differences_between_lines_of_asc_are_added_up_with_those_of_other_records(tmp_path):
-    text = ASC.replace("absolute", "relative") + (
-        "   0.010000 1  123             Rx   d 1 11\n"
-        "   0.002000 1  Statistic: D 0 R 0 XD 0 XR 0 E 0 O 0 B 0.00%\n"
-        "   0.003000 1  123             Rx   d 1 22\n"
-    )
+@pytest.mark.parametrize(
+    ("stamps", "line", "expected", "found"),
+    [
+        # Differences between lines are added up with those of other records.
+        (
+            "relative",
+            "0.002000 1  Statistic: D 0 R 0 XD 0 XR 0 E 0 O 0 B 0.00%",
+            [(10, DATA), (32, DATA)],
+            ["CAN005", "CAN006"],
+        ),
+        ("absolute", "0.011000 1  OverrunError", [(10, DATA), (11, GAP), (20, DATA)], ["CAN003"]),
+    ],
+)
+def test_other_records_of_asc(tmp_path, stamps, line, expected, found):
+    first, last = (f"   0.0{time}0000 1  123             Rx   d 1 11\n" for time in (1, 2))
+    text = f"{ASC.replace('absolute', stamps)}{first}   {line}\n{last}End TriggerBlock\n"
     frames, log = read(tmp_path / "run.asc", text)
-    assert [time for time, *_ in frames] == [10 * MS, 15 * MS]
-    assert rules(log) == ["CAN005", "CAN006"]
-
-
-def test_an_overrun_in_asc_is_a_gap(tmp_path):
-    text = ASC + (
-        "   0.010000 1  123             Rx   d 1 11\n"
-        "   0.011000 1  OverrunError\n"
-        "   0.020000 1  123             Rx   d 1 22\n"
-        "End TriggerBlock\n"
-    )
-    frames, log = read(tmp_path / "run.asc", text)
-    assert [(time, channel, kind) for time, channel, _, kind, _ in frames] == [
-        (10 * MS, "1", DATA),
-        (11 * MS, "1", GAP),
-        (20 * MS, "1", DATA),
-    ]
-    assert rules(log) == ["CAN003"]
+    assert [(time // MS, kind) for time, _, _, kind, _ in frames] == expected
+    assert {channel for _, channel, *_ in frames} == {"1"}
+    assert rules(log) == found
 
 
 @pytest.mark.parametrize(
