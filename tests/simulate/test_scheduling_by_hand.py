@@ -5,11 +5,11 @@ from dataclasses import replace
 
 import pytest
 from by_hand import allocated, built, play
-from hand_made_systems import CORES, Proc, system, ticks
+from hand_made_systems import CORES, Proc, locked, release, request, system, ticks
 from support import SHARED
 
-from amalthea_uros.perf.activities import Call, Group, SchedulePoint, Terminate
-from amalthea_uros.perf.os import Duration, Parameter, Parent, Policy, Scheduler
+from amalthea_uros.perf.activities import Call, Group, SchedulePoint, Terminate, Waiting
+from amalthea_uros.perf.os import Duration, Parameter, Parent, Policy, Scheduler, Semaphore, SemaphoreKind
 from amalthea_uros.perf.software import Preemption, Runnable
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.timing.observed.job_times import JobColumn
@@ -252,6 +252,80 @@ def test_decisions_of_a_scheduler_take_time_at_activations_and_at_ends():
     scheduler = Scheduler(name="s0", policy=Policy.OSEK, cores=("c0",), overhead=(ticks(1),))
     found = play(built(high, low, schedulers=[scheduler]), 100)
     assert (found["high"], found["low"]) == ([(3, 4, 7)], [(0, 1, 11)])
+
+
+# Who goes first where several things happen at one instant, or somebody comes back from waiting.
+
+
+def masked(*body):
+    return Group(activities=body, interruptible=False)
+
+
+def test_equals_go_in_the_order_of_their_activations():
+    # The second job of `twice` is activated at 5, before `once` at 7, although it cannot begin before the first one has ended.
+    high = Proc("high", (ticks(4),), 100, priority=2)
+    twice = Proc("twice", (ticks(6),), 5, priority=1, task={"activation_limit": 99})
+    once = Proc("once", (ticks(1),), 100, 7, priority=1)
+    found = play(built(high, twice, once), 18)
+    assert found["twice"][:2] == [(0, 4, 10), (5, 10, 16)]
+    assert found["once"] == [(7, 16, 17)]
+
+
+def test_a_job_ends_with_its_last_group_although_somebody_has_waited_for_the_group_to_end():
+    low, high = Proc("low", (masked(ticks(4)),), 100, priority=1), Proc("high", (ticks(2),), 100, 1, priority=2)
+    found = play(built(low, high), 20)
+    assert (found["low"], found["high"]) == ([(0, 0, 4)], [(1, 4, 6)])
+
+
+def test_a_group_does_not_keep_off_who_arrives_at_the_instant_at_which_it_would_begin():
+    low = Proc("low", (ticks(1), masked(ticks(4))), 100, priority=1)
+    found = play(built(low, Proc("high", (ticks(2),), 100, 1, priority=2)), 20)
+    assert (found["low"], found["high"]) == ([(0, 0, 7)], [(1, 1, 3)])
+
+
+def test_a_ceiling_is_a_deadline_where_deadlines_decide():
+    # The holder gets the deadline of the other user at most: who has an earlier one, and does not use it, goes first.
+    holder, user = Proc("holder", locked("s", 5), 100, deadline=90), Proc("user", locked("s", 1), 100, 60, deadline=50)
+    other = Proc("other", (ticks(1),), 100, 2, deadline=10)
+    semaphores = (Semaphore(name="s", kind=SemaphoreKind.RESOURCE, ceiling=True),)
+    found = play(built(holder, user, other, schedulers=[on(Policy.EARLIEST_DEADLINE_FIRST)], semaphores=semaphores), 59)
+    assert (found["holder"], found["user"], found["other"]) == ([(0, 0, 6)], [], [(2, 2, 3)])
+
+
+MUTEX = (Semaphore(name="s", kind=SemaphoreKind.MUTEX),)
+
+
+def test_who_comes_back_from_waiting_keeps_nobody_off_before_it_has_its_core():
+    # While `first` waits, `last` goes on from its schedule point; its release makes `first` ready, which it does not keep off.
+    passive = request("s", Waiting.PASSIVE)
+    body = (passive, ticks(2), SchedulePoint(), ticks(1), release("s"), ticks(1))
+    last = Proc("last", body, 100, priority=1, task=COOPERATIVE)
+    first = Proc("first", locked("s", 1, Waiting.PASSIVE), 100, 1, priority=2, task=COOPERATIVE)
+    found = play(built(last, first, semaphores=MUTEX), 50)
+    assert (found["last"], found["first"]) == ([(0, 0, 4)], [(1, 2, 5)])
+
+
+def test_a_job_ends_with_its_last_release_although_somebody_more_urgent_has_waited_for_it():
+    low = Proc("low", locked("s", 3, Waiting.PASSIVE), 100, priority=1)
+    high = Proc("high", locked("s", 2, Waiting.PASSIVE), 100, 1, priority=2)
+    found = play(built(low, high, semaphores=MUTEX), 20)
+    assert (found["low"], found["high"]) == ([(0, 0, 3)], [(1, 1, 5)])
+
+
+def test_only_a_call_that_takes_place_lets_others_go_first():
+    # The first occurrence of the call is skipped.
+    call = Call(runnable="r", counter=Counter(prescaler=2, offset=0))
+    low = Proc("low", (ticks(2), call, ticks(2)), 20, priority=1, task=COOPERATIVE)
+    high = Proc("high", (ticks(1),), 100, 1, priority=2, task=COOPERATIVE)
+    found = play(built(low, high, runnables=(Runnable(name="r", activities=(ticks(1),)),)), 20)
+    assert found["high"] == [(1, 4, 5)]
+
+
+def test_who_has_used_up_its_slice_ends_if_nothing_is_left():
+    a, b = (Proc(name, (ticks(2),), 100, priority=1) for name in "ab")
+    slices = {name: {"parameters": (time("timeSliceLength", 2),)} for name in "ab"}
+    found = play(allocated(built(a, b, schedulers=[on(Policy.PRIORITY_BASED_ROUND_ROBIN)]), **slices), 20)
+    assert (found["a"], found["b"]) == ([(0, 0, 2)], [(0, 2, 4)])
 
 
 # Published schedules are simulated job by job; other people's simulations found them.
