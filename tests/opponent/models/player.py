@@ -213,11 +213,8 @@ class Player:
         self.rank += 1
         is_sliced = self._is_sliced(process)
         body = process.body
-        if process.is_isr and self.played.overhead:
-            before, after = (
-                self.played.overhead.get(f"isrCategory2Overhead/{when}ExecutionOverhead", 0) for when in ("pre", "post")
-            )
-            body = (("raw", before), *body, ("raw", after))
+        if process.is_isr:
+            body = self._with_entry_and_exit(body) if self.played.overhead else body
         elif process.core in self.played.decisions:
             self.deciding[process.core] += self.played.decisions[process.core]
             body = body if self.variant.decides_outside else (*body, ("raw", self.played.decisions[process.core]))
@@ -236,6 +233,12 @@ class Player:
         )
         self.queues[index].append(job)
         self.jobs[index].append(job)
+
+    def _with_entry_and_exit(self, body: Body) -> Body:
+        before, after = (
+            self.played.overhead.get(f"isrCategory2Overhead/{when}ExecutionOverhead", 0) for when in ("pre", "post")
+        )
+        return (("raw", before), *body, ("raw", after))
 
     def _depth_of_points(self) -> int:
         return {Points.SCHEDULE_POINTS: 0, Points.TOP_CALLS: 1, Points.CALLS: NEVER}[self.variant.points]
