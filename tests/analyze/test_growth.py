@@ -107,7 +107,7 @@ def limits(number):
 
 @pytest.mark.parametrize("build", [data_ages, event_stimuli, guesses])
 def test_twice_the_system_takes_twice_the_steps(build):
-    small, large = build(20), build(40)
+    small, large = build(12), build(24)
     analyze_system(build(8))  # what is imported or compiled once does not count
     assert steps(lambda: analyze_system(large)) <= 2.2 * steps(lambda: analyze_system(small))
 

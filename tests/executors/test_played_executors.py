@@ -12,7 +12,7 @@ from random_executors import application, violations
 from amalthea_uros.perf.executors import LoopKind, ThreadLoop
 
 #: Applications, each of which is played with several draws of execution times, phases and arrivals.
-APPLICATIONS, PLAYS = (6000, 3) if IS_THOROUGH else (150, 2)
+APPLICATIONS, PLAYS = (6000, 3) if IS_THOROUGH else (100, 2)
 PARTS = 10
 HORIZON = 300 * MS
 

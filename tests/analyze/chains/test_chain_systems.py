@@ -92,7 +92,7 @@ def ends(values):
 VECTORS = cases(lambda case: int(case["id"].split("-")[1]) % 10 == 5 or case["kind"] == "phase")
 
 
-@pytest.mark.parametrize("case", every(3, VECTORS))
+@pytest.mark.parametrize("case", every(4, VECTORS))
 def test_vectors_as_models(case):
     labels = {name: ([], []) for name in (task["name"] for task in case["tasks"])}
     for number, (writer, reader) in enumerate(pairwise(case["chain"])):
