@@ -79,28 +79,23 @@ def test_the_same_schedule(rows):
             assert executed == [task.demand.worst_of(job + 1) for job in range(len(executed))]
 
 
-def test_only_what_is_used_much_is_compiled(monkeypatch):
-    # Kept machine code would pay after half a second, new one after 2.5 s.
-    @compiled(cost=1_000_000)
+@pytest.mark.parametrize(
+    ("is_kept", "cost", "calls"),
+    # New machine code pays after 2.5 s of work, and what is kept from an earlier run after half a second.
+    [(False, 1_000_000, 3), (True, 400_000, 2)],
+)
+def test_only_what_is_used_much_is_compiled(monkeypatch, is_kept, cost, calls):
+    monkeypatch.setattr("amalthea_uros._internal.machine_code.CompilationEffort.is_kept", lambda _: is_kept)
+
+    @compiled(cost=cost)
     def double(number):
         return number * 2
 
     seen = []
     monkeypatch.setattr(double, "compile", lambda: seen.append("compiled"))
-    assert [double(1), double(2), *seen] == [2, 4]
-    assert [double(3), *seen] == [6, "compiled"]
-
-
-def test_what_is_kept_from_an_earlier_run_is_used_sooner(monkeypatch):
-    monkeypatch.setattr("amalthea_uros._internal.machine_code.CompilationEffort.is_kept", lambda _: True)
-
-    @compiled(cost=400_000)
-    def double(number):
-        return number * 2
-
-    seen = []
-    monkeypatch.setattr(double, "compile", lambda: seen.append("compiled"))
-    assert [double(1), *seen, double(2), *seen] == [2, 4, "compiled"]
+    assert all(double(number) == 2 * number for number in range(1, calls))
+    assert not seen
+    assert (double(calls), seen) == (2 * calls, ["compiled"])
 
 
 def test_without_numba_everything_stays_python(monkeypatch):
