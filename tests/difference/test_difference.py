@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from support import model_text
 
 from amalthea_uros.difference.comparison import ChangeKind, ModelChange, difference
 from amalthea_uros.difference.parts import align, increasing
@@ -71,11 +72,7 @@ def told(changes: list[ModelChange]) -> list[tuple[str, str, str, str, str, str]
 def read(folder: Path, body: str, version: str = "3.3.0", name: str = "m.amxmi") -> Model:
     folder.mkdir(exist_ok=True)
     path = folder / name
-    path.write_text(
-        f'<am:Amalthea xmi:version="2.0" xmlns:xmi="http://www.omg.org/XMI"'
-        f' xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"'
-        f' xmlns:am="http://app4mc.eclipse.org/amalthea/{version}">{body}</am:Amalthea>'
-    )
+    path.write_text(model_text(body, version))
     return load(path)
 
 
@@ -191,27 +188,12 @@ def test_what_is_told(edit, expected) -> None:
         assert (changes[0].old_element, changes[0].new_element) == (task(old), task(new))
 
 
-def test_a_removal_is_the_opposite_of_an_addition() -> None:
-    old, new = system(), system()
-    _add_runnable(new)
-    assert told(difference(new, old)) == [("removed", "Runnable", "New", "", "", "")]
-
-
 def test_reference_list_in_another_order() -> None:
     old, new = system(), system()
     task(new).stimuli.reverse()
     (change,) = difference(old, new)
     assert (change.feature, change.old) == ("stimuli", "")
     assert change.new in ("reordered every_5ms", "reordered every_10ms")
-
-
-def test_moved_between_objects_with_unique_names() -> None:
-    def model(holder: str) -> Model:
-        structures = [am.HwStructure(name=name) for name in "AB"]
-        structures["AB".index(holder)].structures.append(am.HwStructure(name="inner"))
-        return Model.of(am.Amalthea(hw_model=am.HWModel(structures=structures)))
-
-    assert told(difference(model("A"), model("B"))) == [("moved", "HwStructure", "inner", "structures", "A", "B")]
 
 
 def test_map_entries_are_matched_by_the_object_that_is_their_key() -> None:
@@ -256,13 +238,6 @@ def test_call_inserted_among_many_is_one_addition(place: int) -> None:
 
 
 # Renames
-
-
-def test_renamed_objects_may_refer_to_each_other() -> None:
-    old, new = system(), system()
-    new[am.Label, "L1"].name = "L1_new"
-    new[am.Runnable, "R1"].name = "R1_new"
-    assert [c.feature for c in difference(old, new)] == ["name", "name"]
 
 
 def test_ambiguous_renames_are_removals_and_additions() -> None:
@@ -336,24 +311,24 @@ def test_empty_sub_model_means_nothing(tmp_path) -> None:
 def test_spelling_means_nothing(tmp_path) -> None:
     old = """<swModel>
       <tasks xmi:id="T?type=Task" name="T" stimuli="S?type=PeriodicStimulus"/></swModel>
-      <hwModel><definitions xsi:type="am:MemoryDefinition" name="M">
-      <accessLatency xsi:type="am:DiscreteValueConstant" value="3"/>
-      <size value="8" unit="kB"/></definitions><domains xsi:type="am:FrequencyDomain" name="F">
+      <hwModel><definitions t="MemoryDefinition" name="M">
+      <accessLatency t="DiscreteValueConstant" value="3"/>
+      <size value="8" unit="kB"/></definitions><domains t="FrequencyDomain" name="F">
       <defaultValue value="80000" unit="Hz"/></domains></hwModel>
-      <stimuliModel><stimuli xsi:type="am:PeriodicStimulus" name="S"/></stimuliModel>"""
-    new = """<stimuliModel><stimuli name="S" xsi:type="am:PeriodicStimulus"/></stimuliModel>
-      <hwModel><domains xsi:type="am:FrequencyDomain" name="F"><defaultValue unit="Hz" value="8.0E4"/></domains>
-      <definitions name="M" xsi:type="am:MemoryDefinition"><size unit="kB" value="+8"/>
-      <accessLatency value="03" xsi:type="am:DiscreteValueConstant"/></definitions></hwModel>
-      <!-- T --><swModel><tasks name="T"><stimuli xsi:type="am:PeriodicStimulus" href="amlt:/#S?type=PeriodicStimulus"/>
+      <stimuliModel><stimuli t="PeriodicStimulus" name="S"/></stimuliModel>"""
+    new = """<stimuliModel><stimuli name="S" t="PeriodicStimulus"/></stimuliModel>
+      <hwModel><domains t="FrequencyDomain" name="F"><defaultValue unit="Hz" value="8.0E4"/></domains>
+      <definitions name="M" t="MemoryDefinition"><size unit="kB" value="+8"/>
+      <accessLatency value="03" t="DiscreteValueConstant"/></definitions></hwModel>
+      <!-- T --><swModel><tasks name="T"><stimuli t="PeriodicStimulus" href="amlt:/#S?type=PeriodicStimulus"/>
       </tasks></swModel>"""
     assert compared(tmp_path, old, new) == []
 
 
 def test_files_mean_nothing(tmp_path) -> None:
     task_text = '<swModel><tasks name="T" stimuli="S?type=PeriodicStimulus"/></swModel>'
-    property_text = '<customProperties key="k"><value xsi:type="am:StringObject" value="v"/></customProperties>'
-    stimulus = '<stimuliModel><stimuli xsi:type="am:PeriodicStimulus" name="S"/></stimuliModel>'
+    property_text = '<customProperties key="k"><value t="StringObject" value="v"/></customProperties>'
+    stimulus = '<stimuliModel><stimuli t="PeriodicStimulus" name="S"/></stimuliModel>'
     label = '<labels name="L"/>'
     one = read(tmp_path / "one", property_text + task_text.replace("</sw", f"{label}</sw") + stimulus)
     folder = tmp_path / "several"
@@ -443,10 +418,7 @@ EDITS = {
         ("removed", "OperatingSystem", ""),
     ),
     "property removed": (lambda m, n: task(m).custom_properties.pop(n % 2), ("removed", "CustomProperty", "")),
-    "allocation removed": (
-        lambda m, n: m.root.mapping_model.task_allocation.pop(n % 2),
-        ("removed", "TaskAllocation", ""),
-    ),
+    "allocation removed": (lambda m, n: m.root.mapping_model.task_allocation.pop(n % 2), ("removed", "TaskAllocation", "")),
 }
 MIRRORED = {"added": "removed", "removed": "added", "changed": "changed", "moved": "moved"}
 numbers = st.integers(0, 40)

@@ -5,7 +5,7 @@ from effort import examples
 from hypothesis import given
 from hypothesis import strategies as st
 from strategies import parse
-from support import MODEL
+from support import model_text
 
 from amalthea_uros.difference.comparison import difference
 
@@ -13,19 +13,19 @@ NAMESPACE = '<commonElements><namespaces name="N"/></commonElements>'
 
 
 def task(name, runnable, limit=1):
-    call = f'<items xsi:type="am:RunnableCall" runnable="{runnable}?type=Runnable"/>'
+    call = f'<items t="RunnableCall" runnable="{runnable}?type=Runnable"/>'
     return f'<tasks name="{name}" multipleTaskActivationLimit="{limit}"><activityGraph>{call}</activityGraph></tasks>'
 
 
 def runnable(name, ticks, namespace=""):
-    default = f'<default xsi:type="am:DiscreteValueConstant" value="{ticks}"/>'
+    default = f'<default t="DiscreteValueConstant" value="{ticks}"/>'
     inside = f' namespace="{namespace}?type=Namespace"' if namespace else ""
-    items = f'<activityGraph><items xsi:type="am:Ticks">{default}</items></activityGraph>'
+    items = f'<activityGraph><items t="Ticks">{default}</items></activityGraph>'
     return f'<runnables name="{name}"{inside}>{items}</runnables>'
 
 
 def model(*parts, before=""):
-    return parse(MODEL.format(f"{before}<swModel>{''.join(parts)}</swModel>"))
+    return parse(model_text(f"{before}<swModel>{''.join(parts)}</swModel>"))
 
 
 def told(old, new):
@@ -48,12 +48,6 @@ def test_tasks_that_are_alike_are_told_apart_by_their_renamed_runnables():
     old = model(task("T1", "R1"), task("T2", "R2"), runnable("R1", 1), runnable("R2", 2))
     new = model(task("U2", "S2"), task("U1", "S1"), runnable("S1", 1), runnable("S2", 2))
     assert told(old, new) == {("name", "T1", "U1"), ("name", "T2", "U2"), ("name", "R1", "S1"), ("name", "R2", "S2")}
-
-
-def test_exchanged_names_are_two_renames():
-    old = model(task("T", "A"), task("U", "B"), runnable("A", 1), runnable("B", 2))
-    new = model(task("T", "B"), task("U", "A"), runnable("B", 1), runnable("A", 2))
-    assert told(old, new) == {("name", "A", "B"), ("name", "B", "A")}
 
 
 def test_a_name_that_another_object_had_before():

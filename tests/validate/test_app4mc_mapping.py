@@ -237,8 +237,10 @@ def constrained(constraint, *mapping):
     return mapped(schedulers, served, *mapping, software=SOFTWARE.format(call("Q"), call("R"), constraint))
 
 
-def in_memory(name, memory, cls="Label"):
-    return f'<memoryMapping abstractElement="{name}?type={cls}" memory="{memory}?type=Memory"/>'
+def lie(**memories):
+    """Labels in memories."""
+    frame = '<memoryMapping abstractElement="{}?type=Label" memory="{}?type=Memory"/>'
+    return [frame.format(label, memory) for label, memory in memories.items()]
 
 
 def carries(scheduler, name):
@@ -250,39 +252,33 @@ SERVES_I = '<isrAllocation isr="I?type=ISR" controller="IC?type=InterruptControl
 ISR_AND_T = 't="ProcessEntityGroup" processes="I?type=ISR T?type=Task"'
 AFFINITY_CASES = [
     # Pairs of labels.
-    ("DataPairing", on_memories(), [data("L", "N")], [in_memory("L", "RAM"), in_memory("N", "RAM")], []),
+    ("DataPairing", on_memories(), [data("L", "N")], lie(L="RAM", N="RAM"), []),
     (
         "DataPairing",
         on_memories(),
         [data("L", "N")],
-        [in_memory("L", "RAM"), in_memory("N", "ROM")],
+        lie(L="RAM", N="ROM"),
         ["the objects paired by 'C' have no common target: 'L' is on 'RAM', 'N' is on 'ROM'"],
     ),
-    ("DataPairing", "", [data("L", "N")], [in_memory("L", "RAM"), in_memory("N", "ROM")], ["no common target"]),
-    ("DataPairing", on_memories("RAM"), [data("L", "N")], [in_memory("L", "RAM"), in_memory("N", "RAM")], []),
-    ("DataPairing", on_memories("ROM"), [data("L", "N")], [in_memory("L", "RAM"), in_memory("N", "RAM")], ["no common target"]),
-    (
-        "DataPairing",
-        on_memories("RAM", "ROM"),
-        [data("L", "N")],
-        [in_memory("L", "RAM"), in_memory("N", "ROM")],
-        ["no common target"],
-    ),
-    ("DataPairing", on_memories("ROM"), [data("L")], [in_memory("L", "RAM")], ["no common target"]),
+    ("DataPairing", "", [data("L", "N")], lie(L="RAM", N="ROM"), ["no common target"]),
+    ("DataPairing", on_memories("RAM"), [data("L", "N")], lie(L="RAM", N="RAM"), []),
+    ("DataPairing", on_memories("ROM"), [data("L", "N")], lie(L="RAM", N="RAM"), ["no common target"]),
+    ("DataPairing", on_memories("RAM", "ROM"), [data("L", "N")], lie(L="RAM", N="ROM"), ["no common target"]),
+    ("DataPairing", on_memories("ROM"), [data("L")], lie(L="RAM"), ["no common target"]),
     # What is nowhere is not judged.
-    ("DataPairing", on_memories(), [data("L", "N")], [in_memory("L", "RAM")], []),
+    ("DataPairing", on_memories(), [data("L", "N")], lie(L="RAM"), []),
     ("DataPairing", on_memories("ROM"), [data("L", "N")], [], []),
     ("DataPairing", on_memories("ROM"), [data("L")], ['<memoryMapping abstractElement="L?type=Label"/>'], []),
     ("DataPairing", on_memories("ROM"), [data("gone")], [], []),
-    ("DataPairing", on_memories("ROM"), [], [in_memory("L", "RAM")], []),
+    ("DataPairing", on_memories("ROM"), [], lie(L="RAM"), []),
     # A label lies where its section does, if it is not mapped itself.
-    ("DataPairing", on_memories(), [data("L", "M")], [in_memory("L", "RAM"), lies("ROM", "s")], ["'M' is on 'ROM'"]),
-    ("DataPairing", on_memories(), [data("L", "M")], [in_memory("L", "RAM"), in_memory("M", "RAM"), lies("ROM", "s")], []),
+    ("DataPairing", on_memories(), [data("L", "M")], [*lie(L="RAM"), lies("ROM", "s")], ["'M' is on 'ROM'"]),
+    ("DataPairing", on_memories(), [data("L", "M")], [*lie(L="RAM", M="RAM"), lies("ROM", "s")], []),
     (
         "DataPairing",
         on_memories(),
         [data("L", "N")],
-        [in_memory("L", "RAM"), '<physicalSectionMapping name="P" labels="N?type=Label" memory="ROM?type=Memory"/>'],
+        [*lie(L="RAM"), '<physicalSectionMapping name="P" labels="N?type=Label" memory="ROM?type=Memory"/>'],
         ["'N' is on 'ROM'"],
     ),
     # Two groups that are to be apart, and one that is to stay away.
@@ -290,24 +286,24 @@ AFFINITY_CASES = [
         "DataSeparation",
         on_memories(),
         [data("L"), data("N")],
-        [in_memory("L", "RAM"), in_memory("N", "RAM")],
+        lie(L="RAM", N="RAM"),
         ["'RAM' is shared by 'L' and 'N', which 'C' separates"],
     ),
-    ("DataSeparation", on_memories(), [data("L"), data("N")], [in_memory("L", "RAM"), in_memory("N", "ROM")], []),
-    ("DataSeparation", on_memories("ROM"), [data("L"), data("N")], [in_memory("L", "RAM"), in_memory("N", "RAM")], []),
-    ("DataSeparation", on_memories("RAM"), [data("L"), data("N")], [in_memory("L", "RAM"), in_memory("N", "RAM")], ["'RAM'"]),
-    ("DataSeparation", on_memories(), [data("L", "M"), data("N")], [in_memory("L", "RAM"), in_memory("M", "RAM")], []),
-    ("DataSeparation", on_memories(), [data("L"), data("N")], [in_memory("L", "RAM")], []),
+    ("DataSeparation", on_memories(), [data("L"), data("N")], lie(L="RAM", N="ROM"), []),
+    ("DataSeparation", on_memories("ROM"), [data("L"), data("N")], lie(L="RAM", N="RAM"), []),
+    ("DataSeparation", on_memories("RAM"), [data("L"), data("N")], lie(L="RAM", N="RAM"), ["'RAM'"]),
+    ("DataSeparation", on_memories(), [data("L", "M"), data("N")], lie(L="RAM", M="RAM"), []),
+    ("DataSeparation", on_memories(), [data("L"), data("N")], lie(L="RAM"), []),
     (
         "DataSeparation",
         on_memories("RAM"),
         [data("L", "N")],
-        [in_memory("L", "RAM"), in_memory("N", "RAM")],
+        lie(L="RAM", N="RAM"),
         ["'RAM' is used by 'L' and 'N', which 'C' forbids"],
     ),
-    ("DataSeparation", on_memories("ROM"), [data("L", "N")], [in_memory("L", "RAM"), in_memory("N", "RAM")], []),
-    ("DataSeparation", on_memories(), [data("L")], [in_memory("L", "RAM")], ["'RAM' is used by 'L'"]),
-    ("DataSeparation", on_memories(), [], [in_memory("L", "RAM")], []),
+    ("DataSeparation", on_memories("ROM"), [data("L", "N")], lie(L="RAM", N="RAM"), []),
+    ("DataSeparation", on_memories(), [data("L")], lie(L="RAM"), ["'RAM' is used by 'L'"]),
+    ("DataSeparation", on_memories(), [], lie(L="RAM"), []),
     # Processes run on cores by their schedulers and affinities.
     ("ProcessPairing", on_cores(), [tasks("T", "U")], TOGETHER, []),
     ("ProcessPairing", on_cores(), [tasks("T", "U")], APART, ["'T' is on 'a', 'U' is on 'b'"]),

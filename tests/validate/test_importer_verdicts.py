@@ -340,6 +340,8 @@ def allocation(name, content):
     return f'<swModel><tasks name="T"/></swModel>{defined}<mappingModel>{mapped}</mappingModel>'
 
 
+PRIORITY, DEADLINE = (f'<schedulingParameterDefinitions name="{name}"/>' for name in ("priority", "deadline"))
+BELOW = '<parentAssociation parent="S?type=TaskScheduler">{}</parentAssociation>'
 INTEGER = '<value t="IntegerObject" value="3"/>'
 LONG = '<value t="LongObject" value="3"/>'
 
@@ -465,29 +467,15 @@ CASES = [
     ("INC-OS-ALGOPARAM", 0, scheduler(parameter("", INTEGER))),
     ("INC-OS-ALGOPARAM", 1, allocation("Priority", INTEGER)),
     ("INC-OS-ALGOPARAM", 0, allocation("deadline", '<value t="Time" value="3" unit="ms"/>')),
-    ("INC-OS-ALGOPARAM", 1, scheduler(parameter("deadline", INTEGER), '<schedulingParameterDefinitions name="deadline"/>')),
-    ("INC-OS-ALGOPARAM", 0, scheduler(parameter("priority", INTEGER), '<schedulingParameterDefinitions name="priority"/>')),
-    (
-        "INC-OS-ALGOPARAM",
-        1,
-        scheduler(
-            f'<parentAssociation parent="S?type=TaskScheduler">{parameter("priority", INTEGER)}</parentAssociation>',
-            '<schedulingParameterDefinitions name="priority"/>',
-        ),
-    ),
+    ("INC-OS-ALGOPARAM", 1, scheduler(parameter("deadline", INTEGER), DEADLINE)),
+    ("INC-OS-ALGOPARAM", 0, scheduler(parameter("priority", INTEGER), PRIORITY)),
+    ("INC-OS-ALGOPARAM", 1, scheduler(BELOW.format(parameter("priority", INTEGER)), PRIORITY)),
     ("INC-OS-PRIO-TYPE", 1, allocation("priority", LONG)),
     ("INC-OS-PRIO-TYPE", 1, allocation("priority", "")),
-    ("INC-OS-PRIO-TYPE", 1, scheduler(parameter("priority", LONG), '<schedulingParameterDefinitions name="priority"/>')),
-    (
-        "INC-OS-PRIO-TYPE",
-        0,
-        scheduler(
-            f'<parentAssociation parent="S?type=TaskScheduler">{parameter("priority", LONG)}</parentAssociation>',
-            '<schedulingParameterDefinitions name="priority"/>',
-        ),
-    ),
+    ("INC-OS-PRIO-TYPE", 1, scheduler(parameter("priority", LONG), PRIORITY)),
+    ("INC-OS-PRIO-TYPE", 0, scheduler(BELOW.format(parameter("priority", LONG)), PRIORITY)),
     ("INC-OS-DEADLINE-TYPE", 1, allocation("deadline", INTEGER)),
-    ("INC-OS-DEADLINE-TYPE", 0, scheduler(parameter("deadline", INTEGER), '<schedulingParameterDefinitions name="deadline"/>')),
+    ("INC-OS-DEADLINE-TYPE", 0, scheduler(parameter("deadline", INTEGER), DEADLINE)),
     # Overheads without Ticks are harmless.
     ("INC-OS-OVERHEAD", 0, '<osModel><osOverheads name="O"><apiOverhead/></osOverheads></osModel>'),
     (
