@@ -155,23 +155,14 @@ def test_a_scheduler_without_tasks_needs_no_policy(tmp_path):
 # Places
 
 
+NOWHERE = [f"'{name}' is not allocated to a scheduler or an interrupt controller" for name in "IT"]
+
+
 @pytest.mark.parametrize(
     ("allocations", "expected"),
     [
-        (
-            "",
-            [
-                "'T' is not allocated to a scheduler or an interrupt controller",
-                "'I' is not allocated to a scheduler or an interrupt controller",
-            ],
-        ),
-        (
-            '<taskAllocation task="T?type=Task"/><isrAllocation isr="I?type=ISR"/>',
-            [
-                "'T' is not allocated to a scheduler or an interrupt controller",
-                "'I' is not allocated to a scheduler or an interrupt controller",
-            ],
-        ),
+        ("", NOWHERE),
+        ('<taskAllocation task="T?type=Task"/><isrAllocation isr="I?type=ISR"/>', NOWHERE),
         (
             '<taskAllocation task="T?type=Task" scheduler="S?type=TaskScheduler"/>'
             '<taskAllocation task="T?type=Task" scheduler="R?type=TaskScheduler"/>'
@@ -189,7 +180,7 @@ def test_places(allocations, expected, tmp_path):
 </osModel>
 <swModel><tasks name="T"/><isrs name="I"/><processPrototypes name="P"/></swModel>
 <mappingModel>{allocations}</mappingModel>"""
-    assert sorted(found("TIM-ALLOCATION", excerpt, tmp_path)) == sorted(expected)
+    assert sorted(found("TIM-ALLOCATION", excerpt, tmp_path)) == expected
 
 
 @pytest.mark.parametrize(
@@ -218,49 +209,46 @@ def test_clocks(value, is_known, tmp_path):
 STIMULUS = '<stimuliModel><stimuli t="{}" name="S" {}>{}</stimuli></stimuliModel>'
 
 
+def ms(tag, value):
+    return f'<{tag} value="{value}" unit="ms"/>'
+
+
+def jitters(kind, content):
+    return f'{ms("recurrence", 1)}<jitter t="{kind}">{content}</jitter>'
+
+
+def curve(number, border, value):
+    """An entry of an arrival curve."""
+    return f'<entries numberOfOccurrences="{number}">{ms(border, value)}</entries>'
+
+
+NEXT = '<nextOccurrence t="TimeBoundaries">{}</nextOccurrence>'
+FIVE_PER_STEP = '<occurrencesPerStep t="ContinuousValueConstant" value="5"/>'
+
+
 @pytest.mark.parametrize(
     ("kind", "parts", "is_told"),
     [
-        ("PeriodicStimulus", '<recurrence value="1" unit="ms"/>', False),
-        ("PeriodicStimulus", '<recurrence value="0" unit="ms"/>', True),
-        ("PeriodicStimulus", '<recurrence value="-1" unit="ms"/>', True),
+        ("PeriodicStimulus", ms("recurrence", 1), False),
+        ("PeriodicStimulus", ms("recurrence", 0), True),
+        ("PeriodicStimulus", ms("recurrence", -1), True),
         ("PeriodicStimulus", '<recurrence value="1"/>', True),
         ("PeriodicStimulus", '<recurrence value="1" unit="_undefined_"/>', True),
-        (
-            "PeriodicStimulus",
-            '<recurrence value="1" unit="ms"/><jitter t="TimeGaussDistribution"><mean value="0" unit="s"/></jitter>',
-            True,
-        ),
-        (
-            "PeriodicStimulus",
-            '<recurrence value="1" unit="ms"/><jitter t="TimeConstant"><value value="0" unit="s"/></jitter>',
-            False,
-        ),
+        ("PeriodicStimulus", jitters("TimeGaussDistribution", ms("mean", 0)), True),
+        ("PeriodicStimulus", jitters("TimeConstant", ms("value", 0)), False),
         ("PeriodicSyntheticStimulus", "", True),
         ("PeriodicBurstStimulus", "", True),
         ("RelativePeriodicStimulus", "", True),
-        (
-            "RelativePeriodicStimulus",
-            '<nextOccurrence t="TimeBoundaries"><lowerBound value="1" unit="ms"/></nextOccurrence>',
-            False,
-        ),
-        (
-            "RelativePeriodicStimulus",
-            '<nextOccurrence t="TimeBoundaries"><upperBound value="1" unit="ms"/></nextOccurrence>',
-            True,
-        ),
+        ("RelativePeriodicStimulus", NEXT.format(ms("lowerBound", 1)), False),
+        ("RelativePeriodicStimulus", NEXT.format(ms("upperBound", 1)), True),
         ("ArrivalCurveStimulus", "", True),
-        ("ArrivalCurveStimulus", '<entries numberOfOccurrences="2"><lowerTimeBorder value="1" unit="ms"/></entries>', False),
-        ("ArrivalCurveStimulus", '<entries numberOfOccurrences="2"><upperTimeBorder value="1" unit="ms"/></entries>', True),
+        ("ArrivalCurveStimulus", curve(2, "lowerTimeBorder", 1), False),
+        ("ArrivalCurveStimulus", curve(2, "upperTimeBorder", 1), True),
         # A single occurrence takes no time.
-        ("ArrivalCurveStimulus", '<entries numberOfOccurrences="1"><lowerTimeBorder value="1" unit="ms"/></entries>', True),
-        (
-            "VariableRateStimulus",
-            '<step value="1" unit="s"/><occurrencesPerStep t="ContinuousValueConstant" value="5"/>',
-            False,
-        ),
-        ("VariableRateStimulus", '<occurrencesPerStep t="ContinuousValueConstant" value="5"/>', True),
-        ("VariableRateStimulus", '<step value="1" unit="s"/>', True),
+        ("ArrivalCurveStimulus", curve(1, "lowerTimeBorder", 1), True),
+        ("VariableRateStimulus", ms("step", 1000) + FIVE_PER_STEP, False),
+        ("VariableRateStimulus", FIVE_PER_STEP, True),
+        ("VariableRateStimulus", ms("step", 1000), True),
         # A clock drives it.
         ("VariableRateStimulus", "<scenario/>", False),
         ("CustomStimulus", "", True),
@@ -304,42 +292,31 @@ def test_stimuli_that_never_occur(stimuli, others, expected, tmp_path):
     assert found("TIM-STIMULUS", excerpt, tmp_path) == expected
 
 
-RECURRENCE = '<recurrence value="10" unit="ms"/>'
-BURST = RECURRENCE + '<burstLength value="1" unit="ms"/>'
+RECURRENCE = ms("recurrence", 10)
+BURST = RECURRENCE + ms("burstLength", 1)
+OF_FOUR = 'occurrenceCount="4"'
+
+
+def at(*times):
+    return "".join(ms("occurrenceTimes", time) for time in times)
 
 
 @pytest.mark.parametrize(
     ("kind", "attributes", "parts", "at_once"),
     [
-        ("PeriodicBurstStimulus", 'occurrenceCount="4"', BURST, 4),
-        ("PeriodicBurstStimulus", 'occurrenceCount="4"', BURST + '<occurrenceMinDistance value="0" unit="ms"/>', 4),
+        ("PeriodicBurstStimulus", OF_FOUR, BURST, 4),
+        ("PeriodicBurstStimulus", OF_FOUR, BURST + ms("occurrenceMinDistance", 0), 4),
         # Apart from each other they may each find the task idle.
-        ("PeriodicBurstStimulus", 'occurrenceCount="4"', BURST + '<occurrenceMinDistance value="1" unit="ns"/>', 1),
+        ("PeriodicBurstStimulus", OF_FOUR, BURST + '<occurrenceMinDistance value="1" unit="ns"/>', 1),
         ("PeriodicBurstStimulus", "", "", 1),
-        ("PeriodicSyntheticStimulus", "", RECURRENCE + '<occurrenceTimes value="0" unit="ms"/>' * 3, 3),
-        (
-            "PeriodicSyntheticStimulus",
-            "",
-            RECURRENCE + '<occurrenceTimes value="1" unit="ms"/><occurrenceTimes value="1000" unit="us"/>',
-            2,
-        ),
-        ("PeriodicSyntheticStimulus", "", '<occurrenceTimes value="0" unit="ms"/><occurrenceTimes value="1" unit="ms"/>', 1),
+        ("PeriodicSyntheticStimulus", "", RECURRENCE + at(0, 0, 0), 3),
+        ("PeriodicSyntheticStimulus", "", RECURRENCE + at(1) + '<occurrenceTimes value="1000" unit="us"/>', 2),
+        ("PeriodicSyntheticStimulus", "", at(0, 1), 1),
         # The second one meets the first one of the next round.
-        (
-            "PeriodicSyntheticStimulus",
-            "",
-            '<occurrenceTimes value="1" unit="ms"/><occurrenceTimes value="11" unit="ms"/><recurrence value="10" unit="ms"/>',
-            2,
-        ),
+        ("PeriodicSyntheticStimulus", "", at(1, 11) + RECURRENCE, 2),
         ("PeriodicSyntheticStimulus", "", "", 1),
-        ("ArrivalCurveStimulus", "", '<entries numberOfOccurrences="4"><lowerTimeBorder value="1" unit="ms"/></entries>', 3),
-        (
-            "ArrivalCurveStimulus",
-            "",
-            '<entries numberOfOccurrences="2"><lowerTimeBorder value="1" unit="ms"/></entries>'
-            '<entries numberOfOccurrences="4"><lowerTimeBorder value="9" unit="ms"/></entries>',
-            1,
-        ),
+        ("ArrivalCurveStimulus", "", curve(4, "lowerTimeBorder", 1), 3),
+        ("ArrivalCurveStimulus", "", curve(2, "lowerTimeBorder", 1) + curve(4, "lowerTimeBorder", 9), 1),
         ("ArrivalCurveStimulus", "", "", 1),
         ("InterProcessStimulus", "", "", 1),
         ("CustomStimulus", "", "", 1),
@@ -425,32 +402,30 @@ def deadlines(stimuli, requirement=None, parameter=None, limit_type="UpperLimit"
 <constraintsModel>{limit if requirement else ""}</constraintsModel>"""
 
 
+P, Q = "P?type=PeriodicStimulus", "Q?type=PeriodicStimulus"
+
+
 @pytest.mark.parametrize(
-    ("excerpt", "expected"),
+    ("excerpt", "told"),
     [
-        (deadlines("P?type=PeriodicStimulus", 10, 10), []),
-        (deadlines("P?type=PeriodicStimulus", 11), ["the deadline of 'T' is 11 ms, longer than the 10 ms between activations"]),
-        (
-            deadlines("P?type=PeriodicStimulus", None, 12),
-            ["the deadline of 'T' is 12 ms, longer than the 10 ms between activations"],
-        ),
+        (deadlines(P, 10, 10), ""),
+        (deadlines(P, 11), "11 ms, longer than the 10 ms"),
+        (deadlines(P, None, 12), "12 ms, longer than the 10 ms"),
         # Whoever keeps the shorter one is done before the next activation.
-        (deadlines("P?type=PeriodicStimulus", 11, 9), []),
-        (deadlines("P?type=PeriodicStimulus", 9, 11), []),
-        (deadlines("P?type=PeriodicStimulus"), []),
-        (deadlines("P?type=PeriodicStimulus", 11, limit_type="LowerLimit"), []),
-        (deadlines("P?type=PeriodicStimulus", 11, metric="StartDelay"), []),
+        (deadlines(P, 11, 9), ""),
+        (deadlines(P, 9, 11), ""),
+        (deadlines(P), ""),
+        (deadlines(P, 11, limit_type="LowerLimit"), ""),
+        (deadlines(P, 11, metric="StartDelay"), ""),
         # 5 activations in 40 ms.
-        (
-            deadlines("P?type=PeriodicStimulus Q?type=PeriodicStimulus", 9),
-            ["the deadline of 'T' is 9 ms, longer than the 8 ms between activations"],
-        ),
-        (deadlines("O?type=SingleStimulus", 9), []),
-        (deadlines("C?type=CustomStimulus", 9), []),
-        (deadlines("", 9), []),
+        (deadlines(f"{P} {Q}", 9), "9 ms, longer than the 8 ms"),
+        (deadlines("O?type=SingleStimulus", 9), ""),
+        (deadlines("C?type=CustomStimulus", 9), ""),
+        (deadlines("", 9), ""),
     ],
 )
-def test_deadlines(excerpt, expected, tmp_path):
+def test_deadlines(excerpt, told, tmp_path):
+    expected = [f"the deadline of 'T' is {told} between activations"] if told else []
     assert found("TIM-DEADLINE", excerpt, tmp_path) == expected
 
 
