@@ -11,12 +11,21 @@ PRIORITY = '<schedulingParameterDefinitions name="priority" type="Integer" many=
 OSEK = '<schedulerDefinitions name="OSEK" processParameters="priority?type=SchedulingParameterDefinition"/>'
 
 
+FLAGS = dict.fromkeys(("requiresParentScheduler", "passesParametersUpwards", "hasExactlyOneChild"), "false")
+ALGORITHM = ("osModel", "operatingSystems", "taskSchedulers", "schedulingAlgorithm")
+
+
 def os_model(schedulers, definitions):
     return f'<osModel><operatingSystems name="OS">{schedulers}</operatingSystems>{definitions}</osModel>'
 
 
 def scheduler(definition, content="", name="S"):
     return f'<taskSchedulers name="{name}" definition="{definition}?type=SchedulerDefinition">{content}</taskSchedulers>'
+
+
+def osek(content=""):
+    """A scheduler of that policy and its definitions."""
+    return os_model(scheduler("OSEK", content), OSEK + PRIORITY)
 
 
 def definition(name, content="", **attributes):
@@ -64,6 +73,15 @@ def taken_back(models, *contents):
     return older.roots
 
 
+def changed_and_back(models, content, change):
+    """A model that was taken back, changed there, and brought up again."""
+    older, _ = migrated(models.files("newer", "2.0.0", content), "1.2.0")
+    change(older.roots)
+    (path,) = models.files("older", "1.2.0", "")
+    path.write_text(tree_text(older.trees[0]), encoding="utf-8")
+    return migrated([path], "2.0.0")[0]
+
+
 def refused(models, *contents):
     migrated_notes = migrated(models.files("newer", "2.0.0", *contents), "1.2.0")[1]
     return [note.message for note in migrated_notes if note.kind is NoteKind.LOST]
@@ -75,17 +93,6 @@ def found(roots, *path):
 
 def keys(node):
     return [child.get("key") for child in node.all("customProperties")]
-
-
-def test_a_priority_is_an_attribute(models):
-    content = os_model(scheduler("OSEK"), OSEK + PRIORITY) + allocated(integer("priority", 0))
-    roots = taken_back(models, content)
-    (node,) = found(roots, "mappingModel", "taskAllocation")
-    assert [child.tag for child in node.children] == ["schedulingParameters"]
-    assert node.children[0].attributes == {"priority": "0"}
-    (algorithm,) = found(roots, "osModel", "operatingSystems", "taskSchedulers", "schedulingAlgorithm")
-    assert algorithm.type == "OSEK"
-    assert not found(roots, "osModel", "schedulerDefinitions")
 
 
 def test_definitions_are_kept_with_all_they_say(models):
@@ -115,17 +122,6 @@ def test_definitions_are_kept_with_all_they_say(models):
         "AMALTHEA 2.0.0: schedulingParameterDefinitions/priority",
         "AMALTHEA 2.0.0: schedulingParameterDefinitions/quantum / x",
     ]
-
-
-def test_definitions_that_the_step_up_makes_anyway_are_not_kept(models):
-    options = 'requiresParentScheduler="false" passesParametersUpwards="false" hasExactlyOneChild="false"'
-    standard = f"""<schedulerDefinitions name="FixedPriorityPreemptive" {options}
-    processParameters="priority?type=SchedulingParameterDefinition"/>{PRIORITY}"""
-    content = os_model(scheduler("FixedPriorityPreemptive"), standard) + allocated(integer("priority", 1))
-    assert keys(found(taken_back(models, content), "osModel")[0]) == []
-    # Also one more word makes a difference.
-    described = content.replace('Preemptive" req', 'Preemptive" description="d" req')
-    assert len(keys(found(taken_back(models, described), "osModel")[0])) == 2
 
 
 @pytest.mark.parametrize("name", ["My own", "PriorityBased", "UserSpecificSchedulingAlgorithm3"])
@@ -194,7 +190,7 @@ def test_a_quantum_is_a_number_of_nanoseconds(models, unit, expected):
     definitions = definition("PfairPD2") + parameter_definition("quantSize", "Time")
     content = os_model(scheduler("PfairPD2", time("quantSize", 7, unit)), definitions)
     older = migrated(models.files("newer", "2.0.0", content), "1.2.0")[0]
-    (algorithm,) = found(older.roots, "osModel", "operatingSystems", "taskSchedulers", "schedulingAlgorithm")
+    (algorithm,) = found(older.roots, *ALGORITHM)
     assert algorithm.attributes == expected
     if unit != "us":  # which comes back as 7000 ns
         taken_back(models, content)
@@ -204,7 +200,7 @@ def test_a_quantum_is_a_number_of_nanoseconds(models, unit, expected):
 def test_a_quantum_that_would_come_back_as_another_text_is_kept(models, text):
     definitions = definition("PfairPD2") + parameter_definition("quantSize", "Time")
     roots = taken_back(models, os_model(scheduler("PfairPD2", time("quantSize", text, "ns")), definitions))
-    (algorithm,) = found(roots, "osModel", "operatingSystems", "taskSchedulers", "schedulingAlgorithm")
+    (algorithm,) = found(roots, *ALGORITHM)
     assert algorithm.attributes == {}
 
 
@@ -219,13 +215,11 @@ def test_what_the_step_up_fills_in_is_not_restored(models):
     assert keys(task) == ["AMALTHEA 2.0.0: customProperties/osekTaskGroup", "AMALTHEA 2.0.0: customProperties/priority"]
     # Whoever writes the 1.2.0 file may state the default of the attribute.
     pfair = os_model(scheduler("PfairPD2"), definition("PfairPD2"))
-    older, _ = migrated(models.files("newer", "2.0.0", pfair), "1.2.0")
-    found(older.roots, "osModel", "operatingSystems", "taskSchedulers", "schedulingAlgorithm")[0].attributes["quantSizeNs"] = (
-        "0"
-    )
-    (path,) = models.files("older", "1.2.0", "")
-    path.write_text(tree_text(older.trees[0]))
-    assert meaning(migrated([path], "2.0.0")[0]) == models.read("2.0.0", pfair)
+
+    def state(roots):
+        found(roots, *ALGORITHM)[0].attributes["quantSizeNs"] = "0"
+
+    assert meaning(changed_and_back(models, pfair, state)) == models.read("2.0.0", pfair)
 
 
 def test_defaults_of_parameters_are_stated(models):
@@ -247,12 +241,13 @@ def test_a_stated_parameter_needs_no_default(models):
 def test_a_default_that_was_changed_in_1_2_0_counts(models):
     default = '<defaultValue t="IntegerObject" value="7"/>'
     content = os_model(scheduler("OSEK"), OSEK + parameter_definition("priority", "Integer", default))
-    older, _ = migrated(models.files("newer", "2.0.0", content + allocated("")), "1.2.0")
-    (allocation,) = found(older.roots, "mappingModel", "taskAllocation")
-    allocation.children[-1].attributes["priority"] = "5"
-    (path,) = models.files("older", "1.2.0", "")
-    path.write_text(tree_text(older.trees[0]))
-    assert meaning(migrated([path], "2.0.0")[0]) == models.read("2.0.0", content + allocated(integer("priority", 5)))
+
+    def change(roots):
+        (allocation,) = found(roots, "mappingModel", "taskAllocation")
+        allocation.children[-1].attributes["priority"] = "5"
+
+    back = changed_and_back(models, content + allocated(""), change)
+    assert meaning(back) == models.read("2.0.0", content + allocated(integer("priority", 5)))
 
 
 @pytest.mark.parametrize(
@@ -268,9 +263,8 @@ def test_definitions_are_kept_where_an_allocation_keeps_a_parameter(models, para
     """As the step up makes them, but only beside a parameter that 1.2.0 cannot state."""
     names = {"taskGroup": "Integer", "minBudget": "Time", "extended: k": "String"}
     used = [name for name in names if name.replace(": ", "%3A+") + "?" in parameters or name == "taskGroup"]
-    flags = dict.fromkeys(("requiresParentScheduler", "passesParametersUpwards", "hasExactlyOneChild"), "false")
     group = "taskGroup?type=SchedulingParameterDefinition"
-    osek = definition("OSEK", **flags, processParameters=f"priority?type=SchedulingParameterDefinition {group}")
+    osek = definition("OSEK", **FLAGS, processParameters=f"priority?type=SchedulingParameterDefinition {group}")
     made = "".join(
         f'<schedulingParameterDefinitions name="{name}" type="{names[name]}" many="false"'
         f' mandatory="{"true" if name == "taskGroup" else "false"}"/>'
@@ -284,10 +278,7 @@ def test_definitions_are_kept_where_an_allocation_keeps_a_parameter(models, para
 def test_comments_come_back(models):
     definitions = f"<!--1-->{definition('OSEK')}<!--2-->{parameter_definition('own')}"
     content = os_model(scheduler("OSEK", "<!--3-->" + integer("own", 1)), definitions)
-    older, _ = migrated(models.files("newer", "2.0.0", content), "1.2.0")
-    (path,) = models.files("older", "1.2.0", "")
-    path.write_text(tree_text(older.trees[0]))
-    nodes = all_below(migrated([path], "2.0.0")[0].roots)
+    nodes = all_below(changed_and_back(models, content, lambda _: None).roots)
     assert {node.tag: node.comments for node in nodes if node.comments} == {
         "schedulerDefinitions": ["<!--1-->"],
         "schedulingParameterDefinitions": ["<!--2-->"],
@@ -306,8 +297,7 @@ def test_comments_come_back(models):
     ],
 )
 def test_definitions_are_kept_unless_the_step_up_makes_them_so(models, comment, part, other, number):
-    flags = dict.fromkeys(("requiresParentScheduler", "passesParametersUpwards", "hasExactlyOneChild"), "false")
-    standard = definition("PriorityBased", part, **flags, processParameters="priority?type=SchedulingParameterDefinition")
+    standard = definition("PriorityBased", part, **FLAGS, processParameters="priority?type=SchedulingParameterDefinition")
     controller = '<interruptControllers name="C" definition="PriorityBased?type=SchedulerDefinition"/>'
     roots = taken_back(models, *other, os_model(controller, comment + standard + PRIORITY))
     assert len(keys(found(roots, "osModel")[-1])) == number
@@ -315,11 +305,11 @@ def test_definitions_are_kept_unless_the_step_up_makes_them_so(models, comment, 
 
 def test_a_changed_algorithm_counts(models):
     content = os_model(scheduler("My+own"), definition("My own") + OSEK + PRIORITY)
-    older, _ = migrated(models.files("newer", "2.0.0", content), "1.2.0")
-    found(older.roots, "osModel", "operatingSystems", "taskSchedulers", "schedulingAlgorithm")[0].type = "RateMonotonic"
-    (path,) = models.files("older", "1.2.0", "")
-    path.write_text(tree_text(older.trees[0]))
-    back, _ = migrated([path], "2.0.0")
+
+    def change(roots):
+        found(roots, *ALGORITHM)[0].type = "RateMonotonic"
+
+    back = changed_and_back(models, content, change)
     (node,) = found(back.roots, "osModel", "operatingSystems", "taskSchedulers")
     assert node.target("definition").name == "RateMonotonic"
     assert [d.name for d in found(back.roots, "osModel", "schedulerDefinitions")] == ["My own", "OSEK", "RateMonotonic"]
@@ -365,45 +355,24 @@ FILL = '<entries t="ChannelFillCondition" fillLevel="1"/>'
             f'<swModel><runnables name="R"><executionCondition>{FILL}</executionCondition></runnables></swModel>',
             "condition on the fill level of a channel: only AMALTHEA 2.0.0 and later have it",
         ),
-        (
-            os_model("", OSEK + OSEK + PRIORITY),
-            "definition without a unique name: AMALTHEA 1.2.0 identifies it by name",
-        ),
+        (os_model("", OSEK + OSEK + PRIORITY), "definition without a unique name: AMALTHEA 1.2.0 identifies it by name"),
         (os_model(scheduler("missing"), ""), "the definition of the scheduler is in none of the files"),
         (
             os_model(scheduler("X").replace("SchedulerDefinition", "Task"), "") + '<swModel><tasks name="X"/></swModel>',
             "the definition of the scheduler is in none of the files",
         ),
         (os_model("", OSEK), "a parameter of the scheduler definition is in none of the files"),
+        (osek("<schedulingParameters/>"), "scheduling parameter without a definition that has a name"),
+        (osek(integer("missing", 1)), "scheduling parameter of which the definition is in none of the files"),
         (
-            os_model(scheduler("OSEK", "<schedulingParameters/>"), OSEK + PRIORITY),
-            "scheduling parameter without a definition that has a name",
-        ),
-        (
-            os_model(scheduler("OSEK", integer("missing", 1)), OSEK + PRIORITY),
-            "scheduling parameter of which the definition is in none of the files",
-        ),
-        (
-            os_model(
-                scheduler("OSEK", '<schedulingParameters key="priority?type=SchedulingParameterDefinition"/>'), OSEK + PRIORITY
-            ),
+            osek('<schedulingParameters key="priority?type=SchedulingParameterDefinition"/>'),
             "scheduling parameter without a value",
         ),
+        (osek(integer("priority", 1) * 2), "scheduling parameter that is stated twice"),
+        (osek(integer("priority", 1).replace("</sch", "<unknown/></sch")), "scheduling parameter with unknown content"),
+        (os_model("", definition("X", "<unknown/>")), "unknown part of a definition"),
         (
-            os_model(scheduler("OSEK", integer("priority", 1) * 2), OSEK + PRIORITY),
-            "scheduling parameter that is stated twice",
-        ),
-        (
-            os_model(scheduler("OSEK", integer("priority", 1).replace("</sch", "<unknown/></sch")), OSEK + PRIORITY),
-            "scheduling parameter with unknown content",
-        ),
-        (
-            os_model("", definition("X", "<unknown/>")),
-            "unknown part of a definition",
-        ),
-        (
-            os_model(scheduler("OSEK"), OSEK + PRIORITY)
-            + '<eventModel><customProperties key="k"><value t="ReferenceObject" value="OSEK?type=SchedulerDefinition"/>'
+            osek() + '<eventModel><customProperties key="k"><value t="ReferenceObject" value="OSEK?type=SchedulerDefinition"/>'
             "</customProperties></eventModel>",
             "reference 'value': its target is lost",
         ),
