@@ -196,6 +196,15 @@ def test_reference_list_in_another_order() -> None:
     assert change.new in ("reordered every_5ms", "reordered every_10ms")
 
 
+def test_moved_between_objects_with_unique_names() -> None:
+    def model(holder: str) -> Model:
+        structures = [am.HwStructure(name=name) for name in "AB"]
+        structures["AB".index(holder)].structures.append(am.HwStructure(name="inner"))
+        return Model.of(am.Amalthea(hw_model=am.HWModel(structures=structures)))
+
+    assert told(difference(model("A"), model("B"))) == [("moved", "HwStructure", "inner", "structures", "A", "B")]
+
+
 def test_map_entries_are_matched_by_the_object_that_is_their_key() -> None:
     def model(*values: tuple[str, str]) -> Model:
         definitions = {name: am.SchedulingParameterDefinition(name=name) for name in ("priority", "quota")}

@@ -81,6 +81,11 @@ PATHS = [
     ("AM-HW-AccessPath", path(TO_RAM, over(WIRE), connection("w", "core/p", None)), ["end of the path has no port of 'RAM'"]),
     ("AM-HW-AccessPath", path(TO_RAM, over(WIRE, BUS, "ECU/v?type=HwConnection"), BUSES), []),
     ("AM-HW-AccessPath", path(TO_RAM, over(BUS), BUSES), ["'bus' at the start", "'bus' at the end"]),
+    (
+        "AM-HW-AccessPath",
+        path(TO_RAM, over(WIRE, BUS, "other?type=ConnectionHandler"), BUSES + module("ConnectionHandler", "other", port("q"))),
+        ["'other' at the end", "'bus' and 'other' are adjacent"],
+    ),
     ("AM-HW-AccessPath", path(TO_RAM, over(WIRE, "ECU/v?type=HwConnection"), BUSES), ["'ECU.w' and 'ECU.v' are adjacent"]),
     (
         "AM-HW-AccessPath",

@@ -597,6 +597,7 @@ CASES = [
     ("INC-EV-KIND", 2, events(chain(("s?type=CustomEvent", "s?type=CustomEvent")), '<events t="CustomEvent" name="s"/>')),
     ("INC-EV-TYPE", 1, events(chain("ab"))),
     ("INC-EV-TYPE", 2, events(chain(("a", "odd")))),
+    ("INC-EV-TYPE", 2, events(chain(("a", BAD_SET)), SET)),
     ("INC-EV-TYPE", 2, events(chain("ab", segment(("a", "odd")), segment(("odd", "b"))))),
     ("INC-EV-TYPE", 1, events(chain("ab", segment(("a", "odd")), segment("cb")))),
     ("INC-EV-LABEL-RUN", 1, events("", '<events t="LabelEvent" name="l" runnable="R?type=Runnable"/>')),

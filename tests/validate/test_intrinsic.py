@@ -3,6 +3,7 @@
 import json
 
 import pytest
+from excerpts import found, runnable
 from support import SHARED, model_text
 
 from amalthea_uros import check, load
@@ -115,3 +116,13 @@ def test_initial_values_of_mode_labels(attributes, expected, tmp_path):
     path = tmp_path / "model.amxmi"
     path.write_text(model_text(MODES.format(attributes)))
     assert [finding.message for finding in check(load(path), ["AM-EMF-INTRINSIC/ModeLabel"])] == expected
+
+
+@pytest.mark.parametrize(
+    ("data", "message"), [("", "the access has no mode label"), ("L?type=ModeLabel", "mode label 'L' has no mode")]
+)
+def test_accesses_to_mode_labels(data, message, tmp_path):
+    access = runnable("R", f'<items t="ModeLabelAccess" data="{data}" access="set" value="1"/>')
+    assert found("AM-EMF-INTRINSIC/ModeLabelAccess", f'<swModel>{access}<modeLabels name="L"/></swModel>', tmp_path) == [
+        message
+    ]

@@ -593,6 +593,15 @@ COST = 'features="Matrix/cost?type=HwFeature"'
         (two_types(need("Matrix"), COST, tasks=""), ""),
         (two_types(need("Matrix")), "need 'Matrix' is not a feature category of any processing unit in use"),
         (two_types(need("Vector"), COST), "need 'Vector' is not a feature category of any processing unit in use"),
+        # What is never called needs nothing.
+        *(
+            (two_types(need("Matrix"), COST).replace(call("R"), call("R", f"<statistic><statistic {text}/></statistic>")), told)
+            for text, told in (
+                ('t="SingleValueStatistic" value="1"', "the cost of need 'Matrix' is not defined for 'core1'"),
+                ('t="SingleValueStatistic" value="0"', ""),
+                ('t="MinAvgMaxStatistic" max="0"', ""),
+            )
+        ),
         # A cost of nothing is none.
         (
             two_types(need("Matrix"), COST.replace("cost", "nothing")),

@@ -48,7 +48,8 @@ def test_not_a_number():
 
 
 @pytest.mark.parametrize(
-    ("value", "text"), [(0.1, "0.1"), (3.4028235e38, "3.4028235E38"), (16777216, "1.6777216E7"), (1e39, "Infinity")]
+    ("value", "text"),
+    [(0.1, "0.1"), (3.4028235e38, "3.4028235E38"), (16777216, "1.6777216E7"), (1e39, "Infinity"), (-math.inf, "-Infinity")],
 )
 def test_a_float_has_the_digits_of_32_bits(value, text):
     assert format_float(value) == text

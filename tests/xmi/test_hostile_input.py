@@ -518,12 +518,8 @@ def test_of_several_files_none_is_written_if_one_has_errors(tmp_path):
     assert {entry: entry.read_bytes() for entry in tmp_path.iterdir()} == before
 
 
-@pytest.fixture
-def model(tmp_path):
-    return load(file(tmp_path, GOOD))
-
-
-def test_values_that_are_not_allowed_are_all_named_and_nothing_is_written(model, tmp_path):
+def test_values_that_are_not_allowed_are_all_named_and_nothing_is_written(tmp_path):
+    model = load(file(tmp_path, GOOD))
     task = model[classes.Task, "Brake (left)"]
     task.preemption = "sometimes"
     task.multiple_task_activation_limit = 1.5
@@ -540,12 +536,27 @@ def test_values_that_are_not_allowed_are_all_named_and_nothing_is_written(model,
     assert (tmp_path / "model.amxmi").read_bytes() == GOOD
 
 
-def test_what_the_version_does_not_have_is_named(model):
-    model[classes.Runnable, "Act"].activity_graph = classes.ActivityGraph(items=[classes.ModeSwitch()])
-    with pytest.raises(
-        WriteError, match=r"Act\.activityGraph\.items\[0\]: the class ModeSwitch does not exist in AMALTHEA 3\.0\.0"
-    ):
-        save(model)
+SWITCH = classes.ActivityGraph(items=[classes.ModeSwitch()])
+
+
+@pytest.mark.parametrize(
+    ("root_object", "version", "message"),
+    [
+        (
+            classes.Amalthea(sw_model=classes.SWModel(runnables=[classes.Runnable(name="R", activity_graph=SWITCH)])),
+            "3.0.0",
+            r"R\.activityGraph\.items\[0\]: the class ModeSwitch does not exist in AMALTHEA 3\.0\.0",
+        ),
+        (
+            classes.Amalthea(os_model=classes.OSModel(semaphores=[classes.Semaphore(name="S", ownership=True)])),
+            "2.2.0",
+            r"S: Semaphore has no feature 'ownership' in AMALTHEA 2\.2\.0",
+        ),
+    ],
+)
+def test_what_the_version_does_not_have_is_named(root_object, version, message, tmp_path):
+    with pytest.raises(WriteError, match=message):
+        save(Model.of(root_object, version), tmp_path / "m.amxmi")
 
 
 def test_what_the_reader_would_refuse_as_too_deep_is_not_written(tmp_path):

@@ -60,6 +60,7 @@ KEPT = {
     "the same for one of several": allocation(
         '<affinity href="amlt:/#A?type=ProcessingUnit"><affinity href="amlt:/#B?type=ProcessingUnit"/><!-- c --></affinity>'
     ),
+    "a reference with another attribute": allocation('<task href="amlt:/#A?type=Task" more="1"/>'),
     "an empty attribute and an element": allocation('<task href="amlt:/#A?type=Task"/>').replace(
         "<taskAllocation", '<taskAllocation task=""'
     ),
