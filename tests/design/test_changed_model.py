@@ -113,7 +113,7 @@ def test_a_frequency_that_a_setting_has_already_is_written_if_it_is_set(tmp_path
 
 
 def test_a_description_and_a_system_become_the_model_of_the_changed_system(tmp_path):
-    path, target = SAMPLES / "bodas-test-advanced.yaml", tmp_path / "changed.amxmi"
+    path, target = SAMPLES / "bodas-test-simple.yaml", tmp_path / "changed.amxmi"
     found = amuros.what_if(path, {"Control_Function.priority": "7"})
     found.save(target)
     assert amuros.extract(amuros.load(target)).system == found.system
@@ -136,18 +136,13 @@ def test_what_cannot_be_written_is_refused_before_anything_is(tmp_path):
         found.save(tmp_path / "changed.amxmi")
     with pytest.raises(InvalidArgumentError, match="written as an AMALTHEA model, not as a description"):
         found.save(tmp_path / "app.yaml")
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_a_model_that_is_migrated_while_it_is_read_is_refused(tmp_path):
-    """The whole file would be in another version, so more than the changed value would differ."""
+    # A file that is migrated while it is read would be in another version, so that more than the changed value would differ.
     path = tmp_path / "old.amxmi"
-    path.write_text(
-        MODEL.replace("3.3.0", "0.9.5").format('<swModel><tasks name="T" multipleTaskActivationLimit="1"/></swModel>')
-    )
-    found = amuros.what_if(path, ["T.activation_limit=3"])
+    task = '<swModel><tasks name="T" multipleTaskActivationLimit="1"/></swModel>'
+    path.write_text(MODEL.replace("3.3.0", "0.9.5").format(task))
+    changed = amuros.what_if(path, ["T.activation_limit=3"])
     with pytest.raises(InvalidArgumentError, match=r"AMALTHEA 0[.]9[.]5 is not written with other values; migrate it first"):
-        found.save(tmp_path / "changed.amxmi")
+        changed.save(tmp_path / "changed.amxmi")
     assert [file.name for file in tmp_path.iterdir()] == ["old.amxmi"]
 
 

@@ -25,9 +25,8 @@ def test_all_forms_of_changes_and_subjects_mean_the_same():
     text = ["Executor_Task.period=2ms", Change("Executor_Task", "priority", "0")]
     expected = amuros.what_if(MODEL, changes).impact
     assert expected
-    for subject in (str(MODEL), [MODEL], amuros.load(MODEL), SYSTEM):
-        assert amuros.what_if(subject, text).impact == expected
-    assert amuros.what_if(iter([MODEL]), iter(text)).impact == expected
+    for subject in (str(MODEL), [MODEL], iter([MODEL]), amuros.load(MODEL), SYSTEM):
+        assert amuros.what_if(subject, iter(text)).impact == expected
 
 
 def test_a_lower_priority_is_worse_for_one_and_better_for_the_others():
@@ -93,7 +92,7 @@ def test_an_overload_is_worse_and_nothing_unknown_is_left_out():
 
 def test_what_else_changes_is_listed_as_a_consequence():
     # The executor takes the message in every 20th of its jobs.
-    found = amuros.what_if(ADVANCED, ["Executor_Task.period=2ms"])
+    found = amuros.what_if(ADVANCED, ["Executor_Task.period=2ms"], amuros.Settings(phases={"Message_Factor": 0}))
     assert [str(each) for each in found.differences] == [
         "Executor_Task.period: 1 ms -> 2 ms",
         "Message_Factor.arrival_period: 20 ms -> 40 ms (consequence)",

@@ -2,8 +2,10 @@
 
 import re
 from dataclasses import replace
+from itertools import product
 
 import pytest
+from effort import every
 from support import ROOT
 from svg_reading import NASTY, SVG, assert_readable, contents, parsed, scale
 
@@ -73,8 +75,11 @@ def test_data_that_get_old_until_they_are_overwritten_have_a_box():
     assert any(text.startswith("output is overwri") and text.endswith("after 1.013 ms") for text in contents(picture))
 
 
-@pytest.mark.parametrize("chain", ["speed-to-torque", "wheel-to-torque", "height-to-log", "wheels-to-odometry"])
-@pytest.mark.parametrize("quantity", [LatencyQuantity.MAX_REDUCED_REACTION_TIME, LatencyQuantity.MAX_DATA_AGE])
+CHAINS = ("speed-to-torque", "wheel-to-torque", "height-to-log", "wheels-to-odometry")
+QUANTITIES = (LatencyQuantity.MAX_REDUCED_REACTION_TIME, LatencyQuantity.MAX_DATA_AGE)
+
+
+@pytest.mark.parametrize(("chain", "quantity"), every(3, list(product(CHAINS, QUANTITIES))))
 def test_all_chains_are_readable(chain, quantity):
     assert_readable(draw_hops(explanation("drive-and-lift.yaml", chain, quantity)))
 

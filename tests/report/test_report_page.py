@@ -178,7 +178,7 @@ def test_a_model_without_anything_is_unknown(tmp_path):
 
 
 def test_what_fails_and_what_is_unknown_comes_first():
-    page = page_of(ADVANCED, changes=("Control_Function.execution_time=2ms",))
+    page = report(ADVANCED, PHASE, changes=("Control_Function.execution_time=2ms",), duration="100 ms").html
     verdict = text(section(page, "verdict"))
     assert "Not schedulable" in verdict
     # 2 ms in each ms, and 12 us, and now and then 13 us more.
