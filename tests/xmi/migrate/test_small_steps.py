@@ -1,7 +1,6 @@
 """Steps that change little, as far as neither the pairs of models nor steps/*.txt show it."""
 
 import pytest
-from inline_models import migrate
 from migration import migrated
 
 from amalthea_uros.xmi.tree.node import all_below
@@ -10,12 +9,7 @@ from amalthea_uros.xmi.tree.notes import NoteKind
 # 0.7.2 -> 0.8.0
 
 
-@pytest.fixture
-def up(tmp_path):
-    def run(*contents, root="Amalthea", source="0.7.2", target="0.8.0"):
-        return migrate(tmp_path, source, target, *contents, root=root)
-
-    return run
+STEP = ("0.7.2", "0.8.0")
 
 
 def test_common_elements_can_be_a_root(up):

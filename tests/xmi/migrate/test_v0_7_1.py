@@ -1,17 +1,11 @@
 """0.7.0 -> 0.7.1: what the pairs of models do not show."""
 
 import pytest
-from inline_models import migrate
 
 from amalthea_uros.xmi.migrate.steps.v0_7_1 import java_double
 
-
-@pytest.fixture
-def up(tmp_path):
-    def run(*contents, root="Amalthea", source="0.7.0"):
-        return migrate(tmp_path, source, "0.7.1", *contents, root=root)
-
-    return run
+#: The versions.
+STEP = ("0.7.0", "0.7.1")
 
 
 @pytest.mark.parametrize(

@@ -1,15 +1,9 @@
 """0.7.1 -> 0.7.2: what the pairs of models do not show."""
 
 import pytest
-from inline_models import migrate
 
-
-@pytest.fixture
-def up(tmp_path):
-    def run(*contents, root="Amalthea", source="0.7.1"):
-        return migrate(tmp_path, source, "0.7.2", *contents, root=root)
-
-    return run
+#: The versions.
+STEP = ("0.7.1", "0.7.2")
 
 
 DEVIATION = (

@@ -1,24 +1,13 @@
 """0.8.0 -> 0.8.1, as far as the pairs of models do not show it."""
 
-from functools import partial
-
 import pytest
-from inline_models import check_step, of_kind, text_property, written
+from inline_models import of_kind, text_property
 from migration import migrated
 
 from amalthea_uros.xmi.tree.notes import NoteKind
 
-
-@pytest.fixture
-def files(tmp_path):
-    """Write files of a version."""
-    return partial(written, tmp_path)
-
-
-@pytest.fixture
-def same(tmp_path):
-    """Assert what some files become."""
-    return partial(check_step, tmp_path, "0.8.0", "0.8.1")
+#: The versions.
+STEP = ("0.8.0", "0.8.1")
 
 
 # Priorities

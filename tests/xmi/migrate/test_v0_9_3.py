@@ -1,18 +1,13 @@
 """0.9.2 -> 0.9.3, as far as the pairs of models do not show it."""
 
-from functools import partial
-
 import pytest
-from inline_models import check_step, of_kind, text_property, written
+from inline_models import of_kind, text_property, written
 from migration import meaning, migrated
 
 from amalthea_uros.xmi.tree.notes import NoteKind
 
-
-@pytest.fixture
-def same(tmp_path):
-    """Assert what some files become."""
-    return partial(check_step, tmp_path, "0.9.2", "0.9.3")
+#: The versions.
+STEP = ("0.9.2", "0.9.3")
 
 
 def hardware(*definitions, category="Instructions"):

@@ -1,19 +1,14 @@
 """0.9.3 -> 0.9.4, as far as the pairs of models do not show it."""
 
-from functools import partial
-
 import pytest
-from inline_models import check_step, of_kind, text_property, written
+from inline_models import of_kind, text_property, written
 from migration import meaning, migrated, opened
 
 from amalthea_uros.xmi.migrate.chain import migrate
 from amalthea_uros.xmi.tree.notes import NoteKind, StepNotes
 
-
-@pytest.fixture
-def same(tmp_path):
-    """Assert what some files become."""
-    return partial(check_step, tmp_path, "0.9.3", "0.9.4")
+#: The versions.
+STEP = ("0.9.3", "0.9.4")
 
 
 # Mode labels
