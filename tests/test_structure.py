@@ -4,6 +4,7 @@ A change may raise a limit of a table below only on purpose: for a capability th
 """
 
 import ast
+import re
 from collections import Counter, defaultdict
 from functools import cache
 from typing import NamedTuple
@@ -80,6 +81,11 @@ SHARED_NAMES = {
     "Table",
 }
 
+#: A tag of HTML, a row or a fence of Markdown.
+IS_MARKUP = re.compile(r"</?(?:b|br|code|details|div|h[1-6]|li|p|pre|span|strong|t[dhr]|table|ul)\b[^>]*>|\| ?-{3}|\*\*\w|```")
+#: Editors show Markdown; notebooks say below a table how many rows are left out.
+MARKUP = {"editor/hover.py", "report/notebook.py"}
+
 #: Each for callers that act differently.
 EXCEPTIONS = {
     "AmurosError",
@@ -122,24 +128,29 @@ class Structure(NamedTuple):
     imports: frozenset[str]
     #: Class -> its bases, of the classes that are in no other one.
     classes: dict[str, list[str]]
+    #: Whether a text of it, other than a docstring, has markup.
+    has_markup: bool
 
 
 @cache
 def structure(path):
     source = path.read_text(encoding="utf-8")
     tree = ast.parse(source)
-    without, modules = set(), set()
+    without, modules, texts = set(), set(), []
     for node in ast.walk(tree):
         match node:
             case ast.Expr(value=ast.Constant(value=str())):
                 without.update(range(node.lineno, node.end_lineno + 1))
+            case ast.Constant(value=str(text)) if node.lineno not in without:
+                texts.append(text)
             case ast.ImportFrom(module=module):
                 modules.add(module)
             case ast.Import(names=names):
                 modules.update(alias.name for alias in names)
     lines = (line.strip() for number, line in enumerate(source.splitlines(), 1) if number not in without)
     classes = {node.name: [ast.unparse(base) for base in node.bases] for node in tree.body if isinstance(node, ast.ClassDef)}
-    return Structure(sum(1 for line in lines if line and not line.startswith("#")), frozenset(modules), classes)
+    count = sum(1 for line in lines if line and not line.startswith("#"))
+    return Structure(count, frozenset(modules), classes, any(map(IS_MARKUP.search, texts)))
 
 
 def test_no_room_grows_unnoticed():
@@ -181,6 +192,21 @@ def test_exceptions_are_few():
         if any(is_exception(base) for base in bases[name]):
             found.add(name)
     assert found == EXCEPTIONS
+
+
+def test_only_writers_make_markup():
+    # A result is described once, by a document; HTML, Markdown and tables of text follow from that.
+    makers = (f"{PACKAGE}/report/writers/", f"{PACKAGE}/report/pictures/")
+    found = {name_of(path) for path in files() if not name_of(path).startswith(makers) and structure(path).has_markup}
+    assert found == {f"{PACKAGE}/{name}" for name in MARKUP}
+    assert structure(ROOT / PACKAGE / "report" / "writers" / "fragment.py").has_markup
+
+
+@pytest.mark.parametrize("folder", ["basics", "documents", "fields", "wording"])
+def test_what_describes_a_result_imports_no_writer(folder):
+    writers = (f"{PACKAGE}.report.writers", f"{PACKAGE}.report.formats", "html", "jinja2", "rich")
+    for path in (ROOT / PACKAGE / "report" / folder).glob("*.py"):
+        assert [module for module in structure(path).imports if f"{module}.".startswith(tuple(f"{w}." for w in writers))] == []
 
 
 @pytest.mark.parametrize(
