@@ -53,19 +53,11 @@ def test_several_outputs_in_one_run(bad, tmp_path):
     run = amuros("check", bad, *INCHRON, *(part for kind, path in names.items() for part in ("--output", f"{kind}={path}")))
     assert (run.returncode, run.stdout) == (1, "")
     findings = json.loads(names["json"].read_text())["findings"]
-    clock = next(finding for finding in findings if finding["rule"] == "INC-HW-PU-CLOCK")
-    assert (clock["severity"], clock["profile"], clock["object"]) == ("error", "inchron", "Core_0")
     (sarif,) = json.loads(names["sarif"].read_text())["runs"]
-    assert len(sarif["results"]) == len(findings)
-    for result in sarif["results"]:
-        assert sarif["tool"]["driver"]["rules"][result["ruleIndex"]]["id"] == result["ruleId"]
-        assert result["locations"][0]["physicalLocation"]["region"]["startLine"] >= 1
-    suite = ElementTree.parse(names["junit"]).getroot().find("testsuite")
-    assert int(suite.get("tests")) == len(suite.findall("testcase")) >= len({finding["rule"] for finding in findings})
-    assert int(suite.get("failures")) == len(suite.findall("testcase/failure"))
-    lines = names["github"].read_text().splitlines()
-    assert len(lines) == len(findings)
-    assert all(line.startswith(("::error file=", "::warning file=", "::notice file=")) for line in lines)
+    failures = ElementTree.parse(names["junit"]).findall(".//failure")
+    assert "INC-HW-PU-CLOCK" in {finding["rule"] for finding in findings}
+    assert len(sarif["results"]) == len(names["github"].read_text().splitlines()) == len(findings)
+    assert len(failures) == len({finding["rule"] for finding in findings if finding["severity"] != "info"})
 
 
 def test_the_schema_of_the_version(tmp_path):
@@ -212,6 +204,7 @@ def test_the_nearest_settings_count(bad, tmp_path):
         (CHECK + "select = 'INC-*'", "'select' must be a list of strings"),
         (CHECK + "profile = ['inchrn']", "'profile' cannot be 'inchrn'"),
         (CHECK + "fail-on = 'never'", "'fail-on' cannot be 'never'\n  help: Expected one of error, warning, info."),
+        (CHECK + "targets = ['inchrom']", "'targets' cannot be 'inchrom'\n  help: Expected one of inchron, ta."),
         (CHECK + "baseline = 1", "'baseline' must be a string"),
         ("check = 1", "must be a table"),
     ],
@@ -307,5 +300,3 @@ def test_target_tools_are_summed_up_unless_they_are_asked_for(bad, tmp_path):
     assert run.returncode == 1
     assert "INC-HW-PU-CLOCK" in run.stdout
     assert "TA tools: note 1; amuros check --profile ta shows them" in run.stdout
-    (tmp_path / "amuros.toml").write_text(CHECK + 'targets = ["inchrom"]\n')
-    assert "'targets' cannot be 'inchrom'\n  help: Expected one of inchron, ta." in amuros("check", bad).stderr

@@ -83,29 +83,6 @@ def test_junit_of_a_model_without_findings(tmp_path):
     assert (suite.tests, suite.failures) == (1, 0)
 
 
-def test_json_has_the_names_on_which_scripts_rely(model):
-    result = found(model)
-    assert result.keys() >= {"amuros", "model", "assumptions", "findings"}
-    assert result["model"] == str(model)
-    for finding in result["findings"]:
-        assert finding.keys() == {
-            "rule",
-            "severity",
-            "message",
-            "help",
-            "file",
-            "line",
-            "column",
-            "object",
-            "profile",
-            "fingerprint",
-            "part_of",
-            "counts",
-        }
-        assert finding["severity"] in ("error", "warning", "info")
-        assert finding["line"] >= 1
-
-
 def test_annotations_escape_what_has_a_meaning(tmp_path):
     path = tmp_path / "a,b:c.amxmi"
     path.write_text(MODEL.format('<swModel><tasks name="100%"/></swModel>'))

@@ -14,7 +14,6 @@ from support import ROOT
 from amalthea_uros.cli.watch import watched_files
 
 YAML = ROOT / "samples" / "bodas-test-simple.yaml"
-PLATFORM = "amuros: 1\nplatform: mine\nhardware: {microcontroller: C, core_type: Core, frequency: 1 MHz, cores: 1}\n"
 
 
 class Watching:
@@ -80,16 +79,6 @@ def test_an_error_and_a_missing_file_do_not_end_it(folder):
         assert run.wait_for("watching", 4)[-2] == "no findings\n"
 
 
-def test_a_platform_file_that_the_description_names_is_watched(folder):
-    path = folder / "app.yaml"
-    path.write_text(YAML.read_text().replace("platform: single-core", "platform: ./mine.yaml"))
-    (folder / "mine.yaml").write_text(PLATFORM)
-    with Watching(folder, "build", "app.yaml", "-q") as run:
-        run.wait_for("watching 2 files")
-        (folder / "mine.yaml").write_text(PLATFORM.replace("cores: 1", "cores: 2"))
-        assert "mine.yaml changed; running again\n" in run.wait_for("watching", 2)
-
-
 def test_what_is_watched(folder):
     path = folder / "app.yaml"
     (folder / "a.amxmi").touch()
@@ -106,8 +95,3 @@ def test_standard_input_cannot_be_watched():
     run = amuros("check", "-", "--watch")
     assert run.returncode == 2
     assert "--watch waits for changes of files; standard input has none" in run.stderr
-
-
-@pytest.mark.parametrize("command", ["analyze", "build", "check"])
-def test_commands_whose_input_is_edited_have_it(command):
-    assert "--watch" in amuros(command, "--help").stdout
