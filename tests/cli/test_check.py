@@ -231,18 +231,20 @@ def test_each_file_on_its_own_or_together(tmp_path):
     assert run.stdout.count("INC-CO-KIND warning") == 2
 
 
-def test_the_hooks_for_pre_commit():
+def test_the_hooks_for_pre_commit(tmp_path):
     hooks = {hook["id"]: hook for hook in yaml.safe_load((ROOT / ".pre-commit-hooks.yaml").read_text())}
     for hook in hooks.values():
         assert hook["entry"].startswith("amuros ")
         assert hook["language"] == "python"
     files = re.compile(hooks["amuros-check"]["files"])
     # The command itself skips YAML files of other programs.
-    assert all(map(files.search, ["app.yaml", "models/system.yml", "a.amxmi", "models/b.amxmi"]))
+    assert all(map(files.search, ["app.yaml", "models/system.yml", "a/b.yaml", "a.amxmi", "models/b.amxmi"]))
     assert not any(map(files.search, ["a.amxmi.txt", "a_yaml"]))
     # As it calls the command: with the files behind the arguments.
     command = hooks["amuros-check"]["entry"].split()[1:]
-    assert amuros(*command, ADVANCED, ADVANCED.with_suffix(".amxmi")).returncode == 0
+    other = tmp_path / "compose.yaml"
+    other.write_text("services: {}\n")
+    assert amuros(*command, other, ADVANCED, ADVANCED.with_suffix(".amxmi")).returncode == 0
 
 
 def test_a_flaw_is_shown_once_and_written_to_files_completely(tmp_path):

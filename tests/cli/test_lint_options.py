@@ -1,14 +1,12 @@
 """Selecting and naming rules, exit codes and comments: the same in all commands."""
 
 import json
-import re
 import sys
 from importlib.metadata import metadata
 from types import SimpleNamespace
 from xml.etree import ElementTree
 
 import pytest
-import yaml
 from support import MODEL, ROOT
 
 from amalthea_uros._internal.addresses import DOCUMENTATION
@@ -186,14 +184,6 @@ def test_yaml_files_of_other_programs_are_skipped_on_request(amuros, tmp_path):
     # Other keys, comments and quotes in front of the key make no difference, and files that do not exist are not skipped.
     assert amuros("check", "--each", "--only-amuros", other, quoted).code == 1
     assert amuros("check", "--only-amuros", tmp_path / "none.yaml").code == 2
-
-
-def test_the_hook_for_pre_commit_takes_all_yaml_files(amuros, tmp_path):
-    (hook,) = (hook for hook in yaml.safe_load((ROOT / ".pre-commit-hooks.yaml").read_text()) if hook["id"] == "amuros-check")
-    assert all(map(re.compile(hook["files"]).search, ["system.yml", "a/b.yaml", "a.amxmi"]))
-    other = tmp_path / "compose.yaml"
-    other.write_text("services: {}\n")
-    assert amuros(*hook["entry"].split()[1:], other, ADVANCED).code == 0
 
 
 def test_junit_has_a_case_for_each_rule_that_was_checked(amuros, two_tasks, tmp_path):
