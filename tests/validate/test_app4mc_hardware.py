@@ -80,6 +80,7 @@ PATHS = [
     ("AM-HW-AccessPath", path(TO_RAM, over(WIRE), connection("w", None, "RAM/p")), ["start of the path has no port of 'core'"]),
     ("AM-HW-AccessPath", path(TO_RAM, over(WIRE), connection("w", "core/p", None)), ["end of the path has no port of 'RAM'"]),
     ("AM-HW-AccessPath", path(TO_RAM, over(WIRE, BUS, "ECU/v?type=HwConnection"), BUSES), []),
+    ("AM-HW-AccessPath", path(TO_RAM, over(WIRE, BUS, BUS, "ECU/v?type=HwConnection"), BUSES), []),
     ("AM-HW-AccessPath", path(TO_RAM, over(BUS), BUSES), ["'bus' at the start", "'bus' at the end"]),
     (
         "AM-HW-AccessPath",

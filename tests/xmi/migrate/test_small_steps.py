@@ -1,6 +1,7 @@
 """Steps that change little, as far as neither the pairs of models nor steps/*.txt show it."""
 
 import pytest
+from inline_models import text_property
 from migration import migrated
 
 from amalthea_uros.xmi.tree.node import all_below
@@ -92,14 +93,11 @@ def test_what_is_in_the_new_form_stays(models, version):
 # Measurements until 1.0.0, and limits of numbers that became tighter in 1.2.0
 
 
-PROPERTY = '<customProperties key="{}"><value t="StringObject" value="{}"/></customProperties>'
-
-
 def measured(properties, measurements):
     return f'<swModel><tasks name="T 1">{properties}</tasks></swModel>{measurements}'
 
 
-MEASUREMENT = f"""<measurementModel><measurements t="TaskMeasurement" task="T+1?type=Task">{PROPERTY.format("tool", "X")}
+MEASUREMENT = f"""<measurementModel><measurements t="TaskMeasurement" task="T+1?type=Task">{text_property("tool", "X")}
     <runtimes value="5" unit="us"/><runtimes value="7" unit="us"/>
     <runtimeDeviation t="TimeBoundaries"><lowerBound value="1" unit="us"/><upperBound value="9" unit="us"/></runtimeDeviation>
   </measurements></measurementModel>"""

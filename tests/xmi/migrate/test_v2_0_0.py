@@ -1,6 +1,7 @@
 """Schedulers, scheduling parameters and conditions of 2.0.0."""
 
 import pytest
+from inline_models import text_property
 from migration import migrated
 
 from amalthea_uros.xmi.tree.node import all_below
@@ -13,10 +14,6 @@ FPP = f"""<schedulerDefinitions name="FixedPriorityPreemptive" processParameters
   {FLAGS}/>"""
 OSEK = f"""<schedulerDefinitions name="OSEK" {FLAGS}
   processParameters="priority?type=SchedulingParameterDefinition taskGroup?type=SchedulingParameterDefinition"/>"""
-
-
-def property_(key, text):
-    return f'<customProperties key="{key}"><value t="StringObject" value="{text}"/></customProperties>'
 
 
 def parameter(key, value):
@@ -115,7 +112,7 @@ def test_a_newer_file_of_the_set_takes_the_definitions(models):
 
 
 def test_a_priority_whose_definition_is_in_no_file_is_stated(models):
-    content = tasks(property_("priority", "7")) + new_os("", "X") + allocated(integer("priority", 4))
+    content = tasks(text_property("priority", "7")) + new_os("", "X") + allocated(integer("priority", 4))
     assert models.migrate("1.2.0", "2.0.0", content) == models.read("2.0.0", content)
 
 
@@ -127,11 +124,14 @@ def test_what_is_converted_stays(models, version):
 
 def test_priorities_in_custom_properties_become_parameters(models):
     before = tasks(
-        property_("priority", "0"), property_("priority", "5"), property_("priority", "6"), property_("priority", "high")
+        text_property("priority", "0"),
+        text_property("priority", "5"),
+        text_property("priority", "6"),
+        text_property("priority", "high"),
     )
     before += old_os("FixedPriorityPreemptive")
     before += allocated("", '<schedulingParameters priority="5"/>', '<schedulingParameters priority="9"/>', "")
-    after = tasks("", "", property_("priority", "6"), property_("priority", "high"))
+    after = tasks("", "", text_property("priority", "6"), text_property("priority", "high"))
     after += new_os(FPP + PRIORITY, "FixedPriorityPreemptive")
     after += allocated(integer("priority", 0), integer("priority", 5), integer("priority", 9), "")
     assert models.migrate("1.2.0", "2.0.0", before) == models.read("2.0.0", after)
@@ -140,7 +140,9 @@ def test_priorities_in_custom_properties_become_parameters(models):
 
 
 def test_task_groups_of_osek(models):
-    before = tasks(property_("osekTaskGroup", "2"), "") + old_os("OSEK") + allocated("", '<schedulingParameters priority="1"/>')
+    before = (
+        tasks(text_property("osekTaskGroup", "2"), "") + old_os("OSEK") + allocated("", '<schedulingParameters priority="1"/>')
+    )
     after = tasks("", "") + new_os(OSEK + PRIORITY + GROUP, "OSEK")
     after += allocated(integer("taskGroup", 2), integer("priority", 1) + integer("taskGroup", 0))
     assert models.migrate("1.2.0", "2.0.0", before) == models.read("2.0.0", after)
