@@ -12,6 +12,7 @@ from amalthea_uros.perf.activities import Call, Chance, Execute, Group, Probabil
 from amalthea_uros.perf.software import Runnable
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.timing.context import TimingContext
+from amalthea_uros.timing.jobs import counters
 from amalthea_uros.timing.jobs.counters import composed, first_effect, of_one_in
 from amalthea_uros.timing.response import Claim
 from amalthea_uros.units import MICROSECOND
@@ -70,7 +71,8 @@ def structures(draw, names):
 
 
 @given(counter=COUNTERS)
-def test_the_first_occurrence_that_takes_effect(counter):
+def test_the_occurrences_that_take_effect(counter):
+    assert all(counters.takes_effect(counter, number) == takes_effect(counter, number) for number in range(1, 100))
     assert first_effect(counter) == next(number for number in range(1, 100) if takes_effect(counter, number))
 
 
