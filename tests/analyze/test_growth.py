@@ -180,11 +180,6 @@ def test_a_core_is_analysed_again_only_if_its_activations_have_changed(monkeypat
     assert cores.count("c1") == cores.count("c2") == 2
 
 
-def test_a_schedule_with_slices_is_used_without_them():
-    solution = solve(TimingContext.of(system([[ticks(9)] for _ in range(HERE)])))
-    assert solution.schedule("c0", with_slices=True) is solution.schedule("c0") is not None
-
-
 def test_each_schedule_is_built_once(monkeypatch):
     built = []
     build = schedule.schedule
