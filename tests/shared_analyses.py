@@ -14,8 +14,8 @@ from tempfile import gettempdir
 
 from amalthea_uros.metamodel.element import Element
 
-#: The workers of a run have one folder.
-FOLDER = Path(gettempdir(), f"amuros-analyses-{os.environ.get('PYTEST_XDIST_TESTRUNUID', os.getpid())}")
+#: The workers of a run have one folder, that of the process which started them.
+FOLDER = Path(gettempdir(), f"amuros-analyses-{os.getppid() if 'PYTEST_XDIST_WORKER' in os.environ else os.getpid()}")
 
 
 def sharing(original):
