@@ -93,7 +93,7 @@ def compared(model, log_of, tmp_path, shape, seed=5, **options):
     """A model compared with a log of a system with another distribution."""
     trace = tmp_path / "run.csv"
     # The executor has 50 times as many jobs.
-    duration = "400 ms" if "executor" in model else "1 s"
+    duration = "200 ms" if "executor" in model else "1 s"
     simulate(drawn(open_system(log_of).system, shape), duration, seed=seed, trace_paths=[trace])
     return compare(model, trace, **options)
 
