@@ -14,6 +14,7 @@ from measurements import measurement, series
 from amalthea_uros import compare, simulate
 from amalthea_uros.perf.distributions import Beta, Boundaries, Bucket, Histogram, Statistics, Uniform
 from amalthea_uros.services.subject import open_system
+from amalthea_uros.simulate.kernel import machine_code
 
 RANGES = """
 amuros: 1
@@ -104,6 +105,12 @@ def contradictions(found):
         for row in found.rows
         if row.verdict in ("outside", "refuted")
     ]
+
+
+@pytest.fixture(autouse=True)
+def _interpreted(monkeypatch):
+    """To compile the kernel takes longer than all of these runs."""
+    monkeypatch.setattr(machine_code, "is_worth_it", lambda _seconds, _left: False)
 
 
 MODELS = {
