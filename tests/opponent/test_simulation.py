@@ -56,7 +56,7 @@ def is_comparable(plain):
 
 @pytest.mark.parametrize("first", range(0, 2000, 200))
 def test_jobs_of_determined_systems_are_those_of_the_player(first):
-    systems = {seed: random_system(seed) for seed in every(4, range(first, first + 200))}
+    systems = {seed: random_system(seed) for seed in every(8, range(first, first + 200))}
     assert [seed for seed, plain in systems.items() if is_comparable(plain) and not has_same_jobs(plain)] == []
 
 
