@@ -25,8 +25,6 @@ def made(count):
 
 @pytest.fixture
 def few_objects(monkeypatch):
-    # What the tests freeze at their begin would keep everything from being collected.
-    gc.unfreeze()
     threshold = gc.get_threshold()
     gc.set_threshold(10)
     monkeypatch.setattr(garbage, "FEW_OBJECTS", 1000)
@@ -34,7 +32,6 @@ def few_objects(monkeypatch):
     monkeypatch.setattr(garbage._Collected, "made", 0)
     yield
     gc.set_threshold(*threshold)
-    gc.freeze()
 
 
 @pytest.mark.usefixtures("few_objects")
