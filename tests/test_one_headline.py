@@ -118,12 +118,11 @@ def test_callbacks_are_unknown_if_nobody_stated_how_much_their_messages_vary_in_
     assert any("middleware.agent.to_controller" in finding.message for finding in analysis.findings)
 
 
-def test_a_simulation_shows_nothing_of_loops_as_observed():
+def test_a_simulation_observes_loops():
     simulation = simulate(BOARD, "1 s")
-    assert {finding.rule for finding in simulation.findings} >= {"SIM006"}
-    assert {each.verdict for each in simulation.requirements} == {"not_observed"}
-    assert [chain.routes for chain in simulation.chains] == [(), ()]
-    assert simulation["Executor"].verdict == "not_observed"
+    assert {each.verdict for each in simulation.requirements} == {"observed_ok"}
+    assert all(chain.observations for chain in simulation.chains)
+    assert simulation["Executor"].jobs == simulation.executors["Executor"].iterations
 
 
 def test_messages_in_paths_are_no_gaps(app):

@@ -10,10 +10,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 
+from amalthea_uros._internal.by_name import Results
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.judge.limits import DEADLINE, PERIOD, SystemLimit
 from amalthea_uros.judge.margins import margin_of
 from amalthea_uros.judge.verdict import ObservedJudgement, ObservedVerdict
+from amalthea_uros.perf.executors import HandleKind
 from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
 from amalthea_uros.units import Time
 
@@ -283,6 +285,55 @@ class RunnableObservation(Shown):
     metrics: Mapping[JobMetric, MetricObservation] = field(repr=False)
     preemptions: CountObservation
     migrations: CountObservation
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HandleObservation(Shown):
+    """A handle of an executor that loops.
+
+    Attributes
+    ----------
+    runnable : the callback
+    calls : number of calls that ended, for a message or when a timer was due
+    metrics : of each of them; activated when the message had arrived, or when the timer was due
+    lost : messages that were overwritten or dropped, or periods of a timer that were left out
+    """
+
+    name: str
+    kind: HandleKind
+    runnable: str
+    calls: int
+    metrics: Mapping[JobMetric, MetricObservation] = field(repr=False)
+    preemptions: CountObservation
+    migrations: CountObservation
+    lost: int = 0
+
+    @property
+    def response_time(self) -> MetricObservation | None:
+        """From when a message has arrived, or a timer is due, to the end of the callback; None if no call ended."""
+        return self.metrics.get(JobMetric.RESPONSE_TIME)
+
+    @property
+    def lateness(self) -> MetricObservation | None:
+        """From when a timer is due to the start of its callback; None for others."""
+        return self.metrics.get(JobMetric.INITIAL_PENDING_TIME) if self.kind is HandleKind.TIMER else None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExecutorObservation(Shown):
+    """An executor that loops; its iterations are jobs of its task.
+
+    Attributes
+    ----------
+    iterations : number of iterations that ended
+    timeouts : number of publications that were not acknowledged in time
+    handles : in the order in which they are called
+    """
+
+    name: str
+    iterations: int
+    timeouts: int
+    handles: Results[HandleObservation]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

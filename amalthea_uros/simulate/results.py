@@ -14,6 +14,7 @@ from amalthea_uros.judge.verdict import WORST_OBSERVED_FIRST, ObservedVerdict
 from amalthea_uros.simulate.observations import (
     ChainObservation,
     CoreObservation,
+    ExecutorObservation,
     LabelObservation,
     MetricObservation,
     ProcessObservation,
@@ -43,6 +44,7 @@ class Simulation(Shown):
     ----------
     duration : model time
     left_out : the processes that are not simulated, each with the reason
+    executors : those that loop
     runnables : those that requirements limit
     labels : those that were asked for
     assumptions : on which the run is based
@@ -57,6 +59,7 @@ class Simulation(Shown):
     processes: Results[ProcessObservation]
     left_out: Results[ProcessObservation] = field(default_factory=Results)
     chains: Results[ChainObservation] = field(default_factory=Results)
+    executors: Results[ExecutorObservation] = field(default_factory=Results)
     runnables: Results[RunnableObservation] = field(default_factory=Results)
     labels: Results[LabelObservation] = field(default_factory=Results)
     requirements: Results[RequirementObservation] = field(default_factory=Results)

@@ -30,7 +30,12 @@ from amalthea_uros.report.wording.chains import CHAINS_HEADING
 from amalthea_uros.report.wording.closing_line import left_text
 from amalthea_uros.report.wording.findings import joined
 from amalthea_uros.services.simulate import SimulationResult
-from amalthea_uros.simulate.observations import ChainObservation, ProcessObservation, RequirementObservation
+from amalthea_uros.simulate.observations import (
+    ChainObservation,
+    ExecutorObservation,
+    ProcessObservation,
+    RequirementObservation,
+)
 from amalthea_uros.simulate.results import IDLE, Judged, Simulation
 from amalthea_uros.simulate.runs.not_simulated import LIMITED_PROCESS_LEFT_OUT, consequence_of
 from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
@@ -140,6 +145,7 @@ def _sections(simulation: Simulation, metrics: Iterable[Section] = (), changed: 
     yield section("Load", table("", ("core", ">load"), loads))
     yield section("Observed response times", _processes(simulation))
     yield from metrics
+    yield from map(_executor, simulation.executors)
     yield section(CHAINS_HEADING, _chains(simulation))
     yield section("Runnables with requirements", _runnables(simulation))
     yield section("Labels", _labels(simulation))
@@ -187,6 +193,26 @@ def _microseconds(value: Fraction, is_max: bool = False) -> str:
     nanoseconds = (ceil if is_max else floor)(value / NANOSECOND)
     whole, digits = divmod(abs(nanoseconds), 1000)
     return f"{'-' if nanoseconds < 0 else ''}{whole}.{digits:03}"
+
+
+def _executor(executor: ExecutorObservation) -> Section:
+    rows = [
+        (
+            handle.name,
+            handle.kind,
+            f"{handle.calls:,}",
+            *observed(handle.response_time),
+            observed(handle.lateness)[2],
+            f"{handle.lost:,}",
+        )
+        for handle in executor.handles
+    ]
+    timeouts = [f"{counted(executor.timeouts, 'publication')} not acknowledged in time"] if executor.timeouts else []
+    return section(
+        f"Executor {executor.name} (from the arrival of a message, or when a timer is due, to the end of the callback)",
+        Sentences([f"{counted(executor.iterations, 'iteration')}", *timeouts]),
+        table("", ("handle", "kind", ">calls", ">min", ">mean", ">max", ">late by", ">lost"), rows),
+    )
 
 
 def _chains(simulation: Simulation) -> Table:

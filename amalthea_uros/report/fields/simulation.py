@@ -14,6 +14,8 @@ from amalthea_uros.services.simulate import SimulationResult
 from amalthea_uros.simulate.observations import (
     ChainObservation,
     CoreObservation,
+    ExecutorObservation,
+    HandleObservation,
     LabelObservation,
     MetricObservation,
     ObservedOccurrence,
@@ -64,6 +66,7 @@ declare(
     ("mode", "simulation.mode"),
     ("processors", "simulation.cores"),
     ("processes", "simulation.processes"),
+    ("executors", "simulation.executors"),
     ("chains", "simulation.chains"),
     ("left_out", _left_out),
     ("runnables", "simulation.runnables"),
@@ -91,6 +94,12 @@ declare(
     *("name", "executions", "metrics"),
     ("preemptions", "preemptions.total"),
     ("migrations", "migrations.total"),
+)
+declare(ExecutorObservation, *("name", "iterations", "timeouts", "handles"))
+declare(
+    HandleObservation,
+    *("name", "kind", "runnable", "calls", "lost", "metrics"),
+    ("preemptions", "preemptions.total"),
 )
 declare(LabelObservation, *("name", "reads", "writes", "unwritten_reads", "overwritten", "age"))
 declare(

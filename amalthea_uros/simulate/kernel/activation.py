@@ -6,6 +6,7 @@ from amalthea_uros.simulate.kernel.budgets import activate_server, deactivate_se
 from amalthea_uros.simulate.kernel.conditions import counts, holds, set_mode
 from amalthea_uros.simulate.kernel.cores import leave_core, restore_level
 from amalthea_uros.simulate.kernel.layout import *
+from amalthea_uros.simulate.kernel.message_records import free_message
 from amalthea_uros.simulate.kernel.reports import NO_NOTE, emit, enter_state, observe, report, watch
 from amalthea_uros.simulate.kernel.stages import publish
 
@@ -62,6 +63,8 @@ def activate(m: Memory, process: int, stimulus: int, number: int) -> None:
     m[process + NEXT_INSTANCE] = instance + 1
     if m[process + PENDING] >= m[process + LIMIT]:
         m[process + LOST] += 1
+        if m[process + IS_ABOUT_MESSAGE] and m[MESSAGE]:
+            free_message(m, m[MESSAGE])
         if m[IS_TRACED]:
             emit(m, _LOST, stimulus, number, m[process + ENTITY], instance, NO_NOTE)
         return
@@ -99,6 +102,8 @@ def _begin_job(m: Memory, process: int) -> None:
     place = m[process + FIRST_PLACE]
     m[process + ACTIVATION] = m[place + QUEUE_TIME]
     m[process + INSTANCE] = m[place + QUEUE_INSTANCE]
+    if m[process + IS_ABOUT_MESSAGE]:
+        m[process + ITS_MESSAGE] = m[place + QUEUE_CAPTURES]
     m[process + AT] = m[process + ENTRY]
     m[process + STATE] = ACTIVATED
     m[process + SINCE] = m[NOW]

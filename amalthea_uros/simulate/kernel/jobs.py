@@ -5,7 +5,21 @@ from __future__ import annotations
 from amalthea_uros.simulate.kernel.activation import end_job, fire
 from amalthea_uros.simulate.kernel.conditions import counts, holds, set_mode, step_mode
 from amalthea_uros.simulate.kernel.cores import change_level, requeue, run, stays
+from amalthea_uros.simulate.kernel.iterations import (
+    HAS_TO_WAIT,
+    IS_DONE,
+    begin_iteration,
+    begin_wait,
+    check,
+    expect,
+    listen,
+    plan_iteration,
+    read,
+    reply,
+    take_data,
+)
 from amalthea_uros.simulate.kernel.layout import *
+from amalthea_uros.simulate.kernel.messages import add_unread, bring, draw_delay, pass_on, post, write
 from amalthea_uros.simulate.kernel.reports import begin_execution, end_execution, observe, report_access, report_execution
 from amalthea_uros.simulate.kernel.stages import follow
 from amalthea_uros.simulate.kernel.waiting import await_events, change_events, request, serve, unlock
@@ -15,7 +29,7 @@ MOST_STEPS = 10_000_000
 
 
 def resume_job(m: Memory, core: int) -> int:
-    """Have the job of a core go on to its next execution, or until somebody else may be more urgent."""
+    """Have the job of a core continue to its next execution, or until somebody else may be more urgent."""
     process = m[core + RUNS]
     due = m[core + CORE_DOMAIN] + IS_DUE
     while True:
@@ -106,11 +120,13 @@ def _draw(m: Memory, stream: int) -> int:
 
 
 def _execute_operation(m: Memory, core: int, process: int, at: int) -> int:
-    """Carry out an operation that takes no time; 0 if the job goes on, otherwise a reason to stop plus 1."""
+    """Carry out an operation that takes no time; 0 if the job continues, otherwise a reason to stop plus 1."""
     operation, first, second = m[at], m[at + 1], m[at + 2]
     following = at + OPERATION_SIZE
     if operation >= ENTER:
         follow(m, process, operation, first, second)
+    elif operation >= LISTEN:
+        return _communicate(m, core, process, at)
     elif operation == COUNT:
         following = following if counts(m, first) else second
     elif operation == JUMP:
@@ -148,6 +164,7 @@ def _execute_operation(m: Memory, core: int, process: int, at: int) -> int:
         m[process + MASKS] += 1 if operation == MASK else -1
         change_level(m, process)
     elif operation == FIRE:
+        m[MESSAGE] = m[process + ITS_MESSAGE] if second else 0
         code = fire(m, first, process)
         if code:
             return code + 1
@@ -167,7 +184,7 @@ def _execute_operation(m: Memory, core: int, process: int, at: int) -> int:
     elif operation == TEST_MESSAGE:
         following = following if m[first + HAS_TAKEN] else second
     else:
-        # Who waits goes on after this operation.
+        # Who waits continues after this operation.
         m[process + AT] = following
         return 0 if _cooperate(m, core, process, operation, first, second) else CONTINUE + 1
     m[process + AT] = following
@@ -175,7 +192,7 @@ def _execute_operation(m: Memory, core: int, process: int, at: int) -> int:
 
 
 def _cooperate(m: Memory, core: int, process: int, operation: int, first: int, second: int) -> bool:
-    """Carry out an operation that concerns other processes; the result says whether the job goes on."""
+    """Carry out an operation that concerns other processes; the result says whether the job continues."""
     if operation == REQUEST:
         return request(m, core, process, first, second)
     if operation == UNLOCK:
@@ -187,6 +204,68 @@ def _cooperate(m: Memory, core: int, process: int, operation: int, first: int, s
     if operation == WAIT_EVENT:
         return await_events(m, core, process, first)
     return serve(m, core, process, operation, first, second)
+
+
+def _communicate(m: Memory, core: int, process: int, at: int) -> int:
+    """Carry out an operation of an executor, or about a message; the result is as that of `_execute_operation`."""
+    operation, first, second = m[at], m[at + 1], m[at + 2]
+    following, code = at + OPERATION_SIZE, CONTINUE
+    if operation == LISTEN:
+        listen(m, first)
+    elif operation == BEGIN_WAIT:
+        begin_wait(m, process, first)
+    elif operation == EXPECT:
+        expect(m, first, second)
+    elif operation == READ:
+        outcome = read(m, core, process, first)
+        if outcome == HAS_TO_WAIT:
+            m[process + AT] = at
+            return CONTINUE + 1
+        following = second if outcome == IS_DONE else following
+    elif operation == REPLY or operation == WRITE:
+        is_reply = operation == REPLY
+        if is_reply and m[first + REPLIES_LEFT] == 0:
+            m[process + AT] = second
+            return 0
+        result = reply(m, core, process, first) if is_reply else write(m, core, process, first, second)
+        if result <= 1:
+            # Perhaps there is more to acknowledge.
+            m[process + AT] = at if is_reply else following
+        return result
+    elif operation == BEGIN_ITERATION:
+        begin_iteration(m, process)
+    elif operation == CHECK:
+        check(m, first)
+    elif operation == TEST_TRIGGER:
+        following = following if m[first + IS_TRIGGERED] else second
+    elif operation == TEST_READY:
+        following = following if m[first + IS_READY] or m[first + IS_ALWAYS_CALLED] else second
+    elif operation == TEST_DATA:
+        following = following if m[first + IS_READY] else second
+    elif operation == TAKE_DATA:
+        take_data(m, first)
+    elif operation == PLAN_ITERATION:
+        code = plan_iteration(m, process, first)
+    elif operation == DEPART:
+        stream = m[first + TO_HOST]
+        if m[stream + STREAM_AT] == m[stream + STREAM_END]:
+            m[CAUSE] = stream
+            return STREAM_EMPTY + 1
+        m[process + AT_HOST] = m[NOW] + draw_delay(m, stream)
+    elif operation == PASS_ON:
+        code = pass_on(m, process, first)
+    elif operation == HAVE_READ:
+        if m[process + ITS_MESSAGE]:
+            add_unread(m, m[process + ITS_MESSAGE])
+    elif operation == ACKNOWLEDGE_PART:
+        message = m[process + ITS_MESSAGE]
+        code = bring(m, first, m[message + ACKNOWLEDGES] if message else 0)
+    else:
+        code = post(m, process, first, 0)
+    if code:
+        return code + 1
+    m[process + AT] = following
+    return 0
 
 
 def _change_channel(m: Memory, channel: int, elements: int) -> None:

@@ -17,7 +17,9 @@ NONE, NOW, UNTIL, ARRIVAL, ARRIVALS_END = range(5)
 JOBS, JOBS_END, OBSERVATIONS, OBSERVATIONS_END, EVENTS, EVENTS_END = range(5, 11)
 ORDER, STEPS, IS_TRACED, CAUSE, PLACES = range(11, 16)
 CORES, CORES_END, DOMAINS, DOMAINS_END, SERVERS, SERVERS_END = range(16, 22)
-PROCESSES, PROCESSES_END, SEMAPHORES, SEMAPHORES_END, HAS_WRITES, HEAD = range(22, 28)
+PROCESSES, PROCESSES_END, SEMAPHORES, SEMAPHORES_END, HAS_WRITES = range(22, 27)
+# The message that is handed over, the first one that is free, how many values each carries, and what occurs at planned times.
+MESSAGE, FREE_MESSAGES, CARRIED_VALUES, ALARMS, ALARMS_END, HEAD = range(27, 33)
 
 #: Rows: an arrival is (time, stimulus); a job is as in `timing.observed.job_times`, an observation as in
 #: `Observation`, an event as in `trace.table`.
@@ -42,7 +44,9 @@ SLICE, SLICE_LEFT, SERVER, DECISION = range(41, 45)
 CAPTURES, CAPTURES_END, LET_STAGES, LET_STAGES_END = range(45, 49)
 # What it holds and waits for.
 HOLDS, WAITS_FOR, WANTED, WAITS_EVENTS, EVENTS_SET, WAITS_ANSWER, TICKETS = range(49, 56)
-IS_CHOSEN, WATCHED, PROCESS_SIZE = range(56, 59)
+IS_CHOSEN, WATCHED = range(56, 58)
+# The message that its job is about, when that gets to the host, what it is writing, with what it reads, and until when it has waited.
+IS_ABOUT_MESSAGE, ITS_MESSAGE, AT_HOST, WRITES_TO, WRITE_TICKET, READS_WITH, WAITED_UNTIL, PROCESS_SIZE = range(58, 66)
 
 #: A place in the queue of activations of a process: time, number, place in the order of all activations, and a value for each capture.
 QUEUE_TIME, QUEUE_INSTANCE, QUEUE_SEQUENCE, QUEUE_CAPTURES = range(4)
@@ -55,7 +59,7 @@ IS_DUE, RAISED, PRESENT, HAS_COOPERATIVE, MEMBERS, MEMBERS_END, ITS_CORES, ITS_C
 
 # A stimulus; an assignment is (mode label, value). What is watched is the number of a source of events plus 1, or 0.
 TARGETS, TARGETS_END, CONDITION, COUNTER, ASSIGNMENTS, ASSIGNMENTS_END = range(6)
-OCCURRENCES, STIMULUS_ENTITY, MESSAGES, STIMULUS_SOURCE, STIMULUS_SIZE = range(6, 11)
+OCCURRENCES, STIMULUS_ENTITY, MESSAGES, STIMULUS_SOURCE, BRINGS, STIMULUS_SIZE = range(6, 12)
 
 # Places of the model that keep a state.
 COUNTED, EVERY, FIRST_EFFECT, COUNTER_SIZE = range(4)
@@ -71,6 +75,47 @@ EXECUTIONS, RUNNABLE_ENTITY, RUNNABLE_SIZE = range(3)
 
 # A queue of messages of a process: numbers of those that have arrived, were taken and did not fit, and whether the job has taken one.
 ARRIVED, TAKEN_MESSAGES, LOST_MESSAGES, HAS_TAKEN, MESSAGE_LIMIT, MESSAGE_CAPTURE, MESSAGE_SIZE = range(7)
+
+# What occurs at a planned time: the next iteration of an executor, the end of a wait, or what a delay line gives away.
+ALARM_AT, ALARM_KIND, ALARM_OF, ALARM_SIZE = range(4)
+NEXT_ITERATION, END_OF_WAIT, DELAY_LINE = range(3)
+
+# A message, from its sender to where it waits. It acknowledges a publication, or (0) nothing. Carried values follow.
+NEXT_MESSAGE, BORN, DUE, SENT_AS, ACKNOWLEDGES, CARRIED = range(6)
+
+# A delay line: messages in their order, each with the time at which it comes out, to enter a wire or to be received. As what it sends
+# the messages that begin there.
+FIRST_MESSAGE, LAST_MESSAGE, DELAY, ITS_ALARM, ENTERS_WIRE, CREATES, LINE_SIZE = range(7)
+
+# A message on a wire. The stimulus of its task, the line to the controller, the stimulus of the first process that receives it.
+WIRE_STIMULUS, LINE_IN, RECEIVED_BY = range(3)
+# Where it waits to be read, for which handle, and what the reader writes in return, how often.
+READ_FROM, FOR_HANDLE, REPLY_WITH, REPLIES = range(3, 7)
+# How often it was written and was on the wire; whether who writes it waits for that.
+WRITTEN, DONE_WRITING, HOLDS_WRITER = range(7, 10)
+# The time to the host, the lines on which the agent sends it back, and what it carries: places from which values come, and to which.
+TO_HOST, RELAYS, RELAYS_END, STAMPS_FROM, STAMPS_FROM_END, STAMPS_TO, STAMPS_TO_END, TRANSMISSION_SIZE = range(10, 18)
+
+# Where messages wait to be read, and how many are kept for callbacks of at most so many.
+UNREAD_FIRST, UNREAD_LAST, KEPT, SLOTS, INBOX_SIZE = range(5)
+
+# A publication: the acknowledgements that each one needs, how many are wanted and have come in all, and its timeout.
+PARTS_SENT, ASKED_FOR, ACKNOWLEDGED_PARTS, TIMEOUT_AFTER, TIMEOUTS, PUBLICATION_SIZE = range(6)
+
+# What an executor reads and waits with: its process, the messages, the timeout of its wait, and to what it is cut.
+READER_PROCESS, INBOX, WAIT_TIMEOUT, RESOLUTION, MESSAGES_PER_WAIT, KEPT_END_WAIT, FLAGS_END_WAIT = range(7)
+# Its wait or publication: how long, until when, for which publication (0: for data), what it has read, and what it has to acknowledge.
+WAIT_FOR, WAIT_END, AWAITED, DATA_READ, REPLIES_LEFT, REPLY_AS, WAIT_ALARM = range(7, 14)
+# Its handles, and sets of them: it calls if all of one set are ready.
+HANDLES, HANDLES_END, TRIGGER_SETS, TRIGGER_SETS_END, IS_TRIGGERED = range(14, 19)
+# Its loop: a stream of sleeps, the least distance of their ends, the last end, a period, the time up to which it has planned, to what
+# that sleep is cut, and what begins an iteration.
+SLEEPS, PACE, LAST_WAKE, LOOP_PERIOD, INVOCATION, SLEEP_RESOLUTION, LOOP_STIMULUS, LOOP_ALARM, EXECUTOR_SIZE = range(19, 28)
+
+# A handle: a timer is due at a time and every period; of the others, messages are kept, or a flag was set at a time.
+HANDLE_KIND, NEXT_CALL, TIMER_PERIOD, KEPT_FIRST, KEPT_LAST, KEPT_NUMBER, DEPTH, OVERWRITES = range(8)
+IS_ALWAYS_CALLED, IS_READY, RELEASED, LOST_CALLS, CALLS, HANDLE_STAMPS, HANDLE_STAMPS_END, HANDLE_SIZE = range(8, 16)
+TIMER, RECEIVER, FLAG = range(3)
 
 # A condition: alternatives, each of comparisons.
 ALTERNATIVES, ALTERNATIVES_END, CONDITION_SIZE = range(3)
@@ -106,7 +151,7 @@ STAMPS, ROUTE_NUMBER, ROUTE_SIZE = range(3)
 
 # A runnable whose executions in a process are measured: when the last one began, and the account of the job at that time.
 EXECUTION_NUMBER, BEGAN, BEFORE_RUNNING, BEFORE_WAITING, BEFORE_POLLING = range(5)
-BEFORE_PARKING, BEFORE_PREEMPTIONS, BEFORE_MIGRATIONS, EXECUTION_SIZE = range(5, 9)
+BEFORE_PARKING, BEFORE_PREEMPTIONS, BEFORE_MIGRATIONS, ASKED_AT, EXECUTION_SIZE = range(5, 10)
 
 #: An operation and its two arguments.
 OPERATION_SIZE = 3
@@ -157,7 +202,7 @@ REQUEST = 11  # requests (a semaphore) with (EXCLUSIVE + ACTIVE)
 UNLOCK = 12  # releases (a semaphore)
 MASK = 13  # keeps everything else off its core from here on
 UNMASK = 14  # and lets it in again
-FIRE = 15  # fires (a stimulus)
+FIRE = 15  # fires (a stimulus), with (1) or without the message of the job
 POINT = 16  # a preemption point of a cooperative task
 SET_EVENT = 18  # sets (some events)
 CLEAR_EVENT = 19  # clears (some events)
@@ -178,15 +223,34 @@ OBSERVE = 33  # (a source) of events that are watched has an occurrence
 BEGIN_EXECUTION = 34  # an execution of (a measured runnable) begins
 END_EXECUTION = 35  # and ends
 TEST_MESSAGE = 36  # if the job has taken no message out of (a queue), goes to (an operation)
-ENTER = 40  # (a stage) reads at the start of the job, into its snapshot; if (1), also into its value
-TAKE = 41  # (a stage) takes what is there now, or, if (1), what was there at the start
-REACH = 42  # a position of (a stage) is reached: (a bit)
-MARK = 43  # the stimulus of the chain of (a stage) occurs now, or, if (1), occurred at the activation
-PUT = 44  # (a stage) gives away what it has
-LEAVE = 45  # the same if the job has reached all positions
-PUBLISH = 46  # the same, at the end of the period
+# Of executors that loop, and of messages.
+LISTEN = 40  # (an executor) decides how long it waits for data
+BEGIN_WAIT = 57  # (an executor) begins to wait for data
+EXPECT = 41  # (an executor) begins to wait for the acknowledgements of (a publication)
+READ = 42  # (an executor) reads a message, or waits for one; when it has what it waits for, or its time is over, goes to (an operation)
+REPLY = 43  # (an executor) acknowledges what it has read; if there is nothing to acknowledge, goes to (an operation)
+BEGIN_ITERATION = 44  # (an executor) has waited; its job counts from here
+CHECK = 45  # (an executor) looks what is ready, and whether its trigger condition is true
+TEST_TRIGGER = 56  # if that was false for (an executor), goes to (an operation)
+TEST_READY = 46  # if (a handle) is not to be called, goes to (an operation)
+TEST_DATA = 47  # if (a handle) has nothing to take, goes to (an operation)
+TAKE_DATA = 48  # takes the data of (a handle)
+WRITE = 49  # writes (a message), and waits until it is on the wire if it holds the writer; for (a publication), or 0
+PLAN_ITERATION = 50  # plans the next iteration of (an executor)
+DEPART = 51  # (a message) leaves the wire: decides when it gets to the host
+PASS_ON = 52  # (a message) has left the wire
+HAVE_READ = 53  # what the job is about waits to be read from now on
+ACKNOWLEDGE_PART = 54  # the agent acknowledges a part of a message, on (a line)
+POST = 55  # writes (a message), and continues
+ENTER = 60  # (a stage) reads at the start of the job, into its snapshot; if (1), also into its value
+TAKE = 61  # (a stage) takes what is there now, or, if (1), what was there at the start
+REACH = 62  # a position of (a stage) is reached: (a bit)
+MARK = 63  # the stimulus of the chain of (a stage) occurs now, or occurred (1) at the activation, (2) when the message was sent
+PUT = 64  # (a stage) gives away what it has
+LEAVE = 65  # the same if the job has reached all positions
+PUBLISH = 66  # the same, at the end of the period
 RESPOND = (
-    47  # the response of the chain of (a stage) occurs now or, if given, at (a time of the job); it counts when all is reached
+    67  # the response of the chain of (a stage) occurs now or, if given, at (a time of the job); it counts when all is reached
 )
 
 #: Flags of REQUEST and AWAIT.
@@ -195,6 +259,6 @@ EXCLUSIVE, ACTIVE = 1, 2
 #: The states of a process (BTF 2.3.0, table 2-10); what was activated and has not started is PENDING_START there ACTIVE.
 TERMINATED, ACTIVATED, RUNNING, READY, POLLING, PARKING, WAITING = range(7)
 
-#: Why the kernel stops: the occurrences are used up, there is no place for rows, a stream or a queue has to be filled or grown, or a
-#: job goes on forever without taking time.
-CONTINUE, WINDOW, ROWS_FULL, STREAM_EMPTY, QUEUE_FULL, ENDLESS = range(6)
+#: Why the kernel stops: the occurrences are used up, there is no place for rows, a stream or a queue has to be filled or grown, a
+#: job continues forever without taking time, or there is no record for one more message.
+CONTINUE, WINDOW, ROWS_FULL, STREAM_EMPTY, QUEUE_FULL, ENDLESS, NO_MESSAGES = range(7)

@@ -7,6 +7,7 @@ from amalthea_uros.simulate.kernel.budgets import replenish
 from amalthea_uros.simulate.kernel.cores import dispatch, dispatch_all, pause, stop
 from amalthea_uros.simulate.kernel.jobs import execute_writes, resume_job
 from amalthea_uros.simulate.kernel.layout import *
+from amalthea_uros.simulate.kernel.messages import bring, ring
 
 
 def run_kernel(m: Memory) -> int:
@@ -33,6 +34,9 @@ def run_kernel(m: Memory) -> int:
                 code = _arrive(m)
                 if code:
                     return code
+            code = _ring_all(m)
+            if code:
+                return code
             if has_servers:
                 _replenish(m)
             for place in range(first_domain, last_domain):
@@ -44,12 +48,14 @@ def run_kernel(m: Memory) -> int:
         now = m[m[ARRIVAL]] if m[ARRIVAL] < m[ARRIVALS_END] else m[UNTIL]
         for place in range(first_core, last_core):
             now = min(now, m[m[place] + STOP])
+        for place in range(m[ALARMS], m[ALARMS_END]):
+            now = min(now, m[m[place] + ALARM_AT])
         if has_servers:
             for place in range(m[SERVERS], m[SERVERS_END]):
                 now = min(now, m[m[place] + SERVER_AT])
         if now >= m[UNTIL]:
             return WINDOW
-        # Activations and preemptions are reported without any job going on.
+        # Activations and preemptions are reported without a job that continues.
         if m[OBSERVATIONS] >= m[OBSERVATIONS_END] or m[EVENTS] >= m[EVENTS_END]:
             return ROWS_FULL
         m[NOW] = now
@@ -60,7 +66,7 @@ def run_kernel(m: Memory) -> int:
 
 
 def _settle(m: Memory, domain: int) -> int:
-    """The cores of a domain are given anew, and the jobs there go on."""
+    """The cores of a domain are given anew, and the jobs there continue."""
     first, last = m[domain + ITS_CORES], m[domain + ITS_CORES_END]
     m[domain + IS_DUE] = 0
     if last - first == 1:
@@ -85,10 +91,23 @@ def _arrive(m: Memory) -> int:
         # While a job executes for long, others can be activated any number of times.
         if m[EVENTS] >= m[EVENTS_END]:
             return ROWS_FULL
-        code = fire(m, m[m[ARRIVAL] + 1], 0)
+        stimulus = m[m[ARRIVAL] + 1]
+        code = bring(m, m[stimulus + BRINGS], 0) if m[stimulus + BRINGS] else fire(m, stimulus, 0)
         if code:
             return code
         m[ARRIVAL] += ARRIVAL_SIZE
+    return 0
+
+
+def _ring_all(m: Memory) -> int:
+    """Carry out all alarms whose time has come."""
+    for place in range(m[ALARMS], m[ALARMS_END]):
+        while m[m[place] + ALARM_AT] <= m[NOW]:
+            if m[EVENTS] >= m[EVENTS_END]:
+                return ROWS_FULL
+            code = ring(m, m[place])
+            if code:
+                return code
     return 0
 
 

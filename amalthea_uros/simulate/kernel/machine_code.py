@@ -17,9 +17,12 @@ from amalthea_uros.simulate.kernel import (
     budgets,
     conditions,
     cores,
+    iterations,
     jobs,
     layout,
     loop,
+    message_records,
+    messages,
     reports,
     stages,
     waiting,
@@ -29,7 +32,20 @@ from amalthea_uros.simulate.kernel.layout import Memory
 #: Runs until something needs the driver, as `kernel.loop.run_kernel` does.
 CompiledKernel: TypeAlias = Callable[[Memory], int]
 
-_MODULES = (activation, budgets, conditions, cores, jobs, loop, reports, stages, waiting)
+_MODULES = (
+    activation,
+    budgets,
+    conditions,
+    cores,
+    iterations,
+    jobs,
+    loop,
+    message_records,
+    messages,
+    reports,
+    stages,
+    waiting,
+)
 
 
 #: Seconds after which the speed of a run is known, and about how long numba takes to compile the kernel.
@@ -47,7 +63,7 @@ def effort() -> CompilationEffort:
 
 
 def is_worth_it(seconds: float, seconds_left: float) -> bool:
-    """Whether to go on with machine code, after some seconds of a run as Python and with an estimated rest."""
+    """Whether to continue with machine code, after some seconds of a run as Python and with an estimated rest."""
     if compiled.cache_info().currsize:
         return True
     return seconds >= _KNOWN and seconds_left > LOADING and effort().pays_compiling(seconds_left)

@@ -98,11 +98,17 @@ def begin_execution(m: Memory, execution: int, process: int) -> None:
 
 
 def end_execution(m: Memory, execution: int, process: int) -> None:
-    """An execution of a runnable ends: report it as a job of its own, with the activation of the job that it is a part of."""
+    """An execution of a runnable ends: report it as a job of its own, with the activation of the job that it is a part of.
+
+    What an executor calls was activated by itself; without a message, nothing has activated it, and it is not reported.
+    """
+    activation = m[m[execution + ASKED_AT]] if m[execution + ASKED_AT] else m[process + ACTIVATION]
+    if activation < 0:
+        return
     row = m[JOBS]
     m[row] = m[execution + EXECUTION_NUMBER]
     m[row + 1] = m[process + INSTANCE]
-    m[row + 2] = m[process + ACTIVATION]
+    m[row + 2] = activation
     m[row + 3] = m[execution + BEGAN]
     m[row + 4] = m[NOW]
     m[row + 5] = m[process + TIME_RUNNING] + m[NOW] - m[process + SINCE] - m[execution + BEFORE_RUNNING]

@@ -28,7 +28,8 @@ def follow(m: Memory, process: int, operation: int, stage: int, argument: int) -
         _complete(m, process, stage)
     elif operation == MARK:
         m[stage + IS_MARKED] = 1
-        m[stage + MARKED_AT] = m[process + ACTIVATION] if argument else m[NOW]
+        sent_at = m[m[process + ITS_MESSAGE] + BORN] if argument == 2 else m[NOW]
+        m[stage + MARKED_AT] = m[process + ACTIVATION] if argument == 1 else sent_at
         _complete(m, process, stage)
     elif operation == RESPOND:
         m[stage + HAS_RESPONDED] = 1

@@ -39,6 +39,7 @@ def wait(m: Memory, core: int, process: int, is_active: bool) -> None:
 def release(m: Memory, process: int) -> None:
     """What a process waits for has come."""
     core = m[process + CORE]
+    m[process + WAITED_UNTIL] = m[NOW]
     if m[process + STATE] == POLLING:
         pause(m, core, process)
         enter_state(m, process, RUNNING)
@@ -63,7 +64,7 @@ def release(m: Memory, process: int) -> None:
 
 
 def request(m: Memory, core: int, process: int, semaphore: int, flags: int) -> bool:
-    """Request a semaphore; the result says whether the job goes on."""
+    """Request a semaphore; the result says whether the job continues."""
     amount = m[semaphore + USERS] if flags & EXCLUSIVE else 1
     report_access(m, _REQUEST, process, m[semaphore + SEMAPHORE_ENTITY])
     if m[semaphore + USED] + amount <= m[semaphore + USERS]:
@@ -193,7 +194,7 @@ def _are_set(m: Memory, process: int, row: int) -> bool:
 
 
 def await_events(m: Memory, core: int, process: int, row: int) -> bool:
-    """Wait for events; the result says whether the job goes on."""
+    """Wait for events; the result says whether the job continues."""
     for entry in range(m[row + EVENT_LIST], m[row + EVENT_LIST_END], 2):
         report_access(m, _WAIT_EVENT, process, m[entry + 1])
     if _are_set(m, process, row):
@@ -207,7 +208,7 @@ def await_events(m: Memory, core: int, process: int, row: int) -> bool:
 
 
 def serve(m: Memory, core: int, process: int, operation: int, service: int, flags: int) -> bool:
-    """Ask for a runnable, wait for its answer, or execute it; the result says whether the job goes on.
+    """Ask for a runnable, wait for its answer, or execute it; the result says whether the job continues.
 
     An execution of the runnable answers everything that was asked before it began.
     """

@@ -32,7 +32,7 @@ class Delays(ConstraintMetrics):
 
     The matchings of AMALTHEA are those of TADL2: for a reaction, some target has to occur within the limits after each source, and
     other targets are ignored; one to one, the i-th target belongs to the i-th source; for unique reactions, each target has to be the
-    only one of one source, and a source that has been missed is left out before the matching goes on.
+    only one of one source, and a source that has been missed is left out before the matching continues.
 
     Attributes
     ----------

@@ -54,6 +54,7 @@ from amalthea_uros.perf.events import (
     SemaphoreChange,
     SemaphoreEvent,
 )
+from amalthea_uros.perf.network import Purpose
 from amalthea_uros.perf.software import Runnable
 from amalthea_uros.simulate.kernel import layout
 from amalthea_uros.simulate.options import SimulationMode
@@ -379,7 +380,29 @@ def trigger(body: Body, activity: Trigger) -> None:
     """An occurrence of a stimulus."""
     if activity.stimulus not in body.resources.stimuli:
         raise UnknownError(f"the stimulus {activity.stimulus!r} is not defined in the model")
-    body.code.add(layout.FIRE, body.resources.stimuli[activity.stimulus])
+    if not _handles_message(body, activity.stimulus):
+        is_received = body.process is not None and body.process.name in body.resources.executors.messages.receivers
+        body.code.add(layout.FIRE, body.resources.stimuli[activity.stimulus], int(is_received))
+
+
+def _handles_message(body: Body, stimulus: str) -> bool:
+    """Send the message that a stimulus stands for, or have it continue; False if it stands for none."""
+    messages, process = body.resources.executors.messages, "" if body.process is None else body.process.name
+    own, sent = messages.system.transmissions.get(process), messages.sent.get(stimulus)
+    if own is not None and process in messages.transmissions:
+        if sent is not None and sent.name in messages.acknowledging_lines:
+            body.code.add(layout.ACKNOWLEDGE_PART, messages.acknowledging_lines[sent.name])
+            return True
+        # What it passes first gets it after the time in the driver.
+        return stimulus == messages.receiving_stimulus(own)
+    if sent is None:
+        return False
+    if body.iteration is None:
+        body.code.add(layout.POST, messages.transmissions[sent.name])
+    elif sent.purpose is not Purpose.ACKNOWLEDGEMENT:
+        # It acknowledges what it reads when it reads it.
+        body.iteration.publish(sent.name)
+    return True
 
 
 def raise_event(body: Body, activity: RaiseEvent) -> None:

@@ -17,6 +17,7 @@ from amalthea_uros.perf.software import Isr, Preemption, Process
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.simulate.kernel import layout
 from amalthea_uros.simulate.program.activities import compile_activity
+from amalthea_uros.simulate.program.executors import IterationCompiler
 from amalthea_uros.simulate.program.image import Code, JumpLabel, Operation, ProgramHooks
 from amalthea_uros.simulate.program.resources import Resources
 from amalthea_uros.simulate.program.watches import EventSource
@@ -45,6 +46,7 @@ class Body:
     above : the runnables that are being called, outermost first
     masks : of groups that cannot be interrupted, around the activity
     executions : the records of executions of runnables that are measured
+    iteration : of an executor, if the process executes one in each job
     """
 
     resources: Resources
@@ -58,6 +60,7 @@ class Body:
     above: tuple[str, ...] = ()
     masks: int = 0
     executions: dict[str, int] = field(default_factory=dict)
+    iteration: IterationCompiler | None = None
     _places: collections.Counter[int] = field(default_factory=collections.Counter)
 
     @property
@@ -232,7 +235,12 @@ def _process_code(body: Body, process: Process, scheduler: Scheduler | None) -> 
     for kind, frame in copies:
         if kind is AccessKind.READ:
             body.frame(frame)
-    body.activities(process.activities)
+    executor = body.context.system.executor_of_task.get(process.name)
+    if executor is None:
+        body.activities(process.activities)
+    else:
+        body.iteration = IterationCompiler(body, executor, body.resources.executors)
+        body.iteration.add(process.activities)
     body.code.mark(body.end)
     for kind, frame in copies:
         if kind is AccessKind.WRITE:
@@ -242,7 +250,10 @@ def _process_code(body: Body, process: Process, scheduler: Scheduler | None) -> 
         body.number = 0
         for activity in scheduler.overhead:
             compile_activity(body, activity)
+    messages = body.resources.executors.messages
+    body.add_all(messages.first_operations_of_end(process.name))
     body.add_all(body.hooks.end)
+    body.add_all(messages.last_operations(process.name))
     body.code.add(layout.END)
     return body.code
 

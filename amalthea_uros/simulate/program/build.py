@@ -12,7 +12,9 @@ from amalthea_uros.simulate.kernel import layout
 from amalthea_uros.simulate.kernel.layout import PUT
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.program.chains import ChainCompiler, FollowedRoute
+from amalthea_uros.simulate.program.executors import ExecutorRecords
 from amalthea_uros.simulate.program.image import Image
+from amalthea_uros.simulate.program.messages import MessageRecords
 from amalthea_uros.simulate.program.modes import ModeRecords
 from amalthea_uros.simulate.program.process_records import PLACES_AT_FIRST, HardwareRecords, ProcessRecords
 from amalthea_uros.simulate.program.resources import Resources
@@ -71,7 +73,13 @@ class _ProgramBuilder:
         watches = resources.watches
         runnables = watches.watched.runnables
         watches.measured = {name: len(processes) + number for number, name in enumerate(runnables)}
+        network = MessageRecords(resources)
+        executors = resources.executors = ExecutorRecords(resources, network, len(processes) + len(runnables))
+        network.place()
+        executors.place()
         chains = ChainCompiler(resources)
+        for name in filter(network.is_about_message, processes):
+            chains.captures[name] = [layout.MESSAGE]
         for chain in system.events.chains:
             chains.add(chain)
         messages = Messages(resources, chains)
@@ -92,13 +100,14 @@ class _ProgramBuilder:
         records.place_members()
         records.place_ceilings()
         self._head(hardware, chains)
+        self.image.put(0, network.head())
         return KernelProgram(
             memory=self.image.words,
             units=resources.units,
             streams=resources.streams,
             stream_records=resources.stream_records,
             # What arrives at the time of an activation is there before it.
-            arrivals=[*messages.arrivals, *arrivals],
+            arrivals=[*messages.arrivals, *network.arrivals, *arrivals],
             messages=resources.queues,
             processes=tuple(processes),
             records=processes,
@@ -109,6 +118,9 @@ class _ProgramBuilder:
             routes=tuple(chains.routes),
             sources=tuple(watches.sources),
             runnables=runnables,
+            handles=tuple(executors.measured),
+            handle_records=dict(network.handles),
+            executors=executors.publications_of(),
             left_out=self.left_out,
             chains_left_out=chains.left_out,
         )
@@ -146,6 +158,9 @@ class KernelProgram:
     queues : the records of everything that is activated
     sources : of events that are watched, in the order of their numbers in rows
     runnables : that are measured, in the order of their numbers in rows, which follow those of the processes
+    handles : executors and handles of which the calls are measured, in the order of their numbers, which follow those of runnables
+    handle_records : by executor and handle
+    executors : those that are simulated, each with the records of its publications
     left_out : why a process is not simulated
     chains_left_out : why a chain is not followed
     """
@@ -165,5 +180,8 @@ class KernelProgram:
     routes: tuple[FollowedRoute, ...]
     sources: tuple[EventSource, ...]
     runnables: tuple[str, ...]
+    handles: tuple[tuple[str, str], ...]
+    handle_records: dict[tuple[str, str], int]
+    executors: dict[str, list[int]]
     left_out: dict[str, str]
     chains_left_out: dict[str, str]

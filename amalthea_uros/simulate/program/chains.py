@@ -8,9 +8,11 @@ from itertools import pairwise
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import Communication, Trigger
 from amalthea_uros.perf.events import EventChain
+from amalthea_uros.perf.network import Direction, Transmission
 from amalthea_uros.perf.software import Process
 from amalthea_uros.simulate.kernel import layout
 from amalthea_uros.simulate.program.image import Operation, ProgramHooks
+from amalthea_uros.simulate.program.message_routes import MessageRoutes
 from amalthea_uros.simulate.program.resources import Resources
 from amalthea_uros.timing.dataflow.chains import unfold
 from amalthea_uros.timing.dataflow.events import JobPhase
@@ -61,14 +63,12 @@ class ChainCompiler:
 
     def add(self, chain: EventChain) -> None:
         """Follow a chain, or note why that is not possible."""
-        if crosses(chain, self.resources.context.dataflow):
-            self.left_out[chain.name] = (
-                "it passes a wire or an executor that loops, whose iterations are not simulated; analyze the model"
-            )
-            return
         try:
             context = self.resources.context
-            ways = routes_of_paths(unfold(chain, context.system)[0], context.dataflow)
+            if crosses(chain, context.dataflow):
+                ways = MessageRoutes(self.resources.executors.messages).of(chain)
+            else:
+                ways = routes_of_paths(unfold(chain, context.system)[0], context.dataflow)
             for route in (route for found in ways.values() for route in found):
                 self._check(route)
             for events, found in ways.items():
@@ -109,10 +109,27 @@ class ChainCompiler:
             }
             fields |= dict.fromkeys((layout.VALUE, layout.TAKEN, layout.LINK, layout.OUT), -1)
             if records:
-                fields[layout.BEFORE_STAGE] = records[-1]
+                fields[layout.BEFORE_STAGE] = self._handed_over(parts[number - 1], records[-1], stage)
             records.append(image.record(layout.STAGE_SIZE, fields))
         for stage, record in zip(parts, records, strict=True):
             self._stage(stage, record)
+
+    def _handed_over(self, before: Stage, record: int, stage: Stage) -> int:
+        """Where a stage finds what the one before has passed on: there, or where a message puts it that carries it."""
+        messages = self.resources.executors.messages
+        transmissions = messages.system.transmissions
+        sent = transmissions.get(before.process.name)
+        if sent is None or sent.name == stage.process.name:
+            return record
+        target: Transmission | tuple[str, str] | None = transmissions.get(stage.process.name)
+        if target is None:
+            ready = messages.handle_of(sent)
+            if ready is None:
+                return record
+            target = (ready[0].name, ready[1].name)
+        found = self.resources.image.record(layout.STAGE_SIZE, {layout.LINK: -1})
+        messages.carry(sent, record + layout.LINK, target, found + layout.LINK)
+        return found
 
     def _positions(self, stage: Stage) -> list[ActivityPosition]:
         """The positions that a job must reach, each once."""
@@ -153,7 +170,9 @@ class ChainCompiler:
         """Where the stimulus of the chain occurs."""
         when, position = at.occurrence.when, at.occurrence.position
         if at.communication is Communication.LET or when is JobPhase.ACTIVATION:
-            hooks.start.append((layout.MARK, record, 1))
+            # The host has sent a message before it is queued on the wire.
+            is_sent = at.occurrence.process.name in self.resources.executors.messages.transmissions
+            hooks.start.append((layout.MARK, record, 2 if is_sent else 1))
         elif when is JobPhase.START:
             hooks.start.append((layout.MARK, record, 0))
         elif position is None:
@@ -183,9 +202,18 @@ class ChainCompiler:
                     self._at(occurrence.when, occurrence.position, hooks).append((layout.RESPOND, record, 0))
                 else:
                     # Only at its end is it known which job has taken part.
-                    hooks.end.append((layout.RESPOND, record, _RESPONSE_TIMES[occurrence.when]))
+                    is_sent = occurrence.when is JobPhase.END and self._gets_to_host(stage.process.name)
+                    hooks.end.append((layout.RESPOND, record, layout.AT_HOST if is_sent else _RESPONSE_TIMES[occurrence.when]))
             case boundary:
                 raise UnknownError(f"it leaves a process in a way that is not followed: {type(boundary).__name__}")
+
+    def _gets_to_host(self, process: str) -> bool:
+        transmission = self.resources.executors.messages.system.transmissions.get(process)
+        if transmission is None or process not in self.resources.executors.messages.transmissions:
+            return False
+        if transmission.direction is Direction.TO_AGENT and transmission.agent.most is None:
+            raise UnknownError(f"it is not stated how long {process!r} takes from the wire to the host")
+        return transmission.direction is Direction.TO_AGENT
 
     def _publish(self, process: Process, record: int, hooks: ProgramHooks) -> None:
         hooks.end.append((layout.PUBLISH, record, 0))

@@ -153,12 +153,13 @@ class ProcessRecords:
         is_edf = scheduled.equal_priority is EqualPriority.EDF
         has_server_deadline = self.hardware.dispatching.has_server_deadline(scheduled)
         level = self.hardware.dispatching.level(scheduled)
+        is_loop = item.name in context.system.executor_of_task
         fields = {
             layout.LEVEL: level,
             layout.OWN_LEVEL: level,
             layout.RUNNING_LEVEL: self.hardware.dispatching.running_level(item),
             layout.INNER: _inner(item) if has_server_deadline else 0,
-            layout.LIMIT: process.activation_limit if isinstance(process, Task) else layout.NEVER,
+            layout.LIMIT: process.activation_limit if isinstance(process, Task) and not is_loop else layout.NEVER,
             layout.QUEUE: queue,
             layout.FIRST_PLACE: queue,
             layout.ENTRY: code.write(self.image),
@@ -182,6 +183,7 @@ class ProcessRecords:
             layout.EVENTS_SET: self.image.items([0] * events)[0],
             layout.TICKETS: self.image.items([0] * len(self.resources.services))[0],
             layout.WATCHED: self.image.items(transitions)[0] if transitions else 0,
+            layout.IS_ABOUT_MESSAGE: int(self.resources.executors.messages.is_about_message(item.name)),
         }
         self.image.put(self.resources.processes[item.name], fields)
 

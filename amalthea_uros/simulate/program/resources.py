@@ -2,66 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import ClearEvent, ServerCall, SetEvent, WaitEvent, Waiting, walk
 from amalthea_uros.perf.distributions import Distribution, Statistics
-from amalthea_uros.perf.software import Isr
 from amalthea_uros.perf.stimuli import Counter
-from amalthea_uros.perf.system import System
 from amalthea_uros.simulate.kernel import layout
 from amalthea_uros.simulate.options import Options, SimulationMode
+from amalthea_uros.simulate.program.entities import EntityNumbers
 from amalthea_uros.simulate.program.image import Image
 from amalthea_uros.simulate.program.modes import ModeRecords
 from amalthea_uros.simulate.program.watches import Watches
 from amalthea_uros.simulate.sampling.streams import ValueStream, choices, durations, permutations, values
 from amalthea_uros.simulate.sampling.variates import sampling_assumption
 from amalthea_uros.simulate.sampling.words import RandomSource
-from amalthea_uros.timing.activation.releases import arriving
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.demand.multiframe import DemandFrame
 from amalthea_uros.timing.jobs.counters import first_effect
 from amalthea_uros.timing.jobs.executed import servers
-from amalthea_uros.trace.table import Entity, EntityKind
+from amalthea_uros.trace.table import EntityKind
 from amalthea_uros.units import Time
 
-
-@dataclass(slots=True)
-class EntityNumbers:
-    """The entities of a system, in a fixed order."""
-
-    system: System
-    all: tuple[Entity, ...] = field(init=False)
-    _numbers: dict[Entity, int] = field(init=False)
-
-    def __post_init__(self) -> None:
-        self.all = tuple(dict.fromkeys(_entities(self.system)))
-        self._numbers = {entity: number for number, entity in enumerate(self.all)}
-
-    def number(self, kind: EntityKind, name: str) -> int:
-        """The number of an entity."""
-        return self._numbers[Entity(kind, name)]
-
-    def process(self, name: str) -> int:
-        """The number of a process."""
-        is_isr = isinstance(self.system.processes[name], Isr)
-        return self.number(EntityKind.ISR if is_isr else EntityKind.TASK, name)
-
-
-def _entities(system: System) -> Iterator[Entity]:
-    for name, process in system.processes.items():
-        yield Entity(EntityKind.ISR if isinstance(process, Isr) else EntityKind.TASK, name)
-    yield from (Entity(EntityKind.CORE, name) for name in system.cores)
-    yield from (Entity(EntityKind.SCHEDULER, name) for name in system.schedulers)
-    yield from (Entity(EntityKind.STIMULUS, name) for name in (*system.stimuli_by_name, *arriving(system)))
-    yield from (Entity(EntityKind.RUNNABLE, name) for name in system.runnables)
-    yield from (Entity(EntityKind.LABEL, name) for name in system.labels)
-    yield from (Entity(EntityKind.SEMAPHORE, semaphore.name) for semaphore in system.os.semaphores)
-    yield from (Entity(EntityKind.OS_EVENT, event.name) for event in system.software.os_events)
-    yield from (Entity(EntityKind.CHAIN, name) for name in system.chains)
+if TYPE_CHECKING:
+    from amalthea_uros.simulate.program.executors import ExecutorRecords
 
 
 @dataclass(slots=True)
@@ -85,6 +52,7 @@ class Resources:
     units: int
     entities: EntityNumbers = field(init=False)
     modes: ModeRecords = field(init=False)
+    executors: ExecutorRecords = field(init=False)
     processes: dict[str, int] = field(default_factory=dict)
     stimuli: dict[str, int] = field(default_factory=dict)
     queues: dict[tuple[str, str], int] = field(default_factory=dict)

@@ -58,6 +58,9 @@ class StimulusRecords:
                 if isinstance(stimulus, EventTriggered) and not self.resources.context.activations.causes(stimulus):
                     raise UnknownError(f"no activity in the model raises an event of the stimulus {name!r}")
                 is_internal = isinstance(stimulus, InterProcess | EventTriggered)
+                if name in self.resources.executors.messages.brought:
+                    line, stimulus = self.resources.executors.messages.brought[name]
+                    self.resources.image.put(record, {layout.BRINGS: line})
                 is_watched = self.resources.image.words[record + layout.STIMULUS_SOURCE] > 0
                 if not is_internal and (targets or stimulus.assignments or is_watched):
                     first = min((order[target] for target in targets), default=len(order))

@@ -26,6 +26,8 @@ _ROWS, _ROWS_OF_MACHINE_CODE = 4096, 65_536
 _MARGIN = 4096
 #: Values of all streams together, and of one stream.
 _VALUES, _LEAST_VALUES, _MOST_VALUES = 2**20, 32, 4096
+#: Records of messages to begin with.
+_MESSAGES = 64
 #: Occurrences that are prepared at a time, about.
 _OCCURRENCES = 8192
 
@@ -39,7 +41,7 @@ class KernelDriver:
     until : end of the run, in time units
     traced : the part of the run of which events are recorded
     is_compiled : whether the kernel is machine code by now
-    endless : the record of the process of which a job goes on forever without taking time, at which the run has ended; 0: none
+    endless : the record of the process of which a job continues forever without taking time, at which the run has ended; 0: none
     """
 
     program: KernelProgram
@@ -57,6 +59,7 @@ class KernelDriver:
     _values: int = 0
     _pools: dict[int, int] = field(default_factory=dict)
     _arrivals: int = 0
+    _messages: int = _MESSAGES
     _places_for_arrivals: int = 2 * _OCCURRENCES
 
     def __post_init__(self) -> None:
@@ -80,7 +83,7 @@ class KernelDriver:
             self.memory[end] = self._regions[first] + places
 
     def run(self) -> None:
-        """Run to the end, or until a job goes on forever without taking time."""
+        """Run to the end, or until a job continues forever without taking time."""
         began = perf_counter()
         try:
             self._run_to_end(began)
@@ -119,6 +122,8 @@ class KernelDriver:
                 self._take_rows()
             elif code == layout.QUEUE_FULL:
                 self._grow_queues()
+            elif code == layout.NO_MESSAGES:
+                self._add_messages()
             elif code == layout.ENDLESS:
                 # What was observed up to here counts.
                 self.endless = int(self.memory[layout.CAUSE])
@@ -193,6 +198,15 @@ class KernelDriver:
             self.memory[record + layout.QUEUE] = self.memory[record + layout.FIRST_PLACE] = place
         self.memory[layout.PLACES] = 2 * places
 
+    def _add_messages(self) -> None:
+        """Make as many more records of messages as there are."""
+        size = layout.CARRIED + int(self.memory[layout.CARRIED_VALUES])
+        first = self._append(size * self._messages)
+        for place in range(first, first + size * self._messages, size):
+            self.memory[place + layout.NEXT_MESSAGE] = self.memory[layout.FREE_MESSAGES]
+            self.memory[layout.FREE_MESSAGES] = place
+        self._messages *= 2
+
     # What the kernel gives.
 
     def _take_rows(self) -> None:
@@ -203,7 +217,7 @@ class KernelDriver:
                 self.memory[first] = begin
 
     def _hand_over(self, take: RowConsumer, rows: Numbers) -> None:
-        """Have rows taken: at once, or by a thread while machine code goes on; only two chunks wait for it at a time."""
+        """Have rows taken: at once, or by a thread while machine code continues; only two chunks wait for it at a time."""
         if self._thread is None:
             take(rows)
             return

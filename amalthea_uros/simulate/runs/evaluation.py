@@ -9,6 +9,7 @@ from fractions import Fraction
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.judge.limits import Deadline, deadline_of
+from amalthea_uros.perf.executors import Executor, Handle
 from amalthea_uros.perf.software import Isr
 from amalthea_uros.simulate.kernel import layout
 from amalthea_uros.simulate.kernel.layout import POLLING, RUNNING
@@ -18,6 +19,8 @@ from amalthea_uros.simulate.observations import (
     ChainObservation,
     CoreObservation,
     CountObservation,
+    ExecutorObservation,
+    HandleObservation,
     ProcessObservation,
     RunnableObservation,
 )
@@ -25,7 +28,7 @@ from amalthea_uros.simulate.program.build import KernelProgram
 from amalthea_uros.simulate.results import Simulation
 from amalthea_uros.simulate.runs.execution import SimulationRun
 from amalthea_uros.simulate.runs.not_simulated import NotSimulated
-from amalthea_uros.simulate.runs.observed_limits import LOOPING, judge_process, judge_requirements
+from amalthea_uros.simulate.runs.observed_limits import judge_process, judge_requirements
 from amalthea_uros.timing.activation.releases import ASSUMPTION
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.timing.context import TimingContext
@@ -52,19 +55,15 @@ class RunEvaluation:
         self.run.observers.finish()
         left_out = NotSimulated(self.context, frozenset(program.left_out))
         processes = Results(
-            judge_process(
-                each,
-                system.processes[each.name],
-                left_out.doubt_about(each.name),
-                LOOPING if each.name in system.executor_of_task else "",
-            )
-            for each in self._processes()
+            judge_process(each, system.processes[each.name], left_out.doubt_about(each.name)) for each in self._processes()
         )
         found = Results(self._chain(name) for name in system.chains)
         duration = self.run.options.duration
         runnables = Results(map(self._runnable, self.program.runnables, self.run.runnables))
         doubts = left_out.doubt_about_limits()
-        requirements = Results(judge_requirements(system, processes, found, duration, runnables, self.run.observers, doubts))
+        executors = Results(self._executors())
+        limited = (*runnables, *(as_runnable(handle) for executor in executors for handle in executor.handles))
+        requirements = Results(judge_requirements(system, processes, found, duration, limited, self.run.observers, doubts))
         return Simulation(
             duration=duration,
             seed=self.run.options.seed,
@@ -73,6 +72,7 @@ class RunEvaluation:
             processes=processes,
             left_out=Results(self._left_out(name, reason) for name, reason in program.left_out.items()),
             chains=found,
+            executors=executors,
             runnables=runnables,
             labels=Results(self.run.observers.labels()),
             requirements=requirements,
@@ -85,12 +85,6 @@ class RunEvaluation:
         system, notes = self.context.system, self.context.notes
         for name, reason in self.program.left_out.items():
             notes.error("SIM001", f"{name!r} is not simulated: {reason}", system.processes[name])
-        for executor in system.executors:
-            message = (
-                f"the loop of {executor.name!r} is not simulated: its task executes iterations that call by chance what may be ready, "
-                "so that the times of its callbacks, and of what they send or activate, are not those of the executor"
-            )
-            notes.warning("SIM006", message, executor)
         for name, reason in self.program.chains_left_out.items():
             notes.warning("SIM002", f"the chain {name!r} is not followed: {reason}", system.chains[name])
         for name, record in self.program.channels.items():
@@ -113,8 +107,7 @@ class RunEvaluation:
             yield self._process(name, found)
 
     def _deadline(self, name: str) -> Deadline | None:
-        # The rounds of an executor that loops follow each other as they do not in a simulation: no verdict on them is right.
-        deadline = None if name in self.context.system.executor_of_task else deadline_of(name, self.context)
+        deadline = deadline_of(name, self.context)
         if deadline is not None and deadline.is_implicit:
             self.context.notes.assume(ASSUMPTION)
         return deadline
@@ -177,6 +170,36 @@ class RunEvaluation:
             migrations=found.migrations,
         )
 
+    def _executors(self) -> Iterator[ExecutorObservation]:
+        """The executors that are simulated."""
+        memory = self.run.driver.memory
+        found = dict(zip(self.program.handles, self.run.handles, strict=True))
+        for executor in self.context.system.executors:
+            if executor.name not in self.program.executors:
+                continue
+            timeouts = (memory[record + layout.TIMEOUTS] for record in self.program.executors[executor.name])
+            yield ExecutorObservation(
+                name=executor.name,
+                iterations=self.run.jobs[self.program.processes.index(executor.task)].count,
+                timeouts=int(sum(timeouts)),
+                handles=Results(
+                    self._handle(executor, handle, found[executor.name, handle.name]) for handle in executor.handles
+                ),
+            )
+
+    def _handle(self, executor: Executor, handle: Handle, found: JobMetrics) -> HandleObservation:
+        record = self.program.handle_records[executor.name, handle.name]
+        return HandleObservation(
+            name=handle.name,
+            kind=handle.kind,
+            runnable=handle.runnable,
+            calls=found.count,
+            metrics=found.observations(None),
+            preemptions=found.preemptions,
+            migrations=found.migrations,
+            lost=int(self.run.driver.memory[record + layout.LOST_CALLS]),
+        )
+
     def _core(self, name: str, record: int) -> CoreObservation:
         memory = self.run.driver.memory
         last = self.run.end - int(memory[record + layout.BEGIN]) if memory[record + layout.RUNS] else 0
@@ -187,3 +210,14 @@ class RunEvaluation:
             (route.text, self.run.routes[number]) for number, route in enumerate(self.program.routes) if route.chain == name
         ]
         return chain_observation(name, routes, self.run.end, self.program.chains_left_out.get(name, ""))
+
+
+def as_runnable(handle: HandleObservation) -> RunnableObservation:
+    """The calls of a handle as those of its callback, of which requirements limit the response time from when it was asked for."""
+    return RunnableObservation(
+        name=handle.runnable,
+        executions=handle.calls,
+        metrics=handle.metrics,
+        preemptions=handle.preemptions,
+        migrations=handle.migrations,
+    )

@@ -45,6 +45,7 @@ class SimulationRun:
     routes: list[RouteMetrics] = field(init=False)
     observers: Observers = field(init=False)
     runnables: list[JobMetrics] = field(init=False)
+    handles: list[JobMetrics] = field(init=False)
     sinks: Sequence[TraceSink] = ()
     suspensions: RunnableSuspensions = field(default_factory=RunnableSuspensions)
     semaphores: SemaphoreStates = field(init=False)
@@ -54,6 +55,7 @@ class SimulationRun:
         self.end = self.options.duration * program.units
         self.jobs = [JobMetrics(program.units) for _ in program.processes]
         self.runnables = [JobMetrics(program.units) for _ in program.runnables]
+        self.handles = [JobMetrics(program.units) for _ in program.handles]
         self.observers = Observers(self.context.system, self.options, program, self.end)
         self.routes = [RouteMetrics(program.units) for _ in program.routes]
         self.semaphores = _semaphore_states(self.context.system, program)
@@ -61,7 +63,7 @@ class SimulationRun:
         self.driver = KernelDriver(
             program,
             until=self.end,
-            jobs=lambda rows: jobs.add_rows(rows, [*self.jobs, *self.runnables]),
+            jobs=lambda rows: jobs.add_rows(rows, [*self.jobs, *self.runnables, *self.handles]),
             observations=self._observe,
             events=self._write,
             traced=(traced[0] * program.units, traced[1] * program.units),

@@ -167,11 +167,6 @@ class ConstraintObservers(Protocol):
         """Why nothing was observed of a constraint."""
 
 
-#: Why nothing is observed of an executor that loops, and of its callbacks.
-LOOPING = "it is an executor that loops, whose iterations are not simulated; analyze the model"
-_IN_LOOP = "it is part of an executor that loops, whose iterations are not simulated; analyze the model"
-
-
 def judge_process(process: ProcessObservation, model: Process, doubt: str = "", left_out: str = "") -> ProcessObservation:
     """The observations of a process with the verdict on its deadline and on lost activations.
 
@@ -196,7 +191,7 @@ def judge_requirements(
     processes: Results[ProcessObservation],
     chains: Results[ChainObservation],
     duration: Time,
-    runnables: Results[RunnableObservation],
+    runnables: Sequence[RunnableObservation],
     observers: ConstraintObservers,
     doubts: Mapping[str, str] = MappingProxyType({}),
 ) -> Iterator[RequirementObservation]:
@@ -221,28 +216,17 @@ def judge_requirements(
             yield from (RequirementObservation.of(limit, reason) for limit in limits or [without_number(item)])
 
 
-def _is_of_loop(requirement: Requirement, system: System) -> bool:
-    """Whether a requirement limits rounds of an executor that loops, or one of its callbacks."""
-    runnables = {
-        name for executor in system.executors for handle in executor.handles for name in (handle.runnable, handle.take)
-    }
-    return requirement.process in system.executor_of_task or (
-        requirement.runnable is not None and requirement.runnable in runnables
-    )
-
-
 def _of_requirement(
     requirement: Requirement,
     system: System,
     processes: Results[ProcessObservation],
     duration: Time,
-    runnables: Results[RunnableObservation],
+    runnables: Sequence[RunnableObservation],
 ) -> ObservedValues:
     limit = requirement.limit
     process = next((each for each in processes if each.name == requirement.process), None)
-    runnable = next((each for each in runnables if each.name == requirement.runnable), None)
-    if _is_of_loop(requirement, system):
-        return ObservedValues(reason=_IN_LOOP)
+    # Of a callback, the calls of its handle count, which come last.
+    runnable = next((each for each in reversed(runnables) if each.name == requirement.runnable), None)
     if process is not None:
         model = system.processes.get(process.name)
         return limited_values(limit, process, duration, None if model is None else activation_period(model, system))

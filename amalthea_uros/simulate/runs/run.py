@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from typing import TypeAlias
 
+from amalthea_uros.executors.semantics.steps import with_steps
 from amalthea_uros.perf.system import System
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.program.build import build_program
@@ -30,7 +31,7 @@ def simulate_system(system: System, options: Options, sinks: Sequence[OpenSink] 
     ----------
     sinks : for the events of `options.traced`
     """
-    context = TimingContext.of_scheduling(with_first_arrivals(system, options.settings.phases), options.settings)
+    context = TimingContext.of_scheduling(with_first_arrivals(with_steps(system), options.settings.phases), options.settings)
     program = build_program(context, options)
     run = SimulationRun(context, options, program)
     with ExitStack() as stack:

@@ -50,6 +50,8 @@ class LinkKind(StrEnum):
     TRIGGER = "a trigger"
     DATA = "data"
     MESSAGE = "a message"
+    QUEUE = "a message that waits"
+    RELAY = "a message through the agent"
     OS_EVENT = "an OS event"
     SERVER_CALL = "a server call"
     NOTHING = "nothing"

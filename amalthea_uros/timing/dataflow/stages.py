@@ -112,7 +112,7 @@ def stages(route: Route, communication: Communication | None) -> list[Stage]:
         if link.kind is LinkKind.JOB:
             passed.append(then.position)
             continue
-        is_trigger = link.kind is LinkKind.TRIGGER
+        is_trigger = link.kind in (LinkKind.TRIGGER, LinkKind.RELAY)
         write, read = (communication_of(position, communication) for position in (link.write, link.read))
         leave = Fire(link.write, link.is_before) if is_trigger else Write(write, link.write)
         is_same = before.process.name == then.process.name and not is_trigger

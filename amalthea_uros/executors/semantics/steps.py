@@ -1,0 +1,182 @@
+"""The steps of an iteration, as a simulation takes them: what the task of an executor does, with each decision at a place of its own.
+
+In a model, the task of an executor calls by chance what may be ready, because nobody knows it before. Whoever follows the messages
+knows it: then each handle has one or two steps, in the order of the executor, which are taken or not.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+from amalthea_uros.executors.semantics.readiness import messages, shares_session
+from amalthea_uros.perf.activities import (
+    Activity,
+    Call,
+    Chance,
+    Communication,
+    LabelAccess,
+    ProbabilitySwitch,
+    Trigger,
+    called_runnables,
+    transformed,
+)
+from amalthea_uros.perf.executors import Executor, Handle
+from amalthea_uros.perf.network import Direction, Purpose, Transmission
+from amalthea_uros.perf.os import Semaphore, SemaphoreKind
+from amalthea_uros.perf.software import Runnable, Task
+from amalthea_uros.perf.stimuli import InterProcess
+from amalthea_uros.perf.system import System
+
+
+@dataclass(frozen=True, slots=True)
+class IterationStep:
+    """A part of an iteration that is executed if a handle is ready.
+
+    Attributes
+    ----------
+    takes : whether it takes the message of the handle, or sets the timer to its next expiration
+    calls : whether it calls the callback
+    """
+
+    handle: Handle
+    takes: bool
+    calls: bool
+
+    @property
+    def activities(self) -> tuple[Activity, ...]:
+        """Taking the message, and the callback."""
+        take = self.handle.take if self.takes else None
+        return tuple(Call(runnable=name) for name in (take, self.handle.runnable if self.calls else None) if name is not None)
+
+
+def steps_of(executor: Executor) -> tuple[IterationStep, ...]:
+    """The steps of an iteration after the wait, in order: see ros2/rclc `executor.c`."""
+    return tuple(_steps(executor))
+
+
+def _steps(executor: Executor) -> Iterator[IterationStep]:
+    # Only messages are taken before: a timer is set to its next time when its callback is called.
+    before = messages(executor) if executor.takes_first else ()
+    yield from (IterationStep(handle, takes=True, calls=False) for handle in before)
+    for handle in executor.handles:
+        # What is always called takes a message only if there is one.
+        if handle.always and handle not in before:
+            yield IterationStep(handle, takes=True, calls=False)
+        yield IterationStep(handle, takes=handle not in before and not handle.always, calls=True)
+
+
+def iterations_name(executor: str) -> str:
+    """The name of the stimulus that activates an iteration of an executor."""
+    return f"iterations_of_{executor}"
+
+
+def session_lock(executor: Executor) -> str:
+    """The name of the lock of a session that several executors share."""
+    return f"lock of {executor.session}"
+
+
+def with_steps(system: System) -> System:
+    """The system with the steps of the iterations of its executors, and with everything that sends a message triggering it.
+
+    Each step is a switch of two branches of which the second one is empty.
+    """
+    if not system.executors and not system.network.transmissions:
+        return system
+    own = system.executor_of_task
+    tasks = [_with_steps(task, own[task.name]) if task.name in own else task for task in system.software.tasks]
+    within = _within_callbacks(system)
+    runnables = [
+        _publishing(_accessing_at_once(each) if each.name in within else each, system) for each in system.software.runnables
+    ]
+    started = [InterProcess(name=iterations_name(executor.name), origin=executor.origin) for executor in system.executors]
+    sent = {name for each in _sent(system) for name in system.processes[each.name].stimuli}
+    stimuli = [
+        InterProcess(name=each.name, origin=each.origin) if each.name in sent else each for each in system.stimuli.stimuli
+    ]
+    shared = dict.fromkeys(session_lock(each) for each in system.executors if shares_session(each, system.executors))
+    locks = [Semaphore(name=name, kind=SemaphoreKind.MUTEX) for name in shared]
+    return replace(
+        system,
+        os=replace(system.os, semaphores=(*system.os.semaphores, *locks)),
+        stimuli=replace(system.stimuli, stimuli=(*stimuli, *started)),
+        software=replace(system.software, tasks=tuple(tasks), runnables=tuple(runnables)),
+    )
+
+
+def _with_steps(task: Task, executor: Executor) -> Task:
+    own = {name for handle in executor.handles for name in (handle.take, handle.runnable)}
+    # Other calls are overhead of the operating system, around the iteration.
+    calls = [each for each in task.activities if isinstance(each, Call) and each.runnable not in own]
+    spins = next((number for number, each in enumerate(calls) if each.runnable == executor.spin), len(calls) - 1)
+    switches = [_switch(step) for step in steps_of(executor)]
+    return replace(
+        task,
+        stimuli=(iterations_name(executor.name),),
+        activities=(*calls[: spins + 1], *switches, *calls[spins + 1 :]),
+    )
+
+
+def _switch(step: IterationStep) -> ProbabilitySwitch:
+    return ProbabilitySwitch(branches=(Chance(weight=1.0, activities=step.activities), Chance(weight=1.0, activities=())))
+
+
+def _within_callbacks(system: System) -> set[str]:
+    """The runnables that executors call, and those that these call."""
+    within: set[str] = set()
+    handles = [handle for executor in system.executors for handle in executor.handles]
+    new = {name for handle in handles for name in (handle.take, handle.runnable) if name is not None}
+    while new:
+        called = [system.runnables[name] for name in new if name in system.runnables]
+        within |= {each.name for each in called}
+        new = {name for each in called for name in called_runnables(each.activities)} - within
+    return within
+
+
+def _accessing_at_once(runnable: Runnable) -> Runnable:
+    """A callback whose accesses to labels take effect where they are, unless they are modelled otherwise.
+
+    An iteration waits at its beginning for what it is about, so that copies made there would be older than everything.
+    """
+    return replace(runnable, activities=transformed(runnable.activities, _at_once))
+
+
+def _at_once(activity: Activity) -> Activity:
+    if isinstance(activity, LabelAccess) and activity.communication is None:
+        return replace(activity, communication=Communication.EXPLICIT)
+    return activity
+
+
+def _publishing(runnable: Runnable, system: System) -> Runnable:
+    """A callback with a trigger for each message that it publishes; some have none, as their rate alone is known."""
+    handles = (handle for executor in system.executors for handle in executor.handles if handle.runnable == runnable.name)
+    handle = next(handles, None)
+    if handle is None:
+        return runnable
+    triggered = {each.stimulus for each in runnable.activities if isinstance(each, Trigger)}
+    names = (each.transmission for each in handle.publications if each.transmission in system.transmissions)
+    stimuli = [system.processes[name].stimuli[0] for name in names if name is not None]
+    missing = [Trigger(stimulus=each) for each in dict.fromkeys(stimuli) if each not in triggered]
+    return replace(runnable, activities=(*runnable.activities, *missing))
+
+
+def _sent(system: System) -> Iterator[Transmission]:
+    """Messages that are sent here: publications of callbacks, acknowledgements, and messages that come back from the agent."""
+    published = {
+        each.transmission for executor in system.executors for handle in executor.handles for each in handle.publications
+    }
+    for each in system.transmissions.values():
+        if each.purpose is Purpose.ACKNOWLEDGEMENT or each.name in published or relayed(each, system):
+            yield each
+
+
+def relayed(transmission: Transmission, system: System) -> list[Transmission]:
+    """The messages that the agent sends back here as another one."""
+    if transmission.direction is not Direction.TO_CONTROLLER or transmission.purpose is not Purpose.DATA:
+        return []
+    others = system.transmissions.values()
+    return [
+        each
+        for each in others
+        if each.direction is Direction.TO_AGENT and each.purpose is Purpose.DATA and each.topic == transmission.topic
+    ]

@@ -1,0 +1,286 @@
+"""Executors that loop, in memory, and the programs of their iterations."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from amalthea_uros.errors import UnknownError
+from amalthea_uros.executors.semantics.loops import SLEEP_RESOLUTION, returns_at_once, sleep_of
+from amalthea_uros.executors.semantics.readiness import is_message, shares_session
+from amalthea_uros.executors.semantics.steps import IterationStep, iterations_name, session_lock, steps_of
+from amalthea_uros.perf.activities import Activity, Call, ProbabilitySwitch
+from amalthea_uros.perf.distributions import Boundaries
+from amalthea_uros.perf.executors import Executor, Handle, HandleKind, LoopKind, Publication, TriggerKind
+from amalthea_uros.simulate.kernel import layout
+from amalthea_uros.simulate.options import SimulationMode
+from amalthea_uros.simulate.program.image import JumpLabel
+from amalthea_uros.simulate.program.messages import MessageRecords, acknowledgements, unknown_wait
+from amalthea_uros.simulate.program.resources import Resources
+from amalthea_uros.simulate.sampling.streams import durations
+from amalthea_uros.simulate.sampling.words import RandomSource
+
+if TYPE_CHECKING:
+    from amalthea_uros.simulate.program.body import Body
+
+#: An assumption.
+_OVERHEAD = "the overhead of an iteration of an executor is executed after its wait"
+
+
+@dataclass(slots=True)
+class ExecutorRecords:
+    """The records of executors.
+
+    Attributes
+    ----------
+    records : by name
+    measured : the executors and handles whose calls are measured, in the order of their numbers in rows
+    """
+
+    resources: Resources
+    messages: MessageRecords
+    first_number: int
+    records: dict[str, int] = field(default_factory=dict)
+    measured: list[tuple[str, str]] = field(default_factory=list)
+    _publications: dict[tuple[str, str, str], int] = field(default_factory=dict)
+
+    def place(self) -> None:
+        """Place and fill the records."""
+        for executor in self.resources.context.system.executors:
+            if executor.task in self.resources.processes:
+                self.records[executor.name] = self.resources.image.record(layout.EXECUTOR_SIZE)
+                self._fill(executor, self.records[executor.name])
+                for handle in filter(has_messages_without_wire, executor.handles):
+                    self._bring(executor, handle)
+
+    def _bring(self, executor: Executor, handle: Handle) -> None:
+        if handle.interval:
+            self.messages.bring_without_wire(executor, handle)
+        else:
+            message = f"nothing comes for {handle.name!r} of {executor.name!r}, as it is not stated how often something does"
+            self.resources.context.notes.warning("SIM007", message, handle)
+
+    def _fill(self, executor: Executor, record: int) -> None:
+        resources, image, time = self.resources, self.resources.image, self.resources.time
+        waiting, loop = executor.waiting, executor.loop
+        handles = {handle.name: self.messages.handles[executor.name, handle.name] for handle in executor.handles}
+        first, end = image.items(handles.values())
+        sets, sets_end = image.items(
+            [image.items([*(handles[name] for name in each), 0])[0] for each in _trigger_sets(executor)]
+        )
+        begin = self._begin(executor)
+        fields = {
+            layout.READER_PROCESS: resources.processes[executor.task],
+            layout.INBOX: self.messages.inboxes[executor.name],
+            layout.WAIT_TIMEOUT: time(loop.timeout),
+            layout.RESOLUTION: time(waiting.resolution),
+            layout.MESSAGES_PER_WAIT: waiting.messages_per_wait or 0,
+            layout.KEPT_END_WAIT: int(waiting.stored_data_ends_wait),
+            layout.FLAGS_END_WAIT: int(waiting.guard_conditions_end_wait),
+            layout.WAIT_ALARM: self.messages.alarm(layout.END_OF_WAIT, record),
+            layout.HANDLES: first,
+            layout.HANDLES_END: end,
+            layout.TRIGGER_SETS: sets,
+            layout.TRIGGER_SETS_END: sets_end,
+            layout.SLEEPS: self._sleeps(executor),
+            layout.PACE: time(loop.pace),
+            layout.LAST_WAKE: -time(loop.pace),
+            layout.LOOP_PERIOD: 0 if loop.period is None else time(loop.period),
+            layout.INVOCATION: -1,
+            layout.SLEEP_RESOLUTION: time(SLEEP_RESOLUTION),
+            layout.LOOP_STIMULUS: resources.stimuli[iterations_name(executor.name)],
+            layout.LOOP_ALARM: self.messages.alarm(layout.NEXT_ITERATION, record, at=begin),
+        }
+        image.put(record, fields)
+
+    def _begin(self, executor: Executor) -> int:
+        """When the first iteration begins: at random, as its phase against everything else is not known."""
+        if self.resources.options.mode is not SimulationMode.SAMPLED:
+            return 0
+        self.resources.assume_phase()
+        longest = max(executor.loop.sleep, executor.loop.period or 0)
+        return self.resources.time(self.resources.random_phase(f"executor {executor.name}") * longest >> 64)
+
+    def _sleeps(self, executor: Executor) -> int:
+        """The stream of sleeps; 0 if it does not sleep."""
+        if executor.loop.kind is not LoopKind.SLEEPING or not executor.loop.sleep:
+            return 0
+        sleep = sleep_of(executor)
+        source = RandomSource(self.resources.options.seed, f"sleep of {executor.name}")
+        times = Boundaries(lower=sleep.lower, upper=sleep.upper)
+        return self.resources.stream(durations(times, Fraction(self.resources.units), self.resources.options.mode, source))
+
+    def publication(self, executor: str, handle: Handle, publication: Publication) -> int:
+        """The record of a publication of a callback."""
+        key = (executor, handle.name, publication.topic)
+        if key not in self._publications:
+            system = self.resources.context.system
+            awaited = next(acknowledgements(publication.transmission or "", system), None)
+            fields = {layout.PARTS_SENT: _parts(self.messages, publication) if awaited is not None else 0}
+            fields[layout.TIMEOUT_AFTER] = self.resources.time(publication.timeout or layout.NEVER)
+            self._publications[key] = self.resources.image.record(layout.PUBLICATION_SIZE, fields)
+        return self._publications[key]
+
+    def publications_of(self) -> dict[str, list[int]]:
+        """The records of the publications of each executor."""
+        records: dict[str, list[int]] = {name: [] for name in self.records}
+        for (executor, _, _), record in self._publications.items():
+            records[executor].append(record)
+        return records
+
+    def measure(self, executor: str, handle: Handle) -> int:
+        """The record of the calls of a handle, from when it was asked for."""
+        number = self.first_number + len(self.measured)
+        self.measured.append((executor, handle.name))
+        asked_at = self.messages.handles[executor, handle.name] + layout.RELEASED
+        fields = {layout.EXECUTION_NUMBER: number, layout.ASKED_AT: asked_at}
+        return self.resources.image.record(layout.EXECUTION_SIZE, fields)
+
+
+def _trigger_sets(executor: Executor) -> Sequence[frozenset[str]]:
+    """The sets of handles of which one must be ready as a whole."""
+    names = [handle.name for handle in executor.handles]
+    match executor.trigger.kind:
+        case TriggerKind.ANY:
+            return [frozenset((name,)) for name in names]
+        case TriggerKind.ALL:
+            return [frozenset(names)]
+        case TriggerKind.ALWAYS:
+            return [frozenset()]
+    return executor.trigger.sets
+
+
+def _parts(messages: MessageRecords, publication: Publication) -> int:
+    """How many acknowledges a publication needs: one for each of its parts that the agent acknowledges."""
+    system = messages.system
+    process, awaited = (
+        system.processes[publication.transmission or ""],
+        acknowledgements(publication.transmission or "", system),
+    )
+    stimuli = {name for each in awaited for name in system.processes[each.name].stimuli}
+    return sum(getattr(each, "stimulus", None) in stimuli for each in process.activities)
+
+
+# Programs.
+
+
+@dataclass(slots=True)
+class IterationCompiler:
+    """Makes the program of an iteration."""
+
+    body: Body
+    executor: Executor
+    records: ExecutorRecords
+
+    @property
+    def record(self) -> int:
+        """The record of the executor."""
+        return self.records.records[self.executor.name]
+
+    def add(self, activities: Sequence[Activity]) -> None:
+        """The wait, the overhead, and the steps; then the next iteration is planned.
+
+        Raises
+        ------
+        UnknownError : something that its time depends on is not stated.
+        """
+        self._check()
+        body, code, steps = self.body, self.body.code, iter(steps_of(self.executor))
+        self.records.resources.context.notes.assume(_OVERHEAD)
+        code.add(layout.LISTEN, self.record)
+        if returns_at_once(self.executor):
+            code.add(layout.BEGIN_WAIT, self.record)
+        else:
+            self._lock()
+            code.add(layout.BEGIN_WAIT, self.record)
+            self._read()
+            self._unlock()
+        code.add(layout.BEGIN_ITERATION, self.record)
+        first = next((n for n, each in enumerate(activities) if isinstance(each, ProbabilitySwitch)), len(activities))
+        last = next((n for n in range(first, len(activities)) if isinstance(activities[n], Call)), len(activities))
+        code.add(layout.CHECK, self.record)
+        body.activities(activities[:first])
+        nothing = JumpLabel()
+        code.add(layout.TEST_TRIGGER, self.record, nothing)
+        for activity, step in zip(activities[first:last], steps, strict=True):
+            assert isinstance(activity, ProbabilitySwitch)
+            body.number += 1
+            self._step(step, activity.branches[0].activities)
+        code.mark(nothing)
+        body.activities(activities[last:])
+        code.add(layout.PLAN_ITERATION, self.record)
+
+    def _check(self) -> None:
+        for handle in self.executor.handles:
+            if handle.kind is HandleKind.TIMER and handle.interval is None:
+                raise UnknownError(f"the period of the timer {handle.name!r} is not stated")
+            for publication in handle.publications:
+                self._check_publication(publication)
+        if self.executor.trigger.kind is TriggerKind.CUSTOM and not self.executor.trigger.sets:
+            raise UnknownError("it is not stated when its trigger condition is true")
+
+    def _check_publication(self, publication: Publication) -> None:
+        system = self.body.context.system
+        awaited = list(acknowledgements(publication.transmission or "", system))
+        if publication.waits and (not awaited or any(each.agent.most is None for each in awaited)):
+            raise UnknownError(unknown_wait(publication.topic, publication.timeout))
+
+    def _lock(self) -> None:
+        if lock := self._session_lock():
+            self.body.code.add(layout.REQUEST, lock, 0)
+
+    def _unlock(self) -> None:
+        if lock := self._session_lock():
+            self.body.code.add(layout.UNLOCK, lock)
+
+    def _session_lock(self) -> int:
+        """The record of the lock of a session that several executors share; 0 if there is none."""
+        is_shared = shares_session(self.executor, self.body.context.system.executors)
+        return self.body.resources.semaphores[session_lock(self.executor)] if is_shared else 0
+
+    def _read(self) -> None:
+        """Read, and acknowledge what was read, until there is what it waits for."""
+        code, done = self.body.code, JumpLabel()
+        again = code.here()
+        code.add(layout.READ, self.record, done)
+        code.add(layout.REPLY, self.record, again)
+        code.mark(done)
+
+    def _step(self, step: IterationStep, activities: Sequence[Activity]) -> None:
+        """A step, if its handle is ready."""
+        code, record, skipped = self.body.code, self.records.messages.handles[self.executor.name, step.handle.name], JumpLabel()
+        code.add(layout.TEST_DATA if step.takes else layout.TEST_READY, record, skipped)
+        if step.takes:
+            code.add(layout.TAKE_DATA, record)
+        call = len(activities) - 1 if step.calls else len(activities)
+        self.body.activities(activities[:call])
+        if step.calls:
+            calls = self.records.measure(self.executor.name, step.handle)
+            code.add(layout.BEGIN_EXECUTION, calls)
+            self.body.activities(activities[call:])
+            code.add(layout.END_EXECUTION, calls)
+        code.mark(skipped)
+
+    def publish(self, transmission: str) -> None:
+        """Write a message of the callback that is being called, and wait for its acknowledgements if the callback does."""
+        handle, publication = next(self._publications(transmission))
+        code, record = self.body.code, self.records.publication(self.executor.name, handle, publication)
+        self._lock()
+        code.add(layout.WRITE, self.records.messages.transmissions[transmission], record)
+        if publication.waits:
+            code.add(layout.EXPECT, self.record, record)
+            self._read()
+        self._unlock()
+
+    def _publications(self, transmission: str) -> Iterator[tuple[Handle, Publication]]:
+        for handle in self.executor.handles:
+            for publication in handle.publications:
+                if publication.transmission == transmission and handle.runnable in self.body.above:
+                    yield handle, publication
+
+
+def has_messages_without_wire(handle: Handle) -> bool:
+    """Whether what a handle receives comes over nothing that is described."""
+    return handle.transmission is None and (is_message(handle) or handle.kind is HandleKind.GUARD_CONDITION)

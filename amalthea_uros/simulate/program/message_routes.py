@@ -1,0 +1,146 @@
+"""The routes of chains that pass wires and executors that loop."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise, product
+
+from amalthea_uros.errors import UnknownError
+from amalthea_uros.executors.semantics.steps import relayed
+from amalthea_uros.perf.activities import Call
+from amalthea_uros.perf.events import Event, EventChain, RunnableChange, RunnableEvent
+from amalthea_uros.perf.executors import Executor, Handle
+from amalthea_uros.perf.network import Direction, Transmission
+from amalthea_uros.simulate.program.messages import MessageRecords
+from amalthea_uros.timing.context import TimingContext
+from amalthea_uros.timing.dataflow.chains import sequences, unfold
+from amalthea_uros.timing.dataflow.events import EventOccurrence, JobPhase
+from amalthea_uros.timing.dataflow.links import Link, LinkKind
+from amalthea_uros.timing.dataflow.routes import Route
+from amalthea_uros.timing.jobs.positions import ActivityPosition
+
+
+@dataclass(frozen=True, slots=True)
+class MessageRoutes:
+    """Finds the routes of chains over messages."""
+
+    messages: MessageRecords
+
+    @property
+    def context(self) -> TimingContext:
+        """The timing context of the system."""
+        return self.messages.resources.context
+
+    def of(self, chain: EventChain) -> dict[tuple[str, ...], list[Route]]:
+        """The routes of a chain, by the events of its paths.
+
+        Raises
+        ------
+        UnknownError : nothing takes the effect from an event to the next, or an event has no place of its own.
+        """
+        events = self.context.system.events_by_name
+        paths = sequences(unfold(chain, self.context.system)[0])
+        return {tuple(path): [self._route(self._with_takers([events[name] for name in path]))] for path in paths}
+
+    def _with_takers(self, events: Sequence[Event]) -> list[Event]:
+        """The events, and those of callbacks that only take a message for a task of its own."""
+        completed: list[Event] = []
+        for event in events:
+            before = self._transmission(completed[-1]) if completed else None
+            ready = None if before is None else self.messages.handle_of(before)
+            if ready is not None and all(each.process.name != ready[0].task for each in self._occurrences(event)):
+                runnable = ready[1].runnable
+                change, task = RunnableChange.TERMINATE, ready[0].task
+                if self._transmission(event) is None:
+                    completed.append(RunnableEvent(name=runnable, runnable=runnable, change=change, process=task))
+            completed.append(event)
+        return completed
+
+    def _occurrences(self, event: Event) -> list[EventOccurrence]:
+        return self.context.dataflow.events.of(event)
+
+    def _transmission(self, event: Event) -> Transmission | None:
+        """The message of which an event is, if it is one."""
+        names = {each.process.name for each in self._occurrences(event)}
+        return self.context.system.transmissions.get(names.pop()) if len(names) == 1 else None
+
+    def _route(self, events: Sequence[Event]) -> Route:
+        choices = [self._occurrences(event) for event in events]
+        candidates = [
+            (occurrences, [self._link(first, then) for first, then in pairwise(occurrences)])
+            for occurrences in product(*choices)
+        ]
+        whole = [(occurrences, links) for occurrences, links in candidates if None not in links]
+        if len(whole) > 1:
+            raise UnknownError("its events can occur in several places; set the process of each event")
+        if not whole:
+            gap = candidates[0][1].index(None)
+            raise UnknownError(f"nothing takes the effect from {events[gap].name!r} to {events[gap + 1].name!r}")
+        occurrences, links = whole[0]
+        return Route(tuple(event.name for event in events), occurrences, tuple(link for link in links if link is not None))
+
+    def _link(self, first: EventOccurrence, then: EventOccurrence) -> Link | None:
+        """What takes the effect from one event to the next; None if nothing does."""
+        system = self.context.system
+        before, after = (system.transmissions.get(each.process.name) for each in (first, then))
+        if before is not None and first.process is not then.process:
+            if after is not None:
+                return Link(LinkKind.RELAY, (before.topic or "",)) if before in relayed(after, system) else None
+            return self._taken(before, then) if before.direction is Direction.TO_CONTROLLER else None
+        return next((link for link in self._links(first, then) if link.kind is not LinkKind.MESSAGE), None)
+
+    def _links(self, first: EventOccurrence, then: EventOccurrence) -> Iterator[Link]:
+        """What the data flow of processes says, of which calls of other handles are no part."""
+        one, other = self._handle_around(first), self._handle_around(then)
+        if one is not None and one == other:
+            # A callback is called once in an iteration.
+            yield Link(LinkKind.JOB)
+            return
+        # Data that a callback leaves for another one can be read in the same iteration, or in a later one.
+        is_same = first.process.name == then.process.name
+        flow = self.context.dataflow
+        for link in flow.data(first, then) if is_same else flow.links(first, then):
+            if self._is_within(link.write, first) and self._is_within(link.read, then):
+                yield link
+
+    def _is_within(self, position: ActivityPosition | None, occurrence: EventOccurrence) -> bool:
+        handle = self._handle_around(occurrence)
+        return handle is None or position is None or self._around(position) == handle
+
+    def _taken(self, transmission: Transmission, then: EventOccurrence) -> Link | None:
+        """How an executor takes a message."""
+        ready = self.messages.handle_of(transmission)
+        if ready is None or ready[0].task != then.process.name or self._handle_around(then) != ready:
+            return None
+        first = min((each for each in self._calls(ready[0]) if self._around(each) == ready), key=lambda each: each.number)
+        return Link(LinkKind.QUEUE, (transmission.topic or "",), read=first)
+
+    def _handle_around(self, occurrence: EventOccurrence) -> tuple[Executor, Handle] | None:
+        """The executor and the handle of the callback in which an event occurs."""
+        executor = self.context.system.executor_of_task.get(occurrence.process.name)
+        if executor is None:
+            return None
+        handle = None if occurrence.position is None else self._around(occurrence.position)
+        if handle is None:
+            phase = "iteration" if occurrence.when is not JobPhase.BEFORE else "begin of an iteration"
+            raise UnknownError(f"an event is one of a whole {phase} of {executor.name!r}; name a callback or a topic")
+        return handle
+
+    def _around(self, position: ActivityPosition) -> tuple[Executor, Handle] | None:
+        executor = self.context.system.executor_of_task.get(position.process.name)
+        if executor is None:
+            return None
+        names = {name: handle for handle in executor.handles for name in (handle.take, handle.runnable) if name is not None}
+        around = [
+            names[each.activity.runnable]
+            for each in self._calls(executor)
+            if each.number <= position.number <= each.last
+            and isinstance(each.activity, Call)
+            and each.activity.runnable in names
+        ]
+        return (executor, around[0]) if around else None
+
+    def _calls(self, executor: Executor) -> list[ActivityPosition]:
+        positions = self.context.dataflow.events.positions(executor.task)
+        return [each for each in positions if isinstance(each.activity, Call)]

@@ -1,0 +1,332 @@
+"""Messages in memory: on wires and on the delay lines between these, the agent and the controller, and where they wait to be read."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+from amalthea_uros.executors.semantics.readiness import messages
+from amalthea_uros.executors.semantics.steps import relayed
+from amalthea_uros.executors.semantics.suspension import parts
+from amalthea_uros.perf.activities import Trigger, walk
+from amalthea_uros.perf.distributions import Boundaries, Uniform
+from amalthea_uros.perf.executors import Executor, Handle, HandleKind
+from amalthea_uros.perf.network import Direction, Purpose, Span, Transmission
+from amalthea_uros.perf.stimuli import InterProcess, Periodic, Stimulus
+from amalthea_uros.perf.system import System
+from amalthea_uros.simulate.arrivals import StimulusOccurrences, occurrences
+from amalthea_uros.simulate.kernel import layout
+from amalthea_uros.simulate.options import SimulationMode
+from amalthea_uros.simulate.program.image import Image, Operation
+from amalthea_uros.simulate.program.resources import Resources
+from amalthea_uros.simulate.sampling.streams import durations
+from amalthea_uros.simulate.sampling.words import RandomSource
+from amalthea_uros.units import Time, time_text
+
+#: Assumptions.
+_DELAYS = "times in the agent, in switches and in drivers are uniform between their limits, and keep the order of messages"
+_AT_ONCE = Span(most=0)
+
+
+@dataclass(slots=True)
+class MessageRecords:
+    """The records of what messages pass.
+
+    Attributes
+    ----------
+    transmissions : by name, those that are followed: not foreign frames
+    inboxes : where messages wait to be read, by executor; those of a session have one together
+    handles : by executor and handle
+    sent : the transmission that a stimulus stands for, if something here sends it
+    brought : by stimulus, the line on which each occurrence brings a message, and what occurs
+    arrivals : of messages that come over no wire
+    alarms : what occurs at planned times
+    acknowledging_lines : by the name of the message with which the agent acknowledges
+    """
+
+    resources: Resources
+    transmissions: dict[str, int] = field(default_factory=dict)
+    inboxes: dict[str, int] = field(default_factory=dict)
+    handles: dict[tuple[str, str], int] = field(default_factory=dict)
+    sent: dict[str, Transmission] = field(default_factory=dict)
+    brought: dict[str, tuple[int, Stimulus]] = field(default_factory=dict)
+    arrivals: list[tuple[int, StimulusOccurrences]] = field(default_factory=list)
+    alarms: list[int] = field(default_factory=list)
+    acknowledging_lines: dict[str, int] = field(default_factory=dict)
+    _receivers: dict[str, bool] | None = None
+    _carried: int = 0
+    _stamps: dict[tuple[int, int], list[int]] = field(default_factory=dict)
+
+    @property
+    def system(self) -> System:
+        """The system."""
+        return self.resources.context.system
+
+    @property
+    def image(self) -> Image:
+        """The memory."""
+        return self.resources.image
+
+    # Places.
+
+    def place(self) -> None:
+        """Place the records; they are filled when all have a place."""
+        sessions: dict[str | None, int] = {}
+        for executor in self.system.executors:
+            slots = executor.waiting.slots
+            inbox = self.image.record(layout.INBOX_SIZE, {layout.SLOTS: layout.NEVER if slots is None else slots})
+            # Who receives nothing reads nothing.
+            self.inboxes[executor.name] = sessions.setdefault(executor.session, inbox) if messages(executor) else inbox
+            for handle in executor.handles:
+                self.handles[executor.name, handle.name] = self._handle(executor, handle)
+        for transmission in self.system.transmissions.values():
+            if transmission.purpose is not Purpose.FOREIGN and transmission.name in self.resources.processes:
+                self.transmissions[transmission.name] = self.image.record(layout.TRANSMISSION_SIZE)
+        for name in self.transmissions:
+            self._fill(self.system.transmissions[name])
+
+    def _handle(self, executor: Executor, handle: Handle) -> int:
+        kind = {HandleKind.TIMER: layout.TIMER, HandleKind.GUARD_CONDITION: layout.FLAG}.get(handle.kind, layout.RECEIVER)
+        fields = {
+            layout.HANDLE_KIND: kind,
+            layout.DEPTH: layout.NEVER if handle.depth is None else handle.depth,
+            layout.OVERWRITES: int(handle.overwrites),
+            layout.IS_ALWAYS_CALLED: int(handle.always),
+            layout.RELEASED: -1,
+        }
+        if kind == layout.TIMER and handle.interval is not None:
+            fields[layout.TIMER_PERIOD] = self.resources.time(handle.interval)
+            fields[layout.NEXT_CALL] = self.resources.time(self._phase(handle, handle.interval, first=handle.interval))
+        return self.image.record(layout.HANDLE_SIZE, fields)
+
+    def _phase(self, handle: Handle, interval: Time, first: Time) -> Time:
+        """The first time of something with an interval: as stated, or at random; `first` if nothing is random."""
+        if handle.phase is not None:
+            return handle.phase
+        self.resources.assume_phase()
+        is_random = self.resources.options.mode is SimulationMode.SAMPLED
+        return self.resources.random_phase(f"handle {handle.name}") * interval >> 64 if is_random else first
+
+    # Transmissions.
+
+    def _fill(self, transmission: Transmission) -> None:
+        system, stimulus = self.system, self.system.processes[transmission.name].stimuli[0]
+        record = self.transmissions[transmission.name]
+        fields = {layout.WIRE_STIMULUS: self.resources.stimuli[stimulus]}
+        if transmission.direction is Direction.TO_CONTROLLER:
+            fields |= self._receiving(transmission)
+        else:
+            wire = next(each for each in system.network.wires if each.name == transmission.wire)
+            fields[layout.HOLDS_WRITER] = int(wire.keeps_sender)
+            if transmission.purpose is Purpose.DATA and transmission.agent.most is not None:
+                fields[layout.TO_HOST] = self._delay(f"to host {transmission.name}", transmission.link, transmission.agent)
+        self.image.put(record, fields)
+        if isinstance(system.stimuli_by_name[stimulus], InterProcess):
+            self.sent[stimulus] = transmission
+        else:
+            self._bring(transmission, system.stimuli_by_name[stimulus])
+        self._acknowledge(transmission)
+        lines = [
+            self._line(
+                relay, self._delay(f"relay {relay.name}", transmission.link, transmission.agent, relay.agent), enters=True
+            )
+            for relay in self._relays(transmission)
+        ]
+        first, end = self.image.items(lines)
+        self.image.put(record, {layout.RELAYS: first, layout.RELAYS_END: end})
+
+    def _relays(self, transmission: Transmission) -> list[Transmission]:
+        """The messages as which the agent sends a message back."""
+        every = (self.system.transmissions[name] for name in self.transmissions)
+        return [each for each in every if transmission in relayed(each, self.system)]
+
+    def _receiving(self, transmission: Transmission) -> dict[int, int]:
+        """The fields of a transmission that the controller receives."""
+        system = self.system
+        fields = {
+            layout.LINE_IN: self._line(
+                transmission, self._delay(f"receive {transmission.name}", transmission.link, transmission.driver)
+            )
+        }
+        received_by = self.receiving_stimulus(transmission)
+        if received_by is not None:
+            fields[layout.RECEIVED_BY] = self.resources.stimuli[received_by]
+        ready = self.handle_of(transmission)
+        reader = ready[0] if ready is not None else self._reader_of(transmission)
+        if reader is not None and reader.task in self.resources.processes:
+            fields[layout.READ_FROM] = self.inboxes[reader.name]
+        if ready is not None:
+            fields[layout.FOR_HANDLE] = self.handles[ready[0].name, ready[1].name]
+        reply = next((each for each in system.transmissions.values() if each.acknowledges == transmission.name), None)
+        if (
+            reply is not None
+            and reply.direction is Direction.TO_AGENT
+            and reply.name in self.transmissions
+            and reader is not None
+        ):
+            fields |= {layout.REPLY_WITH: self.transmissions[reply.name], layout.REPLIES: parts(reply, system)}
+        return fields
+
+    def _reader_of(self, transmission: Transmission) -> Executor | None:
+        """The executor that reads what no handle takes: an acknowledgement is read by whoever waits for it."""
+        for executor in self.system.executors:
+            sent = {each.transmission for handle in executor.handles for each in handle.publications}
+            if transmission.acknowledges in sent:
+                return executor
+        return next(iter(self.system.executors), None)
+
+    def receiving_stimulus(self, transmission: Transmission) -> str | None:
+        """The stimulus of the first process that a message passes: that which the end of its last frame triggers; None for none."""
+        if transmission.direction is not Direction.TO_CONTROLLER:
+            return None
+        activated = {name for process in self.resources.processes for name in self.system.processes[process].stimuli}
+        fired = [
+            each.stimulus for each in walk(self.system.processes[transmission.name].activities) if isinstance(each, Trigger)
+        ]
+        return fired[-1] if fired and fired[-1] in activated and fired[-1] not in self.sent else None
+
+    @property
+    def receivers(self) -> Mapping[str, bool]:
+        """The processes that messages pass in the controller, and whether each is the last one."""
+        if self._receivers is None:
+            self._receivers = {}
+            for name in self.transmissions:
+                for process, is_last in self._passed(self.system.transmissions[name]):
+                    self._receivers[process] = is_last
+        return self._receivers
+
+    def _passed(self, transmission: Transmission) -> Iterator[tuple[str, bool]]:
+        stimulus = self.receiving_stimulus(transmission)
+        if stimulus is None:
+            return
+        first = next(name for name in self.resources.processes if stimulus in self.system.processes[name].stimuli)
+        passed = transmission.processes if first in transmission.processes[:1] else (first,)
+        yield from ((process, process == passed[-1]) for process in passed)
+
+    def handle_of(self, transmission: Transmission) -> tuple[Executor, Handle] | None:
+        """The executor and the handle that a message is for."""
+        for executor in self.system.executors:
+            for handle in executor.handles:
+                if handle.transmission == transmission.name:
+                    return executor, handle
+        return None
+
+    def _acknowledge(self, transmission: Transmission) -> None:
+        """If a message acknowledges one of the controller: the line on which the agent puts it."""
+        if transmission.acknowledges is None or transmission.direction is not Direction.TO_CONTROLLER:
+            return
+        sent = self.system.transmissions.get(transmission.acknowledges)
+        if sent is not None:
+            delay = self._delay(f"acknowledge {transmission.name}", sent.link, transmission.agent)
+            self.acknowledging_lines[transmission.name] = self._line(transmission, delay, enters=True)
+
+    def _bring(self, transmission: Transmission, stimulus: Stimulus) -> None:
+        """Have each occurrence of a stimulus bring a message."""
+        ready = self.handle_of(transmission)
+        if transmission.purpose is Purpose.DATA and transmission.direction is Direction.TO_CONTROLLER and ready is not None:
+            stimulus = self._published(stimulus.name, ready[1]) or stimulus
+            line = self._line(transmission, self._delay(f"from host {transmission.name}", transmission.agent), enters=True)
+        else:
+            line = self._line(transmission, self._delay("", _AT_ONCE), enters=True)
+        self.brought[stimulus.name] = (line, stimulus)
+
+    def _published(self, name: str, handle: Handle) -> Stimulus | None:
+        """When the host publishes what a handle receives; None if that is not known."""
+        if not handle.interval:
+            return None
+        jitter = Uniform(lower=0, upper=handle.jitter) if handle.jitter else None
+        return Periodic(name=name, period=handle.interval, offset=self._phase(handle, handle.interval, first=0), jitter=jitter)
+
+    def bring_without_wire(self, executor: Executor, handle: Handle) -> None:
+        """Have messages of a handle arrive that come over no wire that is described."""
+        stimulus = self._published(f"messages for {handle.name}", handle)
+        assert stimulus is not None
+        fields = {layout.READ_FROM: self.inboxes[executor.name], layout.FOR_HANDLE: self.handles[executor.name, handle.name]}
+        transmission = self.image.record(layout.TRANSMISSION_SIZE, fields)
+        line = self._line_of(transmission, self._delay("", _AT_ONCE), enters=False)
+        record = self.image.record(layout.STIMULUS_SIZE, {layout.BRINGS: line})
+        source = RandomSource(self.resources.options.seed, f"stimulus {stimulus.name}")
+        times = occurrences(stimulus, self.system, self.resources.options.mode, source, self.resources.units)
+        self.arrivals.append((record, times))
+
+    # Lines.
+
+    def _delay(self, place: str, *spans: Span) -> int:
+        """The stream of a delay that consists of several; of one whose maximum is unknown, only the minimum is known."""
+        least = sum(span.least for span in spans)
+        most = sum(span.least if span.most is None else span.most for span in spans)
+        if most > least:
+            self.resources.context.notes.assume(_DELAYS)
+        source = RandomSource(self.resources.options.seed, f"delay {place}")
+        times = Boundaries(lower=least, upper=most)
+        return self.resources.stream(durations(times, Fraction(self.resources.units), self.resources.options.mode, source))
+
+    def _line(self, transmission: Transmission, delay: int, *, enters: bool = False) -> int:
+        return self._line_of(self.transmissions[transmission.name], delay, enters=enters)
+
+    def _line_of(self, transmission: int, delay: int, *, enters: bool) -> int:
+        line = self.image.record(
+            layout.LINE_SIZE, {layout.DELAY: delay, layout.ENTERS_WIRE: int(enters), layout.CREATES: transmission}
+        )
+        self.image.put(line, {layout.ITS_ALARM: self.alarm(layout.DELAY_LINE, line)})
+        return line
+
+    def alarm(self, kind: int, owner: int, at: int = layout.NEVER) -> int:
+        """The record of something that occurs at planned times."""
+        fields = {layout.ALARM_AT: at, layout.ALARM_KIND: kind, layout.ALARM_OF: owner}
+        self.alarms.append(self.image.record(layout.ALARM_SIZE, fields))
+        return self.alarms[-1]
+
+    # What messages carry, and what processes do with them.
+
+    def carry(self, transmission: Transmission, source: int, target: Transmission | tuple[str, str], place: int) -> None:
+        """Have a message carry a value from a place in memory to another one.
+
+        Parameters
+        ----------
+        target : the message as which the agent sends it back, or the executor and the handle that take it
+        """
+        index, self._carried = self._carried, self._carried + 1
+        self._stamp(self.transmissions[transmission.name], layout.STAMPS_FROM, source, index)
+        if isinstance(target, Transmission):
+            self._stamp(self.transmissions[target.name], layout.STAMPS_TO, place, index)
+        else:
+            self._stamp(self.handles[target], layout.HANDLE_STAMPS, place, index)
+
+    def _stamp(self, record: int, first: int, place: int, index: int) -> None:
+        self._stamps.setdefault((record, first), []).extend((place, index))
+
+    def is_about_message(self, process: str) -> bool:
+        """Whether the jobs of a process are about a message each."""
+        return process in self.transmissions or process in self.receivers
+
+    def last_operations(self, process: str) -> Sequence[Operation]:
+        """The operations of a process on its message at the very end of a job."""
+        if process in self.transmissions:
+            return [(layout.PASS_ON, self.transmissions[process], 0)]
+        return [(layout.HAVE_READ, 0, 0)] if self.receivers.get(process) else []
+
+    def first_operations_of_end(self, process: str) -> Sequence[Operation]:
+        """The operations of a process on its message at the end of a job, before those of chains."""
+        record = self.transmissions.get(process, 0)
+        return [(layout.DEPART, record, 0)] if record and self.image.words[record + layout.TO_HOST] else []
+
+    def head(self) -> dict[int, int]:
+        """The head of the memory; fills the lists of what is carried."""
+        for (record, field_), pairs in self._stamps.items():
+            first, end = self.image.items(pairs)
+            self.image.put(record, {field_: first, field_ + 1: end})
+        first, end = self.image.items(self.alarms)
+        return {layout.CARRIED_VALUES: self._carried, layout.ALARMS: first, layout.ALARMS_END: end}
+
+
+def unknown_wait(publication_topic: str, timeout: Time | None) -> str:
+    """Why it is not known how long a publication waits."""
+    until = "" if timeout is None else f", up to {time_text(timeout)}"
+    return f"it is not stated how long the publication of {publication_topic!r} waits for its acknowledgement{until}"
+
+
+def acknowledgements(transmission: str, system: System) -> Iterator[Transmission]:
+    """The messages that acknowledge one."""
+    yield from (each for each in system.transmissions.values() if each.acknowledges == transmission)

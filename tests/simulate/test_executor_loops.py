@@ -1,0 +1,306 @@
+"""Executors that loop are simulated call by call as players execute them that share no code with the simulation."""
+
+import random
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import test_whole_way
+from effort import IS_THOROUGH
+from looping_executors import SPIN, US, WaitBehaviour, guard, looping, message, timer, waiting_publication
+from played_executors import Spans, play
+from random_executors import application
+from support import ROOT
+from whole_player import Player, S
+
+from amalthea_uros import simulate
+from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.executors.semantics.steps import with_steps
+from amalthea_uros.perf.executors import TriggerCondition, TriggerKind
+from amalthea_uros.simulate.options import Options, SimulationMode
+from amalthea_uros.simulate.program.build import build_program
+from amalthea_uros.simulate.runs.execution import SimulationRun
+from amalthea_uros.simulate.runs.run import simulate_system
+from amalthea_uros.timing.activation.releases import with_first_arrivals
+from amalthea_uros.timing.basics.quantities import ChainQuantity
+from amalthea_uros.timing.context import TimingContext
+from amalthea_uros.units import MILLISECOND as MS
+from amalthea_uros.units import SECOND
+from amalthea_uros.uros.described import describe_content
+
+BLOCK = 15
+SEEDS = range(3000 if IS_THOROUGH else 30)
+#: Analyses take longer.
+BOUNDED = range(500 if IS_THOROUGH else 8)
+
+
+class Least:
+    """Chooses the least of everything, and nothing that may happen."""
+
+    def choice(self, options):
+        return options[0] if isinstance(options[0], str) else min(options)
+
+    def randint(self, low, high):
+        return low
+
+    def randrange(self, *_):
+        return 0
+
+    def uniform(self, low, high):
+        return low
+
+    def random(self):
+        return 0.9
+
+
+def calls(system, until):
+    """The calls of each handle in a run in which everything takes its least time: the response times in picoseconds."""
+    options = Options(duration=until, mode=SimulationMode.BEST)
+    context = TimingContext.of_scheduling(with_first_arrivals(with_steps(system), {}), options.settings)
+    program, rows = build_program(context, options), []
+    assert program.left_out == {}
+    run = SimulationRun(context, options, program)
+    run.driver.jobs = lambda chunk: rows.append(chunk.copy())
+    run.execute([])
+    jobs = np.concatenate(rows)
+    first = len(program.processes) + len(program.runnables)
+    return {
+        key: [(int(row[4]) - int(row[2])) // program.units for row in jobs[jobs[:, 0] == first + number]]
+        for number, key in enumerate(program.handles)
+    }
+
+
+def first_difference(simulated, played, tolerance=0):
+    """Where two lists of times differ; the last call can be cut off by the end. None if they do not."""
+    if abs(len(simulated) - len(played)) > 1:
+        return len(simulated), len(played)
+    pairs = zip(simulated, played, strict=False)
+    return next((pair for pair in pairs if abs(pair[0] - pair[1]) > tolerance), None)
+
+
+# Executors of all kinds: triggers, LET, sessions, guard conditions, sleeps in ticks, slots.
+
+
+def fixed(seed):
+    """A random application without publications, in which all phases are known and no two things occur at the same instant."""
+    chance = random.Random(seed)
+    app = application(chance)
+    executors = []
+    for executor in app.system.executors:
+        handles = [
+            # The player pays for taking what is not there, the model does not.
+            replace(each, publications=(), phase=chance.randrange(1, each.interval), take=None if each.always else each.take)
+            for each in executor.handles
+        ]
+        executors.append(replace(executor, handles=tuple(handles)))
+    return replace(app, system=replace(app.system, executors=tuple(executors)))
+
+
+@pytest.mark.parametrize("block", range(0, len(SEEDS), BLOCK))
+def test_every_call_is_that_of_a_player(block):
+    compared = 0
+    for seed in SEEDS[block : block + BLOCK]:
+        app = fixed(seed)
+        # The player passes over rounds that take no time.
+        if any(least == 0 for least, _ in app.spins.values()) or app.preempting:
+            continue
+        # It lets executors without a session take the messages of each other, and not notice it.
+        if len(app.system.executors) > 1 and app.system.executors[0].session is None:
+            continue
+        spans = Spans(costs=app.costs, spins=app.spins, sending={}, draw=lambda least, most: least)
+        simulated, until = calls(app.system, 300 * MS), 300 * MS
+        seen = play(app.system.executors, spans, until, random=Least(), priorities=app.priorities, start=0)
+        for one in seen:
+            for entity in one.entities:
+                responses = simulated[one.model.name, entity.handle.name]
+                assert first_difference(responses, entity.seen.responses) is None, (seed, one.model, entity.handle.name)
+                compared += len(responses)
+    assert compared, "nothing was called"
+
+
+# Whole applications: the host, the agent, wires, interrupts, acknowledgements, publications that wait.
+
+
+def on_wires(seed):
+    """A random description with known phases, and the plan of its player; None for what the two model with different detail."""
+    chance = random.Random(seed)
+    content, plan = test_whole_way.drawn(chance)
+    plan["begin"] = 0
+    for handle in plan["handles"]:
+        handle["phase"] = chance.randrange(1, handle["period"])
+    wire = content["middleware"]["transport"]
+    has_frames = plan["stages"] and plan["wire"] == "serial"  # each chunk has an interrupt, for the player each message
+    if plan["tick"] or plan["wire"] == "usb_cdc" or has_frames or wire.get("can_fd", {}).get("foreign"):
+        return None
+    if plan["wire"] == "serial":
+        # A bit takes a whole number of nanoseconds, in which the player counts.
+        plan["rate"] = wire["serial"]["baud_rate"] = 1_000_000
+    return content, plan
+
+
+def without_heartbeats(system):
+    """The system of the player, whose sessions are never silent for long."""
+    gone = {name for name in system.transmissions if name.startswith("heartbeat")}
+    network, software = system.network, system.software
+    return replace(
+        system,
+        network=replace(network, transmissions=tuple(each for each in network.transmissions if each.name not in gone)),
+        software=replace(software, tasks=tuple(task for task in software.tasks if task.name not in gone)),
+        mapping=replace(system.mapping, tasks=tuple(each for each in system.mapping.tasks if each.task not in gone)),
+    )
+
+
+def as_planned(system, plan):
+    phases = {handle["name"]: handle["phase"] * 1000 for handle in plan["handles"]}
+    (executor,) = system.executors
+    handles = tuple(replace(handle, phase=phases[handle.name]) for handle in executor.handles)
+    loop = replace(executor.loop, sleep=plan["sleep"] * 1000, sleep_early=0, pace=0)
+    return replace(without_heartbeats(system), executors=(replace(executor, loop=loop, handles=handles),))
+
+
+@pytest.mark.parametrize("block", range(0, len(SEEDS), BLOCK))
+def test_every_call_over_wires_is_that_of_a_player(block):
+    compared = 0
+    for seed in SEEDS[block : block + BLOCK]:
+        drawn = on_wires(seed)
+        if drawn is None:
+            continue
+        content, plan = drawn
+        system = describe_content(content).assembly.system
+        test_whole_way.prepared(content, plan)
+        plan["blocks"] = system.network.wires[0].keeps_sender
+        seen = Player(plan, Least()).play(S // 4)
+        for (_, handle), responses in calls(as_planned(system, plan), S // 4 * 1000).items():
+            played = [time * 1000 for time in seen.responses[handle]]
+            assert first_difference(responses, played, tolerance=30_000) is None, (seed, handle, content)
+            compared += len(responses)
+    assert compared > 20, "hardly anything was called"
+
+
+@pytest.mark.parametrize("block", range(0, len(BOUNDED), BLOCK))
+def test_nothing_that_is_observed_exceeds_a_bound(block):
+    for seed in BOUNDED[block : block + BLOCK]:
+        content, _ = test_whole_way.drawn(random.Random(seed))
+        system = describe_content(content).assembly.system
+        analysis, simulation = analyze_system(system), simulate_system(system, Options(duration=SECOND // 4, seed=seed))
+        for bounded, observed in zip(analysis.executors, simulation.executors, strict=True):
+            for handle in observed.handles:
+                bound, seen = bounded.handles[handle.name], handle.response_time
+                if seen is None:
+                    continue
+                assert seen.min >= bound.response.best - 20, (seed, handle.name)
+                assert bound.response.worst is None or seen.max <= bound.response.worst + 20, (seed, handle.name)
+                assert not handle.lost or bound.lost is not None or bound.response.worst is None, (seed, handle.name)
+        for chain in simulation.chains:
+            reaction, bound = chain.quantities.get(ChainQuantity.REDUCED_REACTION_TIME), analysis.chains[chain.name]
+            if reaction is not None and bound.worst is not None:
+                assert bound.best - 20 <= reaction.min, (seed, chain.name)
+                assert reaction.max <= bound.worst + 20, (seed, chain.name)
+
+
+# Single rules of ros2/rclc and micro-ROS/rmw_microxrcedds, by hand; the ECU has 1 MHz.
+
+
+def simulated(*handles, duration=SECOND, **parts):
+    (executor,) = simulate_system(looping(*handles, **parts), Options(duration=duration, mode=SimulationMode.BEST)).executors
+    return executor
+
+
+def test_a_timer_of_a_bare_loop_is_polled_for_in_the_last_millisecond():
+    """The wait is cut to whole milliseconds, so that rounds of 100 us follow each other until the timer is due."""
+    control = simulated(timer("control", 10_000, 500), loop=SPIN, spin=100, waiting=WaitBehaviour(polls_without_messages=False))
+    lateness = control.handles["control"].lateness
+    assert 0 <= lateness.min <= lateness.max < 200 * US
+
+
+def test_one_message_is_taken_in_each_iteration():
+    """Messages every 20 ms, iterations every 100 ms and more: the others wait, longer and longer."""
+    executor = simulated(message("cmd", 20_000, 100, depth=100), spin=10)
+    handle = executor.handles["cmd"]
+    assert handle.calls == executor.iterations
+    assert handle.response_time.max > 700 * MS
+
+
+def test_an_executor_whose_publications_wait_for_an_unknown_time_is_left_out():
+    handle = timer("control", 100_000, 10, publications=(waiting_publication(timeout=50 * MS),))
+    (left_out,) = simulate_system(looping(handle, loop=SPIN, spin=10), Options(duration=SECOND)).left_out
+    assert "how long the publication of 'odom' waits" in left_out.reason
+
+
+@pytest.mark.parametrize(
+    ("kind", "called"),
+    [(TriggerKind.ANY, (100, 10)), (TriggerKind.ALL, (10, 10)), (TriggerKind.ALWAYS, (100, 10))],
+)
+def test_a_trigger_condition_keeps_calls_back(kind, called):
+    """Of a message every 10 ms and a timer every 100 ms, the trigger `all` calls both ten times in a second."""
+    executor = simulated(
+        message("cmd", 10_000, 10, phase=MS, depth=1),
+        timer("control", 100_000, 10, phase=50 * MS),
+        loop=SPIN,
+        spin=100,
+        trigger=TriggerCondition(kind=kind),
+    )
+    assert tuple(handle.calls for handle in executor.handles) == pytest.approx(called, abs=1)
+
+
+def test_a_guard_condition_does_not_end_the_wait():
+    """The wait of 100 ms ends for the message every 100 ms; the guard condition is seen then."""
+    executor = simulated(
+        guard("stop", 30_000, 10, phase=MS), message("cmd", 100_000, 10, phase=50 * MS, depth=1), loop=SPIN, spin=10
+    )
+    stop = executor.handles["stop"]
+    assert stop.calls == pytest.approx(10, abs=1)
+    assert stop.lost > 15
+    assert stop.response_time.max > 50 * MS
+
+
+def test_the_round_trip_of_a_default_reliable_publisher(tmp_path):
+    """A message goes through agent, USB, an executor that publishes and waits, and back.
+
+    The mean is the sum of the means of its parts, in ms: from the host 0.65 and on USB 0.09 + 0.5, the executor 0.05, the callback with
+    its driver 1.3 + 0.29 + 0.25, on USB 0.25 + 0.5, to the host 0.65; and the minimum at least that of their minima.
+    """
+    path = tmp_path / "p.yaml"
+    path.write_text(ROUND_TRIP)
+    simulation = simulate(path, "5 s")
+    reaction = simulation.chains["rtt"].quantities[ChainQuantity.REDUCED_REACTION_TIME]
+    assert float(reaction.mean) / MS == pytest.approx(4.53, abs=0.15)
+    assert reaction.min > 2.101 * MS
+    (handle,) = simulation.executors["executor"].handles
+    assert (handle.calls, handle.lost) == (pytest.approx(500, abs=1), 0)
+
+
+ROUND_TRIP = """
+amuros: 1
+name: p
+hardware: {platform: rp2040, frequency: 150 MHz}
+middleware:
+  executor:
+    {name: executor, max_handles: 1, loop: {spin_some: 100 ms}, execution_time: {base: 30 us, per_message: 20 us}}
+  transport: {usb_cdc: {latency: {min: 0 ms, max: 1 ms}}}
+  agent: {to_controller: {min: 0.3 ms, max: 1 ms}, to_host: {min: 0.3 ms, max: 1 ms}, acknowledgement: {min: 0.3 ms, max: 2 ms}}
+application:
+  nodes:
+    - name: n
+      publishers: [{topic: v, message_size: 77 B, reliability: reliable}]
+      subscriptions:
+        - {name: cb, topic: r, message_size: 8 B, rate: 100 Hz, execution_time: {min: 1.2 ms, max: 1.4 ms}, publishes: [v]}
+chains: [{name: rtt, path: [/r, cb, /v]}]
+"""
+
+
+@pytest.mark.parametrize("sample", ["robot-xrce", "robot-zenoh", "esp32-serial", "two-controllers-drive"])
+def test_machine_code_executes_loops_alike(sample, monkeypatch):
+    from amalthea_uros.services.subject import open_system
+    from amalthea_uros.simulate.kernel import machine_code
+
+    pytest.importorskip("numba")
+    system, options = (
+        open_system([ROOT / "samples" / f"{sample}.yaml"]).system,
+        Options(duration=2 * SECOND, traced=(0, SECOND)),
+    )
+    results = []
+    for is_compiled in (False, True):
+        monkeypatch.setattr(machine_code, "is_worth_it", lambda *_, is_compiled=is_compiled: is_compiled)
+        results.append(simulate_system(system, options))
+    assert results[0] == results[1]
