@@ -304,3 +304,12 @@ def test_machine_code_executes_loops_alike(sample, monkeypatch):
         monkeypatch.setattr(machine_code, "is_worth_it", lambda *_, is_compiled=is_compiled: is_compiled)
         results.append(simulate_system(system, options))
     assert results[0] == results[1]
+
+
+@pytest.mark.parametrize(
+    "sample", ["robot-xrce", "robot-zenoh", "esp32-serial", "stm32-usb-cdc", "two-controllers-drive", "two-controllers-lift"]
+)
+def test_all_chains_of_the_samples_are_followed(sample):
+    simulation = simulate(ROOT / "samples" / f"{sample}.yaml", "500 ms")
+    assert {chain.name: chain.reason for chain in simulation.chains if chain.reason or not chain.observations} == {}
+    assert not simulation.left_out

@@ -98,7 +98,7 @@ class MessageRoutes:
             yield Link(LinkKind.JOB)
             return
         # Data that a callback leaves for another one can be read in the same iteration, or in a later one.
-        is_same = first.process.name == then.process.name
+        is_same = one is not None and first.process.name == then.process.name
         flow = self.context.dataflow
         for link in flow.data(first, then) if is_same else flow.links(first, then):
             if self._is_within(link.write, first) and self._is_within(link.read, then):
