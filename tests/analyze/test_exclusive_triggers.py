@@ -8,7 +8,7 @@ from itertools import product
 
 import pytest
 from effort import examples
-from hand_made_systems import one_core, ticks
+from hand_made_systems import Proc, one_core, system, ticks
 from hypothesis import given
 from hypothesis import strategies as st
 from support import SHARED, analysis_of
@@ -16,6 +16,7 @@ from support import SHARED, analysis_of
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.perf.activities import Case, Chance, Group, ProbabilitySwitch, Switch, Trigger
+from amalthea_uros.perf.os import Policy, Scheduler
 from amalthea_uros.perf.stimuli import Counter, InterProcess
 from amalthea_uros.units import MICROSECOND as US
 
@@ -158,3 +159,19 @@ def test_the_load_of_random_paths(activities):
     if len(used) == len(DEMANDS):
         assert (found[0], found[2]) == (min(every), max(every))
     assert found[3] <= max(every)
+
+
+def test_a_trigger_in_any_order_comes_at_any_time_of_its_job():
+    """A job of 3 us triggers at its end, the next one 5 us later at its start: 2 us apart, so that B of 3 us waits for 1 us."""
+    group = Group(ordered=False, activities=(ticks(3), Trigger(stimulus="b")))
+    found = system(
+        Proc("A", (group,), 5),
+        Proc("B", (ticks(3),), stimuli=("b",), scheduler="s1"),
+        schedulers=[
+            Scheduler(name="s0", policy=Policy.OSEK, cores=("c0",)),
+            Scheduler(name="s1", policy=Policy.OSEK, cores=("c1",)),
+        ],
+        triggers=("b",),
+    )
+    analysis = analyze_system(found)
+    assert analysis.processes["B"].response.worst >= 4 * US

@@ -23,12 +23,11 @@ from amalthea_uros.timing.dataflow.events import EventOccurrence, JobPhase
 from amalthea_uros.timing.dataflow.runnable_order import (
     OrderScope,
     called_runnable,
-    is_in_fixed_order,
     is_once_per_job,
     satisfies_order,
 )
 from amalthea_uros.timing.jobs.counters import is_always
-from amalthea_uros.timing.jobs.positions import ActivityPosition, can_be_skipped, ends_early
+from amalthea_uros.timing.jobs.positions import ActivityPosition, can_be_skipped, ends_early, is_in_fixed_order
 from amalthea_uros.units import Time
 
 

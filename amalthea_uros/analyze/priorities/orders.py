@@ -221,7 +221,7 @@ class PriorityOrders:
         """Whether other processes activate a process."""
         triggering: list[str] = []
 
-        def output(cause: Process, activations: Callable[[], EventModel]) -> EventModel:
+        def output(cause: Process, activations: Callable[[], EventModel], _has_fixed_place: bool) -> EventModel:
             triggering.append(cause.name)
             return activations()
 

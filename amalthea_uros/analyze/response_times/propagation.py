@@ -140,7 +140,7 @@ def _output(solution: Solution, responses: Mapping[str, Response]) -> Output:
     """The events caused by the jobs of processes."""
     context = solution.context
 
-    def output(process: Process, activations: Callable[[], EventModel]) -> EventModel:
+    def output(process: Process, activations: Callable[[], EventModel], has_fixed_place: bool) -> EventModel:
         if process.name in solution.reasons:
             raise UnknownError(f"it is triggered by {process.name!r}, which could not be analysed")
         events = activations()
@@ -153,7 +153,8 @@ def _output(solution: Solution, responses: Mapping[str, Response]) -> Output:
             return events
         if response.worst is None:
             raise UnknownError(f"it is triggered by {process.name!r}, which has no bounded response time")
-        return completions(events, response, solution.bcet(process.name))
+        # An event that a part of the job can follow or precede can occur at any time from its start to its end.
+        return completions(events, response, solution.bcet(process.name) if has_fixed_place else 0)
 
     return output
 

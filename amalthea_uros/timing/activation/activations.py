@@ -25,14 +25,15 @@ from amalthea_uros.timing.demand.job_paths import most_in_a_job
 from amalthea_uros.timing.event_models.models import Delayed, Downsampled, EventModel, Multiplied, aggregated, thinned
 from amalthea_uros.timing.event_models.stimuli import event_model_of
 from amalthea_uros.timing.jobs.counters import CounterFlaws, is_always
-from amalthea_uros.timing.jobs.positions import ActivityPosition
+from amalthea_uros.timing.jobs.positions import ActivityPosition, is_in_fixed_order
 from amalthea_uros.units import Time
 
-#: The event model of the completions of a process, given a function that computes that of its activations.
-Output: TypeAlias = Callable[[Process, Callable[[], EventModel]], EventModel]
+#: The event model of the completions of a process, given a function that computes that of its activations, and whether the demand of
+#: a job is always on the same side of the event.
+Output: TypeAlias = Callable[[Process, Callable[[], EventModel], bool], EventModel]
 
 
-def as_activated(_process: Process, activations: Callable[[], EventModel]) -> EventModel:
+def as_activated(_process: Process, activations: Callable[[], EventModel], _has_fixed_place: bool) -> EventModel:
     """The output of processes without execution time; its rate is right."""
     return activations()
 
@@ -72,6 +73,11 @@ class TriggeringActivity(NamedTuple):
         """Whether each job that reaches the activity triggers it once, and no counter decides which jobs do."""
         jobs = self.position.counter
         return self.counter is None and self.position.times == 1 and jobs is not None and is_always(jobs)
+
+    @property
+    def has_fixed_place(self) -> bool:
+        """Whether no unordered group around it lets parts of the job come before it or after it."""
+        return is_in_fixed_order(self.position)
 
 
 @dataclass(slots=True)
@@ -258,7 +264,8 @@ class Activations:
         times = cause.position.times
         if times is None:
             raise UnknownError(f"the maximum number of times that a job of {cause.process.name!r} triggers it is unknown")
-        found = _counted(output(cause.process, lambda: self._of_process(cause.process, output, above)), cause.position.counter)
+        completions = output(cause.process, lambda: self._of_process(cause.process, output, above), cause.has_fixed_place)
+        found = _counted(completions, cause.position.counter)
         return _counted(found if times == 1 else Multiplied(found, times), cause.counter)
 
 

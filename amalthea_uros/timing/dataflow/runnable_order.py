@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from amalthea_uros.errors import UnknownError
-from amalthea_uros.perf.activities import Call, Group, Trigger
+from amalthea_uros.perf.activities import Call, Trigger
 from amalthea_uros.perf.constraints import OrderConstraint, Ordering
 from amalthea_uros.perf.stimuli import InterProcess, Periodic
 from amalthea_uros.perf.system import System
@@ -140,12 +140,6 @@ def is_once_per_job(position: ActivityPosition, system: System) -> bool:
 def has_counted_effect(position: ActivityPosition) -> bool:
     """Whether jobs reach a trigger that has no effect in each of them."""
     return isinstance(position.activity, Trigger) and position.activity.counter is not None
-
-
-def is_in_fixed_order(position: ActivityPosition) -> bool:
-    """Whether no group around an activity executes its parts in any order."""
-    around = (activities[index] for activities, index in position.outer[:-1])
-    return all(each.ordered for each in around if isinstance(each, Group))
 
 
 def _source(process: str, system: System, events: EventLocator, above: frozenset[str] = frozenset()) -> object:

@@ -64,6 +64,12 @@ class ActivityPosition(NamedTuple):
     conditions: tuple[Condition, ...] = ()
 
 
+def is_in_fixed_order(position: ActivityPosition) -> bool:
+    """Whether no group around an activity executes its parts in any order."""
+    around = (activities[index] for activities, index in position.outer[:-1])
+    return all(each.ordered for each in around if isinstance(each, Group))
+
+
 def positions(process: Process, system: System, sites: CallSites) -> list[ActivityPosition]:
     """All activities of the jobs of a process, in order; a call is followed by the activities of its runnable.
 
