@@ -166,7 +166,9 @@ def _sent(system: System) -> Iterator[Transmission]:
         each.transmission for executor in system.executors for handle in executor.handles for each in handle.publications
     }
     for each in system.transmissions.values():
-        if each.purpose is Purpose.ACKNOWLEDGEMENT or each.name in published or relayed(each, system):
+        # Only an executor that loops acknowledges what it reads when it reads it.
+        is_reply = each.purpose is Purpose.ACKNOWLEDGEMENT and (system.executors or each.direction is Direction.TO_CONTROLLER)
+        if is_reply or each.name in published or relayed(each, system):
             yield each
 
 
