@@ -108,6 +108,7 @@ BOXES = (
     "document.querySelector('svg[data-zoom]').querySelectorAll('[data-plot] rect'),"
     " (box) => [+box.getAttribute('x'), +box.getAttribute('width')]).flat())));"
 )
+LABELS = "return Array.from(document.querySelectorAll('svg > text, g[data-axis] text'), (label) => label.textContent);"
 WHEEL = (
     "const box = arguments[0].getBoundingClientRect();"
     "arguments[0].dispatchEvent(new WheelEvent('wheel', {deltaY: -120, ctrlKey: true, cancelable: true,"
@@ -135,8 +136,9 @@ def test_zoom_keeps_the_middle_and_all_names(browser, tmp_path):
     picture = element(browser, "svg[data-zoom]")
 
     def shown():
-        labels = browser.find_elements("css selector", "svg > text, g[data-axis] text")
-        return browser.execute_async_script(BOXES), [label.get_attribute("textContent") for label in labels]
+        boxes = browser.execute_async_script(BOXES)
+        # In one script, as each frame makes new labels.
+        return boxes, browser.execute_script(LABELS)
 
     boxes, labels = shown()
     picture.send_keys("+")
