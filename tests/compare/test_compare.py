@@ -374,6 +374,15 @@ def test_statistics_alone_are_enough():
     assert not found.distributions
 
 
+def test_several_traces_are_one_measurement(tmp_path):
+    traces = [tmp_path / "1.btf", tmp_path / "2.btf"]
+    for trace in traces:
+        simulate(APP, "50 ms", trace_paths=[trace])
+    found = compare(APP, traces)
+    assert found.holds
+    assert only(replace(found, rows=found.find("Control_Function", "response_time")), "mean").samples == 100
+
+
 def test_changes_are_made_first():
     measured = control(67)
     found = compare(APP, measured, changes={"Control_Function.execution_time": "14 us"})
