@@ -40,7 +40,7 @@ LINES = {
     "platforms": 0,
     "report": 7881,
     "services": 1955,
-    "simulate": 6979,
+    "simulate": 7000,
     "source": 1887,
     "spec": 1837,
     "timing": 5086,

@@ -313,3 +313,11 @@ def test_all_chains_of_the_samples_are_followed(sample):
     simulation = simulate(ROOT / "samples" / f"{sample}.yaml", "500 ms")
     assert {chain.name: chain.reason for chain in simulation.chains if chain.reason or not chain.observations} == {}
     assert not simulation.left_out
+
+
+def test_an_agent_of_which_nothing_is_stated_leaves_the_executor_out(tmp_path):
+    path = tmp_path / "p.yaml"
+    path.write_text("\n".join(line for line in ROUND_TRIP.splitlines() if not line.startswith("  agent")))
+    simulation = simulate(path, "100 ms")
+    assert "how long the publication of 'v' waits" in simulation.left_out["executor"].reason
+    assert simulation.chains["rtt"].reason

@@ -155,7 +155,7 @@ def _publishing(runnable: Runnable, system: System) -> Runnable:
         return runnable
     triggered = {each.stimulus for each in runnable.activities if isinstance(each, Trigger)}
     names = (each.transmission for each in handle.publications if each.transmission in system.transmissions)
-    stimuli = [system.processes[name].stimuli[0] for name in names if name is not None]
+    stimuli = [stimulus for name in names if name is not None for stimulus in system.processes[name].stimuli[:1]]
     missing = [Trigger(stimulus=each) for each in dict.fromkeys(stimuli) if each not in triggered]
     return replace(runnable, activities=(*runnable.activities, *missing))
 

@@ -88,6 +88,8 @@ class ChainCompiler:
         for occurrence in route.occurrences:
             if occurrence.process.name not in self.resources.processes:
                 raise UnknownError(f"it passes {occurrence.process.name!r}, which is not simulated")
+            if not occurrence.process.stimuli and occurrence.process.name in self.resources.context.system.transmissions:
+                raise UnknownError(f"it is not specified when {occurrence.process.name!r} is sent")
 
     def _route(self, chain: EventChain, text: str, found: Route) -> None:
         image = self.resources.image

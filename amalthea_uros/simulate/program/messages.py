@@ -81,7 +81,8 @@ class MessageRecords:
             for handle in executor.handles:
                 self.handles[executor.name, handle.name] = self._handle(executor, handle)
         for transmission in self.system.transmissions.values():
-            if transmission.purpose is not Purpose.FOREIGN and transmission.name in self.resources.processes:
+            is_followed = transmission.purpose is not Purpose.FOREIGN and transmission.name in self.resources.processes
+            if is_followed and self.system.processes[transmission.name].stimuli:
                 self.transmissions[transmission.name] = self.image.record(layout.TRANSMISSION_SIZE)
         for name in self.transmissions:
             self._fill(self.system.transmissions[name])
@@ -231,16 +232,25 @@ class MessageRecords:
             line = self._line(transmission, self._delay("", _AT_ONCE), enters=True)
         self.brought[stimulus.name] = (line, stimulus)
 
-    def _published(self, name: str, handle: Handle) -> Stimulus | None:
-        """When the host publishes what a handle receives; None if that is not known."""
+    def _published(self, name: str, handle: Handle, others: Sequence[Handle] = ()) -> Stimulus | None:
+        """When the host publishes what a handle receives; None if that is not known.
+
+        Parameters
+        ----------
+        others : handles of the same callback, which receive in turn, itself included
+        """
         if not handle.interval:
             return None
+        turns = list(others) or [handle]
         jitter = Uniform(lower=0, upper=handle.jitter) if handle.jitter else None
-        return Periodic(name=name, period=handle.interval, offset=self._phase(handle, handle.interval, first=0), jitter=jitter)
+        offset = self._phase(turns[0], handle.interval, first=0) + turns.index(handle) * handle.interval
+        return Periodic(name=name, period=len(turns) * handle.interval, offset=offset, jitter=jitter)
 
     def bring_without_wire(self, executor: Executor, handle: Handle) -> None:
         """Have messages of a handle arrive that come over no wire that is described."""
-        stimulus = self._published(f"messages for {handle.name}", handle)
+        # The rate is that of the requests of all services of a callback.
+        alike = [each for each in executor.handles if each.runnable == handle.runnable]
+        stimulus = self._published(f"messages for {handle.name}", handle, alike)
         assert stimulus is not None
         fields = {layout.READ_FROM: self.inboxes[executor.name], layout.FOR_HANDLE: self.handles[executor.name, handle.name]}
         transmission = self.image.record(layout.TRANSMISSION_SIZE, fields)
