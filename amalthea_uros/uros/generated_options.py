@@ -188,7 +188,7 @@ class _MetaComparison(Brief):
             yield Finding("GEN001", severity, message, place, f"{option.when_exhausted} Set it to {option.smallest}.".strip())
         elif option.role in COUNTED and option.name in self.values and self.values[option.name] >= 0:
             yield from self._surplus(option, built, place)
-        elif described is not None and option.role is OptionRole.SETTING:
+        elif described is not None and not described.without_effect and option.role is OptionRole.SETTING:
             yield from self._difference(option, described, place)
 
     def _surplus(self, option: Option, built: Profile, place: Location) -> Iterator[Finding]:

@@ -205,6 +205,15 @@ def test_without_a_value_the_default_counts(tmp_path):
     assert finding.message.startswith("RMW_UXRCE_MAX_GUARD_CONDITION is 4 by default, but the application needs 5")
 
 
+def test_what_has_no_effect_in_a_description_need_not_be_in_a_file(tmp_path):
+    app = tmp_path / "app.yaml"
+    head = "amuros: 1\nname: a\nhardware: {platform: single-core, frequency: 100 MHz}\n"
+    limits = "middleware: {transport: {udp: {bitrate: 10 Mbit/s}}, limits: {UCLIENT_CUSTOM_TRANSPORT_MTU: 2048 B}}\n"
+    timers = "[{name: T, period: 10 ms, execution_time: 1 us}]"
+    app.write_text(f"{head}{limits}application: {{nodes: [{{name: n, timers: {timers}}}]}}\n")
+    assert "GEN008" not in rules(checked(app, '{"names": {}}', tmp_path))
+
+
 def test_the_bytes_to_save(tmp_path):
     (finding,) = checked(RCLC, meta("-DRMW_UXRCE_MAX_WAIT_SETS=3"), tmp_path)
     assert finding.help == "Set it to 1 to save 56 B."  # 28 B each
