@@ -133,7 +133,7 @@ def test_a_task_that_cannot_be_analysed_prevents_a_proposal():
 
 
 def player(rows, order, preemptive=True):
-    """Whether all jobs of (period, offset, wcet, deadline) meet their deadlines when they are played; lowest priority first."""
+    """Whether all jobs of (period, offset, wcet, deadline) meet their deadlines in a simulation, lowest priority first."""
     tasks = [
         UnitTask(period, wcet, offset, rank=-order.index(index), is_preemptive=preemptive)
         for index, (period, offset, wcet, _) in enumerate(rows)

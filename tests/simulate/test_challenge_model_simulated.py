@@ -20,7 +20,7 @@ from amalthea_uros.units import SECOND
 MODEL = SHARED / "corpus" / "WATERS_2017_v072.amxmi"
 FIGURES = SHARED / "vectors" / "waters2017.json"
 VARIANT = "unimore_300MHz_nomem"
-#: As machine code, seconds of the model are played in less than one; interpreted, one second takes as long.
+#: As machine code, a run takes less than a second; interpreted, it takes as long as one second of the model.
 SAMPLED_DURATION = (4 if find_spec("numba") else 1) * SECOND
 
 pytestmark = pytest.mark.skipif(not (MODEL.exists() and FIGURES.exists()), reason="the challenge is not at hand")

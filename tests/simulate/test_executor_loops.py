@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import test_whole_way
 from effort import IS_THOROUGH
+from hand_made_systems import WRITE, Proc, ticks
 from looping_executors import SPIN, US, WaitBehaviour, guard, looping, message, timer, waiting_publication
 from played_executors import Spans, play
 from random_executors import application
@@ -16,7 +17,9 @@ from whole_player import Player, S
 from amalthea_uros import simulate
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.executors.semantics.steps import with_steps
-from amalthea_uros.perf.executors import TriggerCondition, TriggerKind
+from amalthea_uros.perf.activities import Call, Communication, Group, LabelAccess
+from amalthea_uros.perf.executors import LoopKind, TriggerCondition, TriggerKind
+from amalthea_uros.perf.software import Runnable
 from amalthea_uros.simulate.options import Options, SimulationMode
 from amalthea_uros.simulate.program.build import build_program
 from amalthea_uros.simulate.runs.execution import SimulationRun
@@ -315,9 +318,111 @@ def test_all_chains_of_the_samples_are_followed(sample):
     assert not simulation.left_out
 
 
-def test_an_agent_of_which_nothing_is_stated_leaves_the_executor_out(tmp_path):
+# Nothing that is unknown is taken to be harmless.
+
+LEFT_OUT = {
+    "agent": ("  agent:", "when 'r_topic_to_cb' is sent"),
+    "acknowledgement": (", acknowledgement: {min: 0.3 ms, max: 2 ms}", "how long the publication of 'v' waits"),
+    "polls of the host": ("{latency: {min: 0 ms, max: 1 ms}}", "how long 'r_topic_to_cb' takes besides the wire"),
+}
+
+
+def without(text, part):
+    """A text without a part; without the lines that begin with it if it is a key of the middleware."""
+    if part.startswith("  "):
+        return "\n".join(line for line in text.splitlines() if not line.startswith(part))
+    assert part in text
+    return text.replace(part, "")
+
+
+@pytest.mark.parametrize("case", LEFT_OUT)
+def test_an_executor_of_which_something_is_unknown_is_left_out(case, tmp_path):
+    part, reason = LEFT_OUT[case]
     path = tmp_path / "p.yaml"
-    path.write_text("\n".join(line for line in ROUND_TRIP.splitlines() if not line.startswith("  agent")))
+    path.write_text(without(ROUND_TRIP, part).replace("usb_cdc: }", "usb_cdc: {}}"))
     simulation = simulate(path, "100 ms")
-    assert "how long the publication of 'v' waits" in simulation.left_out["executor"].reason
-    assert simulation.chains["rtt"].reason
+    assert reason in simulation.left_out["executor"].reason
+    assert not simulation.executors
+    assert all(chain.reason for chain in simulation.chains)
+    assert simulation.errors
+
+
+def test_a_chain_through_an_agent_of_unknown_time_is_not_followed(tmp_path):
+    """Best effort does not wait for the agent, so that the executor is simulated, and not the chain that ends at the host."""
+    path = tmp_path / "p.yaml"
+    text = ROUND_TRIP.replace("rate: 100 Hz", "rate: 100 Hz, reliability: best-effort").replace(
+        "reliability: reliable", "reliability: best-effort"
+    )
+    path.write_text(without(text, ", to_host: {min: 0.3 ms, max: 1 ms}"))
+    simulation = simulate(path, "100 ms")
+    assert simulation.executors["executor"].handles["cb"].calls
+    assert "in the agent" in simulation.chains["rtt"].reason
+
+
+def test_a_service_without_a_rate_makes_the_executor_unknown():
+    (left_out,) = simulate_system(
+        looping(message("cmd", None), timer("control", 10_000, 10), loop=SPIN, spin=10), Options(duration=SECOND)
+    ).left_out
+    assert "how often something arrives for 'cmd'" in left_out.reason
+
+
+def test_who_waits_for_an_acknowledgement_outside_an_executor_is_left_out(tmp_path):
+    path = tmp_path / "p.yaml"
+    path.write_text(ROUND_TRIP.replace("loop: {spin_some: 100 ms}", "period: 10 ms"))
+    simulation = simulate(path, "100 ms")
+    assert any("outside an executor with a loop" in each.reason for each in simulation.left_out)
+
+
+def test_the_wait_of_an_iteration_is_no_job_that_is_late():
+    """A run that ends in a wait of up to 1 s says nothing about a limit of the iterations."""
+    found = looping(message("cmd", 400_000, 10, phase=MS, depth=1), loop=SPIN, spin=10)
+    executor = simulate_system(found, Options(duration=SECOND, mode=SimulationMode.BEST))["Executor"]
+    assert (executor.unfinished, executor.longest_unfinished) == (0, 0)
+
+
+def test_a_guard_condition_that_ends_no_wait_disturbs_nobody():
+    """It is triggered every 7 ms, while a task of lower priority executes half of the time."""
+    below = Proc("below", (ticks(5000),), 10_000, priority=1)
+    system = looping(
+        guard("stop", 7000, phase=MS), message("cmd", 1_000_000, phase=2 * SECOND, depth=1), loop=SPIN, spin=10, others=(below,)
+    )
+    found = simulate_system(system, Options(duration=SECOND, mode=SimulationMode.BEST))
+    assert found["below"].preemptions.total == 0
+
+
+def test_a_depth_of_0_keeps_nothing():
+    executor = simulated(message("cmd", 10_000, 10, depth=0), loop=SPIN, spin=10)
+    assert (executor.handles["cmd"].calls, executor.handles["cmd"].lost) == (0, 100)
+
+
+def test_a_timer_with_period_0_is_called_in_each_iteration_and_never_late():
+    executor = simulated(timer("busy", 0, 500), loop=SPIN, spin=500, waiting=WaitBehaviour(polls_without_messages=False))
+    assert executor.handles["busy"].calls == pytest.approx(1000, abs=1)
+    assert executor.handles["busy"].response_time.max == 500 * US
+
+
+def test_activities_around_the_iteration_are_executed():
+    """A task that also executes 200 us by itself, before it spins."""
+    found = looping(timer("control", 10_000, 300), loop=replace(SPIN, kind=LoopKind.SLEEPING, sleep=10 * MS), spin=100)
+    (task,) = found.software.tasks
+    busier = replace(task, activities=(Group(ordered=True, activities=(ticks(200),)), *task.activities))
+    simulation = simulate_system(
+        replace(found, software=replace(found.software, tasks=(busier,))), Options(duration=SECOND, mode=SimulationMode.BEST)
+    )
+    assert simulation["Executor"].response_time.max == 600 * US
+
+
+def unstated(label):
+    """A write of which it is not specified when it takes effect."""
+    return LabelAccess(label=label, kind=WRITE)
+
+
+def test_accesses_of_a_runnable_that_other_tasks_call_too_stay_as_they_are():
+    shared = Runnable(name="log", activities=(unstated("entry"),))
+    found = looping(timer("control", 10_000, 300), others=(Proc("other", (Call(runnable="log"),), 5000, priority=9),))
+    control = next(each for each in found.software.runnables if each.name == "On_control")
+    calling = replace(control, activities=(*control.activities, Call(runnable="log"), unstated("own")))
+    others = [each for each in found.software.runnables if each is not control]
+    stepped = with_steps(replace(found, software=replace(found.software, runnables=(*others, calling, shared))))
+    communication = {name: stepped.runnables[name].activities[-1].communication for name in ("log", "On_control")}
+    assert communication == {"log": None, "On_control": Communication.EXPLICIT}

@@ -78,9 +78,10 @@ def test_budgets_are_kept_and_claims_hold(policy, capacity, period, inside, besi
     runs = [record(model, each) for each in options]
     assert not any(run.program.left_out for run in runs)
     for process in analyze_system(model).processes:
+        # In an overloaded server, perhaps no job of the last one ends.
         responses = [end - activation for run in runs for activation, _, end in run.jobs_of(process.name)]
-        assert process.wcrt is None or max(responses) <= process.wcrt
-        assert process.response is None or min(responses) >= process.response.best
+        assert process.wcrt is None or max(responses, default=0) <= process.wcrt
+        assert process.response is None or min(responses, default=process.response.best) >= process.response.best
     if policy is not Policy.SPORADIC_SERVER:
         names, units = {f"in{number}" for number in range(len(inside))}, runs[0].program.units
         for run in runs:

@@ -137,7 +137,7 @@ OTHER_POLICY = {
     *("40_sched_param_nokey", "41_isr_unalloc", "44_prio_wrongname", "44_two_os_shared_runnable", "70_only_root"),
 }
 
-#: What is told of a vector that is about something else.
+#: The rules reported for a vector that tests another rule.
 BESIDES = {
     "10_chain_par_badresp": {"INC-EC-PAR-ITEMS"},
     "10_chain_par_badstim": {"INC-EC-PAR-ITEMS"},

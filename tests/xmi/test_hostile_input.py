@@ -127,7 +127,7 @@ REFUSED = {
     "another end tag": (VALID.replace(b"<tasks", b"<task"), "XMI002", "mismatched tag"),
     "an attribute twice": (VALID.replace(b'name="T"', b'name="T" name="U"'), "XMI002", "duplicate attribute"),
     "two roots": (VALID + b"<a/>", "XMI002", ""),
-    "text behind the root": (VALID + b"a", "XMI002", ""),
+    "text after the root element": (VALID + b"a", "XMI002", ""),
 }
 
 

@@ -8,7 +8,7 @@ from typing import TypeAlias
 
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.results import HopKind
-from amalthea_uros.perf.activities import Call
+from amalthea_uros.executors.semantics.callbacks import handle_around, taker
 from amalthea_uros.perf.events import CustomEvent, Event, EventChain, RunnableChange, RunnableEvent
 from amalthea_uros.perf.executors import Executor, Handle
 from amalthea_uros.perf.network import Transmission
@@ -113,25 +113,14 @@ class Segments:
         executor = system.executor_of_task.get(process)
         if executor is None:
             return TaskSegment((event,), (process,))
-        handle = None if occurrence.position is None else self._handle_around(occurrence.position, executor)
+        handle = (
+            None if occurrence.position is None else handle_around(occurrence.position, executor, self.context.dataflow.events)
+        )
         if handle is None:
             raise UnknownError(
                 f"the event {event.name!r} is one of a whole iteration of {executor.name!r}; name a callback or a topic"
             )
         return CallbackSegment(executor, handle)
-
-    def _handle_around(self, position: ActivityPosition, executor: Executor) -> Handle | None:
-        """The handle whose callback, or whose taking of a message, an activity is part of."""
-        handles = {handle.runnable: handle for handle in executor.handles}
-        handles |= {handle.take: handle for handle in executor.handles if handle.take is not None}
-        around = [
-            handles[each.activity.runnable]
-            for each in self.context.dataflow.events.positions(executor.task)
-            if isinstance(each.activity, Call)
-            and each.activity.runnable in handles
-            and each.number <= position.number <= each.last
-        ]
-        return around[-1] if around else None
 
     def _with_takers(self, segments: list[ChainSegment]) -> list[ChainSegment]:
         """The segments with the callbacks that only take messages for others, without what a message passes by itself."""
@@ -144,20 +133,10 @@ class Segments:
             passed = before.processes
             kept = [each for each in zip(segment.events, segment.processes, strict=True) if each[1] not in passed]
             if kept:
-                completed += self._takers(before)
+                ready = taker(before, self.context.system)
+                completed += [] if ready is None else [CallbackSegment(*ready)]
                 completed.append(TaskSegment(tuple(event for event, _ in kept), tuple(process for _, process in kept)))
         return completed
-
-    def _takers(self, transmission: Transmission) -> list[ChainSegment]:
-        """The callback of an executor that a message makes ready, if there is one."""
-        executors = self.context.system.executors
-        ready = [
-            CallbackSegment(each, handle)
-            for each in executors
-            for handle in each.handles
-            if handle.transmission == transmission.name
-        ]
-        return [*ready[:1]]
 
     def entry(self, before: ChainSegment | None, segment: CallbackSegment | TaskSegment) -> EntryKind:
         """How the effect gets from one segment to the next, which no message makes ready.
@@ -212,4 +191,4 @@ class Segments:
         """Whether an activity is part of a callback; for other processes it is one of their jobs."""
         if not isinstance(segment, CallbackSegment) or position is None:
             return True
-        return self._handle_around(position, segment.executor) == segment.handle
+        return handle_around(position, segment.executor, self.context.dataflow.events) == segment.handle

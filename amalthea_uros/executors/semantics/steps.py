@@ -6,7 +6,7 @@ knows it: then each handle has one or two steps, in the order of the executor, w
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
 from amalthea_uros.executors.semantics.readiness import messages, shares_session
@@ -106,14 +106,14 @@ def with_steps(system: System) -> System:
 
 def _with_steps(task: Task, executor: Executor) -> Task:
     own = {name for handle in executor.handles for name in (handle.take, handle.runnable)}
-    # Other calls are overhead of the operating system, around the iteration.
-    calls = [each for each in task.activities if isinstance(each, Call) and each.runnable not in own]
-    spins = next((number for number, each in enumerate(calls) if each.runnable == executor.spin), len(calls) - 1)
+    # Other activities are overhead of the operating system, around the iteration.
+    others = [each for each in task.activities if own.isdisjoint(called_runnables((each,)))]
+    first = next((n + 1 for n, each in enumerate(others) if isinstance(each, Call) and each.runnable == executor.spin), 0)
     switches = [_switch(step) for step in steps_of(executor)]
     return replace(
         task,
         stimuli=(iterations_name(executor.name),),
-        activities=(*calls[: spins + 1], *switches, *calls[spins + 1 :]),
+        activities=(*others[:first], *switches, *others[first:]),
     )
 
 
@@ -122,15 +122,22 @@ def _switch(step: IterationStep) -> ProbabilitySwitch:
 
 
 def _within_callbacks(system: System) -> set[str]:
-    """The runnables that executors call, and those that these call."""
-    within: set[str] = set()
+    """The runnables that only callbacks of executors call, and those that these call."""
     handles = [handle for executor in system.executors for handle in executor.handles]
-    new = {name for handle in handles for name in (handle.take, handle.runnable) if name is not None}
+    others = [each for name, each in system.processes.items() if name not in system.executor_of_task]
+    roots = (name for handle in handles for name in (handle.take, handle.runnable) if name is not None)
+    return _reached(roots, system) - _reached((name for each in others for name in called_runnables(each.activities)), system)
+
+
+def _reached(roots: Iterable[str], system: System) -> set[str]:
+    """Some runnables, and those that they call, directly or not."""
+    reached: set[str] = set()
+    new = set(roots)
     while new:
         called = [system.runnables[name] for name in new if name in system.runnables]
-        within |= {each.name for each in called}
-        new = {name for each in called for name in called_runnables(each.activities)} - within
-    return within
+        reached |= {each.name for each in called}
+        new = {name for each in called for name in called_runnables(each.activities)} - reached
+    return reached
 
 
 def _accessing_at_once(runnable: Runnable) -> Runnable:

@@ -190,8 +190,7 @@ def parts(acknowledgement: Transmission, system: System) -> int:
     """How many parts of a message are acknowledged one by one."""
     stimuli = set(system.processes[acknowledgement.name].stimuli)
     counts = (
-        sum(isinstance(each, Trigger) and each.stimulus in stimuli for each in walk(runnable.activities))
-        for runnable in system.software.runnables
+        sum(isinstance(each, Trigger) and each.stimulus in stimuli for each in walk(body)) for body in system.software.bodies
     )
     return max(1, *counts)
 

@@ -12,7 +12,7 @@ from amalthea_uros.simulate.kernel.message_records import append, free_message, 
 from amalthea_uros.simulate.kernel.messages import draw_delay, write
 from amalthea_uros.simulate.kernel.waiting import wait
 
-#: What becomes of `read`.
+#: The outcomes of `read`.
 HAS_READ, IS_DONE, HAS_TO_WAIT = range(3)
 
 
@@ -95,7 +95,7 @@ def _read_message(m: Memory, executor: int, message: int) -> None:
 
 def _keep(m: Memory, inbox: int, handle: int, message: int) -> None:
     """Keep a message for a callback; beyond its depth the oldest one or itself is lost, and itself if there is no slot."""
-    if m[handle + KEPT_NUMBER] >= m[handle + DEPTH] and m[handle + OVERWRITES]:
+    if 0 < m[handle + DEPTH] <= m[handle + KEPT_NUMBER] and m[handle + OVERWRITES]:
         m[handle + LOST_CALLS] += 1
         free_message(m, pop(m, handle + KEPT_FIRST))
     elif m[handle + KEPT_NUMBER] >= m[handle + DEPTH] or m[inbox + KEPT] >= m[inbox + SLOTS]:
@@ -156,6 +156,9 @@ def take_data(m: Memory, handle: int) -> None:
     m[handle + CALLS] += 1
     if m[handle + HANDLE_KIND] == TIMER:
         due, period = m[handle + NEXT_CALL], m[handle + TIMER_PERIOD]
+        if period == 0:
+            # Always due (ros2/rcl `timer.c`): it is released when it is called.
+            due = m[NOW]
         skipped = (m[NOW] - due) // period if period else 0
         m[handle + RELEASED] = due
         m[handle + LOST_CALLS] += skipped

@@ -19,7 +19,7 @@ from amalthea_uros.simulate.kernel.iterations import (
     take_data,
 )
 from amalthea_uros.simulate.kernel.layout import *
-from amalthea_uros.simulate.kernel.messages import add_unread, bring, draw_delay, pass_on, post, write
+from amalthea_uros.simulate.kernel.messages import bring, draw_delay, pass_on, post, put_in_inbox, write
 from amalthea_uros.simulate.kernel.reports import begin_execution, end_execution, observe, report_access, report_execution
 from amalthea_uros.simulate.kernel.stages import follow
 from amalthea_uros.simulate.kernel.waiting import await_events, change_events, request, serve, unlock
@@ -256,7 +256,7 @@ def _communicate(m: Memory, core: int, process: int, at: int) -> int:
         code = pass_on(m, process, first)
     elif operation == HAVE_READ:
         if m[process + ITS_MESSAGE]:
-            add_unread(m, m[process + ITS_MESSAGE])
+            put_in_inbox(m, m[process + ITS_MESSAGE])
     elif operation == ACKNOWLEDGE_PART:
         message = m[process + ITS_MESSAGE]
         code = bring(m, first, m[message + ACKNOWLEDGES] if message else 0)

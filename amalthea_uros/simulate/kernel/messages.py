@@ -108,9 +108,14 @@ def pass_on(m: Memory, process: int, transmission: int) -> int:
     code = _lacks_delay(m, line_in) if line_in else CONTINUE
     if code:
         return code
+    free = m[FREE_MESSAGES]
     for place in range(m[transmission + RELAYS], m[transmission + RELAYS_END]):
-        if m[FREE_MESSAGES] == 0 or _lacks_delay(m, m[place]):
-            return NO_MESSAGES if m[FREE_MESSAGES] == 0 else STREAM_EMPTY
+        if free == 0:
+            return NO_MESSAGES
+        free = m[free + NEXT_MESSAGE]
+        code = _lacks_delay(m, m[place])
+        if code:
+            return code
     if message:
         _leave_wire(m, transmission, message)
     m[transmission + DONE_WRITING] += 1
@@ -147,16 +152,17 @@ def _receive(m: Memory, message: int) -> int:
     if received_by:
         m[MESSAGE] = message
         return fire(m, received_by, 0)
-    add_unread(m, message)
+    put_in_inbox(m, message)
     return CONTINUE
 
 
-def add_unread(m: Memory, message: int) -> None:
+def put_in_inbox(m: Memory, message: int) -> None:
     """A message waits to be read; a flag is seen at once."""
     transmission = m[message + SENT_AS]
     inbox, handle = m[transmission + READ_FROM], m[transmission + FOR_HANDLE]
     m[message + DUE] = m[NOW]
-    if handle and m[handle + HANDLE_KIND] == FLAG:
+    is_flag = handle != 0 and m[handle + HANDLE_KIND] == FLAG
+    if is_flag:
         if m[handle + KEPT_NUMBER]:
             m[handle + LOST_CALLS] += 1
         else:
@@ -167,10 +173,12 @@ def add_unread(m: Memory, message: int) -> None:
         append(m, inbox + UNREAD_FIRST, message)
     else:
         free_message(m, message)
+        return
     for place in range(m[PROCESSES], m[PROCESSES_END]):
-        process = m[place]
-        if m[process + READS_WITH] and m[m[process + READS_WITH] + INBOX] == inbox:
-            wake(m, process)
+        reader = m[m[place] + READS_WITH]
+        # A flag that does not end waits is seen after the next one.
+        if reader and m[reader + INBOX] == inbox and (not is_flag or m[reader + FLAGS_END_WAIT]):
+            wake(m, m[place])
 
 
 # Writing.

@@ -17,7 +17,7 @@ from amalthea_uros.perf.software import Isr, Preemption, Process
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.simulate.kernel import layout
 from amalthea_uros.simulate.program.activities import compile_activity
-from amalthea_uros.simulate.program.executors import IterationCompiler
+from amalthea_uros.simulate.program.executors import IterationCompiler, add_activities
 from amalthea_uros.simulate.program.image import Code, JumpLabel, Operation, ProgramHooks
 from amalthea_uros.simulate.program.resources import Resources
 from amalthea_uros.simulate.program.watches import EventSource
@@ -235,12 +235,7 @@ def _process_code(body: Body, process: Process, scheduler: Scheduler | None) -> 
     for kind, frame in copies:
         if kind is AccessKind.READ:
             body.frame(frame)
-    executor = body.context.system.executor_of_task.get(process.name)
-    if executor is None:
-        body.activities(process.activities)
-    else:
-        body.iteration = IterationCompiler(body, executor, body.resources.executors)
-        body.iteration.add(process.activities)
+    add_activities(body, process)
     body.code.mark(body.end)
     for kind, frame in copies:
         if kind is AccessKind.WRITE:

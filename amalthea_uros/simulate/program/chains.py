@@ -6,9 +6,10 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 
 from amalthea_uros.errors import UnknownError
+from amalthea_uros.executors.semantics.callbacks import taker
 from amalthea_uros.perf.activities import Communication, Trigger
 from amalthea_uros.perf.events import EventChain
-from amalthea_uros.perf.network import Direction, Transmission
+from amalthea_uros.perf.network import Direction, Purpose, Transmission
 from amalthea_uros.perf.software import Process
 from amalthea_uros.simulate.kernel import layout
 from amalthea_uros.simulate.program.image import Operation, ProgramHooks
@@ -88,8 +89,15 @@ class ChainCompiler:
         for occurrence in route.occurrences:
             if occurrence.process.name not in self.resources.processes:
                 raise UnknownError(f"it passes {occurrence.process.name!r}, which is not simulated")
-            if not occurrence.process.stimuli and occurrence.process.name in self.resources.context.system.transmissions:
-                raise UnknownError(f"it is not specified when {occurrence.process.name!r} is sent")
+            transmission = self.resources.context.system.transmissions.get(occurrence.process.name)
+            if transmission is not None and transmission.purpose is not Purpose.FOREIGN:
+                self._check_message(transmission)
+
+    def _check_message(self, transmission: Transmission) -> None:
+        if transmission.purpose is Purpose.DATA and transmission.agent.most is None:
+            raise UnknownError(f"it is not specified how long {transmission.name!r} takes in the agent")
+        if reason := self.resources.executors.messages.obstacle(transmission):
+            raise UnknownError(reason)
 
     def _route(self, chain: EventChain, text: str, found: Route) -> None:
         image = self.resources.image
@@ -125,7 +133,7 @@ class ChainCompiler:
             return record
         target: Transmission | tuple[str, str] | None = transmissions.get(stage.process.name)
         if target is None:
-            ready = messages.handle_of(sent)
+            ready = taker(sent, messages.system)
             if ready is None:
                 return record
             target = (ready[0].name, ready[1].name)
@@ -211,11 +219,11 @@ class ChainCompiler:
 
     def _gets_to_host(self, process: str) -> bool:
         transmission = self.resources.executors.messages.system.transmissions.get(process)
-        if transmission is None or process not in self.resources.executors.messages.transmissions:
-            return False
-        if transmission.direction is Direction.TO_AGENT and transmission.agent.most is None:
-            raise UnknownError(f"it is not stated how long {process!r} takes from the wire to the host")
-        return transmission.direction is Direction.TO_AGENT
+        return (
+            transmission is not None
+            and transmission.direction is Direction.TO_AGENT
+            and process in self.resources.executors.messages.transmissions
+        )
 
     def _publish(self, process: Process, record: int, hooks: ProgramHooks) -> None:
         hooks.end.append((layout.PUBLISH, record, 0))

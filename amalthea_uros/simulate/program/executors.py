@@ -11,16 +11,20 @@ from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.semantics.loops import SLEEP_RESOLUTION, returns_at_once, sleep_of
 from amalthea_uros.executors.semantics.readiness import is_message, shares_session
 from amalthea_uros.executors.semantics.steps import IterationStep, iterations_name, session_lock, steps_of
+from amalthea_uros.executors.semantics.suspension import parts
 from amalthea_uros.perf.activities import Activity, Call, ProbabilitySwitch
 from amalthea_uros.perf.distributions import Boundaries
 from amalthea_uros.perf.executors import Executor, Handle, HandleKind, LoopKind, Publication, TriggerKind
+from amalthea_uros.perf.software import Process
 from amalthea_uros.simulate.kernel import layout
 from amalthea_uros.simulate.options import SimulationMode
 from amalthea_uros.simulate.program.image import JumpLabel
-from amalthea_uros.simulate.program.messages import MessageRecords, acknowledgements, unknown_wait
+from amalthea_uros.simulate.program.messages import MessageRecords
 from amalthea_uros.simulate.program.resources import Resources
 from amalthea_uros.simulate.sampling.streams import durations
 from amalthea_uros.simulate.sampling.words import RandomSource
+from amalthea_uros.timing.touching import awaited
+from amalthea_uros.units import time_text
 
 if TYPE_CHECKING:
     from amalthea_uros.simulate.program.body import Body
@@ -52,15 +56,9 @@ class ExecutorRecords:
             if executor.task in self.resources.processes:
                 self.records[executor.name] = self.resources.image.record(layout.EXECUTOR_SIZE)
                 self._fill(executor, self.records[executor.name])
-                for handle in filter(has_messages_without_wire, executor.handles):
-                    self._bring(executor, handle)
-
-    def _bring(self, executor: Executor, handle: Handle) -> None:
-        if handle.interval:
-            self.messages.bring_without_wire(executor, handle)
-        else:
-            message = f"nothing comes for {handle.name!r} of {executor.name!r}, as it is not stated how often something does"
-            self.resources.context.notes.warning("SIM007", message, handle)
+                for handle in executor.handles:
+                    if _comes_without_wire(handle) and handle.interval:
+                        self.messages.bring_without_wire(executor, handle)
 
     def _fill(self, executor: Executor, record: int) -> None:
         resources, image, time = self.resources, self.resources.image, self.resources.time
@@ -117,9 +115,11 @@ class ExecutorRecords:
         key = (executor, handle.name, publication.topic)
         if key not in self._publications:
             system = self.resources.context.system
-            awaited = next(acknowledgements(publication.transmission or "", system), None)
-            fields = {layout.PARTS_SENT: _parts(self.messages, publication) if awaited is not None else 0}
-            fields[layout.TIMEOUT_AFTER] = self.resources.time(publication.timeout or layout.NEVER)
+            awaited = system.transmissions.get(publication.acknowledgement or "")
+            fields = {
+                layout.PARTS_SENT: 0 if awaited is None else parts(awaited, system),
+                layout.TIMEOUT_AFTER: self.resources.time(layout.NEVER if publication.timeout is None else publication.timeout),
+            }
             self._publications[key] = self.resources.image.record(layout.PUBLICATION_SIZE, fields)
         return self._publications[key]
 
@@ -139,6 +139,10 @@ class ExecutorRecords:
         return self.resources.image.record(layout.EXECUTION_SIZE, fields)
 
 
+def _is_call(activity: Activity, runnable: str) -> bool:
+    return isinstance(activity, Call) and activity.runnable == runnable
+
+
 def _trigger_sets(executor: Executor) -> Sequence[frozenset[str]]:
     """The sets of handles of which one must be ready as a whole."""
     names = [handle.name for handle in executor.handles]
@@ -152,18 +156,27 @@ def _trigger_sets(executor: Executor) -> Sequence[frozenset[str]]:
     return executor.trigger.sets
 
 
-def _parts(messages: MessageRecords, publication: Publication) -> int:
-    """How many acknowledges a publication needs: one for each of its parts that the agent acknowledges."""
-    system = messages.system
-    process, awaited = (
-        system.processes[publication.transmission or ""],
-        acknowledgements(publication.transmission or "", system),
-    )
-    stimuli = {name for each in awaited for name in system.processes[each.name].stimuli}
-    return sum(getattr(each, "stimulus", None) in stimuli for each in process.activities)
-
-
 # Programs.
+
+
+def add_activities(body: Body, process: Process) -> None:
+    """Append the activities of a process, of the task of an executor those of an iteration.
+
+    Raises
+    ------
+    UnknownError : something that its time depends on is not specified, or not simulated.
+    """
+    system = body.context.system
+    executor = system.executor_of_task.get(process.name)
+    if executor is not None:
+        body.iteration = IterationCompiler(body, executor, body.resources.executors)
+        body.iteration.add(process.activities)
+        return
+    for message in awaited(process.name, system, body.context.dataflow):
+        raise UnknownError(
+            f"it waits for the acknowledgement of {message.topic!r} outside an executor with a loop, which is not simulated"
+        )
+    body.activities(process.activities)
 
 
 @dataclass(slots=True)
@@ -187,7 +200,7 @@ class IterationCompiler:
         UnknownError : something that its time depends on is not stated.
         """
         self._check()
-        body, code, steps = self.body, self.body.code, iter(steps_of(self.executor))
+        body, code, steps = self.body, self.body.code, steps_of(self.executor)
         self.records.resources.context.notes.assume(_OVERHEAD)
         code.add(layout.LISTEN, self.record)
         if returns_at_once(self.executor):
@@ -198,8 +211,8 @@ class IterationCompiler:
             self._read()
             self._unlock()
         code.add(layout.BEGIN_ITERATION, self.record)
-        first = next((n for n, each in enumerate(activities) if isinstance(each, ProbabilitySwitch)), len(activities))
-        last = next((n for n in range(first, len(activities)) if isinstance(activities[n], Call)), len(activities))
+        first = next((n + 1 for n, each in enumerate(activities) if _is_call(each, self.executor.spin)), 0)
+        last = first + len(steps)
         code.add(layout.CHECK, self.record)
         body.activities(activities[:first])
         nothing = JumpLabel()
@@ -214,18 +227,36 @@ class IterationCompiler:
 
     def _check(self) -> None:
         for handle in self.executor.handles:
-            if handle.kind is HandleKind.TIMER and handle.interval is None:
-                raise UnknownError(f"the period of the timer {handle.name!r} is not stated")
+            self._check_arrivals(handle)
             for publication in handle.publications:
                 self._check_publication(publication)
         if self.executor.trigger.kind is TriggerKind.CUSTOM and not self.executor.trigger.sets:
-            raise UnknownError("it is not stated when its trigger condition is true")
+            raise UnknownError("it is not specified when its trigger condition is true")
+
+    def _check_arrivals(self, handle: Handle) -> None:
+        """Refuse a handle of which it is unknown when it becomes ready: without its calls, others would be too early."""
+        if handle.kind is HandleKind.TIMER:
+            if handle.interval is None:
+                raise UnknownError(f"the period of the timer {handle.name!r} is not specified")
+        elif handle.transmission is None:
+            if not handle.interval:
+                raise UnknownError(f"it is not specified how often something arrives for {handle.name!r}")
+        elif reason := self.records.messages.obstacle(self.body.context.system.transmissions[handle.transmission]):
+            raise UnknownError(f"it receives messages for {handle.name!r}: {reason}")
 
     def _check_publication(self, publication: Publication) -> None:
-        system = self.body.context.system
-        awaited = list(acknowledgements(publication.transmission or "", system))
-        if publication.waits and (not awaited or any(each.agent.most is None for each in awaited)):
-            raise UnknownError(unknown_wait(publication.topic, publication.timeout))
+        """Refuse a publication of which it is unknown how long it waits for its acknowledgement."""
+        if not publication.waits:
+            return
+        transmissions = self.body.context.system.transmissions
+        sent, awaited = (transmissions.get(name or "") for name in (publication.transmission, publication.acknowledgement))
+        is_known = sent is not None and awaited is not None and awaited.agent.most is not None
+        if is_known and not any(self.records.messages.obstacle(each) for each in (sent, awaited) if each is not None):
+            return
+        until = "" if publication.timeout is None else f", up to {time_text(publication.timeout)}"
+        raise UnknownError(
+            f"it is not specified how long the publication of {publication.topic!r} waits for its acknowledgement{until}"
+        )
 
     def _lock(self) -> None:
         if lock := self._session_lock():
@@ -265,7 +296,11 @@ class IterationCompiler:
 
     def publish(self, transmission: str) -> None:
         """Write a message of the callback that is being called, and wait for its acknowledgements if the callback does."""
-        handle, publication = next(self._publications(transmission))
+        published = next(self._publications(transmission), None)
+        if published is None:
+            self.body.code.add(layout.POST, self.records.messages.transmissions[transmission])
+            return
+        handle, publication = published
         code, record = self.body.code, self.records.publication(self.executor.name, handle, publication)
         self._lock()
         code.add(layout.WRITE, self.records.messages.transmissions[transmission], record)
@@ -281,6 +316,6 @@ class IterationCompiler:
                     yield handle, publication
 
 
-def has_messages_without_wire(handle: Handle) -> bool:
-    """Whether what a handle receives comes over nothing that is described."""
+def _comes_without_wire(handle: Handle) -> bool:
+    """Whether messages or triggers of a handle come over nothing that is described."""
     return handle.transmission is None and (is_message(handle) or handle.kind is HandleKind.GUARD_CONDITION)

@@ -7,15 +7,16 @@ from dataclasses import dataclass
 from itertools import pairwise, product
 
 from amalthea_uros.errors import UnknownError
+from amalthea_uros.executors.semantics.callbacks import handle_around, taker
 from amalthea_uros.executors.semantics.steps import relayed
 from amalthea_uros.perf.activities import Call
 from amalthea_uros.perf.events import Event, EventChain, RunnableChange, RunnableEvent
-from amalthea_uros.perf.executors import Executor, Handle
+from amalthea_uros.perf.executors import Handle
 from amalthea_uros.perf.network import Direction, Transmission
 from amalthea_uros.simulate.program.messages import MessageRecords
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.dataflow.chains import sequences, unfold
-from amalthea_uros.timing.dataflow.events import EventOccurrence, JobPhase
+from amalthea_uros.timing.dataflow.events import EventOccurrence
 from amalthea_uros.timing.dataflow.links import Link, LinkKind
 from amalthea_uros.timing.dataflow.routes import Route
 from amalthea_uros.timing.jobs.positions import ActivityPosition
@@ -48,7 +49,7 @@ class MessageRoutes:
         completed: list[Event] = []
         for event in events:
             before = self._transmission(completed[-1]) if completed else None
-            ready = None if before is None else self.messages.handle_of(before)
+            ready = None if before is None else taker(before, self.context.system)
             if ready is not None and all(each.process.name != ready[0].task for each in self._occurrences(event)):
                 runnable = ready[1].runnable
                 change, task = RunnableChange.TERMINATE, ready[0].task
@@ -81,7 +82,7 @@ class MessageRoutes:
         return Route(tuple(event.name for event in events), occurrences, tuple(link for link in links if link is not None))
 
     def _link(self, first: EventOccurrence, then: EventOccurrence) -> Link | None:
-        """What takes the effect from one event to the next; None if nothing does."""
+        """The link from one event to the next; None if nothing takes the effect on."""
         system = self.context.system
         before, after = (system.transmissions.get(each.process.name) for each in (first, then))
         if before is not None and first.process is not then.process:
@@ -91,9 +92,9 @@ class MessageRoutes:
         return next((link for link in self._links(first, then) if link.kind is not LinkKind.MESSAGE), None)
 
     def _links(self, first: EventOccurrence, then: EventOccurrence) -> Iterator[Link]:
-        """What the data flow of processes says, of which calls of other handles are no part."""
+        """The links of the data flow of processes, without those of calls of other handles."""
         one, other = self._handle_around(first), self._handle_around(then)
-        if one is not None and one == other:
+        if first.process.name == then.process.name and one is not None and one == other:
             # A callback is called once in an iteration.
             yield Link(LinkKind.JOB)
             return
@@ -110,37 +111,28 @@ class MessageRoutes:
 
     def _taken(self, transmission: Transmission, then: EventOccurrence) -> Link | None:
         """How an executor takes a message."""
-        ready = self.messages.handle_of(transmission)
-        if ready is None or ready[0].task != then.process.name or self._handle_around(then) != ready:
+        ready = taker(transmission, self.context.system)
+        if ready is None or ready[0].task != then.process.name or self._handle_around(then) != ready[1]:
             return None
-        first = min((each for each in self._calls(ready[0]) if self._around(each) == ready), key=lambda each: each.number)
+        positions = self.context.dataflow.events.positions(then.process.name)
+        first = next(each for each in positions if isinstance(each.activity, Call) and self._around(each) == ready[1])
         return Link(LinkKind.QUEUE, (transmission.topic or "",), read=first)
 
-    def _handle_around(self, occurrence: EventOccurrence) -> tuple[Executor, Handle] | None:
-        """The executor and the handle of the callback in which an event occurs."""
+    def _handle_around(self, occurrence: EventOccurrence) -> Handle | None:
+        """The handle of the callback in which an event occurs; None outside executors.
+
+        Raises
+        ------
+        UnknownError : it is an event of a whole iteration.
+        """
         executor = self.context.system.executor_of_task.get(occurrence.process.name)
         if executor is None:
             return None
         handle = None if occurrence.position is None else self._around(occurrence.position)
         if handle is None:
-            phase = "iteration" if occurrence.when is not JobPhase.BEFORE else "begin of an iteration"
-            raise UnknownError(f"an event is one of a whole {phase} of {executor.name!r}; name a callback or a topic")
+            raise UnknownError(f"an event is one of a whole iteration of {executor.name!r}; name a callback or a topic")
         return handle
 
-    def _around(self, position: ActivityPosition) -> tuple[Executor, Handle] | None:
+    def _around(self, position: ActivityPosition) -> Handle | None:
         executor = self.context.system.executor_of_task.get(position.process.name)
-        if executor is None:
-            return None
-        names = {name: handle for handle in executor.handles for name in (handle.take, handle.runnable) if name is not None}
-        around = [
-            names[each.activity.runnable]
-            for each in self._calls(executor)
-            if each.number <= position.number <= each.last
-            and isinstance(each.activity, Call)
-            and each.activity.runnable in names
-        ]
-        return (executor, around[0]) if around else None
-
-    def _calls(self, executor: Executor) -> list[ActivityPosition]:
-        positions = self.context.dataflow.events.positions(executor.task)
-        return [each for each in positions if isinstance(each.activity, Call)]
+        return None if executor is None else handle_around(position, executor, self.context.dataflow.events)

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 
+from amalthea_uros.executors.semantics.callbacks import taker
 from amalthea_uros.executors.semantics.readiness import messages
 from amalthea_uros.executors.semantics.steps import relayed
 from amalthea_uros.executors.semantics.suspension import parts
@@ -16,13 +17,14 @@ from amalthea_uros.perf.network import Direction, Purpose, Span, Transmission
 from amalthea_uros.perf.stimuli import InterProcess, Periodic, Stimulus
 from amalthea_uros.perf.system import System
 from amalthea_uros.simulate.arrivals import StimulusOccurrences, occurrences
+from amalthea_uros.simulate.arrivals.periodic import NO_LONGER
 from amalthea_uros.simulate.kernel import layout
 from amalthea_uros.simulate.options import SimulationMode
 from amalthea_uros.simulate.program.image import Image, Operation
 from amalthea_uros.simulate.program.resources import Resources
 from amalthea_uros.simulate.sampling.streams import durations
 from amalthea_uros.simulate.sampling.words import RandomSource
-from amalthea_uros.units import Time, time_text
+from amalthea_uros.units import Time
 
 #: Assumptions.
 _DELAYS = "times in the agent, in switches and in drivers are uniform between their limits, and keep the order of messages"
@@ -84,8 +86,19 @@ class MessageRecords:
             is_followed = transmission.purpose is not Purpose.FOREIGN and transmission.name in self.resources.processes
             if is_followed and self.system.processes[transmission.name].stimuli:
                 self.transmissions[transmission.name] = self.image.record(layout.TRANSMISSION_SIZE)
+                self._assume(transmission)
         for name in self.transmissions:
             self._fill(self.system.transmissions[name])
+
+    def _assume(self, transmission: Transmission) -> None:
+        """Say what is assumed of a message beyond what is stated."""
+        assume = self.resources.context.notes.assume
+        if transmission.is_dropped_when_busy or any(
+            wire.name == transmission.wire and wire.loses_messages for wire in self.system.network.wires
+        ):
+            assume(f"no message is lost on {transmission.wire!r}, or dropped because another thread is sending")
+        if relayed(transmission, self.system):
+            assume(f"messages of {transmission.topic!r} come only from the publishers that are described")
 
     def _handle(self, executor: Executor, handle: Handle) -> int:
         kind = {HandleKind.TIMER: layout.TIMER, HandleKind.GUARD_CONDITION: layout.FLAG}.get(handle.kind, layout.RECEIVER)
@@ -153,7 +166,7 @@ class MessageRecords:
         received_by = self.receiving_stimulus(transmission)
         if received_by is not None:
             fields[layout.RECEIVED_BY] = self.resources.stimuli[received_by]
-        ready = self.handle_of(transmission)
+        ready = taker(transmission, system)
         reader = ready[0] if ready is not None else self._reader_of(transmission)
         if reader is not None and reader.task in self.resources.processes:
             fields[layout.READ_FROM] = self.inboxes[reader.name]
@@ -205,13 +218,17 @@ class MessageRecords:
         passed = transmission.processes if first in transmission.processes[:1] else (first,)
         yield from ((process, process == passed[-1]) for process in passed)
 
-    def handle_of(self, transmission: Transmission) -> tuple[Executor, Handle] | None:
-        """The executor and the handle that a message is for."""
-        for executor in self.system.executors:
-            for handle in executor.handles:
-                if handle.transmission == transmission.name:
-                    return executor, handle
-        return None
+    def obstacle(self, transmission: Transmission) -> str:
+        """Why it is not known when a message gets to the executor, or from there to the host; "" if it is."""
+        name, is_received = transmission.name, transmission.direction is Direction.TO_CONTROLLER
+        if name not in self.transmissions:
+            is_simulated = name in self.resources.processes
+            return f"it is not specified when {name!r} is sent" if is_simulated else f"{name!r} is not simulated"
+        if left_out := [each for each in transmission.processes if each not in self.resources.processes]:
+            return f"{left_out[0]!r}, which {name!r} passes, is not simulated"
+        if None in (transmission.link.most, transmission.driver.most if is_received else 0):
+            return f"it is not specified how long {name!r} takes besides the wire"
+        return ""
 
     def _acknowledge(self, transmission: Transmission) -> None:
         """If a message acknowledges one of the controller: the line on which the agent puts it."""
@@ -224,7 +241,7 @@ class MessageRecords:
 
     def _bring(self, transmission: Transmission, stimulus: Stimulus) -> None:
         """Have each occurrence of a stimulus bring a message."""
-        ready = self.handle_of(transmission)
+        ready = taker(transmission, self.system)
         if transmission.purpose is Purpose.DATA and transmission.direction is Direction.TO_CONTROLLER and ready is not None:
             stimulus = self._published(stimulus.name, ready[1]) or stimulus
             line = self._line(transmission, self._delay(f"from host {transmission.name}", transmission.agent), enters=True)
@@ -241,6 +258,8 @@ class MessageRecords:
         """
         if not handle.interval:
             return None
+        if not handle.is_periodic:
+            self.resources.context.notes.assume(NO_LONGER)
         turns = list(others) or [handle]
         jitter = Uniform(lower=0, upper=handle.jitter) if handle.jitter else None
         offset = self._phase(turns[0], handle.interval, first=0) + turns.index(handle) * handle.interval
@@ -263,7 +282,10 @@ class MessageRecords:
     # Lines.
 
     def _delay(self, place: str, *spans: Span) -> int:
-        """The stream of a delay that consists of several; of one whose maximum is unknown, only the minimum is known."""
+        """The stream of a delay that consists of several.
+
+        Instead of a maximum that is unknown, the minimum counts; nothing that depends on it is observed: see `obstacle`.
+        """
         least = sum(span.least for span in spans)
         most = sum(span.least if span.most is None else span.most for span in spans)
         if most > least:
@@ -329,14 +351,3 @@ class MessageRecords:
             self.image.put(record, {field_: first, field_ + 1: end})
         first, end = self.image.items(self.alarms)
         return {layout.CARRIED_VALUES: self._carried, layout.ALARMS: first, layout.ALARMS_END: end}
-
-
-def unknown_wait(publication_topic: str, timeout: Time | None) -> str:
-    """Why it is not known how long a publication waits."""
-    until = "" if timeout is None else f", up to {time_text(timeout)}"
-    return f"it is not stated how long the publication of {publication_topic!r} waits for its acknowledgement{until}"
-
-
-def acknowledgements(transmission: str, system: System) -> Iterator[Transmission]:
-    """The messages that acknowledge one."""
-    yield from (each for each in system.transmissions.values() if each.acknowledges == transmission)

@@ -133,7 +133,7 @@ class RunEvaluation:
 
     def _process(self, name: str, found: JobMetrics) -> ProcessObservation:
         memory, record, deadline = self.run.driver.memory, self.program.records[name], self._deadline(name)
-        pending = self.run.driver.pending(name)
+        pending = 0 if self._waits_for_data(record) else self.run.driver.pending(name)
         used = found.total(JobMetric.RUNNING_TIME) + found.total(JobMetric.POLLING_TIME) + self._used_by_last_job(record)
         placement = self.context.placement(name)
         waited = self.run.end - int(memory[record + layout.ACTIVATION]) if pending else 0
@@ -153,6 +153,12 @@ class RunEvaluation:
             deadline=None if deadline is None else deadline.value,
             is_implicit=deadline is not None and deadline.is_implicit,
         )
+
+    def _waits_for_data(self, record: int) -> bool:
+        """Whether a process is in the wait of an executor, after which its next job begins."""
+        memory = self.run.driver.memory
+        reader = int(memory[record + layout.READS_WITH])
+        return reader != 0 and int(memory[reader + layout.AWAITED]) == 0
 
     def _used_by_last_job(self, record: int) -> int:
         """The time in which the job that has not ended has had a core."""

@@ -13,7 +13,7 @@ from opponent.models.reading import Body, Item, Played, Process
 
 
 class Points(StrEnum):
-    """Where a cooperative task lets others go first."""
+    """The points at which a cooperative task can be preempted."""
 
     SCHEDULE_POINTS = "schedule points"
     TOP_CALLS = "also after calls at the top of its body"
