@@ -78,7 +78,7 @@ def test_a_callback_that_runs_between_messages_does_not_publish_then(author):
             - name: node
               subscriptions:
                 - {name: Echo, topic: in, rate: 25 Hz, message_size: 4 B, execution_time: 5 us, publishes: [out]}
-              publishers: [{topic: out, message_size: 4 B}]
+              publishers: [{topic: out, message_size: 4 B, reliability: best-effort}]
         """
     )
     found = simulate_system(assembly.system_with_bus(), Options(duration=SECOND))
