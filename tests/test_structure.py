@@ -30,7 +30,7 @@ LINES = {
     "difference": 790,
     "editor": 506,
     "errors": 13,
-    "executors": 1555,
+    "executors": 1790,
     "findings": 495,
     "judge": 561,
     "measure": 1052,
@@ -46,7 +46,7 @@ LINES = {
     "timing": 5086,
     "trace": 4803,
     "units": 164,
-    "uros": 5963,
+    "uros": 5964,
     "validate": 3611,
     "xmi": 8530,
 }

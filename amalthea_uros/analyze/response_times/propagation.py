@@ -8,14 +8,15 @@ point is found if there is one.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from amalthea_uros.analyze.response_times.constant_schedule import constant_responses
 from amalthea_uros.analyze.response_times.core import responses_on
 from amalthea_uros.analyze.response_times.known_offsets import tightened
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.errors import UnknownError
-from amalthea_uros.executors.semantics.loops import sleep_of, why_dense, workload
+from amalthea_uros.executors.bounds.occurrences import ExecutorOccurrences, least_occurrences, occurrences
+from amalthea_uros.executors.semantics.loops import sleep_of, why_deferred, why_dense, workload
 from amalthea_uros.perf.activities import Trigger
 from amalthea_uros.perf.software import Process
 from amalthea_uros.timing.activation.activations import Output
@@ -26,7 +27,7 @@ from amalthea_uros.timing.response import Response
 from amalthea_uros.timing.scheduling.scheduled import ScheduledProcess
 from amalthea_uros.units import Time
 
-#: Maximum number of rounds, and of jobs of busy windows in all rounds; if jitter still increases then, it does not converge.
+#: Maximum number of steps, and of jobs of busy windows in all steps; if jitter still increases then, it does not converge.
 MAX_ROUNDS = 100
 MAX_JOBS = 50_000
 
@@ -55,20 +56,33 @@ def _iterate(solution: Solution, diverging: set[str]) -> set[str]:
     on_cores: dict[str, _CoreRound] = {}
     work = 0
     for number in range(MAX_ROUNDS):
-        previous, known_reasons = responses, len(solution.reasons)
-        solution.event_models = _event_models(solution, diverging, previous)
+        previous, known_reasons, activations = responses, len(solution.reasons), solution.event_models
+        executors = _executor_occurrences(solution, previous if number else None)
+        solution.event_models = _event_models(solution, diverging, previous, executors)
         responses = {}
         for core in solution.context.system.cores:
             on_cores[core] = _round_on(core, solution, on_cores.get(core))
             responses |= on_cores[core].responses
-        # What became unknown in this round makes unknown what it activates.
-        if responses == previous and len(solution.reasons) == known_reasons:
+        # What became unknown in this step makes unknown what it activates.
+        is_stable = not solution.context.system.executors or solution.event_models == activations
+        if responses == previous and is_stable and len(solution.reasons) == known_reasons:
             solution.responses = responses
             return set()
         work += sum(response.jobs for response in responses.values())
         if number and work > MAX_JOBS:
             break
-    return {name for name, response in responses.items() if response != previous.get(name)}
+    changing = {name for name, response in responses.items() if response != previous.get(name)}
+    return changing | {name for name, events in solution.event_models.items() if events != activations.get(name)}
+
+
+def _executor_occurrences(solution: Solution, responses: Mapping[str, Response] | None) -> ExecutorOccurrences:
+    """When executors send, and how late they are, as it follows from the previous step; the least for the first one."""
+    if not solution.context.system.executors:
+        return ExecutorOccurrences()
+    if responses is None:
+        return least_occurrences(solution.context)
+    # What is derived from a solution is kept in it, so that each step needs its own.
+    return occurrences(replace(solution, responses=dict(responses), schedules={}, _threads={}))
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,24 +94,25 @@ class _CoreRound:
 
 
 def _round_on(core: str, solution: Solution, previous: _CoreRound | None) -> _CoreRound:
-    """The response times on a core; those of the previous round if its activations have not changed."""
+    """The response times on a core; those of the previous step if its activations have not changed."""
     activations = [solution.event_models.get(scheduled.name) for scheduled in solution.context.on_core(core)]
     if previous is not None and activations == previous.activations:
         return previous
     return _CoreRound(activations, responses_on(core, solution))
 
 
-def _event_models(solution: Solution, diverging: set[str], responses: Mapping[str, Response]) -> dict[str, EventModel]:
+def _event_models(
+    solution: Solution, diverging: set[str], responses: Mapping[str, Response], executors: ExecutorOccurrences
+) -> dict[str, EventModel]:
     """The activations of each process, given the previous response times."""
     context = solution.context
-    output = _output(solution, responses)
+    output = _output(solution, responses, executors)
     found: dict[str, EventModel] = {}
     for name, scheduled in context.scheduled.items():
         if name in diverging:
             continue
         try:
-            _require_known_iterations(name, context)
-            events = _workload(scheduled, context.activations.of(scheduled.process, output), context)
+            events = _activations(scheduled, output, executors, context)
             if isinstance(events, PeriodicEvents) and events.jitter * context.time_base(name) > MAX_INPUT:
                 raise UnknownError("its jitter exceeds the supported range of times")
             found[name] = events
@@ -107,36 +122,41 @@ def _event_models(solution: Solution, diverging: set[str], responses: Mapping[st
     return found
 
 
-def _workload(item: ScheduledProcess, events: EventModel, context: TimingContext) -> EventModel:
-    """The activations of a process; of the rounds of an executor with a sleep, those of rounds that all are the longest."""
-    executor, demand = context.system.executor_of_task.get(item.name), context.demands.get(item.name)
+def _activations(item: ScheduledProcess, output: Output, executors: ExecutorOccurrences, context: TimingContext) -> EventModel:
+    """The activations of a process; of messages of executors, and of their iterations, as `executors.bounds` has them."""
+    if item.name in executors.sent:
+        sent = executors.sent[item.name]
+        if sent is None:
+            raise UnknownError("how late the executor that sends it is has no bound")
+        return sent
+    events, demand = context.activations.of(item.process, output), context.demands.get(item.name)
+    executor = context.system.executor_of_task.get(item.name)
     if executor is None or demand is None:
         return events
-    return workload(executor, events, max_time(demand.worst, context.time_base(item.name)))
+    longest = max_time(demand.worst, context.time_base(item.name))
+    if _has_effects(item, executors, context):
+        late, deferred = executors.lateness[item.name], why_deferred(executor)
+        reason = why_dense(executor, context.system.executors, longest) or (deferred if late is None else "")
+        if reason:
+            raise UnknownError(reason)
+        if deferred and late:
+            return Delayed(events, late)
+    return workload(executor, events, longest)
 
 
-def _require_known_iterations(name: str, context: TimingContext) -> None:
-    """Refuse rounds of an executor that can be closer together than their stimulus says, if that matters to any other process."""
-    executor, item = context.system.executor_of_task.get(name), context.scheduled[name]
-    demand = context.demands.get(name)
-    if executor is None or demand is None:
-        return
-    reason = why_dense(executor, context.system.executors, max_time(demand.worst, context.time_base(name)))
-    delayed = (other for other in context.on_core(item.core) if other.rank <= item.rank and other.name != item.name)
-    if reason and (any(delayed) or _triggers_others(item, context)):
-        raise UnknownError(reason)
-
-
-def _triggers_others(item: ScheduledProcess, context: TimingContext) -> bool:
-    """Whether a process activates others."""
+def _has_effects(item: ScheduledProcess, executors: ExecutorOccurrences, context: TimingContext) -> bool:
+    """Whether it matters to other processes when iterations of an executor execute, besides those messages that are known."""
+    if any(other.rank <= item.rank and other.name != item.name for other in context.on_core(item.core)):
+        return True
     try:
         positions = context.dataflow.events.positions(item.name)
     except UnknownError:
         return True
-    return any(isinstance(position.activity, Trigger) for position in positions)
+    triggered = (position.activity.stimulus for position in positions if isinstance(position.activity, Trigger))
+    return any(name not in executors.sent for stimulus in triggered for name in context.activations.activated(stimulus))
 
 
-def _output(solution: Solution, responses: Mapping[str, Response]) -> Output:
+def _output(solution: Solution, responses: Mapping[str, Response], executors: ExecutorOccurrences) -> Output:
     """The events caused by the jobs of processes."""
     context = solution.context
 
@@ -148,6 +168,8 @@ def _output(solution: Solution, responses: Mapping[str, Response]) -> Output:
         if executor is not None and sleep_of(executor).lower:
             # Between two rounds are the sleep and at least a whole round, from any point of the one to that of the other.
             return events
+        if executor is not None and why_deferred(executor):
+            return Delayed(events, executors.lateness[process.name] or 0)
         response = responses.get(process.name)
         if response is None:
             return events

@@ -7,12 +7,13 @@ them since u is at most k cycles L after it, and
 
     unread just before it  <=  eta(k L) - (k - 1)
 
-with the most arrivals eta in such a window; nothing is unread after it if eta(k L) <= k, and it begins anew. So at most N = max over k
-are unread, and what arrives is read at most N L later: its age is at most Q = N L. At any time, the unread messages of a kind are
-those that came in the last Q, at most its eta(Q).
+with the most arrivals eta in such a window; nothing is unread after it if eta(k L) <= k, and it begins anew.
 
 Publications that wait read all messages up to their acknowledgement. It is read by them, and does not add to the others, unless they
-can time out before it comes.
+can time out before it comes. If they cannot, nothing is unread that arrived before it, and u begins anew: so the cycles after the
+first one contain no such publication, and take at most M instead of L. So at most N = max over k of eta(L + (k - 1) M) - (k - 1) are
+unread. What arrives is read at most L + (N - 1) M later, or in a cycle before that, by its publication: Q = 2 L + (N - 2) M, or L if
+N = 1. At any time, the unread messages of a kind are those that came in the last Q, at most its eta(Q).
 
 L contains the times of publications and of acknowledgements, which contain the unread messages. That the least solution of these
 equations holds is shown by induction over time: until some time was longer than in it, no cycle was longer than L, so that no more
@@ -80,39 +81,47 @@ def acknowledged(solved: SolvedSystem) -> Mapping[str, Arriving | None]:
     return found
 
 
-def backlog_age(length: Time | None, sending: Mapping[str, Span], solved: SolvedSystem) -> Time | None:
+def backlog_age(cycle: Time | None, further: Time | None, sending: Mapping[str, Span], solved: SolvedSystem) -> Time | None:
     """The greatest age of an unread message; None if there is no bound.
 
     Parameters
     ----------
-    length : of a cycle without a wait; None if it has no bound
+    cycle : longest cycle without a wait; None if it has no bound
+    further : longest one in which no publication reads until its acknowledgement
     """
-    if length is None:
+    if cycle is None or further is None:
         return None
-    kinds = [found for _, found in _read_in_iterations(length, sending, solved)]
+    kinds = [found for _, found in _read_in_iterations(sending, solved)]
     known = [each for each in kinds if each is not None]
     if len(known) < len(kinds):
         return None
-    most = max_backlog(known, length)
-    return None if most is None else most * length
+    most = max_backlog(known, cycle, further)
+    if most is None or most == 1:
+        return most and cycle
+    return 2 * cycle + (most - 2) * further
 
 
-def max_backlog(kinds: Sequence[Arriving], length: Time) -> int | None:
+def max_backlog(kinds: Sequence[Arriving], cycle: Time, further: Time) -> int | None:
     """The most messages that can be unread; None if there is no bound.
 
     Parameters
     ----------
-    length : of a cycle without a wait
+    cycle, further : see `backlog_age`
     """
-    if sum(each.parts * each.events.rate for each in kinds) * length >= 1:
+    if sum(each.parts * each.events.rate for each in kinds) * further >= 1:
         return None
     most = 1
     for count in range(1, MAX_BACKLOG):
-        arrived = sum(each.most(count * length) for each in kinds)
+        arrived = sum(each.most(cycle + (count - 1) * further) for each in kinds)
         most = max(most, arrived - count + 1)
         if arrived <= count:
             return most
     return None
+
+
+def reads_until_acknowledged(publication: Publication, sending: Mapping[str, Span]) -> bool:
+    """Whether a publication reads all messages before its acknowledgement."""
+    return publication.waits and not times_out(publication, sending)
 
 
 def times_out(publication: Publication, sending: Mapping[str, Span]) -> bool:
@@ -146,25 +155,22 @@ def _intervals(solved: SolvedSystem) -> list[Time | None]:
     return [None if each is None else each.delta_min(2) for each in events]
 
 
-def protocol_overhead(length: Time, sending: Mapping[str, Span], solved: SolvedSystem) -> list[Arriving | None]:
-    """The acknowledgements and heartbeats that waits of iterations can read; None for one whose arrivals are unknown.
-
-    Parameters
-    ----------
-    length : of a cycle without a wait
-    """
-    return [found for each, found in _read_in_iterations(length, sending, solved) if each.purpose is not Purpose.DATA]
+def protocol_overhead(sending: Mapping[str, Span], solved: SolvedSystem) -> list[Arriving | None]:
+    """The acknowledgements and heartbeats that waits of iterations can read; None for one whose arrivals are unknown."""
+    return [found for each, found in _read_in_iterations(sending, solved) if each.purpose is not Purpose.DATA]
 
 
-def _read_in_iterations(
-    length: Time, sending: Mapping[str, Span], solved: SolvedSystem
-) -> Iterator[tuple[Transmission, Arriving | None]]:
+def _read_in_iterations(sending: Mapping[str, Span], solved: SolvedSystem) -> Iterator[tuple[Transmission, Arriving | None]]:
     system = solved.context.system
     read_before = {each.acknowledgement for each in publications(system) if not times_out(each, sending)}
     by_message = {system.transmissions[name].acknowledges: each for name, each in acknowledged(solved).items()}
     own_heartbeats = {each.name for each in heartbeats(system)}
-    # Each publication ends in the cycle in which it begins: before the first heartbeat.
-    is_silent = not has_unacknowledged(sending, solved) and all(each and each > length for each in _intervals(solved))
+    # Each publication ends before the first heartbeat, which follows an interval after its message.
+    times = [sending.get(each.transmission or "", Span()).most for each in publications(system) if each.reliable]
+    longest = None if None in times else max(filter(None, times), default=0)
+    is_silent = not has_unacknowledged(sending, solved) and all(
+        each and longest is not None and each > longest for each in _intervals(solved)
+    )
     for each in system.transmissions.values():
         if each.direction is Direction.TO_AGENT or each.purpose is Purpose.FOREIGN or each.name in read_before:
             continue

@@ -24,7 +24,13 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from amalthea_uros.errors import UnknownError
-from amalthea_uros.executors.bounds.backlog import acknowledged, backlog_age, has_unacknowledged, max_heartbeats
+from amalthea_uros.executors.bounds.backlog import (
+    acknowledged,
+    backlog_age,
+    has_unacknowledged,
+    max_heartbeats,
+    reads_until_acknowledged,
+)
 from amalthea_uros.executors.bounds.solved_system import SolvedSystem, ThreadProcessor
 from amalthea_uros.executors.semantics.demand import IterationDemand
 from amalthea_uros.executors.semantics.loops import SLEEP_RESOLUTION, longest_wait, min_pace, sleep_of
@@ -127,12 +133,12 @@ class Cycle:
         )
         if not acknowledgements(system):
             return cycle
-        return replace(cycle, backlog_age=self._backlog_age(cycle.longest))
+        return replace(cycle, backlog_age=cycle._backlog_age())
 
-    def _backlog_age(self, length: Time | None) -> Time | None:
+    def _backlog_age(self) -> Time | None:
         """The greatest age of a message in the receive buffer; if this executor does not read in its waits, that of one that does."""
         if reads_in_waits(self.executor):
-            return backlog_age(length, self.sending, self.solved)
+            return backlog_age(self.longest, self._longest_without_reading, self.sending, self.solved)
         ages = [
             _age_by(each, self.solved, self.sending)
             for each in sharing(self.executor, self.solved.context.system.executors)
@@ -242,15 +248,10 @@ class Cycle:
 
     def longest_with(self, wait: Time) -> Time | None:
         """The longest cycle with some wait, after which the thread has to get its core again; None if it is not bounded."""
-        part, session, writing = self.whole, self.session_wait, self.writing
-        if session is None or writing.most is None or part.suspension.most is None or self.busy is None:
+        part, suspended, beginning = self.whole, self._suspended(wait), self._beginning(wait)
+        if part.suspension.most is None or suspended is None or self.busy is None or beginning is None:
             return None
-        suspended = session + writing.most + wait
-        resumed = (1 if session else 0) + writing.times + (1 if wait else 0)
-        beginning = self.processor.time(self.demand.spin.upper, suspended, 1 + resumed)
-        if beginning is None:
-            return None
-        together = part.suspension.most + suspended
+        together, resumed = part.suspension.most + suspended, self._resumed(wait)
         match self.executor.loop.kind:
             case LoopKind.PERIODIC:
                 unslept = self.processor.time(part.demand, together, part.resumed + resumed)
@@ -261,6 +262,51 @@ class Cycle:
                 joint = self.processor.time(part.demand, together + self.sleep, part.resumed + 1 + resumed)
                 return min([*found, *([] if joint is None else [joint])])
         return self.processor.time(part.demand, together, part.resumed + resumed)
+
+    @property
+    def _longest_without_reading(self) -> Time | None:
+        """The longest cycle without a wait in which no publication reads until its acknowledgement; None if it is not bounded."""
+        handles = [
+            each
+            for each in self.executor.handles
+            if not any(reads_until_acknowledged(publication, self.sending) for publication in each.publications)
+        ]
+        return replace(self, executor=replace(self.executor, handles=tuple(handles))).longest
+
+    def _suspended(self, wait: Time) -> Time | None:
+        """How long the beginning of an iteration is suspended, with some wait; None if it is not bounded."""
+        session, writing = self.session_wait, self.writing.most
+        return None if session is None or writing is None else session + writing + wait
+
+    def _resumed(self, wait: Time) -> int:
+        """How often the thread becomes ready after a suspension in it."""
+        return (1 if self.session_wait else 0) + self.writing.times + (1 if wait else 0)
+
+    def _beginning(self, wait: Time) -> Time | None:
+        """The longest beginning of an iteration, with some wait; None if it is not bounded."""
+        return self.processor.time(self.demand.spin.upper, self._suspended(wait), 1 + self._resumed(wait))
+
+    @cached_property
+    def until_check(self) -> Time | None:
+        """The longest time from the arrival that ends a wait until it is fixed what is ready; None if it is not bounded."""
+        return self._beginning(0)
+
+    @cached_property
+    def until_wait(self) -> Time | None:
+        """The longest time from when it is fixed what is ready to the next wait; None if it is not bounded."""
+        if self.executor.loop.kind is LoopKind.PERIODIC:
+            return self.longest
+        return None if self.busy is None else self.busy + self.sleep
+
+    @cached_property
+    def greatest_age(self) -> Time | None:
+        """The greatest age of a message in the receive backlog, also if none is acknowledged; None if it has no bound."""
+        return self.backlog_age if acknowledgements(self.solved.context.system) else self._backlog_age()
+
+    @property
+    def loses_messages(self) -> bool:
+        """Whether messages can be lost on a wire, so that none comes for certain."""
+        return any(wire.loses_messages for wire in self.solved.context.system.network.wires)
 
     @cached_property
     def shortest(self) -> Time:
@@ -275,8 +321,14 @@ class Cycle:
     @cached_property
     def shortest_with_message(self) -> Time:
         """The shortest cycle of an iteration that calls a callback for a message."""
-        costs = [self.demand.of_handle(handle).lower for handle in self.executor.handles if is_message(handle)]
-        return sleep_of(self.executor).lower + (self.demand.spin.lower + min(costs, default=0)) // self.time_base
+        return min(map(self._shortest_executing, messages(self.executor)), default=self.shortest)
+
+    def shortest_with(self, handle: Handle) -> Time:
+        """The shortest time between two calls of a handle, from any instant in the first one to the same in the other."""
+        return self._shortest_executing(handle) + self.suspension(handle).least
+
+    def _shortest_executing(self, handle: Handle) -> Time:
+        return sleep_of(self.executor).lower + (self.demand.spin.lower + self.demand.of_handle(handle).lower) // self.time_base
 
     @property
     def most_served(self) -> int | None:

@@ -6,12 +6,13 @@ callback.
 - A timer: once it is due, waits end at once. In the worst case what is ready was fixed just before, so that it is called after one
   cycle: L + E. That a wait can end up to 1 ms before the timer is due, without a call, is no longer than that.
 - A guard condition: a trigger does not end the wait, so that it is seen after one cycle and the wait: L + W + E.
-- A message: after n cycles, see `queue`: n L + E, or n (L + W) + E if messages can be stored before the iteration that takes them.
+- A message: after n cycles, see `queue`: n L + E, or n (L + W) + E if messages can be stored before the iteration that takes them, or
+  what `storage` has for that.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from amalthea_uros._internal.by_name import Results
@@ -27,6 +28,7 @@ from amalthea_uros.executors.bounds.losses import (
 )
 from amalthea_uros.executors.bounds.queue import Delay, certain_overload, delay_of
 from amalthea_uros.executors.bounds.solved_system import METHOD, SolvedSystem
+from amalthea_uros.executors.bounds.storage import Storage, storage_of
 from amalthea_uros.executors.results import ExecutorResult, HandleResult, TimePart
 from amalthea_uros.executors.semantics.loops import longest_wait, why_not_woken
 from amalthea_uros.executors.semantics.readiness import is_message, sharing, starts_alone
@@ -45,10 +47,14 @@ def handle_result(handle: Handle, cycle: Cycle, extra_jitter: Mapping[str, Time 
     wait = longest_wait(cycle.executor) if waited_for else 0
     length = cycle.longest_with(wait)
     delay = _delay(handle, cycle, length, extra_jitter)
+    ready = None if delay.cycles is None or length is None else delay.cycles * length - delay.earlier
+    stored = storage_of(handle, cycle, extra_jitter) if is_message(handle) and wait and not delay.is_overload else None
+    if stored is not None and ready is not None and ready <= stored.most:
+        stored = None
+    if stored is not None:
+        ready = stored.most
     start, end = cycle.until_start(handle), cycle.until_end(handle)
-    worst = None
-    if delay.cycles is not None and length is not None and end is not None:
-        worst = delay.cycles * length - delay.earlier + end
+    worst = None if ready is None or end is None else ready + end
     lateness = None
     if handle.kind is HandleKind.TIMER:
         is_bounded = delay.cycles is not None and cycle.longest is not None and start is not None
@@ -74,7 +80,7 @@ def handle_result(handle: Handle, cycle: Cycle, extra_jitter: Mapping[str, Time 
         ),
         lateness=lateness,
         lost=lost,
-        terms=() if worst is None else _terms(handle, cycle, delay, wait, waited_for, worst),
+        terms=() if worst is None else _terms(_until_ready(cycle, delay, wait, waited_for, stored), handle, cycle, worst),
     )
 
 
@@ -95,26 +101,28 @@ def _delay(handle: Handle, cycle: Cycle, length: Time | None, extra_jitter: Mapp
     return delay_of(handle, cycle, length, extra_jitter)
 
 
-def _terms(handle: Handle, cycle: Cycle, delay: Delay, wait: Time, waited_for: str, worst: Time) -> tuple[TimePart, ...]:
-    """The parts of the worst response time of a handle, in the order of time.
-
-    Parameters
-    ----------
-    delay : before the iteration that serves it
-    wait : what each cycle waits
-    waited_for : why it does
-    """
-    found = [
-        *_of_cycle(cycle),
-        TimePart(name="wait", most=wait, why=waited_for),
-        _before(cycle, delay, wait),
-        *_of_iteration(handle, cycle),
-    ]
-    stated = [term for term in found if term.most]
+def _terms(until_ready: Sequence[TimePart], handle: Handle, cycle: Cycle, worst: Time) -> tuple[TimePart, ...]:
+    """The parts of the worst response time of a handle, in the order of time."""
+    stated = [term for term in (*until_ready, *_of_iteration(handle, cycle)) if term.most]
     rest = worst - sum(term.most or 0 for term in stated)
     if rest:
         stated.insert(-1, TimePart(name="preemption", most=rest, why="processes of higher priority, blocking, and rounding"))
     return tuple(stated)
+
+
+def _until_ready(cycle: Cycle, delay: Delay, wait: Time, waited_for: str, stored: Storage | None) -> list[TimePart]:
+    """The parts of the time until the iteration that serves a handle.
+
+    Parameters
+    ----------
+    delay : before that iteration
+    wait : what each cycle waits
+    waited_for : why it does
+    stored : what bounds this time better than cycles of which each waits; None if they do
+    """
+    if stored is not None:
+        return [TimePart(name="storage", most=stored.most, why=f"{waited_for}; {stored.why}")]
+    return [*_of_cycle(cycle), TimePart(name="wait", most=wait, why=waited_for), _before(cycle, delay, wait)]
 
 
 def _of_cycle(cycle: Cycle) -> list[TimePart]:

@@ -67,7 +67,7 @@ def competing(handle: Handle, cycle: Cycle, extra_jitter: Mapping[str, Time | No
     executors = sharing(cycle.executor, cycle.solved.context.system.executors)
     handles = [each for executor in executors for each in messages(executor)]
     data = [_parts(each, arrivals(each, extra_jitter), cycle) for each in handles]
-    overhead = [] if cycle.longest is None else protocol_overhead(cycle.longest, cycle.sending, cycle.solved)
+    overhead = protocol_overhead(cycle.sending, cycle.solved)
     known = [each.as_events for each in overhead if each is not None]
     if len(known) < len(overhead):
         raise UnknownError("how many acknowledgements and heartbeats arrive is not known")

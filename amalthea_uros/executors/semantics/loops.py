@@ -141,13 +141,25 @@ def next_expiration(due: Time, called: Time, period: Time) -> Time:
     return due + (lost_periods(called - due, period) + 1) * period
 
 
+def why_deferred(executor: Executor) -> str:
+    """Why iterations of a loop without a sleep can follow what begins them later and closer together; "" if they cannot.
+
+    The stimulus of such an executor occurs when something arrives that begins an iteration. While an iteration is suspended, because a
+    publication waits, others become due, and follow it without a pause: to processes of lower priority they come later and closer
+    together.
+    """
+    waiting = [publication.topic for handle in executor.handles for publication in handle.publications if publication.waits]
+    if min_pace(executor) or not waiting:
+        return ""
+    return (
+        f"its loop has no sleep, so that iterations follow each other after one in which a publication of {waiting[0]!r} waited"
+    )
+
+
 def why_dense(executor: Executor, executors: Iterable[Executor], longest: Time) -> str:
     """Why it is unknown how close together the iterations of an executor can be; "" if its stimulus says it.
 
-    The stimulus of an executor without a sleep occurs when something arrives that begins an iteration. While an iteration is
-    suspended, because a publication waits, others become due, and follow it without a pause: to processes of lower priority they come
-    later and closer together. A loop with a period catches up after an iteration that took longer, with iterations that follow each
-    other as messages arrive.
+    A loop with a period catches up after an iteration that took longer, with iterations that follow each other as messages arrive.
 
     Parameters
     ----------
@@ -155,16 +167,15 @@ def why_dense(executor: Executor, executors: Iterable[Executor], longest: Time) 
     """
     if min_pace(executor):
         return ""
-    waiting = [publication.topic for handle in executor.handles for publication in handle.publications if publication.waits]
-    if waiting:
-        return f"its loop has no sleep, so that iterations follow each other after one in which a publication of {waiting[0]!r} waited"
     if shares_session(executor, executors):
         return "its loop has no sleep, so that iterations follow each other after one that waited for others of its session"
-    if executor.loop.kind is LoopKind.PERIODIC and longest_wait(executor) + longest > (executor.loop.period or 0):
+    if executor.loop.kind is not LoopKind.PERIODIC:
+        return ""
+    if longest_wait(executor) + longest > (executor.loop.period or 0):
         return (
             "a wait and an iteration can be longer than its period, so that iterations follow each other until it has caught up"
         )
-    return ""
+    return why_deferred(executor)
 
 
 def workload(executor: Executor, events: EventModel, longest: Time) -> EventModel:

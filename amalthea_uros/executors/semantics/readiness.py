@@ -15,7 +15,7 @@ from fractions import Fraction
 
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.executors import Executor, Handle, HandleKind, TriggerKind
-from amalthea_uros.timing.event_models.models import EventModel, PeriodicEvents, SporadicEvents
+from amalthea_uros.timing.event_models.models import PeriodicEvents, SporadicEvents
 from amalthea_uros.units import SECOND, Time
 
 #: A stored message is removed when it is older than the lifespan of its QoS, by default 30 s.
@@ -110,8 +110,8 @@ def _kept(handle: Handle, stored: int | None) -> int | None:
     return min(known) if known else None
 
 
-def arrivals(handle: Handle, extra_jitter: Mapping[str, Time | None]) -> EventModel:
-    """The event model of the messages of a handle.
+def arrivals(handle: Handle, extra_jitter: Mapping[str, Time | None]) -> PeriodicEvents:
+    """The event model of the messages of a handle, or of the expirations of a timer.
 
     Parameters
     ----------

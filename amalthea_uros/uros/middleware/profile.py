@@ -13,6 +13,7 @@ from typing import NamedTuple, Self
 
 from amalthea_uros.perf.executors import WaitBehaviour
 from amalthea_uros.perf.named import Brief
+from amalthea_uros.perf.network import Direction
 from amalthea_uros.spec.application import Application
 from amalthea_uros.spec.middleware import Middleware, MiddlewareTask
 from amalthea_uros.spec.profiles import ProfileData, ThreadData
@@ -174,10 +175,9 @@ class Profile(ABC):
     def sending(self) -> Sending:
         """How messages are sent."""
 
-    @property
     @abstractmethod
-    def heartbeat(self) -> Heartbeat:
-        """What it sends by itself, in both directions."""
+    def heartbeat(self, direction: Direction) -> Heartbeat:
+        """What it sends by itself in a direction."""
 
     @property
     @abstractmethod

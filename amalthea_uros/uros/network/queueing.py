@@ -92,8 +92,8 @@ class Queueing:
         messages = tuple(messages)
         for message in messages:
             yield from self._received(message) if message.direction is Direction.TO_CONTROLLER else self._sent(message)
-        heartbeat = self.profile.heartbeat
         for direction in Direction:
+            heartbeat = self.profile.heartbeat(direction)
             if not heartbeat.is_answered:
                 yield self._heartbeat(heartbeat, direction)
             elif any(each.direction is direction and each.is_acknowledged for each in messages):

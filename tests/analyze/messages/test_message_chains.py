@@ -269,7 +269,7 @@ def test_another_sender_on_the_wire_is_waited_for():
     ],
 )
 def test_messages_that_come_late_lie_unread_together(parts, unread):
-    assert max_backlog([Arriving(events=SporadicEvents(10 * MS), jitter=40 * MS, parts=parts)], 6 * MS) == unread
+    assert max_backlog([Arriving(events=SporadicEvents(10 * MS), jitter=40 * MS, parts=parts)], 6 * MS, 6 * MS) == unread
 
 
 def with_answers(found, interval, write):
@@ -323,9 +323,16 @@ def test_a_publication_answers_what_was_unread_and_what_comes_while_it_waits(int
 
 
 def test_messages_that_come_faster_than_rounds_read_them_keep_a_publication_until_its_timeout():
-    # A cycle takes at least 10 ms of sleep and a round trip of 11.55 ms; the last answer can begin when the timeout ends.
-    found = with_answers(board(publication=RELIABLE), 20_000, 1000)
+    # A cycle takes at least 10 ms of sleep, also without a publication; the last answer can begin when the timeout ends.
+    found = with_answers(board(publication=RELIABLE), 10_000, 1000)
     assert sending_times(solution(found))["odom_out"].most == (ODOM + 1000) * US + RELIABLE.timeout
+
+
+def test_a_publication_reads_what_came_before_its_acknowledgement_so_that_nothing_older_is_unread():
+    # Without it a cycle takes 12 ms, with it 27 ms: more than 20 ms, but no message is unread for longer than two cycles. In 54 ms,
+    # 15.55 ms and the jitter of 1.74 ms, four come at 20 ms each.
+    found = with_answers(board(publication=RELIABLE), 20_000, 1000)
+    assert sending_times(solution(found))["odom_out"].most == (ODOM + 2000 + ACK + CMD + 4000) * US
 
 
 def test_a_publication_has_no_bound_if_its_write_has_none():

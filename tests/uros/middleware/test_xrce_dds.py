@@ -2,6 +2,7 @@
 
 import pytest
 
+from amalthea_uros.perf.network import Direction
 from amalthea_uros.spec.content import nodes_of
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.spec.nodes import plain
@@ -150,5 +151,6 @@ def test_heartbeats():
     # HEARTBEAT of 13 B; the client sends one after 100 ms by default, the agent after 200 ms.
     for keys, interval in (({}, 100), ({"limits": {"UCLIENT_MIN_HEARTBEAT_TIME_INTERVAL": "1 ms"}}, 1)):
         profile = profile_with(**keys)
-        assert profile.heartbeat == (13, interval * MILLISECOND, True)
+        assert profile.heartbeat(Direction.TO_AGENT) == (13, interval * MILLISECOND, True)
+        assert profile.heartbeat(Direction.TO_CONTROLLER) == (13, 200 * MILLISECOND, True)
         assert profile.sending.resends_after == interval * MILLISECOND

@@ -2,6 +2,7 @@
 
 import pytest
 
+from amalthea_uros.perf.network import Direction
 from amalthea_uros.spec.application import Application
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.units import SECOND
@@ -58,7 +59,8 @@ def test_the_longest_content_is_joined_from_fragments(kind, reliable):
 
 def test_keep_alives():
     # A third of the lease of 10 s, rounded down.
-    assert PROFILE.heartbeat == (1, 10 * SECOND // 3, False)
+    for direction in Direction:
+        assert PROFILE.heartbeat(direction) == (1, 10 * SECOND // 3, False)
 
 
 APPLICATION = Application.model_validate({"nodes": [{"name": "node"}]})

@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from amalthea_uros.perf.network import Direction
 from amalthea_uros.spec.application import Application, NodeSection
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.units import MILLISECOND, Time
@@ -61,11 +62,11 @@ class XrceDds(MessageLayout):
             is_protected=how.is_protected or self.middleware.multithread,
         )
 
-    @property
-    def heartbeat(self) -> Heartbeat:
+    def heartbeat(self, direction: Direction) -> Heartbeat:
         """Heartbeats, which follow each other while something is not acknowledged."""
-        client = self._heartbeat_interval
-        return Heartbeat(self.size("heartbeat"), min(client, self.data.sending.heartbeat or client), is_answered=True)
+        client, agent = self._heartbeat_interval, self.data.sending.heartbeat
+        interval = client if direction is Direction.TO_AGENT or agent is None else agent
+        return Heartbeat(self.size("heartbeat"), interval, is_answered=True)
 
     @property
     def _heartbeat_interval(self) -> Time:

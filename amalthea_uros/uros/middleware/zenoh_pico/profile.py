@@ -11,6 +11,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import repeat
 
+from amalthea_uros.perf.network import Direction
 from amalthea_uros.spec.application import Application
 from amalthea_uros.units import MILLISECOND, DataSize, Time
 from amalthea_uros.uros.application.messages import MessageKind
@@ -54,8 +55,7 @@ class ZenohPico(Profile):
             is_protected=how.is_protected,
         )
 
-    @property
-    def heartbeat(self) -> Heartbeat:
+    def heartbeat(self, direction: Direction) -> Heartbeat:
         """Messages that keep the connection alive."""
         interval = self._value("Z_TRANSPORT_LEASE") * MILLISECOND // _KEEP_ALIVES
         return Heartbeat(self.size("heartbeat"), interval, is_answered=False)

@@ -1,0 +1,124 @@
+"""How long a message can be stored before an iteration takes it, if a publication read it while it waited for its acknowledgement.
+
+A stored message does not end the wait of the next iteration: that ends with the next message from the wire, or at its timeout. So
+each iteration takes one message of a handle, but iterations can be as rare as messages, and messages stay behind by as many as were
+stored once.
+
+Let Lb be the time from a check of what is ready to the beginning of the next wait, B that from the arrival which ends a wait to the
+check after it, and L2 = Lb + B. The receive buffer is empty while a wait blocks, so that the messages of a handle that arrive from
+the end of one blocking wait to the beginning of the next one, m iterations later, are at most eta(m L2), that end included. Each of
+the m iterations takes one while any is stored. So if
+
+    eta(m L2) <= m    for all m >= 1,
+
+never more are stored when a wait blocks than when the one before did. In the iteration in which the first one is stored again, those
+that arrived during the greatest age H of the receive backlog can be in it, so that at most
+
+    n = max over j >= 0 of eta(H + (j + 1) L2) - j
+
+are stored when a wait blocks. If the condition does not hold, n is what the handle and all handles together can store; more are lost.
+
+A message is read at most Q after its arrival. If it ends a wait, the check follows B later, and takes another one if n are stored
+already. Of the checks after that, the n-th at the latest takes it, each of which follows Lb, the wait and B after the one before: at
+most L2 + G with the greatest distance G of two messages that come for certain, or the longest cycle with the whole timeout. If its
+handle is the only one of the executor, nothing can be before it in the backlog when nothing of it is taken: H = 0, so that n = 1, and
+the next message of the handle arrives after the wait has begun, and ends it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+
+from amalthea_uros.errors import UnknownError
+from amalthea_uros.executors.bounds.cycle import Cycle
+from amalthea_uros.executors.semantics.loops import longest_wait
+from amalthea_uros.executors.semantics.readiness import arrivals, can_defer, messages, sharing
+from amalthea_uros.perf.executors import Executor, Handle
+from amalthea_uros.timing.event_models.models import EventModel
+from amalthea_uros.units import Time
+
+#: Iterations between two blocking waits; with more, iterations are hardly faster than messages.
+_MAX_ITERATIONS = 10_000
+
+ASSUMPTION = "executors: periodic messages keep coming, as a message that is stored waits for the next one"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Storage:
+    """The longest time from the arrival of a message to the check of the iteration that takes it.
+
+    Attributes
+    ----------
+    why : what it waits for
+    """
+
+    most: Time
+    why: str
+
+
+def storage_of(handle: Handle, cycle: Cycle, extra_jitter: Mapping[str, Time | None]) -> Storage | None:
+    """How long a message of a handle can be stored; None if that has no bound, or depends on other executors or a trigger condition."""
+    executor, until_wait, until_check, age = cycle.executor, cycle.until_wait, cycle.until_check, cycle.greatest_age
+    if None in (until_wait, until_check, age) or not _is_taken_in_each_iteration(handle, cycle):
+        return None
+    try:
+        events = arrivals(handle, extra_jitter)
+    except UnknownError:
+        return None
+    length = (until_wait or 0) + (until_check or 0)
+    # Distances of periodic events grow by the same, so that the condition holds for all m if it does for one.
+    is_drained = events.delta_min(2) > length
+    gaps = [] if cycle.loses_messages else list(_gaps(executor, extra_jitter))
+    if gaps:
+        cycle.solved.context.notes.assume(ASSUMPTION)
+    timed_out = cycle.longest_with(longest_wait(executor))
+    until_next = [] if timed_out is None else [timed_out]
+    if is_drained and executor.handles == (handle,):
+        until_next += gaps
+        why = "a message that is stored is taken when the next one arrives, or the wait times out"
+        return Storage(most=max(length, min(until_next) + (until_check or 0)), why=why) if until_next else None
+    until_next += [length + gap for gap in gaps]
+    count = _stored(events, age or 0, length) if is_drained else _room(handle, executor)
+    if count is None or not until_next:
+        return None
+    why = f"up to {count} are stored for it, each of which is taken when another message arrives, or a wait times out"
+    return Storage(most=(age or 0) + (until_check or 0) + count * min(until_next), why=why)
+
+
+def _is_taken_in_each_iteration(handle: Handle, cycle: Cycle) -> bool:
+    """Whether each iteration takes a message of a handle while any is stored, and only waits for messages on wires."""
+    executor, executors = cycle.executor, cycle.solved.context.system.executors
+    return (
+        len(sharing(executor, executors)) == 1
+        and not can_defer(executor)
+        and executor.waiting.messages_per_wait == 1
+        and handle.sources == 1
+        and all(each.transmission is not None for each in messages(executor))
+    )
+
+
+def _stored(events: EventModel, age: Time, length: Time) -> int | None:
+    """The most messages that are stored when a wait blocks."""
+    most = 1
+    for count in range(_MAX_ITERATIONS):
+        arrived = events.eta_plus(age + (count + 1) * length + 1)
+        most = max(most, arrived - count)
+        if arrived <= count + 1:
+            return most
+    return None
+
+
+def _room(handle: Handle, executor: Executor) -> int | None:
+    """The most messages that are stored for a handle, because others are lost."""
+    return min((limit for limit in (handle.depth, executor.waiting.slots) if limit is not None), default=None)
+
+
+def _gaps(executor: Executor, extra_jitter: Mapping[str, Time | None]) -> Iterator[Time]:
+    """The greatest distances of messages that come for certain, by handles."""
+    for handle in messages(executor):
+        if handle.is_periodic and handle.interval:
+            with suppress(UnknownError):
+                events = arrivals(handle, extra_jitter)
+                yield events.period + events.jitter
