@@ -169,7 +169,10 @@ def _output(solution: Solution, responses: Mapping[str, Response], executors: Ex
             # Between two rounds are the sleep and at least a whole round, from any point of the one to that of the other.
             return events
         if executor is not None and why_deferred(executor):
-            return Delayed(events, executors.lateness[process.name] or 0)
+            late = executors.lateness[process.name]
+            if late is None:
+                raise UnknownError(f"it is triggered by {process.name!r}, which has no bounded response time")
+            return Delayed(events, late)
         response = responses.get(process.name)
         if response is None:
             return events
