@@ -83,7 +83,7 @@ class TimingContext:
         """
         context = cls.of_scheduling(with_bounded_arrivals(system), settings)
         context.unknown_demands = unknown_demands or {}
-        for sentence in arrival_assumptions(system):
+        for sentence in (*arrival_assumptions(system), *system.network.assumptions):
             context.notes.assume(sentence)
         context._find_demands()
         context._find_locks()
