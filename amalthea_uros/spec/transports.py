@@ -239,7 +239,8 @@ class Agent(DescriptionSection):
     name: Name = "Agent"
     """Its name."""
     profile: Name | None = Field(None, examples=["pico2w-usb", "./my-agent.yaml"])
-    """Measured times by the name of their profile, or of a file; what is stated beside it overrides them."""
+    """Measured times: a known profile (`pico2w-usb`, `ra6m5-can-fd`, `ra6m5-uart`, `ra6m5-udp` or `ra6m5-usb`), or a file, e.g.
+    `./my-agent.yaml`; what is stated beside it overrides them."""
     to_controller: AgentTime | None = None
     """Time from the publication of a message on the host to its first byte on the wire; default: unknown."""
     to_host: AgentTime | None = None
@@ -258,7 +259,8 @@ class TransportSection(DescriptionSection):
     """The transport between the controller and the agent: exactly one wire."""
 
     profile: Name | None = Field(None, examples=["pico2w-usb", "./my-link.yaml"])
-    """A measured transport by the name of its profile, or of a file; what is stated beside it overrides its values."""
+    """The transport of a known profile of measured times (`pico2w-usb`, `ra6m5-can-fd`, `ra6m5-uart`, `ra6m5-udp` or `ra6m5-usb`), or
+    of a file, e.g. `./my-link.yaml`; what is stated beside it overrides its values."""
     can: Can | None = None
     """The classic CAN bus, if messages are sent over CAN in blocks of 7 bytes."""
     can_fd: CanFd | None = None

@@ -83,7 +83,7 @@ class TimingContext:
         """
         context = cls.of_scheduling(with_bounded_arrivals(system), settings)
         context.unknown_demands = unknown_demands or {}
-        for sentence in (*arrival_assumptions(system), *system.network.assumptions):
+        for sentence in arrival_assumptions(system):
             context.notes.assume(sentence)
         context._find_demands()
         context._find_locks()
@@ -97,6 +97,8 @@ class TimingContext:
             context.notes.assume("clients execute the runnables of synchronous servers that no process calls")
         if has_overhead_of_tasks(system):
             context.notes.assume(OVERHEAD_ASSUMPTION)
+        for sentence in system.network.assumptions:
+            context.notes.assume(sentence)
         context._note_settings()
         context._schedule()
         return context
