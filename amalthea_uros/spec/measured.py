@@ -30,6 +30,8 @@ _BASES = described(
     measured="The times themselves were measured.",
 )
 _PHRASES = {"fitted": "chosen to fit", "derived": "derived from", "measured": "measured in"}
+#: The same for a transport that was not fitted: times in the agent that were measured or derived on another one are others.
+_WITH = "with which its times follow from"
 #: The parts of a generic micro-ROS model that can name a profile, as sentences call them.
 _PARTS = {"agent": "the agent", "transport": "the transport"}
 
@@ -86,20 +88,20 @@ def with_measured(levels: Sequence[Middleware], folder: Path) -> WithMeasured:
     ------
     ReadError : a profile is not known, its file is wrong, or it lacks what is asked of it.
     """
-    found, assumptions, findings = list(levels), list[str](), list[Finding]()
+    models, assumptions, findings = list(levels), list[str](), list[Finding]()
     for part in _PARTS:
-        index = next((number for number, level in enumerate(found) if getattr(level, part).states("profile")), None)
+        index = next((number for number, level in enumerate(models) if getattr(level, part).states("profile")), None)
         if index is None:
             continue
-        own: _Part = getattr(found[index], part)
+        own: _Part = getattr(models[index], part)
         profile, mistakes = _profile(own, folder)
         times = _stated(profile, part, own)
-        keys = [*_added(times, [getattr(level, part) for level in found[: index + 1]])]
+        keys = [*_added(times, [getattr(level, part) for level in models[: index + 1]])]
         if keys:
             assumptions.append(_sentence(profile, part, keys))
         findings += mistakes
-        found.insert(index + 1, Middleware.model_validate({part: times}))
-    return WithMeasured(tuple(found), tuple(assumptions), tuple(findings))
+        models.insert(index + 1, Middleware.model_validate({part: times}))
+    return WithMeasured(tuple(models), tuple(assumptions), tuple(findings))
 
 
 def _profile(own: _Part, folder: Path) -> tuple[MeasuredProfile, tuple[Finding, ...]]:
@@ -120,7 +122,7 @@ def _profile(own: _Part, folder: Path) -> tuple[MeasuredProfile, tuple[Finding, 
 
 
 def _stated(profile: MeasuredProfile, part: str, own: _Part) -> _Part:
-    """What a profile states about a part; refuses a profile that says nothing about it, or describes another wire."""
+    """Return the times of a part in a profile; refuse a profile without them, or one of another wire."""
     section: _Part = getattr(profile, part)
     message = ""
     if not section.model_fields_set:
@@ -151,4 +153,5 @@ def _sentence(profile: MeasuredProfile, part: str, keys: Sequence[str]) -> str:
     *others, last = map(repr, keys)
     what = f"{', '.join(others)} and {last}" if others else last
     are = "is that" if len(keys) == 1 else "are those"
-    return f"{what} of {_PARTS[part]} {are} of profile {profile.profile!r}, {_PHRASES[profile.basis]} {profile.measured}"
+    how = _WITH if part == "transport" and profile.basis != "fitted" else _PHRASES[profile.basis]
+    return f"{what} of {_PARTS[part]} {are} of profile {profile.profile!r}, {how} {profile.measured}"

@@ -133,8 +133,8 @@ def _completed(
         "middleware": merged_middleware(*measured.levels),
     }
     name = None if platform is None else platform.platform
-    found = (*findings, *measured.findings)
-    return CompleteDescription(description.model_copy(update=update), name, found, measured.assumptions)
+    mistakes = (*findings, *measured.findings)
+    return CompleteDescription(description.model_copy(update=update), name, mistakes, measured.assumptions)
 
 
 def _policy(model: Middleware) -> Middleware:

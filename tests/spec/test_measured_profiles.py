@@ -112,7 +112,7 @@ def test_the_assumption_says_how_the_times_follow_from_what(author):
     assert sentences[1].startswith(
         "'serial.baud_rate', 'serial.driver.write' and 'serial.driver.read' of the transport are those of"
     )
-    assert "profile 'ra6m5-uart', derived from the latencies of an Int64" in sentences[1]
+    assert "profile 'ra6m5-uart', with which its times follow from the latencies of an Int64" in sentences[1]
 
 
 @pytest.mark.parametrize(
