@@ -118,6 +118,7 @@ def test_a_queue_grows_by_what_the_board_takes_too_long():
     assert 999 * (mean - 10) + mean > 2400 > most
     busy = 10 + (87.443 - 62.988) / (900 - 780)
     assert f"{busy:.1f}" == "10.2"
+    assert f"{busy - 10:.3f}" == "0.204"
     assert most < 999 * 0.2 + 10.2 == pytest.approx(210)
 
 

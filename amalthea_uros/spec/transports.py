@@ -238,7 +238,7 @@ class Agent(DescriptionSection):
 
     name: Name = "Agent"
     """Its name."""
-    profile: Name | None = Field(None, examples=["pico2w-usb", "./my-agent.yaml"])
+    profile: Name | None = Field(default=None, examples=["pico2w-usb", "./my-agent.yaml"])
     """Measured times: a known profile (`pico2w-usb`, `ra6m5-can-fd`, `ra6m5-uart`, `ra6m5-udp` or `ra6m5-usb`), or a file, e.g.
     `./my-agent.yaml`; what is stated beside it overrides them."""
     to_controller: AgentTime | None = None
@@ -258,7 +258,7 @@ def _not_too_long(bits: int) -> int:
 class TransportSection(DescriptionSection):
     """The transport between the controller and the agent: exactly one wire."""
 
-    profile: Name | None = Field(None, examples=["pico2w-usb", "./my-link.yaml"])
+    profile: Name | None = Field(default=None, examples=["pico2w-usb", "./my-link.yaml"])
     """The transport of a known profile of measured times (`pico2w-usb`, `ra6m5-can-fd`, `ra6m5-uart`, `ra6m5-udp` or `ra6m5-usb`), or
     of a file, e.g. `./my-link.yaml`; what is stated beside it overrides its values."""
     can: Can | None = None
