@@ -47,7 +47,7 @@ LINES = {
     "trace": 4803,
     "units": 164,
     "uros": 5977,
-    "validate": 3611,
+    "validate": 3612,
     "xmi": 8530,
 }
 

@@ -90,3 +90,15 @@ def test_wrong_times(time, message, author):
     ((line, rule, text),) = author.findings(TEXT.format(agent=f"to_host: {time}"))
     assert (line, rule) == (7, "YML012")
     assert message in text
+
+
+def test_a_sender_waits_for_an_acknowledgement_as_long_as_the_mean(author):
+    def calls(time):
+        text = TEXT.replace("topic: pong, message_size: 8 B, reliability: best-effort", "topic: pong, message_size: 8 B")
+        agent = f"to_controller: 0 ms, to_host: 0 ms, acknowledgement: {time}"
+        system = author.describe(text.format(agent=agent)).system
+        (executor,) = simulate_system(system, Options(duration=SECOND)).executors
+        return executor.handles["Echo"].response_time
+
+    assert calls("{mean: 3 ms}") == calls("3 ms")
+    assert calls("{mean: 3 ms}").max > calls("1 ms").max
