@@ -18,6 +18,8 @@ def resource_folder(name: str) -> Path:
 PLATFORMS = _PACKAGE / "platforms"
 #: The folder of the operating systems, which are data, too.
 RTOSES = PLATFORMS / "rtos"
+#: The folder of the profiles of measured times, which are data, too.
+MEASURED = PLATFORMS / "measured"
 
 
 def known_platforms() -> list[str]:
@@ -28,6 +30,11 @@ def known_platforms() -> list[str]:
 def known_rtoses() -> list[str]:
     """The names of the operating systems that come with this package."""
     return sorted(path.stem for path in RTOSES.glob("*.yaml"))
+
+
+def known_measured() -> list[str]:
+    """The names of the profiles of measured times that come with this package."""
+    return sorted(path.stem for path in MEASURED.glob("*.yaml"))
 
 
 def yaml_data(path: Path) -> Any:

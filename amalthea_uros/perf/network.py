@@ -27,10 +27,21 @@ class WireKind(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Span(Brief):
-    """The least and the greatest of a time; None for a maximum that is not known."""
+    """The least and the greatest of a time; None for a maximum that is not known.
+
+    Attributes
+    ----------
+    mean : what is known instead of the maximum; no bound follows from it
+    """
 
     least: Time = 0
     most: Time | None = None
+    mean: Time | None = None
+
+    @property
+    def simulated(self) -> Span:
+        """The time that a simulation takes: always the mean if that is all that is known."""
+        return self if self.most is not None or self.mean is None else Span(least=self.mean, most=self.mean)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -122,9 +133,11 @@ class Network(Brief):
     ----------
     agent : name of the agent at the other end of the wires
     waits : for messages that are on none of the wires
+    assumptions : on which the times of wires and agent are based, in sentences
     """
 
     wires: tuple[Wire, ...] = ()
     transmissions: tuple[Transmission, ...] = ()
     agent: str = "Agent"
     waits: tuple[Wait, ...] = ()
+    assumptions: tuple[str, ...] = ()

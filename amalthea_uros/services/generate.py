@@ -133,7 +133,7 @@ def _described(path: StrPath, platform: str | None) -> Assembly:
     except ReadError as error:
         if any(finding.severity is Severity.ERROR and finding.rule not in _SOLVED for finding in error.findings):
             raise
-    whole, name, _ = complete(read_description(Path(path)), folder_of(Path(path)), platform)
+    whole, name, *_ = complete(read_description(Path(path)), folder_of(Path(path)), platform)
     middleware = whole.middleware
     sizes = [row.name for row in profile_of(middleware).option_table.values() if row.role is not OptionRole.SETTING]
     limits = middleware.limits.model_copy(update=dict.fromkeys(name for name in sizes if middleware.limits.states(name)))

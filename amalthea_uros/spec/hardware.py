@@ -92,7 +92,7 @@ class HardwareSection(Shorthand):
     platform: Name | None = Field(
         None, examples=["esp32", "nucleo-f446re", "bodas-rc18-12-40", "generic", "./my-controller.yaml"]
     )
-    """A known platform (`bodas-rc18-12-40`, `esp32`, `esp32-s3`, `generic`, `host`, `nucleo-f446re`, `nucleo-f746zg`,
+    """A known platform (`bodas-rc18-12-40`, `ek-ra6m5`, `esp32`, `esp32-s3`, `generic`, `host`, `nucleo-f446re`, `nucleo-f746zg`,
     `nucleo-f767zi`, `nucleo-h743zi`, `olimex-stm32-e407`, `rp2040`, `single-core`, `tc389` or `teensy41`), or a file, e.g.
     `./my-controller.yaml`."""
     title: Name | None = None

@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 from amalthea_uros.spec.executors import ExecutorSection, LoopSection
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.spec.section import DescriptionSection, Shorthand
-from amalthea_uros.spec.transports import TransportSection
+from amalthea_uros.spec.transports import WIRES, TransportSection
 
 S = TypeVar("S", bound=DescriptionSection)
 
@@ -20,7 +20,7 @@ S = TypeVar("S", bound=DescriptionSection)
 _ALTERNATIVES: dict[type[DescriptionSection], AbstractSet[str]] = {
     Middleware: {"executor", "executors"},
     ExecutorSection: {"loop", "period"},
-    TransportSection: {"can", "can_fd", "serial", "udp", "tcp", "usb_cdc", "custom"},
+    TransportSection: WIRES,
 }
 
 
@@ -46,7 +46,7 @@ def _merged(own: S, base: S) -> S:
     added = {key: getattr(base, key) for key in base.model_fields_set - own.model_fields_set - _excluded(own)}
     for key in own.model_fields_set & base.model_fields_set:
         ours, theirs = getattr(own, key), getattr(base, key)
-        if _has_parts(ours) and _has_parts(theirs):
+        if has_parts(ours) and has_parts(theirs):
             added[key] = _merged(ours, theirs)
     if not added:
         return own
@@ -60,6 +60,6 @@ def _excluded(own: DescriptionSection) -> AbstractSet[str]:
     return alternatives if alternatives & own.model_fields_set else frozenset()
 
 
-def _has_parts(value: Any) -> bool:
+def has_parts(value: Any) -> bool:
     """Whether a value is completed, instead of being replaced."""
     return isinstance(value, DescriptionSection) and not isinstance(value, Shorthand | LoopSection)

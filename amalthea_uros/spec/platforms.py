@@ -2,78 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Annotated, Literal, NamedTuple
 
 from pydantic import Field
 
 from amalthea_uros._internal.resources import PLATFORMS, RTOSES, known_platforms, known_rtoses
-from amalthea_uros._internal.similar import similar
-from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.hardware import HardwareSection
+from amalthea_uros.spec.known_files import KnownFiles
+from amalthea_uros.spec.measured import with_measured
 from amalthea_uros.spec.merging import merged, merged_middleware
 from amalthea_uros.spec.middleware import Middleware
-from amalthea_uros.spec.mistakes import CERTAIN
 from amalthea_uros.spec.os import OsSection
 from amalthea_uros.spec.read import read_section
 from amalthea_uros.spec.section import DescriptionSection
 from amalthea_uros.spec.values import WHOLE_NUMBER, Name
-
-_SUFFIXES = (".yaml", ".yml")
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class KnownFiles:
-    """Files of one kind that come with amuros.
-
-    Attributes
-    ----------
-    kind : what they describe, for messages
-    files : by name
-    advice : what to do about an unknown name, besides using a known one
-    """
-
-    kind: str
-    files: Mapping[str, Path]
-    advice: str
-
-    def find(self, name: str, folder: Path, location: Location | None) -> tuple[Path, tuple[Finding, ...]]:
-        """The file of a name, and what is wrong with the name if it is clear which one is meant.
-
-        Parameters
-        ----------
-        folder : that files of users are relative to
-        location : where the name is stated
-
-        Raises
-        ------
-        ReadError : there is no such file.
-        """
-        if name.endswith(_SUFFIXES):
-            path = folder / name
-            if path.is_file():
-                return path, ()
-            advice = "Give a path relative to the directory of this file."
-            raise ReadError([Finding("APP001", Severity.ERROR, f"{self.kind} file {str(path)!r} not found", location, advice)])
-        if name in self.files:
-            return self.files[name], ()
-        finding = self.unknown(name, location)
-        near = similar(name, self.files, cutoff=CERTAIN)
-        if not near:
-            raise ReadError([finding])
-        return self.files[near[0]], (finding,)
-
-    def unknown(self, name: str, location: Location | None) -> Finding:
-        """The finding about a name that none of the files has."""
-        near = similar(name, self.files)
-        others = f"Known {self.kind}s: {', '.join(self.files)}; {self.advice}"
-        advice = f"Did you mean {near[0]!r}?" if near else others
-        return Finding("APP001", Severity.ERROR, f"unknown {self.kind} {name!r}", location, advice)
-
 
 _PLATFORM_FILES = KnownFiles(
     kind="platform",
@@ -124,10 +71,11 @@ class Rtos(DescriptionSection):
 
 
 class CompleteDescription(NamedTuple):
-    """A description, completed by its platform and its operating system.
+    """A description, completed by its platform, its operating system and profiles of measured times.
 
     Attributes
     ----------
+    assumptions : about measured times, in sentences
     platform : name of the platform; None if there is none
     findings : misspelled names, in whose place those that were probably meant are used
     """
@@ -135,6 +83,7 @@ class CompleteDescription(NamedTuple):
     description: Description
     platform: str | None
     findings: tuple[Finding, ...] = ()
+    assumptions: tuple[str, ...] = ()
 
 
 def complete(description: Description, folder: Path, other: str | None = None) -> CompleteDescription:
@@ -157,13 +106,14 @@ def complete(description: Description, folder: Path, other: str | None = None) -
     path = _platform_file(description.hardware, folder, other, findings)
     if path is None:
         rtos = _rtos(description.os, folder, findings)
-        return _completed(description, None, [rtos.os], [rtos.middleware], findings)
+        return _completed(description, None, [rtos.os], [rtos.middleware], folder, findings)
     platform = _platform(path, description.hardware)
     if description.os.rtos in (None, platform.os.rtos):
         rtos = _rtos(platform.os, path.parent, findings)
-        return _completed(description, platform, [platform.os, rtos.os], [platform.middleware, rtos.middleware], findings)
+        models = [platform.middleware, rtos.middleware]
+        return _completed(description, platform, [platform.os, rtos.os], models, folder, findings)
     rtos = _rtos(description.os, folder, findings)
-    return _completed(description, platform, [rtos.os], [rtos.middleware, platform.middleware], findings)
+    return _completed(description, platform, [rtos.os], [rtos.middleware, platform.middleware], folder, findings)
 
 
 def _completed(
@@ -171,17 +121,20 @@ def _completed(
     platform: Platform | None,
     systems: Sequence[OsSection],
     models: Sequence[Middleware],
+    folder: Path,
     findings: Iterable[Finding],
 ) -> CompleteDescription:
     if not description.application.nodes:
         models = [_policy(model) for model in models]
+    measured = with_measured([description.middleware, *models], folder)
     update = {
         "hardware": description.hardware if platform is None else _hardware(description.hardware, platform.hardware),
         "os": merged(description.os, *systems),
-        "middleware": merged_middleware(description.middleware, *models),
+        "middleware": merged_middleware(*measured.levels),
     }
     name = None if platform is None else platform.platform
-    return CompleteDescription(description.model_copy(update=update), name, tuple(findings))
+    mistakes = (*findings, *measured.findings)
+    return CompleteDescription(description.model_copy(update=update), name, mistakes, measured.assumptions)
 
 
 def _policy(model: Middleware) -> Middleware:

@@ -209,16 +209,43 @@ class CustomTransport(DescriptionSection):
     """The interrupt for each received message."""
 
 
+class AgentTime(Shorthand):
+    """A time, or a mapping with minimum and maximum, or with the mean if the maximum is unknown."""
+
+    shorthand = ("min", "max")
+    plain_value = "The same time in every case."
+
+    min: OffsetOrNumberZero = 0
+    """Minimum time."""
+    max: OffsetOrNumberZero | None = None
+    """Maximum time."""
+    mean: OffsetOrNumberZero | None = None
+    """Mean time, in place of an unknown maximum: a simulation takes it for every message, and no bound follows from it."""
+
+    @model_validator(mode="after")
+    def _is_complete_and_ordered(self) -> Self:
+        if (self.max is None) == (self.mean is None):
+            raise problem("expected either 'max' or, if it is unknown, 'mean'")
+        if self.max is not None and self.min > self.max:
+            raise problem("'min' is greater than 'max'")
+        if self.mean is not None and self.min > self.mean:
+            raise problem("'min' is greater than 'mean'")
+        return self
+
+
 class Agent(DescriptionSection):
     """The agent: a box with stated latencies."""
 
     name: Name = "Agent"
     """Its name."""
-    to_controller: LatencySection | None = None
+    profile: Name | None = Field(default=None, examples=["pico2w-usb", "./my-agent.yaml"])
+    """Measured times: a known profile (`pico2w-usb`, `ra6m5-can-fd`, `ra6m5-uart`, `ra6m5-udp` or `ra6m5-usb`), or a file, e.g.
+    `./my-agent.yaml`; what is stated beside it overrides them."""
+    to_controller: AgentTime | None = None
     """Time from the publication of a message on the host to its first byte on the wire; default: unknown."""
-    to_host: LatencySection | None = None
+    to_host: AgentTime | None = None
     """Time from the last byte on the wire until subscribers on the host have the message; default: unknown."""
-    acknowledgement: LatencySection | None = None
+    acknowledgement: AgentTime | None = None
     """Time from the last byte of a reliable message to the first byte of its acknowledgement; default: unknown."""
 
 
@@ -231,6 +258,9 @@ def _not_too_long(bits: int) -> int:
 class TransportSection(DescriptionSection):
     """The transport between the controller and the agent: exactly one wire."""
 
+    profile: Name | None = Field(default=None, examples=["pico2w-usb", "./my-link.yaml"])
+    """The transport of a known profile of measured times (`pico2w-usb`, `ra6m5-can-fd`, `ra6m5-uart`, `ra6m5-udp` or `ra6m5-usb`), or
+    of a file, e.g. `./my-link.yaml`; what is stated beside it overrides its values."""
     can: Can | None = None
     """The classic CAN bus, if messages are sent over CAN in blocks of 7 bytes."""
     can_fd: CanFd | None = None
@@ -251,3 +281,7 @@ class TransportSection(DescriptionSection):
     """Maximum time until a reliable message is acknowledged."""
     loses_messages: bool = False
     """Whether messages can be lost on the wire, so that reliable ones are sent again."""
+
+
+#: The keys of a transport of which it has one.
+WIRES = frozenset({"can", "can_fd", "serial", "udp", "tcp", "usb_cdc", "custom"})

@@ -97,6 +97,8 @@ class TimingContext:
             context.notes.assume("clients execute the runnables of synchronous servers that no process calls")
         if has_overhead_of_tasks(system):
             context.notes.assume(OVERHEAD_ASSUMPTION)
+        for sentence in system.network.assumptions:
+            context.notes.assume(sentence)
         context._note_settings()
         context._schedule()
         return context

@@ -80,7 +80,11 @@ class Assembly(Brief):
 
 
 def assemble(
-    description: Description, hardware: HardwareSection, platform: str | None, database: Sequence[ForeignFrame] = ()
+    description: Description,
+    hardware: HardwareSection,
+    platform: str | None,
+    database: Sequence[ForeignFrame] = (),
+    assumptions: Sequence[str] = (),
 ) -> Assembly:
     """The system that a description describes.
 
@@ -89,6 +93,7 @@ def assemble(
     hardware : of the description, completed by its platform
     platform : the name that execution times use for the hardware; None if it has none
     database : foreign frames on the CAN bus, from the DBC file that the description names
+    assumptions : about measured times in the description, in sentences
 
     Raises
     ------
@@ -100,7 +105,9 @@ def assemble(
     profile = stated_profile(description.middleware, notes)
     if target is None or profile is None:
         raise ReadError(notes.findings)
-    context = AssemblyContext(description=description, controller=target, notes=notes, profile=profile)
+    context = AssemblyContext(
+        description=description, controller=target, notes=notes, profile=profile, assumptions=tuple(assumptions)
+    )
     assembly = _assembly(context, hardware, database)
     if notes.has_errors:
         raise ReadError(notes.findings)

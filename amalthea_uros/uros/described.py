@@ -82,9 +82,9 @@ def _described(draft: Draft[Description], folder: Path, platform: str | None = N
 
 
 def _assembled(description: Description, folder: Path, platform: str | None) -> Described:
-    whole, name, findings = complete(description, folder, platform)
+    whole, name, findings, assumptions = complete(description, folder, platform)
     try:
-        assembly = assemble(whole, whole.hardware, name, database_frames(whole, folder))
+        assembly = assemble(whole, whole.hardware, name, database_frames(whole, folder), assumptions)
     except ReadError as error:
         raise ReadError([*findings, *error.findings]) from None
     if findings:

@@ -9,9 +9,9 @@ from pathlib import Path
 from amalthea_uros._internal.similar import similar
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.errors import ReadError
+from amalthea_uros.spec.known_files import KnownFiles
 from amalthea_uros.spec.merging import merged
 from amalthea_uros.spec.middleware import Middleware
-from amalthea_uros.spec.platforms import KnownFiles
 from amalthea_uros.spec.profiles import ProfileData
 from amalthea_uros.spec.read import read_section
 from amalthea_uros.uros.application.notes import Notes

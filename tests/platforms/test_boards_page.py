@@ -4,11 +4,12 @@ from pathlib import Path
 
 from support import ROOT
 
-from amalthea_uros._internal.resources import RTOSES, known_platforms, known_rtoses
+from amalthea_uros._internal.resources import MEASURED, RTOSES, known_measured, known_platforms, known_rtoses
 from amalthea_uros.spec.application import Application, NodeSection
 from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.executors import LoopSection
 from amalthea_uros.spec.hardware import HardwareSection
+from amalthea_uros.spec.measured import MeasuredProfile
 from amalthea_uros.spec.platforms import Rtos, complete
 from amalthea_uros.spec.read import read_section
 from amalthea_uros.spec.transports import TransportSection
@@ -24,6 +25,10 @@ def test_the_table_of_boards():
 
 def test_the_table_of_operating_systems():
     assert rows_of("system") == [system(name) for name in known_rtoses()]
+
+
+def test_the_table_of_profiles():
+    assert rows_of("profile") == [profile(name) for name in known_measured()]
 
 
 def rows_of(heading):
@@ -80,6 +85,17 @@ def system(name):
         f"{ago(-ticks.early)} to {ago(ticks.late)}" if ticks else "as asked" if os.tick is None else "",
         os.stack,
     )
+
+
+def profile(name):
+    found = read_section(MEASURED / f"{name}.yaml", MeasuredProfile)
+    wire = next(key for key in TransportSection.model_fields if found.transport.states(key))
+    times = [between(each) for each in (found.agent.to_controller, found.agent.to_host)]
+    return row(f"`{name}`", found.title, found.basis, *times, wire)
+
+
+def between(time):
+    return f"mean {time_text(time.mean)}" if time.max is None else f"{time_text(time.min)} to {time_text(time.max)}"
 
 
 def ago(ticks):

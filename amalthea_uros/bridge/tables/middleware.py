@@ -70,7 +70,12 @@ def extract_network(models: Iterable[am.SWModel], tasks: Iterable[am.Task], syst
     network = Network()
     if found:
         wires = tuple(wire for each in found for wire in each.wires)
-        network = Network(wires=wires, agent=found[-1].agent, waits=tuple(wait for each in found for wait in each.waits))
+        network = Network(
+            wires=wires,
+            agent=found[-1].agent,
+            waits=tuple(wait for each in found for wait in each.waits),
+            assumptions=tuple(dict.fromkeys(sentence for each in found for sentence in each.assumptions)),
+        )
     transmissions = _extracted(
         tasks,
         _TRANSMISSION,

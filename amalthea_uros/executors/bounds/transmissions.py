@@ -48,7 +48,9 @@ def agent_hop(transmission: Transmission, solved: SolvedSystem) -> Hop:
         HopKind.AGENT,
         agent,
         transmission.agent,
-        f"{key!r} of the agent is not stated",
+        f"{key!r} of the agent is not stated"
+        if transmission.agent.mean is None
+        else f"only the mean of {key!r} of the agent is known",
         f"Measure how long {agent!r} takes, and set 'middleware.agent.{key}'.",
     )
 

@@ -94,7 +94,7 @@ class ChainCompiler:
                 self._check_message(transmission)
 
     def _check_message(self, transmission: Transmission) -> None:
-        if transmission.purpose is Purpose.DATA and transmission.agent.most is None:
+        if transmission.purpose is Purpose.DATA and transmission.agent.simulated.most is None:
             raise UnknownError(f"it is not specified how long {transmission.name!r} takes in the agent")
         if reason := self.resources.executors.messages.obstacle(transmission):
             raise UnknownError(reason)

@@ -250,7 +250,7 @@ class IterationCompiler:
             return
         transmissions = self.body.context.system.transmissions
         sent, awaited = (transmissions.get(name or "") for name in (publication.transmission, publication.acknowledgement))
-        is_known = sent is not None and awaited is not None and awaited.agent.most is not None
+        is_known = sent is not None and awaited is not None and awaited.agent.simulated.most is not None
         if is_known and not any(self.records.messages.obstacle(each) for each in (sent, awaited) if each is not None):
             return
         until = "" if publication.timeout is None else f", up to {time_text(publication.timeout)}"

@@ -28,6 +28,7 @@ from amalthea_uros.units import Time
 
 #: Assumptions.
 _DELAYS = "times in the agent, in switches and in drivers are uniform between their limits, and keep the order of messages"
+_MEANS = "where only the mean of a time in the agent is known, every message takes it"
 _AT_ONCE = Span(most=0)
 
 
@@ -133,7 +134,7 @@ class MessageRecords:
         else:
             wire = next(each for each in system.network.wires if each.name == transmission.wire)
             fields[layout.HOLDS_WRITER] = int(wire.keeps_sender)
-            if transmission.purpose is Purpose.DATA and transmission.agent.most is not None:
+            if transmission.purpose is Purpose.DATA and transmission.agent.simulated.most is not None:
                 fields[layout.TO_HOST] = self._delay(f"to host {transmission.name}", transmission.link, transmission.agent)
         self.image.put(record, fields)
         if isinstance(system.stimuli_by_name[stimulus], InterProcess):
@@ -286,10 +287,13 @@ class MessageRecords:
 
         Instead of a maximum that is unknown, the minimum counts; nothing that depends on it is observed: see `obstacle`.
         """
-        least = sum(span.least for span in spans)
-        most = sum(span.least if span.most is None else span.most for span in spans)
+        taken = [span.simulated for span in spans]
+        least = sum(span.least for span in taken)
+        most = sum(span.least if span.most is None else span.most for span in taken)
         if most > least:
             self.resources.context.notes.assume(_DELAYS)
+        if any(span != stated for span, stated in zip(taken, spans, strict=True)):
+            self.resources.context.notes.assume(_MEANS)
         source = RandomSource(self.resources.options.seed, f"delay {place}")
         times = Boundaries(lower=least, upper=most)
         return self.resources.stream(durations(times, Fraction(self.resources.units), self.resources.options.mode, source))

@@ -18,7 +18,7 @@ from amalthea_uros.perf.activities import Trigger
 from amalthea_uros.perf.events import CustomEvent, Event, ModeLabelEvent, RunnableChange, RunnableEvent
 from amalthea_uros.perf.network import Purpose
 from amalthea_uros.perf.software import Process
-from amalthea_uros.perf.stimuli import Counter, EventTriggered, InterProcess, Stimulus
+from amalthea_uros.perf.stimuli import Counter, Custom, EventTriggered, InterProcess, Stimulus
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.timing.demand.job_paths import most_in_a_job
@@ -159,7 +159,8 @@ class Activations:
         if not isinstance(stimulus, InterProcess | EventTriggered):
             stated = event_model_of(stimulus, self.system)
             if stated is None:
-                raise UnknownError(f"the rate of the stimulus {name!r} is unbounded")
+                why = stimulus.description if isinstance(stimulus, Custom) else ""
+                raise UnknownError(f"the rate of the stimulus {name!r} is unbounded" + (f": {why}" if why else ""))
             return stated
         if self._incomplete:
             raise UnknownError(f"the processes that trigger {name!r} are unknown: {self._incomplete}")

@@ -37,6 +37,7 @@ class AssemblyContext:
     runnables : by name, in the order of their creation
     channels : by name, of the messages that the application sends and receives itself
     executors : that spin in loops
+    assumptions : about measured times in the description, in sentences
     """
 
     description: Description
@@ -49,6 +50,7 @@ class AssemblyContext:
     runnables: dict[str, Runnable] = field(default_factory=dict)
     channels: Mapping[str, Channel] = field(default_factory=dict)
     executors: list[Executor] = field(default_factory=list)
+    assumptions: tuple[str, ...] = ()
 
     @property
     def converter(self) -> DemandConverter:

@@ -84,5 +84,5 @@ def with_network(system: System, planned: PlannedNetwork | None, context: Assemb
     )
     check_load(plan, context.notes)
     check_reading(plan, system.executors, context.notes)
-    found = with_wire(system, plan, middleware.agent.name, middleware.transport.loses_messages)
+    found = with_wire(system, plan, middleware.agent.name, middleware.transport.loses_messages, context.assumptions)
     return without_idle(found, planned.receivers.other_triggers)

@@ -17,7 +17,7 @@ from amalthea_uros.perf.activities import Call
 from amalthea_uros.perf.distributions import Uniform
 from amalthea_uros.perf.executors import HandleKind
 from amalthea_uros.perf.network import Direction, Purpose, Span, Transmission
-from amalthea_uros.perf.stimuli import Counter, InterProcess, Periodic, RelativePeriodic, Stimulus
+from amalthea_uros.perf.stimuli import Counter, Custom, InterProcess, Periodic, RelativePeriodic, Stimulus
 from amalthea_uros.perf.system import System
 from amalthea_uros.units import Time
 from amalthea_uros.uros.application.callbacks import body_name
@@ -28,6 +28,8 @@ from amalthea_uros.uros.transports.line import Line, span_of, time_on
 from amalthea_uros.uros.transports.messages import WireMessage, acknowledgement_name, opposite
 
 _AT_ONCE = Span(most=0)
+#: Why the arrivals of messages are unknown.
+_MEAN_ONLY = "only the mean of 'to_controller' of the agent is known"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -127,11 +129,13 @@ class Queueing:
             yield self._acknowledgement(message, _AT_ONCE, Sender(runnable=reader, times=len(message.parts)))
 
     def _arrivals(self, message: WireMessage, agent: Span) -> Stimulus | None:
-        """When the agent queues a message; None if nobody stated how much its times vary."""
+        """When the agent queues a message; None if it is unknown how much its times vary, also for a simulation."""
         if agent.most is not None:
             jitter = message.jitter + agent.most - agent.least
         elif message.callback.jitter:
             jitter = message.jitter  # it is that of the messages that leave the agent
+        elif agent.mean is not None:
+            return Custom(name=message.name, description=_MEAN_ONLY, origin=message.message.origin)
         else:
             return None
         return arrivals(message.name, message.interval, jitter, message.message.origin)

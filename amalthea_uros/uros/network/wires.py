@@ -136,7 +136,7 @@ class WirePlan:
         return _OF_CLIENT if identifier is None else arbitration_rank(identifier, extended=section.identifier == "extended")
 
 
-def with_wire(system: System, plan: WirePlan, agent: str, loses_messages: bool) -> System:
+def with_wire(system: System, plan: WirePlan, agent: str, loses_messages: bool, assumptions: tuple[str, ...]) -> System:
     """A system with a wire."""
     lowest = max(plan.ranks.values(), default=0)
     wire = WireCores(
@@ -171,6 +171,7 @@ def with_wire(system: System, plan: WirePlan, agent: str, loses_messages: bool) 
             ),
             transmissions=tuple(replace(each.transmission, wire=plan.name) for each in plan.queued),
             agent=agent,
+            assumptions=assumptions,
         ),
     )
 

@@ -9,6 +9,7 @@ from typing import ClassVar, TypeAlias
 
 from amalthea_uros.perf.network import Direction, Span, WireKind
 from amalthea_uros.spec.transports import (
+    AgentTime,
     Can,
     CanFd,
     CustomTransport,
@@ -129,9 +130,11 @@ def receive_interrupt(transport: TransportSection) -> Interrupt | None:
     return next((section.interrupt for _, section in wire_sections(transport) if section.interrupt is not None), None)
 
 
-def span_of(latency: LatencySection | None) -> Span:
+def span_of(latency: LatencySection | AgentTime | None) -> Span:
     """A stated latency; one that is not stated has no maximum."""
-    return Span() if latency is None else Span(least=latency.min, most=latency.max)
+    if latency is None:
+        return Span()
+    return Span(least=latency.min, most=latency.max, mean=latency.mean if isinstance(latency, AgentTime) else None)
 
 
 def time_on(line: Line, frames: Sequence[Frame]) -> tuple[Time, Time]:

@@ -159,7 +159,8 @@ def _of_part(length: int, direction: Direction, line: Line, driver: Driver) -> I
     if cost.per_byte:
         yield _between(cost.per_byte * sizes[0], cost.per_byte * sizes[1])
     if (driver.write if direction is Direction.TO_AGENT else driver.read) == "polling":
-        yield _between(*time_on(line, line.frames(length, direction)))
+        # The bytes are copied while they are on the line, which has its own time: in the best case, nothing comes on top of that.
+        yield _between(0, time_on(line, line.frames(length, direction))[1])
 
 
 def _between(least: Time, most: Time) -> ExecutionTimeSection | Time:

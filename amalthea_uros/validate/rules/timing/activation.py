@@ -54,7 +54,8 @@ def _check_period(element: Stimulus, context: Context) -> Iterator[str]:
             if not (picoseconds(element.step) or 0) > 0 or not (bounds(element.occurrences_per_step)[1] or 0) > 0:
                 yield f"the maximum number of occurrences per step of stimulus {element.name!r} is unknown"
         case CustomStimulus():
-            yield f"the activation pattern of custom stimulus {element.name!r} is unknown"
+            why = f": {element.description}" if element.description else ""
+            yield f"the activation pattern of custom stimulus {element.name!r} is unknown{why}"
 
 
 def _limits(entry: ArrivalCurveEntry) -> bool:
