@@ -46,7 +46,7 @@ LINES = {
     "timing": 5089,
     "trace": 4803,
     "units": 164,
-    "uros": 5977,
+    "uros": 5978,
     "validate": 3612,
     "xmi": 8530,
 }
