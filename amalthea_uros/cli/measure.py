@@ -14,9 +14,10 @@ import click
 from amalthea_uros.cli.options import all_of
 from amalthea_uros.cli.output import Output, checked_outputs, output_option, show_findings, write_outputs
 from amalthea_uros.cli.parameters import INPUT, Parsed, assignment, output_path
-from amalthea_uros.compare.measured.events import chain_starts
+from amalthea_uros.compare.measured.events import begins_of
 from amalthea_uros.compare.measured.measuring import MeasureOptions, measure_file
 from amalthea_uros.diagnostics import Severity
+from amalthea_uros.measure.begins import ModelBegins
 from amalthea_uros.measure.markers import FORM, parse_marker
 from amalthea_uros.measure.window import MeasurementWindow
 from amalthea_uros.services.files import save_text
@@ -118,8 +119,8 @@ def measure(
     The exit code is 1 if nothing was measured, or if a part of the trace is damaged.
     """
     outputs = checked_outputs(outputs, [("--histogram", path) for _, path in histograms])
-    starts = {} if model is None else chain_starts(open_system(model).system)
-    found = measure_file(trace, replace(reading, select=select, chain_starts=starts))
+    begins = ModelBegins() if model is None else begins_of(open_system(model).system)
+    found = measure_file(trace, replace(reading, select=select, begins=begins))
     show_findings(found.findings)
     if histograms:
         from amalthea_uros.report.result_pictures import histogram_picture

@@ -11,13 +11,14 @@ from amalthea_uros.compare.agreement import LEAST, Rule, compared
 from amalthea_uros.compare.distributions import distributions
 from amalthea_uros.compare.findings import assumptions_of, findings_of, open_phases
 from amalthea_uros.compare.limits import judge_limits
-from amalthea_uros.compare.measured.events import chain_starts
-from amalthea_uros.compare.naming import WITHIN_A_JOB, Names, Target, targets
+from amalthea_uros.compare.measured.events import begins_of
+from amalthea_uros.compare.naming import Names, Target, targets
 from amalthea_uros.compare.phases import analyses_in_phases, systems_in_phases
 from amalthea_uros.compare.predictions import Missing, Predictor
 from amalthea_uros.compare.results import Agreement, Comparison, ComparisonRow, Source
 from amalthea_uros.compare.simulated import Run, simulate_measured
 from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.measure.begins import ModelBegins
 from amalthea_uros.measure.series import MeasuredKind, Measurement
 from amalthea_uros.names import require
 from amalthea_uros.perf.system import System
@@ -25,7 +26,6 @@ from amalthea_uros.timing.activation.releases import with_first_arrivals
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.timing.demand.overheads import processes_with_overhead
 from amalthea_uros.timing.stated_distributions import Basis, StatedDistributions
-from amalthea_uros.trace.table import EventKind
 from amalthea_uros.units import SECOND, Time
 
 DEFAULT_TOLERANCE = Fraction(20, 100)
@@ -71,8 +71,8 @@ def compare_measured(system: System, settings: Settings, measurement: Measuremen
     require("process", filter(None, options.overheads), system.processes)
     analysis = analyze_system(system, settings) if Source.ANALYSIS in options.sources else None
     with_overhead = processes_with_overhead(system) | options.overheads.keys()
-    starts = chain_starts(system)
-    found = targets(measurement, options.names, system, with_overhead, starts)
+    begins = begins_of(system)
+    found = targets(measurement, options.names, system, with_overhead, begins)
     runs: tuple[Run, ...] = ()
     if Source.SIMULATION in options.sources:
         runs = simulate_measured(system, settings, options.duration or measurement.duration or SECOND, options.seed)
@@ -88,7 +88,7 @@ def compare_measured(system: System, settings: Settings, measurement: Measuremen
     basis_of = _bases(system, settings)
     rows = (
         *(row for target in found for row in _rows(target, predictor, rule, basis_of)),
-        *_not_measured(system, found, starts),
+        *_not_measured(system, found, begins),
     )
     comparison = Comparison(
         model="",
@@ -159,7 +159,7 @@ _NOT_IN_TRACE = {
 }
 
 
-def _not_measured(system: System, found: Sequence[Target], starts: Mapping[str, EventKind | None]) -> Iterator[ComparisonRow]:
+def _not_measured(system: System, found: Sequence[Target], begins: ModelBegins) -> Iterator[ComparisonRow]:
     """A row for each process and chain of which the trace has nothing, or nothing of the same definition."""
     measured = {(target.kind, target.name) for target in found}
     for kind, names in ((MeasuredKind.PROCESS, system.processes), (MeasuredKind.CHAIN, system.chains)):
@@ -171,5 +171,10 @@ def _not_measured(system: System, found: Sequence[Target], starts: Mapping[str, 
                     quantity="",
                     statistic=None,
                     verdict=Agreement.NOT_MEASURED,
-                    reason=WITHIN_A_JOB if starts.get(name, ...) is None else _NOT_IN_TRACE[kind],
+                    reason=_not_in_trace(kind, name, begins),
                 )
+
+
+def _not_in_trace(kind: MeasuredKind, name: str, begins: ModelBegins) -> str:
+    begin = begins.chains.get(name) if kind is MeasuredKind.CHAIN else None
+    return begin if isinstance(begin, str) else _NOT_IN_TRACE[kind]

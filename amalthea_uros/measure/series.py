@@ -161,7 +161,7 @@ class Series:
     baseline : of the empty object whose mean was subtracted from the values, None if nothing was
     period : the standard period of distances, None if it is not stated
     is_least : whether the real values are at least these: what a response belongs to is not known
-    begin : with which event of a job a chain of a trace begins, "activation" or "start"; "" for what markers delimit
+    begin : with what a job or a chain of a trace begins: "activation", "start" or "end of the wait"; "" for what markers delimit
     """
 
     kind: MeasuredKind

@@ -6,8 +6,9 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from amalthea_uros._internal.paths import StrPath
-from amalthea_uros.compare.measured.events import chain_starts
+from amalthea_uros.compare.measured.events import begins_of
 from amalthea_uros.compare.measured.measuring import MeasureOptions, measure_file
+from amalthea_uros.measure.begins import ModelBegins
 from amalthea_uros.measure.markers import parse_marker
 from amalthea_uros.measure.series import Measurement
 from amalthea_uros.measure.window import MeasurementWindow
@@ -70,6 +71,6 @@ def measure(
         period=None if period is None else time_of(period),
         window=MeasurementWindow(time_of(window[0]), None if window[1] is None else time_of(window[1])),
         select=tuple(select),
-        chain_starts={} if model is None else chain_starts(open_system(model).system),
+        begins=ModelBegins() if model is None else begins_of(open_system(model).system),
     )
     return measure_file(as_paths(trace)[0], options)

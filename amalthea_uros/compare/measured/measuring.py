@@ -16,6 +16,7 @@ from amalthea_uros.compare.measured.values import is_value_table, measured_value
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.measure.baselines import Baselines, names_of
+from amalthea_uros.measure.begins import ModelBegins
 from amalthea_uros.measure.findings import judged
 from amalthea_uros.measure.markers import Marker, MarkerChain, MarkerPair, Measurable, refuse_overlap
 from amalthea_uros.measure.series import Measurement, Series
@@ -25,7 +26,6 @@ from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.trace.can.logs import is_can_log
 from amalthea_uros.trace.files import trace_files
 from amalthea_uros.trace.readers import format_of
-from amalthea_uros.trace.table import EventKind
 from amalthea_uros.units import Time
 
 
@@ -44,8 +44,7 @@ class MeasureOptions:
     period : the standard period, from which the distances of starts deviate
     window : the part of the trace that is measured
     select : the only objects of the result; empty: all
-    chain_starts : with which event of a job chains begin, by default with its activation; None: they are not measured.
-        `measured_events.chain_starts` finds them in a model
+    begins : with what the jobs and chains of the model begin, which `events.begins_of` finds in it
     """
 
     markers: Path | None = None
@@ -60,7 +59,7 @@ class MeasureOptions:
     period: Time | None = None
     window: MeasurementWindow = field(default_factory=MeasurementWindow)
     select: tuple[str, ...] = ()
-    chain_starts: Mapping[str, EventKind | None] = field(default_factory=dict)
+    begins: ModelBegins = field(default_factory=ModelBegins)
 
     def __post_init__(self) -> None:
         if (self.start is None) != (self.end is None):
@@ -124,7 +123,7 @@ def _measured(path: Path, objects: Sequence[Measurable], options: MeasureOptions
     elif is_value_table(path):
         found = measured_values(path, options.window)
     else:
-        found = measured_events(path, options.window, options.chain_starts)
+        found = measured_events(path, options.window, options.begins)
     return replace(found, digest=_digest(path))
 
 
