@@ -16,7 +16,7 @@ from amalthea_uros.measure.begins import ACTIVATION, END_OF_WAIT, FROM_ACTIVATIO
 from amalthea_uros.measure.series import Counts, MeasuredKind, Series, statistics_of
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.timing.observed.job_times import BETWEEN, OWN, JobColumn, own_times, times_between
-from amalthea_uros.trace.table import EntityKind, EventKind, EventTable
+from amalthea_uros.trace.table import EventKind, EventTable
 from amalthea_uros.trace.vocabulary import PROCESS
 
 #: What the states of a job count as; in READY no time is counted.
@@ -39,7 +39,7 @@ class _RunningJob:
     times : in the states of `_COLUMNS`, up to `since`
     runnables : those in execution: number, instance, start, `times` at the start
     is_process : whether it has events of its own; of other jobs only runnables are known
-    is_before : whether it has not begun to execute, and waits for what it executes
+    is_before : whether it began before a wait for what it executes, and has not executed anything
     """
 
     __slots__ = ("activation", "is_before", "is_process", "runnables", "since", "start", "state", "times")
@@ -58,13 +58,12 @@ class _RunningJob:
         self.state, self.since = state, time
 
     def wait_before(self, time: int, kind: int) -> None:
-        """Begin an iteration of an executor when its wait ends, if this is an event of that wait."""
-        if kind == EventKind.WAIT:
-            self.is_before = not (self.times["running"] or self.runnables)
-        elif self.is_before and kind == EventKind.RELEASE:
+        """Begin when the wait is over that is before what the job executes, if this is an event of that wait."""
+        self.is_before = self.is_before and not (self.times["running"] or self.runnables)
+        if self.is_before and kind in (EventKind.START, EventKind.RELEASE):
             self.activation = time
-        elif self.is_before and kind == EventKind.RESUME:
-            self.start, self.is_before = time, False
+        if self.is_before and kind in (EventKind.START, EventKind.RESUME):
+            self.start = time
             self.times = dict.fromkeys(_COLUMNS, 0)
 
 
@@ -109,20 +108,22 @@ class JobFollower:
     _open: dict[tuple[int, int], _RunningJob] = field(default_factory=dict)
     _processes: dict[int, _EndedJobs] = field(default_factory=dict)
     _runnables: dict[tuple[int, int], _EndedJobs] = field(default_factory=dict)
-    #: The tasks whose jobs are iterations.
-    _iterations: frozenset[int] = frozenset()
+    #: What activates iterations at the begin of a wait.
+    _waits: frozenset[int] = frozenset()
     #: The greatest number of a job of each process so far.
     _newest: dict[int, int] = field(default_factory=dict)
 
     def add(self, table: EventTable) -> None:
         """Take events in."""
         if self.begins.iterations:
-            tasks = (number for number, each in enumerate(table.entities) if each.kind is EntityKind.TASK)
-            self._iterations = frozenset(each for each in tasks if table.entities[each].name in self.begins.iterations)
+            known = frozenset(self.begins.iterations.values())
+            self._waits = frozenset(number for number, each in enumerate(table.entities) if each.name in known)
         columns = (table.time, table.kind, table.source, table.source_instance, table.target, table.target_instance)
         for time, kind, source, source_instance, target, instance in zip(*(each.tolist() for each in columns), strict=True):
             if kind in _STATES:
                 self._change(time, kind, target, instance)
+                if source in self._waits and kind == EventKind.ACTIVATE and (target, instance) in self._open:
+                    self._open[target, instance].is_before = True
             elif EventKind.RUNNABLE_START <= kind <= EventKind.RUNNABLE_TERMINATE:
                 self._execute(time, kind, source, source_instance, target, instance)
             elif kind == EventKind.GAP:
@@ -154,7 +155,7 @@ class JobFollower:
             if kind == EventKind.START:
                 job.start = time
             job.enter(after, time)
-            if process in self._iterations:
+            if job.is_before:
                 job.wait_before(time, kind)
 
     def _begin(self, time: int, kind: int, key: tuple[int, int]) -> bool:
@@ -251,7 +252,7 @@ class JobFollower:
     def series(self, names: list[str]) -> Iterator[Series]:
         """What was measured, by the names of the entities."""
         for process, ended in self._processes.items():
-            begin = END_OF_WAIT if process in self._iterations else ACTIVATION
+            begin = END_OF_WAIT if names[process] in self.begins.iterations else ACTIVATION
             yield from _series(MeasuredKind.PROCESS, names[process], ended, begin)
         for runnable, parts in self._by_runnable().items():
             # What a callback of an executor in a loop responds to came before its iteration.

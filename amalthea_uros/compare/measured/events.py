@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import UnknownError
+from amalthea_uros.executors.semantics.steps import iterations_name
 from amalthea_uros.measure.begins import ChainBegin, ModelBegins
 from amalthea_uros.measure.series import Measurement
 from amalthea_uros.measure.window import MeasurementWindow
@@ -32,7 +33,7 @@ def begins_of(system: System) -> ModelBegins:
     """With which events the chains and the jobs of a system begin."""
     return ModelBegins(
         chains=dict(_chain_begins(system)),
-        iterations=frozenset(system.executor_of_task),
+        iterations={task: iterations_name(executor.name) for task, executor in system.executor_of_task.items()},
         callbacks=frozenset(handle.runnable for executor in system.executors for handle in executor.handles),
     )
 
