@@ -10,7 +10,7 @@ from amalthea_uros.compare.results import Statistic
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.measure.baselines import with_baseline
 from amalthea_uros.measure.begins import BEGINS, END_OF_WAIT, FROM_ACTIVATION, ChainBegin, ModelBegins
-from amalthea_uros.measure.series import MeasuredKind, Measurement, Series, TimeStatistics
+from amalthea_uros.measure.series import WHOLE_TIME, MeasuredKind, Measurement, Series, TimeStatistics
 from amalthea_uros.names import require
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
@@ -192,7 +192,8 @@ def _baselines(measurement: Measurement) -> set[str]:
 
 def _check(measurement: Measurement, names: Names, system: System) -> None:
     require("object of the trace", names.renamed, dict.fromkeys(series.name for series in measurement.series))
-    known = dict.fromkeys((*system.processes, *system.chains, *system.runnables))
+    handles = (handle.name for executor in system.executors for handle in executor.handles)
+    known = dict.fromkeys((*system.processes, *system.chains, *system.runnables, *handles))
     require("process, chain or runnable", (*names.renamed.values(), *(each.object for each in names.meanings)), known)
 
 
@@ -202,7 +203,16 @@ def _kinds(name: str, system: System) -> list[MeasuredKind]:
     return [kind for kind, items in found.items() if name in items]
 
 
+def _in_model(name: str, system: System) -> str:
+    """The name of a process, chain or runnable; that of a handle of an executor that loops stands for its callback."""
+    if _kinds(name, system):
+        return name
+    callbacks = {handle.runnable for executor in system.executors for handle in executor.handles if handle.name == name}
+    return callbacks.pop() if len(callbacks) == 1 else name
+
+
 def _named(series: Series, name: str, system: System) -> Target:
+    name = _in_model(name, system)
     kinds = _kinds(name, system)
     target = Target(series=series, kind=series.kind, name=name, quantity=series.quantity)
     if not kinds:
@@ -212,10 +222,18 @@ def _named(series: Series, name: str, system: System) -> Target:
         if series.quantity == _DURATION:
             example = f"--as '{series.name}={name}.{JobMetric.RESPONSE_TIME}'"
             return replace(target, reason=f"a time between two markers can be several quantities; say which, e.g. {example}")
-        return replace(target, kind=kinds[0])
+        return replace(target, kind=kinds[0], quantity=_whole_time(kinds[0]) if series.quantity == WHOLE_TIME else series.quantity)
     if series.kind not in kinds:
         return replace(target, reason=f"{name!r} is a {series.kind} in the trace, and a {kinds[0]} in the model")
     return target
+
+
+def _whole_time(kind: MeasuredKind) -> str:
+    """The time of an object as a whole: of a round trip, each value is that of a request up to its own reply.
+
+    Replies do not overtake each other, so that this is the first reply based on the request: the reduced reaction time.
+    """
+    return ChainQuantity.REDUCED_REACTION_TIME if kind is MeasuredKind.CHAIN else JobMetric.RESPONSE_TIME
 
 
 def _advice(series: Series, name: str, known: Mapping[str, None]) -> str:
@@ -248,10 +266,11 @@ def _series(text: str, measurement: Measurement) -> Series | None:
 
 
 def _meant(meaning: Meaning, parts: Sequence[Series], system: System) -> Target:
-    kind = _kinds(meaning.object, system)[0]
+    name = _in_model(meaning.object, system)
+    kind = _kinds(name, system)[0]
     require("quantity", [meaning.quantity], tuple(ChainQuantity) if kind is MeasuredKind.CHAIN else tuple(JobMetric))
     series = replace(parts[0], kind=kind)
-    target = Target(series=series, kind=kind, name=meaning.object, quantity=meaning.quantity)
+    target = Target(series=series, kind=kind, name=name, quantity=meaning.quantity)
     if len(parts) == 1:
         return target
     # The extremes of a sum are not the sums of the extremes, which need not occur together.

@@ -53,6 +53,8 @@ _OF_CHAINS: Mapping[str, _Ends] = {
 }
 #: The metrics to which an overhead is added: it is part of an execution, and not of the distance of two of them.
 _WITH_OVERHEAD = (JobMetric.NET_EXECUTION_TIME, JobMetric.GROSS_EXECUTION_TIME, JobMetric.RESPONSE_TIME)
+#: Parts of a response time: its bound is one of these, too.
+_WITHIN_RESPONSE = (JobMetric.NET_EXECUTION_TIME, JobMetric.GROSS_EXECUTION_TIME, JobMetric.RUNNING_TIME)
 _ENDS = {Statistic.MIN: "minimum", Statistic.MEAN: "mean", Statistic.MAX: "maximum"}
 
 
@@ -159,7 +161,13 @@ def _of(analysis: Analysis, kind: MeasuredKind, name: str, quantity: str) -> dic
         chain = next((each for each in analysis.chains if each.name == name), None)
         return {} if chain is None else dict(_of_chain(chain, quantity))
     metric = _metric(analysis, kind, name, quantity)
-    return {} if metric is None else dict(_of_metric(metric, quantity))
+    if metric is not None:
+        return dict(_of_metric(metric, quantity))
+    whole = _metric(analysis, kind, name, JobMetric.RESPONSE_TIME) if quantity in _WITHIN_RESPONSE else None
+    if whole is None or whole.max is None:
+        return {}
+    method = f"analysis of the response time, of which the {quantity.replace('_', ' ')} is a part"
+    return {Statistic.MAX: Prediction(value=Fraction(whole.max), claim=PredictionClaim.BOUND, method=method)}
 
 
 def _extremes(found: Mapping[Statistic, Prediction]) -> Iterator[tuple[Statistic, Prediction]]:

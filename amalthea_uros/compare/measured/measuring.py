@@ -8,10 +8,12 @@ from hashlib import file_digest, sha256
 from pathlib import Path
 
 from amalthea_uros._internal.files import is_directory, is_file
+from amalthea_uros.compare.measured.columns import TableColumn, ValidRows
 from amalthea_uros.compare.measured.events import measured_events
 from amalthea_uros.compare.measured.frames import measured_frames
 from amalthea_uros.compare.measured.marker_files import counter_of, read_markers
 from amalthea_uros.compare.measured.signals import Signals
+from amalthea_uros.compare.measured.tables import measured_table
 from amalthea_uros.compare.measured.values import is_value_table, measured_values
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import InvalidArgumentError
@@ -44,6 +46,9 @@ class MeasureOptions:
     period : the standard period, from which the distances of starts deviate
     window : the part of the trace that is measured
     select : the only objects of the result; empty: all
+    columns : the quantities of a table that has a column for each
+    valid_rows : the rows of the table that have values; None: those with the status "ok", if the table has a column "status"
+    unit : of the columns whose header names none, in picoseconds
     begins : with what the jobs and chains of the model begin, which `events.begins_of` finds in it
     """
 
@@ -59,6 +64,9 @@ class MeasureOptions:
     period: Time | None = None
     window: MeasurementWindow = field(default_factory=MeasurementWindow)
     select: tuple[str, ...] = ()
+    columns: tuple[TableColumn, ...] = ()
+    valid_rows: ValidRows | None = None
+    unit: Time | None = None
     begins: ModelBegins = field(default_factory=ModelBegins)
 
     def __post_init__(self) -> None:
@@ -74,6 +82,8 @@ class MeasureOptions:
             raise InvalidArgumentError(
                 "a counter belongs to a start and an end; add --start and --end, or state it in the markers"
             )
+        if not self.columns and (self.valid_rows is not None or self.unit is not None):
+            raise InvalidArgumentError("which rows are valid, and the unit, belong to the columns of a table; add --column")
         if self.baseline_from is not None and not self.baselines and self.markers is None:
             raise InvalidArgumentError("a trace for baselines needs the name of the empty object; add --baseline NAME")
 
@@ -116,7 +126,11 @@ def _objects(options: MeasureOptions) -> tuple[Measurable, ...]:
 
 
 def _measured(path: Path, objects: Sequence[Measurable], options: MeasureOptions) -> Measurement:
-    if is_can_log(path) or (objects and not _is_other_trace(path)):
+    if options.columns:
+        if objects:
+            raise InvalidArgumentError("a table has columns, and no frames with markers; omit one of both")
+        found = measured_table(path, options.columns, options.valid_rows, options.unit, options.window)
+    elif is_can_log(path) or (objects and not _is_other_trace(path)):
         found = measured_frames(path, objects, options.window, options.channel)
     elif objects:
         raise InvalidArgumentError(f"{path.name!r} is not a log of a CAN bus, so it has no frames with markers; omit them")
