@@ -15,13 +15,14 @@ from amalthea_uros.compare.measured.events import begins_of
 from amalthea_uros.compare.naming import Names, Target, targets
 from amalthea_uros.compare.phases import analyses_in_phases, systems_in_phases
 from amalthea_uros.compare.predictions import Missing, Predictor
-from amalthea_uros.compare.results import Agreement, Comparison, ComparisonRow, Source
+from amalthea_uros.compare.results import Agreement, Comparison, ComparisonRow, LossRow, Source
 from amalthea_uros.compare.simulated import Run, simulate_measured
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.measure.begins import ModelBegins
 from amalthea_uros.measure.series import MeasuredKind, Measurement
 from amalthea_uros.names import require
 from amalthea_uros.perf.system import System
+from amalthea_uros.simulate.results import Simulation
 from amalthea_uros.timing.activation.releases import with_first_arrivals
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.timing.demand.overheads import processes_with_overhead
@@ -98,6 +99,7 @@ def compare_measured(system: System, settings: Settings, measurement: Measuremen
         rows=rows,
         limits=tuple(judge_limits(system, settings, found, rule)),
         distributions=tuple(distributions(found, rows, runs, rule, options.overheads, basis_of)),
+        losses=tuple(_losses(found, simulation)),
         duration=None if simulation is None else simulation.duration,
         seed=None if simulation is None else simulation.seed,
         assumptions=assumptions_of(measurement, found, options.overheads, analysis, simulation),
@@ -150,6 +152,28 @@ def _rows(target: Target, predictor: Predictor, rule: Rule, basis_of: Callable[[
     chosen = {statistic: predictions[statistic] for statistic in target.statistics}
     rows = list(compared(replace(series, kind=target.kind), target.name, target.quantity, chosen, rule, basis_of(target)))
     yield from rows or [replace(nothing, reason=LEAST if series.is_least else _UNLIKE)]
+
+
+def _losses(found: Sequence[Target], simulation: Simulation | None) -> Iterator[LossRow]:
+    """The quantities of which values were lost, those of an object once."""
+    seen: set[str] = set()
+    for target in found:
+        lost, statistics = target.series.counts.lost, target.series.statistics
+        if lost and target.name not in seen and not target.is_unknown:
+            seen.add(target.name)
+            values = 0 if statistics is None else statistics.count
+            simulated = _share_unanswered(target, simulation)
+            yield LossRow(
+                object=target.name, kind=target.kind, quantity=target.quantity, values=values, lost=lost, simulated=simulated
+            )
+
+
+def _share_unanswered(target: Target, simulation: Simulation | None) -> Fraction | None:
+    if simulation is None or target.kind is not MeasuredKind.CHAIN:
+        return None
+    chain = next((each for each in simulation.chains if each.name == target.name), None)
+    stimuli = 0 if chain is None else sum(route.stimuli for route in chain.routes)
+    return None if chain is None or not stimuli else Fraction(chain.unanswered, stimuli)
 
 
 _UNLIKE = "no prediction has the definition of what was measured"

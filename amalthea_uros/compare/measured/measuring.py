@@ -12,6 +12,7 @@ from amalthea_uros.compare.measured.columns import TableColumn, ValidRows
 from amalthea_uros.compare.measured.events import measured_events
 from amalthea_uros.compare.measured.frames import measured_frames
 from amalthea_uros.compare.measured.marker_files import counter_of, read_markers
+from amalthea_uros.compare.measured.ros_reports import is_ros_report, measured_report
 from amalthea_uros.compare.measured.signals import Signals
 from amalthea_uros.compare.measured.tables import measured_table
 from amalthea_uros.compare.measured.values import is_value_table, measured_values
@@ -134,6 +135,8 @@ def _measured(path: Path, objects: Sequence[Measurable], options: MeasureOptions
         found = measured_frames(path, objects, options.window, options.channel)
     elif objects:
         raise InvalidArgumentError(f"{path.name!r} is not a log of a CAN bus, so it has no frames with markers; omit them")
+    elif is_ros_report(path):
+        found = measured_report(path, options.name)
     elif is_value_table(path):
         found = measured_values(path, options.window)
     else:
@@ -142,7 +145,7 @@ def _measured(path: Path, objects: Sequence[Measurable], options: MeasureOptions
 
 
 def _is_other_trace(path: Path) -> bool:
-    return format_of(path) is not None or is_value_table(path)
+    return format_of(path) is not None or is_value_table(path) or is_ros_report(path)
 
 
 def _digest(path: Path) -> str:
