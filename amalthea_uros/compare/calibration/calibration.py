@@ -18,6 +18,7 @@ from amalthea_uros.compare.calibration.overheads import calibrated_overheads
 from amalthea_uros.compare.calibration.periods import calibrated_periods
 from amalthea_uros.compare.calibration.samples import Measured
 from amalthea_uros.compare.calibration.values import CalibratedValue, Outcome
+from amalthea_uros.compare.calibration.wire_parts import executed_times
 from amalthea_uros.design.description import text_edits
 from amalthea_uros.design.description.edit import apply_assignments
 from amalthea_uros.design.description.places import Places
@@ -106,7 +107,9 @@ def calibrate_text(text: str, path: Path, measurements: Sequence[Measurement], o
     executors = (choice.period for choice in before.assembly.choices if choice.task == choice.executor)
     period = next(executors, None)
     found = [
-        *calibrated_execution_times([*with_executor_parts(measured, places, period)], places, options),
+        *calibrated_execution_times(
+            [*with_executor_parts(measured, places, period)], places, options, executed_times(before.assembly.system)
+        ),
         *calibrated_overheads(measured, before, options),
         *calibrated_periods(measured, before, places, options),
     ]
