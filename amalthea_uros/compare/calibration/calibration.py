@@ -10,6 +10,7 @@ from amalthea_uros._internal.files import FileError, read_bytes, read_text, writ
 from amalthea_uros._internal.limits import DESCRIPTION_SIZE
 from amalthea_uros._internal.paths import StrPath, is_description
 from amalthea_uros._internal.shown import Shown
+from amalthea_uros.compare.calibration.agent_times import calibrated_agent_times
 from amalthea_uros.compare.calibration.execution_times import calibrated_execution_times
 from amalthea_uros.compare.calibration.executor_parts import with_executor_parts
 from amalthea_uros.compare.calibration.findings import findings_of
@@ -112,6 +113,7 @@ def calibrate_text(text: str, path: Path, measurements: Sequence[Measurement], o
         ),
         *calibrated_overheads(measured, before, options),
         *calibrated_periods(measured, before, places, options),
+        *calibrated_agent_times(measured, text.removeprefix(_BOM), before, options),
     ]
     after, found = _edited(text.removeprefix(_BOM), found)
     _check(after, path)

@@ -179,7 +179,8 @@ def written_time(stated: StatedTime, samples: Samples, options: CalibrationOptio
     statistics, present = samples.statistics, stated_range(stated)
     refuted: tuple[str, ...] = ()
     if present is not None:
-        beyond = {"min": samples.certain_min < present[0], "max": samples.certain_max > present[1]}
+        # Time stamps are whole picoseconds, so that a difference may be wrong by one.
+        beyond = {"min": samples.certain_min < present[0] - 1, "max": samples.certain_max > present[1] + 1}
         refuted = tuple(end for end, is_beyond in beyond.items() if is_beyond)
     if options.form is Form.HISTOGRAM:
         if present is not None and not refuted and not options.tighten:
