@@ -53,7 +53,7 @@ _OF_CHAINS: Mapping[str, _Ends] = {
 }
 #: The metrics to which an overhead is added: it is part of an execution, and not of the distance of two of them.
 _WITH_OVERHEAD = (JobMetric.NET_EXECUTION_TIME, JobMetric.GROSS_EXECUTION_TIME, JobMetric.RESPONSE_TIME)
-#: Parts of a response time: its bound is one of these, too.
+#: Parts of the response time of a callback: its bound is one of these, too.
 _WITHIN_RESPONSE = (JobMetric.NET_EXECUTION_TIME, JobMetric.GROSS_EXECUTION_TIME, JobMetric.RUNNING_TIME)
 _ENDS = {Statistic.MIN: "minimum", Statistic.MEAN: "mean", Statistic.MAX: "maximum"}
 
@@ -163,7 +163,8 @@ def _of(analysis: Analysis, kind: MeasuredKind, name: str, quantity: str) -> dic
     metric = _metric(analysis, kind, name, quantity)
     if metric is not None:
         return dict(_of_metric(metric, quantity))
-    whole = _metric(analysis, kind, name, JobMetric.RESPONSE_TIME) if quantity in _WITHIN_RESPONSE else None
+    is_part = kind is MeasuredKind.RUNNABLE and quantity in _WITHIN_RESPONSE
+    whole = _metric(analysis, kind, name, JobMetric.RESPONSE_TIME) if is_part else None
     if whole is None or whole.max is None:
         return {}
     method = f"analysis of the response time, of which the {quantity.replace('_', ' ')} is a part"

@@ -1,7 +1,8 @@
 """Times in the agent from measured round trips: a fit, made only where the user asks for it.
 
 A round trip does not tell where its time passes. What the simulation says of it without any time in the agent is subtracted, and the rest
-is divided equally between the directions that are fitted: the shortest round trips give the minimum, the longest ones the maximum.
+is divided equally between the directions that are fitted: the shortest round trips give the minimum, the longest ones the
+maximum. If they differ by less than the simulated ones without it, their mean gives one time.
 """
 
 from __future__ import annotations
@@ -77,7 +78,8 @@ def _fitted(fit: AgentFit, samples: Samples, without: MetricObservation | str) -
         if lower < 0:
             reason = f"without any time in the agent, the shortest simulated round trip takes {time_text(round(without.min))}"
         elif upper < lower:
-            reason = "the measured round trips differ by less than those that are simulated without any time in the agent"
+            # Other times of the chain vary by more than was measured: only the mean says something.
+            lower = upper = round((samples.statistics.mean - without.mean) / number) * MICROSECOND
     for key in fit.keys:
         if reason:
             yield calibrated(key, samples, Outcome.NOT_WRITTEN, reason)
