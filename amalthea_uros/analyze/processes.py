@@ -47,7 +47,7 @@ def process_results(solution: Solution, executors: Results[ExecutorResult]) -> I
 
 
 def _can_wait(executor: Executor) -> bool:
-    """Whether an iteration can wait after it has begun, for a message on the wire or for the session: that is net execution time, too."""
+    """Whether an iteration can wait for the wire or the session after it has begun, which is net execution time, too."""
     return executor.session is not None or any(handle.publications for handle in executor.handles)
 
 

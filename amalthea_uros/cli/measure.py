@@ -79,7 +79,20 @@ _OPTIONS = all_of(
     )
 )
 #: The options that are passed on as they are.
-_AS_GIVEN = ("start", "end", "name", "counter", "markers", "dbc", "channel", "baseline_from", "period", "columns", "unit", "valid_rows")
+_AS_GIVEN = (
+    "start",
+    "end",
+    "name",
+    "counter",
+    "markers",
+    "dbc",
+    "channel",
+    "baseline_from",
+    "period",
+    "columns",
+    "unit",
+    "valid_rows",
+)
 
 
 def measure_options(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -130,8 +143,8 @@ def measure(
     """Measure the times in a trace: minimum, mean, maximum, jitter and percentiles.
 
     TRACE is a log of a CAN bus (candump .log; .asc, .blf, .trc, .mf4), whose frames at starts and ends are given by --start and --end
-    or in a file; a trace of events such as .btf or a folder with a CTF trace, whose processes, runnables and chains are measured; a .csv of measured
-    values; or a table of which --column says what its columns are.
+    or in a file; a trace of events such as .btf or a folder with a CTF trace, whose processes, runnables and chains are measured; a
+    .csv of measured values; or a table of which --column says what its columns are.
     The exit code is 1 if nothing was measured, or if a part of the trace is damaged.
     """
     outputs = checked_outputs(outputs, [("--histogram", path) for _, path in histograms])

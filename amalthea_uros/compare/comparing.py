@@ -8,25 +8,25 @@ from fractions import Fraction
 
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.compare.agreement import LEAST, Rule, compared
+from amalthea_uros.compare.bases import bases
 from amalthea_uros.compare.distributions import distributions
 from amalthea_uros.compare.findings import assumptions_of, findings_of, open_phases
 from amalthea_uros.compare.limits import judge_limits
+from amalthea_uros.compare.losses import losses
 from amalthea_uros.compare.measured.events import begins_of
 from amalthea_uros.compare.naming import Names, Target, targets
-from amalthea_uros.compare.phases import analyses_in_phases, systems_in_phases
+from amalthea_uros.compare.phases import analyses_in_phases
 from amalthea_uros.compare.predictions import Missing, Predictor
-from amalthea_uros.compare.results import Agreement, Comparison, ComparisonRow, LossRow, Source
+from amalthea_uros.compare.results import Agreement, Comparison, ComparisonRow, Source
 from amalthea_uros.compare.simulated import Run, simulate_measured
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.measure.begins import ModelBegins
 from amalthea_uros.measure.series import MeasuredKind, Measurement
 from amalthea_uros.names import require
 from amalthea_uros.perf.system import System
-from amalthea_uros.simulate.results import Simulation
-from amalthea_uros.timing.activation.releases import with_first_arrivals
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.timing.demand.overheads import processes_with_overhead
-from amalthea_uros.timing.stated_distributions import Basis, StatedDistributions
+from amalthea_uros.timing.stated_distributions import Basis
 from amalthea_uros.units import SECOND, Time
 
 DEFAULT_TOLERANCE = Fraction(20, 100)
@@ -86,7 +86,7 @@ def compare_measured(system: System, settings: Settings, measurement: Measuremen
         uncertainty=uncertainty or 0,
         is_reached=options.uncertainty is not None and uncertainty != 0,
     )
-    basis_of = _bases(system, settings)
+    basis_of = bases(system, settings)
     rows = (
         *(row for target in found for row in _rows(target, predictor, rule, basis_of)),
         *_not_measured(system, found, begins),
@@ -99,7 +99,7 @@ def compare_measured(system: System, settings: Settings, measurement: Measuremen
         rows=rows,
         limits=tuple(judge_limits(system, settings, found, rule)),
         distributions=tuple(distributions(found, rows, runs, rule, options.overheads, basis_of)),
-        losses=tuple(_losses(found, simulation)),
+        losses=tuple(losses(found, simulation)),
         duration=None if simulation is None else simulation.duration,
         seed=None if simulation is None else simulation.seed,
         assumptions=assumptions_of(measurement, found, options.overheads, analysis, simulation),
@@ -108,22 +108,6 @@ def compare_measured(system: System, settings: Settings, measurement: Measuremen
     reported = (*measurement.findings, *(finding for each in of_predictions for finding in each))
     own = findings_of(comparison, found, open_phases(system, settings))
     return replace(comparison, findings=tuple(dict.fromkeys((*reported, *own))))
-
-
-def _bases(system: System, settings: Settings) -> Callable[[Target], Basis]:
-    """What the distributions of what is compared follow from."""
-    are_phases_open = systems_in_phases(system, settings) is None
-    stated = StatedDistributions(with_first_arrivals(system, settings.phases), settings, are_phases_open)
-
-    def basis_of(target: Target) -> Basis:
-        match target.kind:
-            case MeasuredKind.CHAIN:
-                return stated.of_chain(target.name)
-            case MeasuredKind.RUNNABLE:
-                return stated.of_runnable(target.name, target.quantity)
-        return stated.of_process(target.name, target.quantity)
-
-    return basis_of
 
 
 def _rows(target: Target, predictor: Predictor, rule: Rule, basis_of: Callable[[Target], Basis]) -> Iterator[ComparisonRow]:
@@ -152,28 +136,6 @@ def _rows(target: Target, predictor: Predictor, rule: Rule, basis_of: Callable[[
     chosen = {statistic: predictions[statistic] for statistic in target.statistics}
     rows = list(compared(replace(series, kind=target.kind), target.name, target.quantity, chosen, rule, basis_of(target)))
     yield from rows or [replace(nothing, reason=LEAST if series.is_least else _UNLIKE)]
-
-
-def _losses(found: Sequence[Target], simulation: Simulation | None) -> Iterator[LossRow]:
-    """The quantities of which values were lost, those of an object once."""
-    seen: set[str] = set()
-    for target in found:
-        lost, statistics = target.series.counts.lost, target.series.statistics
-        if lost and target.name not in seen and not target.is_unknown:
-            seen.add(target.name)
-            values = 0 if statistics is None else statistics.count
-            simulated = _share_unanswered(target, simulation)
-            yield LossRow(
-                object=target.name, kind=target.kind, quantity=target.quantity, values=values, lost=lost, simulated=simulated
-            )
-
-
-def _share_unanswered(target: Target, simulation: Simulation | None) -> Fraction | None:
-    if simulation is None or target.kind is not MeasuredKind.CHAIN:
-        return None
-    chain = next((each for each in simulation.chains if each.name == target.name), None)
-    stimuli = 0 if chain is None else sum(route.stimuli for route in chain.routes)
-    return None if chain is None or not stimuli else Fraction(chain.unanswered, stimuli)
 
 
 _UNLIKE = "no prediction has the definition of what was measured"

@@ -222,7 +222,9 @@ def _named(series: Series, name: str, system: System) -> Target:
         if series.quantity == _DURATION:
             example = f"--as '{series.name}={name}.{JobMetric.RESPONSE_TIME}'"
             return replace(target, reason=f"a time between two markers can be several quantities; say which, e.g. {example}")
-        return replace(target, kind=kinds[0], quantity=_whole_time(kinds[0]) if series.quantity == WHOLE_TIME else series.quantity)
+        return replace(
+            target, kind=kinds[0], quantity=_whole_time(kinds[0]) if series.quantity == WHOLE_TIME else series.quantity
+        )
     if series.kind not in kinds:
         return replace(target, reason=f"{name!r} is a {series.kind} in the trace, and a {kinds[0]} in the model")
     return target

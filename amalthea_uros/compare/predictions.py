@@ -238,14 +238,16 @@ def _observed(simulation: Simulation, kind: MeasuredKind, name: str, quantity: s
         case MeasuredKind.PROCESS:
             found = (each.metrics.items() for each in simulation.processes if each.name == name)
         case MeasuredKind.RUNNABLE:
-            found = iter([*(each.metrics.items() for each in simulation.runnables if each.name == name), *_of_handles(simulation, name)])
+            found = iter(
+                [*(each.metrics.items() for each in simulation.runnables if each.name == name), *_of_handles(simulation, name)]
+            )
         case MeasuredKind.CHAIN:
             found = (each.quantities.items() for each in simulation.chains if each.name == name)
     return next((observation for items in found for each, observation in items if each == quantity), None)
 
 
 def _of_handles(simulation: Simulation, runnable: str) -> Sequence[Iterable[tuple[str, MetricObservation]]]:
-    """What a simulation has of a callback of an executor that loops; if several handles call it, only values are known of all."""
+    """The observations of a callback of an executor that loops; if several handles call it, only values are known of all."""
     handles = (handle for executor in simulation.executors for handle in executor.handles if handle.runnable == runnable)
-    found = [handle.metrics.items() for handle in handles]
-    return found if len(found) == 1 else []
+    metrics = [handle.metrics.items() for handle in handles]
+    return metrics if len(metrics) == 1 else []

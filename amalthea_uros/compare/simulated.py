@@ -66,7 +66,7 @@ class _Measuring(TraceSink):
         self._jobs.add(part)
 
     def measurement(self, kept: KeptValues) -> Measurement:
-        """What was measured; of chains and callbacks of executors, as the simulation observes them itself: from the host on."""
+        """The measured values; of chains and callbacks of executors, as the simulation observes them itself: from the host on."""
         self._jobs.finish()
         names = [entity.name for entity in self._entities]
         calls = [_series(MeasuredKind.RUNNABLE, *each) for each in kept.calls()]

@@ -258,8 +258,8 @@ class JobFollower:
             # What a callback of an executor in a loop responds to came before its iteration.
             used = [metric for metric in JobMetric if metric not in FROM_ACTIVATION]
             is_callback = names[runnable] in self.begins.callbacks
-            found = _series(MeasuredKind.RUNNABLE, names[runnable], parts, "" if is_callback else ACTIVATION)
-            yield from (each for each in found if not is_callback or each.quantity in used)
+            measured = _series(MeasuredKind.RUNNABLE, names[runnable], parts, "" if is_callback else ACTIVATION)
+            yield from (each for each in measured if not is_callback or each.quantity in used)
 
     def _by_runnable(self) -> dict[int, _EndedJobs]:
         """The executions of each runnable in all processes, in the order of their ends."""

@@ -156,8 +156,8 @@ class Series:
 
     Attributes
     ----------
-    quantity : by the names of `JobMetric` for processes and runnables, of `ChainQuantity` for chains, `duration` for intervals, `time` of an
-        object as a whole
+    quantity : by the names of `JobMetric` for processes and runnables, of `ChainQuantity` for chains, `duration` for intervals,
+        `time` of an object as a whole
     statistics : None if there is no value
     values : picoseconds, in the order of their occurrence; None if the trace has only their statistics
     times : when each value was complete, in picoseconds from the start of the trace; None if that is not known

@@ -91,7 +91,7 @@ def measure(
 
 
 def _given(parse: Callable[[str], T], text: str) -> T:
-    """What a text says that was given to a function."""
+    """The meaning of a text that was given to a function."""
     try:
         return parse(text)
     except ValueError as error:

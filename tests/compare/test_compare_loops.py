@@ -14,7 +14,7 @@ from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.trace.sinks import EventRecorder
 from amalthea_uros.units import MILLISECOND, SECOND
 
-#: A message of which nothing varies: 1 ms of agent in both directions, and a callback of 1 ms.
+#: 1 ms in the agent in both directions, and a callback of 1 ms.
 APP = """
 amuros: 1
 name: echo
@@ -28,7 +28,8 @@ application:
     - name: n
       publishers: [{topic: reply, message_size: 8 B, reliability: best-effort}]
       subscriptions:
-        - {name: answer, topic: request, message_size: 8 B, reliability: best-effort, rate: 100 Hz, execution_time: 1 ms, publishes: [reply]}
+        - {name: answer, topic: request, message_size: 8 B, reliability: best-effort, rate: 100 Hz,
+           execution_time: 1 ms, publishes: [reply]}
 chains: [{name: round-trip, path: [/request, answer, /reply], reaction: 20 ms}]
 """
 
@@ -62,7 +63,9 @@ def test_iterations_and_callbacks_of_a_trace_have_what_the_simulation_observed()
     (executor,) = observed.executors
     wanted = {("Executor", metric): each for metric, each in observed.processes["Executor"].metrics.items()}
     for handle in executor.handles:
-        wanted |= {(handle.runnable, metric): each for metric, each in handle.metrics.items() if (handle.runnable, metric) in found}
+        wanted |= {
+            (handle.runnable, metric): each for metric, each in handle.metrics.items() if (handle.runnable, metric) in found
+        }
     assert len(wanted) > 40
     for key, expected in wanted.items():
         assert found[key].count == expected.count, key

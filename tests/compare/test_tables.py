@@ -44,7 +44,8 @@ def test_rows_that_failed_are_lost_and_counted_with_their_first_line(tmp_path):
 
 
 def test_a_quantity_can_be_the_difference_of_two_time_stamps_since_1970(tmp_path):
-    text = "sent_ns,received_ns\n1700000000000000001,1700000000004000002\n1700000001000000000,\n1700000002000000000,1700000002005000000\n"
+    rows = ("1700000000000000001,1700000000004000002", "1700000001000000000,", "1700000002000000000,1700000002005000000")
+    text = "\n".join(("sent_ns,received_ns", *rows))
     found = table(tmp_path, text, "received_ns - sent_ns=round-trip.reduced_data_age")
     assert only(found).values.tolist() == [4_000_001_000, 5_000_000_000]
     assert (only(found).quantity, only(found).counts.lost) == ("reduced_data_age", 1)

@@ -1,6 +1,6 @@
 """Times in the agent from measured round trips: a fit, made only where the user asks for it.
 
-A round trip does not tell where its time passes. What the simulation says of it without any time in the agent is subtracted, and the rest
+A round trip does not show where its time passes. The simulated one without any time in the agent is subtracted, and the rest
 is divided equally between the directions that are fitted: the shortest round trips give the minimum, the longest ones the
 maximum. If they differ by less than the simulated ones without it, their mean gives one time.
 """
@@ -45,17 +45,15 @@ def calibrated_agent_times(
     for fit in options.fits:
         own = [each for each in measured if _is_round_trip(each, fit)]
         if not own:
-            message = f"no round trips of {fit.chain!r} were measured at the host; give them as a table, e.g. --column 'rtt_ms={fit.chain}'"
-            raise InvalidArgumentError(message)
+            advice = f"give them as a table, e.g. --column 'rtt_ms={fit.chain}'"
+            raise InvalidArgumentError(f"no round trips of {fit.chain!r} were measured at the host; {advice}")
         yield from _fitted(fit, samples_of(own, options.judge_on), _without_agent(fit, text, own))
 
 
 def _is_round_trip(measured: Measured, fit: AgentFit) -> bool:
     """Whether it was measured from the host to the host: in traces, a chain begins at the controller."""
     series = measured.series
-    return (
-        series.name == fit.chain and not series.begin and series.statistics is not None and series.quantity in _QUANTITIES
-    )
+    return series.name == fit.chain and not series.begin and series.statistics is not None and series.quantity in _QUANTITIES
 
 
 def _without_agent(fit: AgentFit, text: str, measured: Sequence[Measured]) -> MetricObservation | str:
@@ -63,8 +61,8 @@ def _without_agent(fit: AgentFit, text: str, measured: Sequence[Measured]) -> Me
     without = apply_assignments(text, [Assignment(key, _path(key), "0 ms") for key in fit.keys])
     system: System = describe_text(without).assembly.system
     duration: Time = max(_SHORTEST, *(each.source.duration for each in measured))
-    found = simulate_system(system, Options(duration=duration)).chains[fit.chain]
-    return found.quantities.get(ChainQuantity.REDUCED_REACTION_TIME) or found.reason or "the simulation has no round trip"
+    chain = simulate_system(system, Options(duration=duration)).chains[fit.chain]
+    return chain.quantities.get(ChainQuantity.REDUCED_REACTION_TIME) or chain.reason or "the simulation has no round trip"
 
 
 def _fitted(fit: AgentFit, samples: Samples, without: MetricObservation | str) -> Iterator[CalibratedValue]:

@@ -1,7 +1,7 @@
-"""What the callbacks of executors that loop do for the wire: it is part of what is measured of them, and the transport states it.
+"""The work of callbacks for the wire, in executors that loop: it is part of what is measured of them, and the transport states it.
 
 A driver that polls keeps the processor busy while a message is on the line, for a time that varies. A callback that publishes can also
-wait until its message is on the wire, or until it is acknowledged: that is net execution time, too, and only its running time is without.
+wait until its message is on the wire, or until it is acknowledged: that is net execution time, too, and no running time.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from amalthea_uros.measure.series import TimeStatistics, shifted
 from amalthea_uros.perf.executors import Handle
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.quantities import JobMetric
-from amalthea_uros.timing.basics.time_base import max_time, min_time
+from amalthea_uros.timing.basics.time_base import Ticks, max_time, min_time
 from amalthea_uros.units import Interval, Time, time_text
 
 
 @dataclass(frozen=True, slots=True)
 class ExecutedTime:
-    """What a callback executes, or what taking its message does.
+    """The time of a callback, or of taking its message.
 
     Attributes
     ----------
@@ -37,14 +37,15 @@ class ExecutedTime:
     can_wait: bool = False
 
     def others(self, stated: tuple[Time, Time] | None) -> Interval[Time]:
-        """What it executes besides the time that a description states."""
+        """The time that it executes besides the time that a description states."""
         lower, upper = stated or (0, 0)
         return Interval(max(0, self.whole.lower - lower), max(0, self.whole.upper - upper))
 
 
 def executed_times(system: System) -> Mapping[str, ExecutedTime]:
-    """What executors that loop execute, by the names of handles and runnables; those of which it is not known are absent."""
-    context, found = timing_context(system), {}
+    """The times that executors in loops execute, by the names of handles and runnables; those of which it is not known are absent."""
+    context = timing_context(system)
+    times: dict[str, ExecutedTime] = {}
     for executor in system.executors:
         try:
             demand = IterationDemand.of(executor, context)
@@ -54,20 +55,22 @@ def executed_times(system: System) -> Mapping[str, ExecutedTime]:
         for handle in executor.handles:
             callback, take = demand.callbacks[handle.name], demand.takes[handle.name]
             called = ExecutedTime(_times(callback, base), _can_wait(handle, system))
-            found |= dict.fromkeys((handle.name, handle.runnable), called)
+            times |= dict.fromkeys((handle.name, handle.runnable), called)
             if handle.take is not None:
-                found[handle.take] = ExecutedTime(_times(take, base))
-    return found
+                times[handle.take] = ExecutedTime(_times(take, base))
+    return times
 
 
 def _times(demand: Interval[Time], time_base: int) -> Interval[Time]:
-    return Interval(min_time(demand.lower, time_base), max_time(demand.upper, time_base))
+    return Interval(min_time(Ticks(demand.lower), time_base), max_time(Ticks(demand.upper), time_base))
 
 
 def _can_wait(handle: Handle, system: System) -> bool:
     wires = {wire.name: wire for wire in system.network.wires}
     sent = [system.transmissions.get(each.transmission or "") for each in handle.publications]
-    return any(each.waits for each in handle.publications) or any(each is not None and wires[each.wire].keeps_sender for each in sent)
+    return any(each.waits for each in handle.publications) or any(
+        each is not None and wires[each.wire].keeps_sender for each in sent
+    )
 
 
 def without_waits(measured: Sequence[Measured], known: Mapping[str, ExecutedTime]) -> list[Measured]:
@@ -82,8 +85,8 @@ def without_waits(measured: Sequence[Measured], known: Mapping[str, ExecutedTime
         for each in measured
         if (id(each.source), each.series.name) not in running or each.series.quantity not in _WITH_WAITS
     ]
-    found = (replace(each, series=replace(each.series, quantity=JobMetric.NET_EXECUTION_TIME)) for each in running.values())
-    return [*others, *(replace(each, note=WITHOUT_WAITS) for each in found)]
+    kept = (replace(each, series=replace(each.series, quantity=JobMetric.NET_EXECUTION_TIME)) for each in running.values())
+    return [*others, *(replace(each, note=WITHOUT_WAITS) for each in kept)]
 
 
 #: What is said of running times that are used.

@@ -18,7 +18,9 @@ _DIGITS = 12
 
 def provenance(samples: Samples, remark: str) -> str:
     """Where measured values come from, as the end of a comment."""
-    baselines = dict.fromkeys(_baseline(each) for each in samples.measured if each.series.baseline is not None and OTHER_PARTS not in each.note)
+    baselines = dict.fromkeys(
+        _baseline(each) for each in samples.measured if each.series.baseline is not None and OTHER_PARTS not in each.note
+    )
     notes = dict.fromkeys(each.note for each in samples.measured)
     parts = [statistics_text(samples.statistics), *notes, *baselines, remark]
     return f"measured in {', '.join(dict.fromkeys(map(_source, samples.measured)))}: {'; '.join(filter(None, parts))}"

@@ -106,5 +106,5 @@ def parse_unit(text: str) -> Time:
 
 def unit_of(header: str) -> Time | None:
     """The picoseconds of the unit that the header of a column names; None if it names none."""
-    found = _HEADER.fullmatch(header)
-    return None if found is None else UNITS[found[1]]
+    match = _HEADER.fullmatch(header)
+    return None if match is None else UNITS[match[1]]

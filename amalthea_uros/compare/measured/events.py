@@ -26,7 +26,9 @@ if TYPE_CHECKING:
 #: The events of a job with which a chain can begin so that a trace shows it.
 _BEGINS = {ProcessChange.ACTIVATE: EventKind.ACTIVATE, ProcessChange.START: EventKind.START}
 WITHIN_A_JOB = "it begins or ends within a job, at an event that is not in traces; measure it between markers"
-AT_HOST = "it begins or ends at the host, which is not in traces of the controller; measure it there, and give the values as a table"
+AT_HOST = (
+    "it begins or ends at the host, which is not in traces of the controller; measure it there, and give the values as a table"
+)
 
 
 def begins_of(system: System) -> ModelBegins:
@@ -45,7 +47,10 @@ def _chain_begins(system: System) -> Iterator[tuple[str, ChainBegin]]:
             routes = [(system.events_by_name[way[0]], system.events_by_name[way[-1]]) for way in ways]
         except UnknownError:
             continue
-        if any(_is_at_host(first, Direction.TO_CONTROLLER, system) or _is_at_host(last, Direction.TO_AGENT, system) for first, last in routes):
+        if any(
+            _is_at_host(first, Direction.TO_CONTROLLER, system) or _is_at_host(last, Direction.TO_AGENT, system)
+            for first, last in routes
+        ):
             yield chain.name, AT_HOST
             continue
         begins = {_begin(first, system) for first, _ in routes}
@@ -61,8 +66,9 @@ def _is_at_host(event: Event, direction: Direction, system: System) -> bool:
 
 def _begin(event: Event, system: System) -> ChainBegin:
     # An iteration is no job that something activates.
-    is_job = isinstance(event, ProcessEvent) and event.process not in system.executor_of_task
-    return _BEGINS.get(event.change, WITHIN_A_JOB) if is_job and event.change is not None else WITHIN_A_JOB
+    if not isinstance(event, ProcessEvent) or event.change is None or event.process in system.executor_of_task:
+        return WITHIN_A_JOB
+    return _BEGINS.get(event.change, WITHIN_A_JOB)
 
 
 def _ends_with_its_step(event: Event) -> bool:

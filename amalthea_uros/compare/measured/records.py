@@ -1,7 +1,7 @@
 """The rows of tables: of CSV, and of the documents that `ros2 topic echo` writes.
 
-In documents, a field in a field has the names of both, such as `header.stamp.sec`; where there are `sec` and `nanosec`, the moment is the
-column before them with its unit: `header.stamp_s`.
+In documents, a field in a field has the names of both, such as `header.stamp.sec`; where there are `sec` and `nanosec`, the moment is
+the column before them with its unit: `header.stamp_s`.
 """
 
 from __future__ import annotations
@@ -56,44 +56,44 @@ def _from_csv(lines: Iterator[tuple[int, str]], header: str, problems: TraceProb
 
 def _from_documents(lines: Iterator[tuple[int, str]]) -> Iterator[Record]:
     names: list[str] = []
-    for number, found in _documents(lines):
+    for number, document in _documents(lines):
         if not names:
-            names = list(found)
+            names = list(document)
             yield Record(number, names)
-        yield Record(number, [found.get(name, "") for name in names])
+        yield Record(number, [document.get(name, "") for name in names])
 
 
 def _documents(lines: Iterator[tuple[int, str]]) -> Iterator[tuple[int, dict[str, str]]]:
     """The fields of each document, with the number of its first line."""
-    found: dict[str, str] = {}
+    fields: dict[str, str] = {}
     parents: list[tuple[int, str]] = []
     first = 1
     for number, line in lines:
         if line.strip() == _END:
-            if found:
-                yield first, _with_moments(found)
-            found, parents = {}, []
+            if fields:
+                yield first, _with_moments(fields)
+            fields, parents = {}, []
             continue
         match = _FIELD.fullmatch(line.rstrip("\r\n"))
         if match is None:
             continue
-        first = first if found else number
+        first = first if fields else number
         indent, name, value = len(match[1]), match[2], (match[3] or "").strip()
         parents = [each for each in parents if each[0] < indent]
         if value:
-            found[".".join((*(parent for _, parent in parents), name))] = value
+            fields[".".join((*(parent for _, parent in parents), name))] = value
         else:
             parents.append((indent, name))
-    if found:
-        yield first, _with_moments(found)
+    if fields:
+        yield first, _with_moments(fields)
 
 
-def _with_moments(found: dict[str, str]) -> dict[str, str]:
+def _with_moments(fields: dict[str, str]) -> dict[str, str]:
     """The fields, with the moments of which seconds and nanoseconds are there."""
     moments = {}
-    for name, seconds in found.items():
+    for name, seconds in fields.items():
         before, _, last = name.rpartition(".")
-        nanoseconds = found.get(f"{before}.nanosec", "")
+        nanoseconds = fields.get(f"{before}.nanosec", "")
         if last == "sec" and seconds.isdigit() and nanoseconds.isdigit():
             moments[f"{before}_s"] = f"{seconds}.{nanoseconds:0>9}"
-    return found | moments
+    return fields | moments

@@ -1,4 +1,4 @@
-"""What `ros2 topic delay` and `ros2 topic hz` print: statistics of the messages of a topic at the host.
+"""The output of `ros2 topic delay` and `ros2 topic hz`: statistics of the messages of a topic at the host.
 
     average delay: 0.005
         min: 0.004s max: 0.006s std dev: 0.00041s window: 10
@@ -42,14 +42,14 @@ def measured_report(path: Path, name: str) -> Measurement:
     """
     problems = TraceProblems(path)
     with opened_text(path, problems) as lines:
-        found = list(_reports(lines, problems))
-    quantity = found[-1][0] if found else "duration"
+        reports = list(_reports(lines, problems))
+    quantity = reports[-1][0] if reports else "duration"
     series = Series(
         kind=MeasuredKind.INTERVAL,
         name=name,
         quantity=quantity,
-        statistics=_together([statistics for _, statistics in found]) if found else None,
-        method=f"{len(found):,} reports of a topic at the host: the mean of the last one",
+        statistics=_of_all_reports([statistics for _, statistics in reports]) if reports else None,
+        method=f"{len(reports):,} reports of a topic at the host: the mean of the last one",
     )
     return Measurement(
         source=str(path),
@@ -97,10 +97,10 @@ def _report(average: re.Match[str], others: re.Match[str]) -> tuple[str, TimeSta
 
 
 def _time(seconds: Fraction) -> Time:
-    return round(seconds * SECOND)
+    return int(seconds * SECOND)
 
 
-def _together(reports: list[TimeStatistics]) -> TimeStatistics:
+def _of_all_reports(reports: list[TimeStatistics]) -> TimeStatistics:
     last = reports[-1]
     low, high = min(each.min for each in reports), max(each.max for each in reports)
     return TimeStatistics(count=last.count, min=low, mean=last.mean, max=high, variance=last.variance)

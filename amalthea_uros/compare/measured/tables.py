@@ -56,7 +56,7 @@ def measured_table(
     with opened_text(path, problems) as lines:
         records = read_records(lines, problems)
         header = next(records, Record(1, []))
-        table = _Table(problems, _Places(path, header).of(columns, valid, unit), window)
+        table = _Table(problems, _HeaderColumns(path, header).of(columns, valid, unit), window)
         for record in records:
             table.add(record)
     return Measurement(
@@ -83,7 +83,7 @@ class _Time:
 
 
 @dataclass(frozen=True, slots=True)
-class _Layout:
+class _TableLayout:
     """Where a table has what is read."""
 
     columns: tuple[TableColumn, ...]
@@ -95,17 +95,17 @@ class _Layout:
 
 
 @dataclass(frozen=True, slots=True)
-class _Places:
+class _HeaderColumns:
     """The columns of a header."""
 
     path: Path
     header: Record
 
-    def of(self, columns: Sequence[TableColumn], valid: ValidRows | None, unit: Time | None) -> _Layout:
+    def of(self, columns: Sequence[TableColumn], valid: ValidRows | None, unit: Time | None) -> _TableLayout:
         names = self.header.fields
         times = [name for name in names if name.startswith(_TIME) and name.removeprefix(_TIME) in UNITS]
         rows = valid or USUAL_ROWS
-        return _Layout(
+        return _TableLayout(
             columns=tuple(columns),
             ends=tuple(self._time(each.column, unit) for each in columns),
             starts=tuple(None if each.start is None else self._time(each.start, unit) for each in columns),
@@ -138,7 +138,7 @@ class _Table:
     """The values of the columns, and how many rows have none."""
 
     problems: TraceProblems
-    layout: _Layout
+    layout: _TableLayout
     window: MeasurementWindow
     _values: list[array[int]] = field(init=False)
     _times: list[array[int]] = field(init=False)
@@ -177,7 +177,9 @@ class _Table:
 
     def _time(self, record: Record) -> Time | None:
         """When a row was complete, from the first row on; None if that is not known."""
-        known = self.layout.time or next((end for end, start in zip(self.layout.ends, self.layout.starts, strict=True) if start), None)
+        known = self.layout.time or next(
+            (end for end, start in zip(self.layout.ends, self.layout.starts, strict=True) if start), None
+        )
         if known is None:
             return None
         if known is not self.layout.time and record.fields[known.place].lower() in _EMPTY:
@@ -191,7 +193,7 @@ class _Table:
         return self.window.start <= time and (self.window.end is None or time < self.window.end)
 
     def _failure(self, fields: Sequence[str]) -> str:
-        """What the table says itself of a row without a value, "" of one with a value."""
+        """The mark that the table itself gives a row without a value, "" of one with a value."""
         place, valid = self.layout.status, self.layout.valid
         if place is None:
             return ""
@@ -207,16 +209,16 @@ class _Table:
             return
         try:
             value = end.of(record.fields) - (0 if start is None else start.of(record.fields))
-            found = int(value.to_integral_value())
+            picoseconds = int(value.to_integral_value())
         except (InvalidOperation, ValueError, OverflowError):
             self._lost[number] += 1
             self._wrong(record, f"a row has no number in {column}; it counts as lost")
             return
-        if not 0 <= found <= _LARGEST:
+        if not 0 <= picoseconds <= _LARGEST:
             self._lost[number] += 1
             self._wrong(record, f"a row has a time in {column} that is negative or too large; it counts as lost")
             return
-        self._values[number].append(found)
+        self._values[number].append(picoseconds)
         if time is not None:
             self._times[number].append(time)
 
@@ -226,7 +228,9 @@ class _Table:
         self._causes.add(cause)
         place = TracePlace(record.line, 1, ",".join(record.fields))
         message = f"a row with {cause} counts as lost: how long it would have taken is not known"
-        self.problems.add(LOST_ROWS, Severity.WARNING, message, place, "See the share of lost values before the maxima are used.")
+        self.problems.add(
+            LOST_ROWS, Severity.WARNING, message, place, "See the share of lost values before the maxima are used."
+        )
 
     def _wrong(self, record: Record, message: str) -> None:
         self.problems.add("MEA009", Severity.ERROR, message, TracePlace(record.line, 1, ",".join(record.fields)))
@@ -236,8 +240,8 @@ class _Table:
         import numpy as np
 
         parts = zip(self.layout.columns, self._values, self._times, self._lost, strict=True)
-        for column, found, times, lost in parts:
-            values = np.array(found, np.int64)
+        for column, column_values, times, lost in parts:
+            values = np.array(column_values, np.int64)
             what = "difference of the columns" if column.start is not None else "column"
             yield Series(
                 kind=MeasuredKind.INTERVAL,
@@ -245,7 +249,7 @@ class _Table:
                 quantity=column.quantity,
                 statistics=statistics_or_none(values),
                 values=values,
-                times=np.array(times, np.int64) if len(times) == len(found) else None,
+                times=np.array(times, np.int64) if len(times) == len(values) else None,
                 counts=Counts(lost=lost),
                 method=f"{what} {column} of a table",
             )

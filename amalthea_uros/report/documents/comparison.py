@@ -64,7 +64,7 @@ class BoundTest:
 
 
 def _of_all(row: ComparisonRow) -> str:
-    """What is to be said of a bound; of one that is exceeded, by how many values."""
+    """A remark on a bound; of one that is exceeded, by how many values."""
     share = f" ({row.beyond:,} of {counted(row.samples, 'value')})" if row.reason and row.beyond is not None else ""
     return f"{row.reason}{share}"
 
@@ -387,7 +387,10 @@ def comparison_document(result: Comparison) -> Document:
         section(predictions, table("", predicted, map(_prediction_cells, prediction_groups(result)))),
         section(bounds, table("", bounded, map(_bound_cells, bound_tests(result))), not_shown),
         section(distance, table("", distributed, _distribution_rows(result))),
-        section("Lost values (share; stimuli without a response in the simulation)", table("", lost, map(_loss_cells, result.losses))),
+        section(
+            "Lost values (share; stimuli without a response in the simulation)",
+            table("", lost, map(_loss_cells, result.losses)),
+        ),
         section("Limits, as measured", table("", limited, map(_limit_cells, result.limits))),
         section("Not compared", table("", ("object", "quantity", "", "reason"), missing), not_predicted),
         section("Assumptions", Sentences(result.assumptions)),

@@ -40,9 +40,9 @@ class KeptValues:
 
     def chains(self) -> Iterator[tuple[str, ChainQuantity, Numbers]]:
         """The latencies of each chain in picoseconds, by quantity."""
-        for name, found in self._chains.items():
+        for name, latencies in self._chains.items():
             for quantity in ChainQuantity:
-                parts = found.get(SAME.get(quantity, quantity), [])
+                parts = latencies.get(SAME.get(quantity, quantity), [])
                 if parts:
                     yield name, quantity, np.concatenate(parts) // self.units
 

@@ -75,13 +75,13 @@ class SimulationRun:
         )
 
     def _kept_calls(self) -> Iterator[Callable[[Numbers], None] | None]:
-        """What keeps the calls of each handle."""
+        """The functions that keep the calls of each handle."""
         executors = {executor.name: executor for executor in self.context.system.executors}
         if self.kept is not None:
             self.kept.units = self.program.units
         for executor, name in self.program.handles:
             (runnable,) = (handle.runnable for handle in executors[executor].handles if handle.name == name)
-            yield self.kept and partial(self.kept.add_calls, runnable, name)
+            yield None if self.kept is None else partial(self.kept.add_calls, runnable, name)
 
     def execute(self, sinks: Sequence[TraceSink]) -> None:
         """Run to the end, and write the events."""

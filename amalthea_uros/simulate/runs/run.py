@@ -23,7 +23,9 @@ from amalthea_uros.trace.table import Entity
 OpenSink: TypeAlias = "Callable[[Sequence[Entity]], TraceSink]"
 
 
-def simulate_system(system: System, options: Options, sinks: Sequence[OpenSink] = (), kept: KeptValues | None = None) -> Simulation:
+def simulate_system(
+    system: System, options: Options, sinks: Sequence[OpenSink] = (), kept: KeptValues | None = None
+) -> Simulation:
     """Simulate a system once.
 
     Processes and chains that cannot be simulated are findings; the others are simulated as if they did not exist.
