@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
@@ -12,16 +12,15 @@ from amalthea_uros.compare.bases import bases
 from amalthea_uros.compare.distributions import distributions
 from amalthea_uros.compare.findings import assumptions_of, findings_of, open_phases
 from amalthea_uros.compare.limits import judge_limits
-from amalthea_uros.compare.losses import losses
 from amalthea_uros.compare.measured.events import begins_of
 from amalthea_uros.compare.naming import Names, Target, targets
+from amalthea_uros.compare.not_measured import losses, not_measured
 from amalthea_uros.compare.phases import analyses_in_phases
 from amalthea_uros.compare.predictions import Missing, Predictor
 from amalthea_uros.compare.results import Agreement, Comparison, ComparisonRow, Source
 from amalthea_uros.compare.simulated import Run, simulate_measured
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.measure.begins import ModelBegins
-from amalthea_uros.measure.series import MeasuredKind, Measurement
+from amalthea_uros.measure.series import Measurement
 from amalthea_uros.names import require
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.settings import Settings
@@ -89,7 +88,7 @@ def compare_measured(system: System, settings: Settings, measurement: Measuremen
     basis_of = bases(system, settings)
     rows = (
         *(row for target in found for row in _rows(target, predictor, rule, basis_of)),
-        *_not_measured(system, found, begins),
+        *not_measured(system, found, begins),
     )
     comparison = Comparison(
         model="",
@@ -139,28 +138,3 @@ def _rows(target: Target, predictor: Predictor, rule: Rule, basis_of: Callable[[
 
 
 _UNLIKE = "no prediction has the definition of what was measured"
-_NOT_IN_TRACE = {
-    MeasuredKind.PROCESS: "the trace has no process of this name",
-    MeasuredKind.CHAIN: "the trace has no values of this chain",
-}
-
-
-def _not_measured(system: System, found: Sequence[Target], begins: ModelBegins) -> Iterator[ComparisonRow]:
-    """A row for each process and chain of which the trace has nothing, or nothing of the same definition."""
-    measured = {(target.kind, target.name) for target in found}
-    for kind, names in ((MeasuredKind.PROCESS, system.processes), (MeasuredKind.CHAIN, system.chains)):
-        for name in names:
-            if (kind, name) not in measured:
-                yield ComparisonRow(
-                    object=name,
-                    kind=kind,
-                    quantity="",
-                    statistic=None,
-                    verdict=Agreement.NOT_MEASURED,
-                    reason=_not_in_trace(kind, name, begins),
-                )
-
-
-def _not_in_trace(kind: MeasuredKind, name: str, begins: ModelBegins) -> str:
-    begin = begins.chains.get(name) if kind is MeasuredKind.CHAIN else None
-    return begin if isinstance(begin, str) else _NOT_IN_TRACE[kind]
