@@ -16,7 +16,6 @@ from amalthea_uros.compare.measured.columns import UNITS, USUAL_ROWS, TableColum
 from amalthea_uros.compare.measured.records import Record, read_records
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import InvalidArgumentError, ReadError
-from amalthea_uros.measure.findings import LOST_ROWS
 from amalthea_uros.measure.series import Counts, MeasuredKind, Measurement, Series, statistics_or_none
 from amalthea_uros.measure.window import MeasurementWindow
 from amalthea_uros.names import listed
@@ -229,7 +228,7 @@ class _Table:
         place = TracePlace(record.line, 1, ",".join(record.fields))
         message = f"a row with {cause} counts as lost: how long it would have taken is not known"
         self.problems.add(
-            LOST_ROWS, Severity.WARNING, message, place, "See the share of lost values before the maxima are used."
+            "MEA015", Severity.WARNING, message, place, "See the share of lost values before the maxima are used."
         )
 
     def _wrong(self, record: Record, message: str) -> None:
