@@ -66,6 +66,7 @@ RUNS = {
         ("compare", ADVANCED, "stopwatch.csv", "--duration", "20ms", "--set", "Control_Function.execution_time=5us"),
         ("compare", "bodas-test-simple.yaml", "stopwatch.csv", "--by", "analysis"),
         ("compare", "counted.amxmi", "stopwatch.csv", "--by", "analysis"),
+        ("compare", ADVANCED, "rtt.csv", "--column", "rtt_ms=factor-to-output", "--duration", "20ms"),
     ),
     "amuros optimize": (
         (
@@ -227,6 +228,7 @@ def folder(tmp_path):
     rclc = (tmp_path / "rclc-in-executor.yaml").read_text()
     (tmp_path / "stacks.yaml").write_text(rclc.replace("  executor:\n", "  executor:\n    stack: 16 kB\n"))
     (tmp_path / "wrong.meta").write_text('{"names": {"rmw_microxrcedds": {"cmake-args": ["-DRMW_UXRCE_MAX_NODES=0"]}}}')
+    (tmp_path / "rtt.csv").write_text("rtt_ms\n10\nnan\n")
     (tmp_path / "stopwatch.csv").write_text(
         "object,kind,quantity,value_us\nControl_Function,process,response_time,16\nControl_Function,process,response_time,1200\n"
     )

@@ -9,12 +9,13 @@ from amalthea_uros._internal.by_name import Results
 from amalthea_uros.analyze.loads import without_doubtful_overload
 from amalthea_uros.analyze.response_times.metrics import MetricEvaluator
 from amalthea_uros.analyze.response_times.solution import Solution
-from amalthea_uros.analyze.results.processes import ProcessResult
+from amalthea_uros.analyze.results.processes import Metric, ProcessResult
 from amalthea_uros.executors.bounds.solved_system import METHOD
 from amalthea_uros.executors.results import ExecutorResult
 from amalthea_uros.judge.evidence import Ends, ProcessEvidence, ProvedLoss
 from amalthea_uros.judge.limits import activation_limit, deadline_limit, deadline_of
 from amalthea_uros.judge.verdict import Verdict, lost_jobs, prove_process
+from amalthea_uros.perf.executors import Executor
 from amalthea_uros.perf.software import Preemption, Process, Task
 from amalthea_uros.timing.activation.releases import ASSUMPTION
 from amalthea_uros.timing.basics.quantities import JobMetric
@@ -38,7 +39,16 @@ def process_results(solution: Solution, executors: Results[ExecutorResult]) -> I
             yield replace(found, metrics=metrics.of(found))
             continue
         known = metrics.of(found)
-        yield replace(found, metrics={kind: known[kind] for kind in METRICS_OF_ITERATIONS if kind in known})
+        kept = {kind: known[kind] for kind in METRICS_OF_ITERATIONS if kind in known}
+        if _can_wait(system.executor_of_task[name]) and JobMetric.NET_EXECUTION_TIME in kept:
+            net = kept[JobMetric.NET_EXECUTION_TIME]
+            kept[JobMetric.NET_EXECUTION_TIME] = Metric(min=net.min, max=by_task[name].round.most)
+        yield replace(found, metrics=kept)
+
+
+def _can_wait(executor: Executor) -> bool:
+    """Whether an iteration can wait for the wire or the session after it has begun, which is net execution time, too."""
+    return executor.session is not None or any(handle.publications for handle in executor.handles)
 
 
 def _with_order(found: ProcessResult, solution: Solution) -> ProcessResult:

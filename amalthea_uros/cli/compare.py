@@ -27,7 +27,7 @@ from amalthea_uros.cli.output import (
 )
 from amalthea_uros.cli.parameters import INPUT, OUTPUT_FILE, Parsed, assignment
 from amalthea_uros.compare.calibration.calibration import calibrate_file
-from amalthea_uros.compare.calibration.options import CalibrationOptions, Form
+from amalthea_uros.compare.calibration.options import FIT_FORM, AgentFit, CalibrationOptions, Form, parse_fit
 from amalthea_uros.compare.comparing import CompareOptions
 from amalthea_uros.compare.measured.measuring import MeasureOptions, measure_file
 from amalthea_uros.compare.naming import FORM, Meaning, Names, parse_meaning
@@ -180,6 +180,13 @@ def compare(
     default="0%",
     help="Do not use the last values, e.g. 30% of them, but check that they are within what is written.",
 )
+@click.option(
+    "--fit",
+    "fits",
+    multiple=True,
+    type=Parsed(FIT_FORM, parse_fit),
+    help="Choose times in the agent so that measured round trips result, e.g. agent=round-trip; may be repeated.",
+)
 @measure_options
 @output_option("Calibration")
 def calibrate(
@@ -191,6 +198,7 @@ def calibrate(
     margin: Fraction,
     tighten: bool,
     judge_on: Fraction,
+    fits: tuple[AgentFit, ...],
     reading: MeasureOptions,
     outputs: tuple[Output, ...],
 ) -> None:
@@ -200,7 +208,7 @@ def calibrate(
     only widened, unless --tighten is given. TRACE is anything that `amuros measure` reads. The exit code is 1 if the measurement
     refutes a value of the file.
     """
-    options = CalibrationOptions(form=Form(form), margin=margin, tighten=tighten, judge_on=judge_on)
+    options = CalibrationOptions(form=Form(form), margin=margin, tighten=tighten, judge_on=judge_on, fits=fits)
     if target is not None and resolved(target) != resolved(description):
         refuse_input(target, "-o")
     is_diff = target is None or is_dry_run

@@ -14,9 +14,12 @@ import click
 from amalthea_uros.cli.options import all_of
 from amalthea_uros.cli.output import Output, checked_outputs, output_option, show_findings, write_outputs
 from amalthea_uros.cli.parameters import INPUT, Parsed, assignment, output_path
-from amalthea_uros.compare.measured.events import chain_starts
+from amalthea_uros.compare.measured.columns import FORM as COLUMN_FORM
+from amalthea_uros.compare.measured.columns import VALID_FORM, parse_column, parse_unit, parse_valid_rows
+from amalthea_uros.compare.measured.events import begins_of
 from amalthea_uros.compare.measured.measuring import MeasureOptions, measure_file
 from amalthea_uros.diagnostics import Severity
+from amalthea_uros.measure.begins import ModelBegins
 from amalthea_uros.measure.markers import FORM, parse_marker
 from amalthea_uros.measure.window import MeasurementWindow
 from amalthea_uros.services.files import save_text
@@ -42,6 +45,20 @@ _OPTIONS = all_of(
         click.option("--dbc", type=INPUT, metavar="FILE", help="DBC file with the signals that --markers or --counter name."),
         click.option("--channel", metavar="BUS", help="Use only the frames of this bus of a CAN log, e.g. can0."),
         click.option(
+            "--column",
+            "columns",
+            multiple=True,
+            type=Parsed(COLUMN_FORM, parse_column),
+            help="What a column of a table is, e.g. 'rtt_ms=round-trip', or the difference of two; may be repeated.",
+        ),
+        click.option("--unit", type=Parsed("UNIT", parse_unit), help="Unit of columns whose header names none, e.g. ms."),
+        click.option(
+            "--valid",
+            "valid_rows",
+            type=Parsed(VALID_FORM, parse_valid_rows),
+            help="Rows of a table that have values; default: status=ok if there is such a column. Others count as lost.",
+        ),
+        click.option(
             "--baseline",
             "baselines",
             multiple=True,
@@ -62,7 +79,20 @@ _OPTIONS = all_of(
     )
 )
 #: The options that are passed on as they are.
-_AS_GIVEN = ("start", "end", "name", "counter", "markers", "dbc", "channel", "baseline_from", "period")
+_AS_GIVEN = (
+    "start",
+    "end",
+    "name",
+    "counter",
+    "markers",
+    "dbc",
+    "channel",
+    "baseline_from",
+    "period",
+    "columns",
+    "unit",
+    "valid_rows",
+)
 
 
 def measure_options(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -113,13 +143,13 @@ def measure(
     """Measure the times in a trace: minimum, mean, maximum, jitter and percentiles.
 
     TRACE is a log of a CAN bus (candump .log; .asc, .blf, .trc, .mf4), whose frames at starts and ends are given by --start and --end
-    or in a file; a trace of events such as .btf or a folder with a CTF trace, whose processes, runnables and chains are measured; or a
-    .csv of measured values.
+    or in a file; a trace of events such as .btf or a folder with a CTF trace, whose processes, runnables and chains are measured; a
+    .csv of measured values; or a table of which --column says what its columns are.
     The exit code is 1 if nothing was measured, or if a part of the trace is damaged.
     """
     outputs = checked_outputs(outputs, [("--histogram", path) for _, path in histograms])
-    starts = {} if model is None else chain_starts(open_system(model).system)
-    found = measure_file(trace, replace(reading, select=select, chain_starts=starts))
+    begins = ModelBegins() if model is None else begins_of(open_system(model).system)
+    found = measure_file(trace, replace(reading, select=select, begins=begins))
     show_findings(found.findings)
     if histograms:
         from amalthea_uros.report.result_pictures import histogram_picture

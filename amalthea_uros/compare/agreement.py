@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from math import sqrt
+from math import ceil, floor, sqrt
 from typing import NamedTuple
 
 from amalthea_uros.compare.results import Agreement, ComparisonRow, PredictionClaim, Statistic, is_bound
@@ -118,9 +118,19 @@ def compared(
                 method=prediction.method,
                 tolerance=None if is_bound(prediction.claim, statistic) else rule.tolerance,
                 samples=series.statistics.count,
+                beyond=_number_beyond(series, statistic, prediction),
                 reason=reason or (LEAST if series.is_least else ""),
                 series=series,
             )
+
+
+def _number_beyond(series: Series, statistic: Statistic, prediction: Prediction) -> int | None:
+    """How many values are beyond a bound."""
+    if series.values is None or not is_bound(prediction.claim, statistic):
+        return None
+    is_upper = statistic is Statistic.MAX
+    bound = floor(prediction.high or prediction.value) if is_upper else ceil(prediction.value)
+    return int(((series.values > bound) if is_upper else (series.values < bound)).sum())
 
 
 #: What is to be said of latencies that are measured without knowing what a response belongs to.

@@ -2,30 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.compare.agreement import LEAST, Rule, compared
+from amalthea_uros.compare.bases import bases
 from amalthea_uros.compare.distributions import distributions
 from amalthea_uros.compare.findings import assumptions_of, findings_of, open_phases
 from amalthea_uros.compare.limits import judge_limits
-from amalthea_uros.compare.measured.events import chain_starts
-from amalthea_uros.compare.naming import WITHIN_A_JOB, Names, Target, targets
-from amalthea_uros.compare.phases import analyses_in_phases, systems_in_phases
+from amalthea_uros.compare.measured.events import begins_of
+from amalthea_uros.compare.naming import Names, Target, targets
+from amalthea_uros.compare.not_measured import losses, not_measured
+from amalthea_uros.compare.phases import analyses_in_phases
 from amalthea_uros.compare.predictions import Missing, Predictor
 from amalthea_uros.compare.results import Agreement, Comparison, ComparisonRow, Source
 from amalthea_uros.compare.simulated import Run, simulate_measured
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.measure.series import MeasuredKind, Measurement
+from amalthea_uros.measure.series import Measurement
 from amalthea_uros.names import require
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.activation.releases import with_first_arrivals
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.timing.demand.overheads import processes_with_overhead
-from amalthea_uros.timing.stated_distributions import Basis, StatedDistributions
-from amalthea_uros.trace.table import EventKind
+from amalthea_uros.timing.stated_distributions import Basis
 from amalthea_uros.units import SECOND, Time
 
 DEFAULT_TOLERANCE = Fraction(20, 100)
@@ -71,8 +71,8 @@ def compare_measured(system: System, settings: Settings, measurement: Measuremen
     require("process", filter(None, options.overheads), system.processes)
     analysis = analyze_system(system, settings) if Source.ANALYSIS in options.sources else None
     with_overhead = processes_with_overhead(system) | options.overheads.keys()
-    starts = chain_starts(system)
-    found = targets(measurement, options.names, system, with_overhead, starts)
+    begins = begins_of(system)
+    found = targets(measurement, options.names, system, with_overhead, begins)
     runs: tuple[Run, ...] = ()
     if Source.SIMULATION in options.sources:
         runs = simulate_measured(system, settings, options.duration or measurement.duration or SECOND, options.seed)
@@ -85,10 +85,10 @@ def compare_measured(system: System, settings: Settings, measurement: Measuremen
         uncertainty=uncertainty or 0,
         is_reached=options.uncertainty is not None and uncertainty != 0,
     )
-    basis_of = _bases(system, settings)
+    basis_of = bases(system, settings)
     rows = (
         *(row for target in found for row in _rows(target, predictor, rule, basis_of)),
-        *_not_measured(system, found, starts),
+        *not_measured(system, found, begins),
     )
     comparison = Comparison(
         model="",
@@ -98,6 +98,7 @@ def compare_measured(system: System, settings: Settings, measurement: Measuremen
         rows=rows,
         limits=tuple(judge_limits(system, settings, found, rule)),
         distributions=tuple(distributions(found, rows, runs, rule, options.overheads, basis_of)),
+        losses=tuple(losses(found, simulation)),
         duration=None if simulation is None else simulation.duration,
         seed=None if simulation is None else simulation.seed,
         assumptions=assumptions_of(measurement, found, options.overheads, analysis, simulation),
@@ -106,22 +107,6 @@ def compare_measured(system: System, settings: Settings, measurement: Measuremen
     reported = (*measurement.findings, *(finding for each in of_predictions for finding in each))
     own = findings_of(comparison, found, open_phases(system, settings))
     return replace(comparison, findings=tuple(dict.fromkeys((*reported, *own))))
-
-
-def _bases(system: System, settings: Settings) -> Callable[[Target], Basis]:
-    """What the distributions of what is compared follow from."""
-    are_phases_open = systems_in_phases(system, settings) is None
-    stated = StatedDistributions(with_first_arrivals(system, settings.phases), settings, are_phases_open)
-
-    def basis_of(target: Target) -> Basis:
-        match target.kind:
-            case MeasuredKind.CHAIN:
-                return stated.of_chain(target.name)
-            case MeasuredKind.RUNNABLE:
-                return stated.of_runnable(target.name, target.quantity)
-        return stated.of_process(target.name, target.quantity)
-
-    return basis_of
 
 
 def _rows(target: Target, predictor: Predictor, rule: Rule, basis_of: Callable[[Target], Basis]) -> Iterator[ComparisonRow]:
@@ -153,23 +138,3 @@ def _rows(target: Target, predictor: Predictor, rule: Rule, basis_of: Callable[[
 
 
 _UNLIKE = "no prediction has the definition of what was measured"
-_NOT_IN_TRACE = {
-    MeasuredKind.PROCESS: "the trace has no process of this name",
-    MeasuredKind.CHAIN: "the trace has no values of this chain",
-}
-
-
-def _not_measured(system: System, found: Sequence[Target], starts: Mapping[str, EventKind | None]) -> Iterator[ComparisonRow]:
-    """A row for each process and chain of which the trace has nothing, or nothing of the same definition."""
-    measured = {(target.kind, target.name) for target in found}
-    for kind, names in ((MeasuredKind.PROCESS, system.processes), (MeasuredKind.CHAIN, system.chains)):
-        for name in names:
-            if (kind, name) not in measured:
-                yield ComparisonRow(
-                    object=name,
-                    kind=kind,
-                    quantity="",
-                    statistic=None,
-                    verdict=Agreement.NOT_MEASURED,
-                    reason=WITHIN_A_JOB if starts.get(name, ...) is None else _NOT_IN_TRACE[kind],
-                )

@@ -30,8 +30,11 @@ def open_phases(system: System, settings: Settings) -> tuple[str, ...]:
 def assumptions_of(
     measurement: Measurement, found: Sequence[Target], overheads: Mapping[str, Time], *predictions: object
 ) -> tuple[str, ...]:
-    """What the predictions assume, and which overheads and baselines are part of what is compared."""
+    """The assumptions of the predictions, and which overheads and baselines are part of what is compared."""
+    lost = dict.fromkeys(target.name for target in found if target.series.counts.lost and not target.reason)
     stated = [sentence for each in predictions for sentence in getattr(each, "assumptions", ())]
+    if lost:
+        stated.append(f"what was lost of {', '.join(lost)} may have taken longer than all that was measured")
     net = list(dict.fromkeys(series.name for series in measurement.series if series.baseline is not None))
     again = list(dict.fromkeys(target.series.name for target in found if target.is_with_baseline))
     if subtracted := [name for name in net if name not in again]:

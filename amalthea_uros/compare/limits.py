@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from fractions import Fraction
 
+from amalthea_uros._internal.plural import counted
 from amalthea_uros.compare.agreement import LEAST, Rule
 from amalthea_uros.compare.naming import Target
 from amalthea_uros.compare.results import MeasuredLimit
@@ -86,11 +87,19 @@ def _judged(limit: SystemLimit, measured: _Measured, system: System) -> Measured
     assert series.statistics is not None
     values, samples = _values(series), series.statistics.count
     if not limit.is_jitter:
-        return MeasuredLimit.of(limit, observe(limit, values), samples)
+        return _with_losses(MeasuredLimit.of(limit, observe(limit, values), samples), series)
     period = nominal_period(limit, system) if is_from_period(limit) else None
     if is_from_period(limit) and period is None:
         return MeasuredLimit.of(limit, not_observed(f"{limit.object!r} has no nominal period"), samples)
     return MeasuredLimit.of(limit, observe(limit, values.jitter(period)), samples)
+
+
+def _with_losses(limit: MeasuredLimit, series: Series) -> MeasuredLimit:
+    """A limit that was kept, with the remark that what was lost may have missed it."""
+    lost = series.counts.lost
+    if limit.verdict is not ObservedVerdict.OK or not lost or not limit.is_upper:
+        return limit
+    return replace(limit, reason=f"{counted(lost, 'value')} lost, which may be later")
 
 
 def _not_measured(limit: SystemLimit) -> str:

@@ -9,8 +9,8 @@ from amalthea_uros._internal.similar import did_you_mean
 from amalthea_uros.compare.results import Statistic
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.measure.baselines import with_baseline
-from amalthea_uros.measure.chains import BEGINS
-from amalthea_uros.measure.series import MeasuredKind, Measurement, Series, TimeStatistics
+from amalthea_uros.measure.begins import BEGINS, END_OF_WAIT, FROM_ACTIVATION, ChainBegin, ModelBegins
+from amalthea_uros.measure.series import WHOLE_TIME, MeasuredKind, Measurement, Series, TimeStatistics
 from amalthea_uros.names import require
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
@@ -96,14 +96,14 @@ def targets(
     names: Names,
     system: System,
     with_overhead: Collection[str],
-    starts: Mapping[str, EventKind | None],
+    begins: ModelBegins,
 ) -> tuple[Target, ...]:
     """What each measured series is compared with, first those of which the user says it.
 
     Parameters
     ----------
     with_overhead : the processes whose predicted times include an overhead, "" for all: what was subtracted as such is added again
-    starts : with which event of a job chains begin in the model; None: at one that traces do not tell apart
+    begins : with what jobs and chains begin in the model
 
     Raises
     ------
@@ -116,23 +116,43 @@ def targets(
         is_included = bool({"", target.name} & set(with_overhead))
         if is_included and target.kind is MeasuredKind.PROCESS and target.series.baseline is not None:
             target = replace(target, series=with_baseline(target.series), is_with_baseline=True)
-        found.append(_of_same_begin(target, starts))
+        found.append(_of_same_begin(target, begins))
     _refuse_twice(found)
     return tuple(found)
 
 
-WITHIN_A_JOB = "it begins or ends within a job, at an event that is not in traces; measure it between markers"
+def _of_same_begin(target: Target, begins: ModelBegins) -> Target:
+    """The target; what was measured from another event on than in the model has no counterpart."""
+    reason = _other_begin(target, begins)
+    return replace(target, reason=reason) if reason and not target.reason else target
 
 
-def _of_same_begin(target: Target, starts: Mapping[str, EventKind | None]) -> Target:
-    """The target; a chain that was measured from another event of a job on than in the model has no counterpart."""
-    measured, modelled = target.series.begin, starts.get(target.name, EventKind.ACTIVATE)
-    if not measured or target.reason or (modelled is not None and measured == BEGINS[modelled]):
-        return target
-    if modelled is None:
-        return replace(target, reason=WITHIN_A_JOB)
-    begins = f"it was measured from the {measured} of its first job on, and begins in the model with its {BEGINS[modelled]}"
-    return replace(target, reason=f"{begins}; measure it with the model")
+def _other_begin(target: Target, begins: ModelBegins) -> str:
+    """Why a measured time is not the modelled one, because it begins with another event; "" if it does not."""
+    measured = target.series.begin
+    if not measured:
+        return ""
+    if target.kind is MeasuredKind.RUNNABLE:
+        is_other = target.name in begins.callbacks and target.quantity in FROM_ACTIVATION
+        return _CALLBACK if is_other else ""
+    modelled: ChainBegin = begins.chains.get(target.name, EventKind.ACTIVATE)
+    if target.kind is MeasuredKind.CHAIN and isinstance(modelled, str):
+        return modelled
+    expected = BEGINS[EventKind.ACTIVATE]
+    if target.kind is MeasuredKind.CHAIN and not isinstance(modelled, str):
+        expected = BEGINS[modelled]
+    elif target.name in begins.iterations:
+        expected = END_OF_WAIT
+    if measured == expected:
+        return ""
+    what = "its first job" if target.kind is MeasuredKind.CHAIN else "the job"
+    return f"it was measured from the {measured} of {what} on, and begins in the model with its {expected}; measure it with the model"
+
+
+_CALLBACK = (
+    "it begins when a message has arrived or a timer is due, which is not in traces; measure it between markers, or give the values "
+    "as a table"
+)
 
 
 def _refuse_twice(found: Iterable[Target]) -> None:
@@ -172,7 +192,8 @@ def _baselines(measurement: Measurement) -> set[str]:
 
 def _check(measurement: Measurement, names: Names, system: System) -> None:
     require("object of the trace", names.renamed, dict.fromkeys(series.name for series in measurement.series))
-    known = dict.fromkeys((*system.processes, *system.chains, *system.runnables))
+    handles = (handle.name for executor in system.executors for handle in executor.handles)
+    known = dict.fromkeys((*system.processes, *system.chains, *system.runnables, *handles))
     require("process, chain or runnable", (*names.renamed.values(), *(each.object for each in names.meanings)), known)
 
 
@@ -182,7 +203,16 @@ def _kinds(name: str, system: System) -> list[MeasuredKind]:
     return [kind for kind, items in found.items() if name in items]
 
 
+def _in_model(name: str, system: System) -> str:
+    """The name of a process, chain or runnable; that of a handle of an executor that loops stands for its callback."""
+    if _kinds(name, system):
+        return name
+    callbacks = {handle.runnable for executor in system.executors for handle in executor.handles if handle.name == name}
+    return callbacks.pop() if len(callbacks) == 1 else name
+
+
 def _named(series: Series, name: str, system: System) -> Target:
+    name = _in_model(name, system)
     kinds = _kinds(name, system)
     target = Target(series=series, kind=series.kind, name=name, quantity=series.quantity)
     if not kinds:
@@ -192,10 +222,20 @@ def _named(series: Series, name: str, system: System) -> Target:
         if series.quantity == _DURATION:
             example = f"--as '{series.name}={name}.{JobMetric.RESPONSE_TIME}'"
             return replace(target, reason=f"a time between two markers can be several quantities; say which, e.g. {example}")
-        return replace(target, kind=kinds[0])
+        return replace(
+            target, kind=kinds[0], quantity=_whole_time(kinds[0]) if series.quantity == WHOLE_TIME else series.quantity
+        )
     if series.kind not in kinds:
         return replace(target, reason=f"{name!r} is a {series.kind} in the trace, and a {kinds[0]} in the model")
     return target
+
+
+def _whole_time(kind: MeasuredKind) -> str:
+    """The time of an object as a whole: of a round trip, each value is that of a request up to its own reply.
+
+    Replies do not overtake each other, so that this is the first reply based on the request: the reduced reaction time.
+    """
+    return ChainQuantity.REDUCED_REACTION_TIME if kind is MeasuredKind.CHAIN else JobMetric.RESPONSE_TIME
 
 
 def _advice(series: Series, name: str, known: Mapping[str, None]) -> str:
@@ -228,10 +268,11 @@ def _series(text: str, measurement: Measurement) -> Series | None:
 
 
 def _meant(meaning: Meaning, parts: Sequence[Series], system: System) -> Target:
-    kind = _kinds(meaning.object, system)[0]
+    name = _in_model(meaning.object, system)
+    kind = _kinds(name, system)[0]
     require("quantity", [meaning.quantity], tuple(ChainQuantity) if kind is MeasuredKind.CHAIN else tuple(JobMetric))
     series = replace(parts[0], kind=kind)
-    target = Target(series=series, kind=kind, name=meaning.object, quantity=meaning.quantity)
+    target = Target(series=series, kind=kind, name=name, quantity=meaning.quantity)
     if len(parts) == 1:
         return target
     # The extremes of a sum are not the sums of the extremes, which need not occur together.

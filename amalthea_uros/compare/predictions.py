@@ -6,7 +6,7 @@ at any time, for example, but the measured one is that of the worst events, so t
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import NamedTuple
@@ -53,6 +53,8 @@ _OF_CHAINS: Mapping[str, _Ends] = {
 }
 #: The metrics to which an overhead is added: it is part of an execution, and not of the distance of two of them.
 _WITH_OVERHEAD = (JobMetric.NET_EXECUTION_TIME, JobMetric.GROSS_EXECUTION_TIME, JobMetric.RESPONSE_TIME)
+#: Parts of the response time of a callback: its bound is one of these, too.
+_WITHIN_RESPONSE = (JobMetric.NET_EXECUTION_TIME, JobMetric.GROSS_EXECUTION_TIME, JobMetric.RUNNING_TIME)
 _ENDS = {Statistic.MIN: "minimum", Statistic.MEAN: "mean", Statistic.MAX: "maximum"}
 
 
@@ -159,7 +161,14 @@ def _of(analysis: Analysis, kind: MeasuredKind, name: str, quantity: str) -> dic
         chain = next((each for each in analysis.chains if each.name == name), None)
         return {} if chain is None else dict(_of_chain(chain, quantity))
     metric = _metric(analysis, kind, name, quantity)
-    return {} if metric is None else dict(_of_metric(metric, quantity))
+    if metric is not None:
+        return dict(_of_metric(metric, quantity))
+    is_part = kind is MeasuredKind.RUNNABLE and quantity in _WITHIN_RESPONSE
+    whole = _metric(analysis, kind, name, JobMetric.RESPONSE_TIME) if is_part else None
+    if whole is None or whole.max is None:
+        return {}
+    method = f"analysis of the response time, of which the {quantity.replace('_', ' ')} is a part"
+    return {Statistic.MAX: Prediction(value=Fraction(whole.max), claim=PredictionClaim.BOUND, method=method)}
 
 
 def _extremes(found: Mapping[Statistic, Prediction]) -> Iterator[tuple[Statistic, Prediction]]:
@@ -229,7 +238,16 @@ def _observed(simulation: Simulation, kind: MeasuredKind, name: str, quantity: s
         case MeasuredKind.PROCESS:
             found = (each.metrics.items() for each in simulation.processes if each.name == name)
         case MeasuredKind.RUNNABLE:
-            found = (each.metrics.items() for each in simulation.runnables if each.name == name)
+            found = iter(
+                [*(each.metrics.items() for each in simulation.runnables if each.name == name), *_of_handles(simulation, name)]
+            )
         case MeasuredKind.CHAIN:
             found = (each.quantities.items() for each in simulation.chains if each.name == name)
     return next((observation for items in found for each, observation in items if each == quantity), None)
+
+
+def _of_handles(simulation: Simulation, runnable: str) -> Sequence[Iterable[tuple[str, MetricObservation]]]:
+    """The observations of a callback of an executor that loops; if several handles call it, only values are known of all."""
+    handles = (handle for executor in simulation.executors for handle in executor.handles if handle.runnable == runnable)
+    metrics = [handle.metrics.items() for handle in handles]
+    return metrics if len(metrics) == 1 else []

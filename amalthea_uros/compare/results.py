@@ -74,6 +74,7 @@ class ComparisonRow(Shown):
         to the measured one; None if it is one value
     tolerance : of the deviation; None for a bound, which has none
     samples : number of measured values
+    beyond : how many of them are beyond a bound; None if that is not known, or for what is no bound
     series : what was measured; None if nothing was
     """
 
@@ -89,6 +90,7 @@ class ComparisonRow(Shown):
     method: str = ""
     tolerance: Fraction | None = None
     samples: int = 0
+    beyond: int | None = None
     reason: str = ""
     series: Series | None = field(default=None, repr=False, compare=False)
 
@@ -133,6 +135,29 @@ class DistributionRow(Shown):
     quantity: str
     distance: Distance
     is_hidden: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LossRow(Shown):
+    """How many values of a quantity were lost in a measurement: nothing is known of these times, perhaps they are the longest ones.
+
+    Attributes
+    ----------
+    values, lost : how many were measured, and lost
+    simulated : share of the stimuli without a response in the simulation; None for what is no chain, or without one
+    """
+
+    object: str
+    kind: MeasuredKind
+    quantity: str
+    values: int
+    lost: int
+    simulated: Fraction | None
+
+    @property
+    def share(self) -> Fraction:
+        """The share of all that was lost."""
+        return Fraction(self.lost, self.values + self.lost)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -194,6 +219,7 @@ class Comparison(Shown):
     rows : all comparisons, in the order of the trace, then what was not measured
     limits : deadlines, requirements and constraints, judged by what was measured
     distributions : of the quantities of which the values are measured and simulated
+    losses : the quantities of which values were lost
     differences : what changes of the model did before
     with_all : whether texts show all rows, or only the most important quantities and what does not agree
     """
@@ -205,6 +231,7 @@ class Comparison(Shown):
     rows: tuple[ComparisonRow, ...]
     limits: tuple[MeasuredLimit, ...] = ()
     distributions: tuple[DistributionRow, ...] = ()
+    losses: tuple[LossRow, ...] = ()
     duration: Time | None = None
     seed: int | None = None
     assumptions: tuple[str, ...] = ()

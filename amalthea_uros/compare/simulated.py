@@ -1,5 +1,7 @@
 """Simulations, and what is measured in their own traces: both sides of a comparison are measured by the same code.
 
+Chains and callbacks of executors that loop begin with events that no trace of a controller has; of these, the simulation keeps values.
+
 If the phase of something from outside is unknown, a single run says nothing about the measured system, which may have any other phase.
 Then there is a further, shorter run in each phase, and what they have together is a range.
 """
@@ -10,12 +12,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Self
 
-from amalthea_uros.compare.measured.events import chain_starts
+from amalthea_uros._internal.arrays import Numbers
+from amalthea_uros.compare.measured.events import begins_of
 from amalthea_uros.compare.phases import MOST_PHASES, systems_in_phases
-from amalthea_uros.measure.chains import ChainSteps
 from amalthea_uros.measure.jobs import JobFollower
-from amalthea_uros.measure.series import Measurement
+from amalthea_uros.measure.series import MeasuredKind, Measurement, Series, statistics_or_none
 from amalthea_uros.perf.system import System
+from amalthea_uros.simulate.metrics.kept_values import KeptValues
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.results import Simulation
 from amalthea_uros.simulate.runs.run import simulate_system
@@ -40,11 +43,11 @@ class Run:
 
 
 class _Measuring(TraceSink):
-    """A sink that measures the first events of a run; it is its own opener."""
+    """A sink that measures the jobs of the first events of a run; it is its own opener."""
 
     def __init__(self, system: System, most_events: int) -> None:
         self._most_events = most_events
-        self._jobs, self._chains = JobFollower(), ChainSteps(chain_starts(system))
+        self._jobs = JobFollower(begins=begins_of(system))
         self._entities: Sequence[Entity] = ()
         self._end, self._events = 0, 0
 
@@ -61,20 +64,26 @@ class _Measuring(TraceSink):
         self._events += len(part)
         self._end = int(part.time[-1])
         self._jobs.add(part)
-        self._chains.add(part)
 
-    def measurement(self) -> Measurement:
-        """What was measured."""
+    def measurement(self, kept: KeptValues) -> Measurement:
+        """The measured values; of chains and callbacks of executors, as the simulation observes them itself: from the host on."""
         self._jobs.finish()
         names = [entity.name for entity in self._entities]
+        calls = [_series(MeasuredKind.RUNNABLE, *each) for each in kept.calls()]
+        own = {each.name for each in calls}
+        jobs = (each for each in self._jobs.series(names) if each.kind is not MeasuredKind.RUNNABLE or each.name not in own)
         return Measurement(
             source="simulation",
             format="",
             digest="",
             duration=self._end,
             resolution=None,
-            series=(*self._jobs.series(names), *self._chains.series(names)),
+            series=(*jobs, *calls, *(_series(MeasuredKind.CHAIN, *each) for each in kept.chains())),
         )
+
+
+def _series(kind: MeasuredKind, name: str, quantity: str, values: Numbers) -> Series:
+    return Series(kind=kind, name=name, quantity=quantity, statistics=statistics_or_none(values), values=values)
 
 
 def simulate_measured(system: System, settings: Settings, duration: Time, seed: int) -> tuple[Run, ...]:
@@ -102,6 +111,6 @@ def _phases(system: System, settings: Settings, seed: int) -> Iterator[tuple[Sys
 
 
 def _run(system: System, options: Options, most_events: int) -> Run:
-    sink = _Measuring(system, most_events)
-    simulation = simulate_system(system, replace(options, traced=(0, options.duration)), [sink])
-    return Run(simulation, sink.measurement())
+    sink, kept = _Measuring(system, most_events), KeptValues(most_events)
+    simulation = simulate_system(system, replace(options, traced=(0, options.duration)), [sink], kept)
+    return Run(simulation, sink.measurement(kept))

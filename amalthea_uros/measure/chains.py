@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from amalthea_uros._internal.arrays import Flags, Numbers
+from amalthea_uros.measure.begins import BEGINS, ChainBegin
 from amalthea_uros.measure.pairing import counted_on, lost_numbers
 from amalthea_uros.measure.series import Counts, MeasuredKind, Series, statistics_of
 from amalthea_uros.timing.basics.quantities import ChainQuantity
@@ -155,8 +156,6 @@ def _stamped(is_response: Flags, number: Numbers | None) -> tuple[Numbers, Numbe
 
 #: Numbers of jobs have fewer bits.
 _BITS = 40
-#: The events of a job with which a chain can begin, in words.
-BEGINS = {EventKind.ACTIVATE: "activation", EventKind.START: "start"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -181,11 +180,11 @@ class ChainSteps:
 
     Attributes
     ----------
-    starts : of chains that do not begin with the activation of a job: with which event they do; None: they are not measured
+    starts : of chains that do not begin with the activation of a job: with which event they do, or why they are not measured
     ambiguous : the chains with several routes, which are not measured
     """
 
-    starts: Mapping[str, EventKind | None] = field(default_factory=dict)
+    starts: Mapping[str, ChainBegin] = field(default_factory=dict)
     gaps: int = 0
     ambiguous: list[str] = field(default_factory=list)
     _steps: list[Numbers] = field(default_factory=list)
@@ -212,7 +211,7 @@ class ChainSteps:
         for number in np.unique(steps[1]).tolist():
             name = names[number]
             begin = self.starts.get(name, EventKind.ACTIVATE)
-            if begin is None:
+            if isinstance(begin, str):
                 continue
             found = self._ends(steps[:, steps[1] == number], begin)
             if found.has_several_routes:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Final
 
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.diagnostics import Finding, Location, Severity
@@ -15,6 +16,8 @@ from amalthea_uros.units import Time, time_text
 _FEWEST_STEPS = 10
 #: A maximum so many times as long as the second longest of at least so many values is uncertain.
 _FAR, _ENOUGH = 10, 20
+#: Rows of a table that are lost are reported with their lines.
+LOST_ROWS: Final = "MEA015"
 
 
 def judged(measurement: Measurement) -> Iterator[Finding]:
@@ -27,7 +30,8 @@ def judged(measurement: Measurement) -> Iterator[Finding]:
     for series in measurement.series:
         if series.name not in seen:
             seen.add(series.name)
-            yield from _uncounted(series, place)
+            if all(finding.rule != LOST_ROWS for finding in measurement.findings):
+                yield from _uncounted(series, place)
         yield from _baseline(series, place)
         yield from _outlier(series, place)
     yield from _coarse(measurement, place)

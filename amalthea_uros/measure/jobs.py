@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from amalthea_uros._internal.arrays import Flags, Numbers
+from amalthea_uros.measure.begins import ACTIVATION, END_OF_WAIT, FROM_ACTIVATION, ModelBegins
 from amalthea_uros.measure.series import Counts, MeasuredKind, Series, statistics_of
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.timing.observed.job_times import BETWEEN, OWN, JobColumn, own_times, times_between
@@ -27,10 +28,6 @@ _COLUMNS = {
 }
 _STATES = {int(kind): (before, after) for kind, (before, after) in PROCESS.items()}
 _UNACTIVATED = -1
-#: Those that begin at the activation of the job.
-_FROM_ACTIVATION = {
-    *(JobMetric.RESPONSE_TIME, JobMetric.INITIAL_PENDING_TIME, JobMetric.PREEMPTION_TIME, JobMetric.ACTIVATE_TO_ACTIVATE)
-}
 
 
 class _RunningJob:
@@ -42,21 +39,32 @@ class _RunningJob:
     times : in the states of `_COLUMNS`, up to `since`
     runnables : those in execution: number, instance, start, `times` at the start
     is_process : whether it has events of its own; of other jobs only runnables are known
+    is_before : whether it began before a wait for what it executes, and has not executed anything
     """
 
-    __slots__ = ("activation", "is_process", "runnables", "since", "start", "state", "times")
+    __slots__ = ("activation", "is_before", "is_process", "runnables", "since", "start", "state", "times")
 
     def __init__(self, state: str, since: int, is_process: bool = True) -> None:
         self.state, self.since, self.is_process = state, since, is_process
         self.activation = self.start = _UNACTIVATED
         self.times = dict.fromkeys(_COLUMNS, 0)
         self.runnables: list[tuple[int, int, int, dict[str, int]]] = []
+        self.is_before = False
 
     def enter(self, state: str, time: int) -> None:
         """Change the state."""
         if self.state in self.times:
             self.times[self.state] += time - self.since
         self.state, self.since = state, time
+
+    def wait_before(self, time: int, kind: int) -> None:
+        """Begin when the wait is over that is before what the job executes, if this is an event of that wait."""
+        self.is_before = self.is_before and not (self.times["running"] or self.runnables)
+        if self.is_before and kind in (EventKind.START, EventKind.RELEASE):
+            self.activation = time
+        if self.is_before and kind in (EventKind.START, EventKind.RESUME):
+            self.start = time
+            self.times = dict.fromkeys(_COLUMNS, 0)
 
 
 @dataclass(slots=True)
@@ -91,22 +99,31 @@ class JobFollower:
     ----------
     gaps : number of gaps in the trace
     illegal : number of events that the state of their job does not allow; the job is dropped
+    begins : what the model says of when jobs begin
     """
 
     gaps: int = 0
     illegal: int = 0
+    begins: ModelBegins = field(default_factory=ModelBegins)
     _open: dict[tuple[int, int], _RunningJob] = field(default_factory=dict)
     _processes: dict[int, _EndedJobs] = field(default_factory=dict)
     _runnables: dict[tuple[int, int], _EndedJobs] = field(default_factory=dict)
+    #: What activates iterations at the begin of a wait.
+    _waits: frozenset[int] = frozenset()
     #: The greatest number of a job of each process so far.
     _newest: dict[int, int] = field(default_factory=dict)
 
     def add(self, table: EventTable) -> None:
         """Take events in."""
+        if self.begins.iterations:
+            known = frozenset(self.begins.iterations.values())
+            self._waits = frozenset(number for number, each in enumerate(table.entities) if each.name in known)
         columns = (table.time, table.kind, table.source, table.source_instance, table.target, table.target_instance)
         for time, kind, source, source_instance, target, instance in zip(*(each.tolist() for each in columns), strict=True):
             if kind in _STATES:
                 self._change(time, kind, target, instance)
+                if source in self._waits and kind == EventKind.ACTIVATE and (target, instance) in self._open:
+                    self._open[target, instance].is_before = True
             elif EventKind.RUNNABLE_START <= kind <= EventKind.RUNNABLE_TERMINATE:
                 self._execute(time, kind, source, source_instance, target, instance)
             elif kind == EventKind.GAP:
@@ -138,6 +155,8 @@ class JobFollower:
             if kind == EventKind.START:
                 job.start = time
             job.enter(after, time)
+            if job.is_before:
+                job.wait_before(time, kind)
 
     def _begin(self, time: int, kind: int, key: tuple[int, int]) -> bool:
         """Whether an event begins a job that can be followed; of others the start is not in the trace."""
@@ -233,9 +252,14 @@ class JobFollower:
     def series(self, names: list[str]) -> Iterator[Series]:
         """What was measured, by the names of the entities."""
         for process, ended in self._processes.items():
-            yield from _series(MeasuredKind.PROCESS, names[process], ended)
+            begin = END_OF_WAIT if names[process] in self.begins.iterations else ACTIVATION
+            yield from _series(MeasuredKind.PROCESS, names[process], ended, begin)
         for runnable, parts in self._by_runnable().items():
-            yield from _series(MeasuredKind.RUNNABLE, names[runnable], parts)
+            # What a callback of an executor in a loop responds to came before its iteration.
+            used = [metric for metric in JobMetric if metric not in FROM_ACTIVATION]
+            is_callback = names[runnable] in self.begins.callbacks
+            measured = _series(MeasuredKind.RUNNABLE, names[runnable], parts, "" if is_callback else ACTIVATION)
+            yield from (each for each in measured if not is_callback or each.quantity in used)
 
     def _by_runnable(self) -> dict[int, _EndedJobs]:
         """The executions of each runnable in all processes, in the order of their ends."""
@@ -249,10 +273,10 @@ class JobFollower:
         return found
 
 
-def _series(kind: MeasuredKind, name: str, ended: _EndedJobs) -> Iterator[Series]:
+def _series(kind: MeasuredKind, name: str, ended: _EndedJobs, begin: str) -> Iterator[Series]:
     counts = Counts(incomplete=ended.incomplete, lost=ended.lost)
     if not ended.rows:
-        yield Series(kind=kind, name=name, quantity=JobMetric.RESPONSE_TIME, statistics=None, counts=counts)
+        yield Series(kind=kind, name=name, quantity=JobMetric.GROSS_EXECUTION_TIME, statistics=None, counts=counts)
         return
     jobs, follows = _table(ended)
     is_activated, is_known = jobs[JobColumn.ACTIVATION] != _UNACTIVATED, follows[1:]
@@ -263,7 +287,7 @@ def _series(kind: MeasuredKind, name: str, ended: _EndedJobs) -> Iterator[Series
     found += [(metric, row, jobs[JobColumn.END, 1:], is_known, are_activated) for metric, row in between]
     method = "from the events of jobs" if kind is MeasuredKind.PROCESS else "from the events of runnables and their jobs"
     for metric, row, ends, is_there, is_from_activation in found:
-        is_used = is_from_activation if metric in _FROM_ACTIVATION else is_there
+        is_used = is_from_activation if metric in FROM_ACTIVATION else is_there
         values = row[is_used]
         if len(values):
             yield Series(
@@ -275,6 +299,7 @@ def _series(kind: MeasuredKind, name: str, ended: _EndedJobs) -> Iterator[Series
                 times=ends[is_used],
                 counts=counts,
                 method=method,
+                begin=begin,
             )
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from fractions import Fraction
 from math import ceil, log, sqrt
+from typing import Final
 
 from amalthea_uros._internal.arrays import Numbers
 from amalthea_uros._internal.shown import Shown
@@ -14,6 +15,8 @@ from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.units import Time
 
+#: The quantity of a measured time that is of an object as a whole: the response time of a process, the reaction time of a chain.
+WHOLE_TIME: Final = "time"
 #: The percentiles that are computed where all values are known.
 PERCENTILES = (Fraction(1, 2), Fraction(9, 10), Fraction(95, 100), Fraction(99, 100), Fraction(999, 1000))
 
@@ -153,7 +156,8 @@ class Series:
 
     Attributes
     ----------
-    quantity : by the names of `JobMetric` for processes and runnables, of `ChainQuantity` for chains, `duration` for intervals
+    quantity : by the names of `JobMetric` for processes and runnables, of `ChainQuantity` for chains, `duration` for intervals,
+        `time` of an object as a whole
     statistics : None if there is no value
     values : picoseconds, in the order of their occurrence; None if the trace has only their statistics
     times : when each value was complete, in picoseconds from the start of the trace; None if that is not known
@@ -161,7 +165,7 @@ class Series:
     baseline : of the empty object whose mean was subtracted from the values, None if nothing was
     period : the standard period of distances, None if it is not stated
     is_least : whether the real values are at least these: what a response belongs to is not known
-    begin : with which event of a job a chain of a trace begins, "activation" or "start"; "" for what markers delimit
+    begin : with what a job or a chain of a trace begins: "activation", "start" or "end of the wait"; "" for what markers delimit
     """
 
     kind: MeasuredKind

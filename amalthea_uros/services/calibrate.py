@@ -8,7 +8,7 @@ from pathlib import Path
 
 from amalthea_uros._internal.paths import TEXT, StrPath
 from amalthea_uros.compare.calibration.calibration import Calibration, calibrate_file, calibrate_text
-from amalthea_uros.compare.calibration.options import CalibrationOptions, Form
+from amalthea_uros.compare.calibration.options import AgentFit, CalibrationOptions, Form, parse_fit
 from amalthea_uros.compare.shares import parse_share
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.measure.series import Measurement
@@ -23,6 +23,7 @@ def calibrate(
     margin: Fraction | float | str = "20%",
     tighten: bool = False,
     judge_on: Fraction | float | str = 0,
+    fits: Iterable[str] = (),
 ) -> Calibration:
     """Put measured execution times, periods and jitters into a description.
 
@@ -37,6 +38,7 @@ def calibrate(
     margin : by which share measured minima are lowered and maxima raised; not for histograms
     tighten : narrow values of the description that are wider than the measurement
     judge_on : the share of the values, the last ones, on which the result is judged instead
+    fits : times in the agent that are fitted to measured round trips, e.g. "agent=round-trip"
 
     Raises
     ------
@@ -44,7 +46,11 @@ def calibrate(
     InvalidArgumentError : an option is wrong, or the values cannot be stated together.
     """
     options = CalibrationOptions(
-        form=_form(form), margin=parse_share(margin, "margin"), tighten=tighten, judge_on=parse_share(judge_on, "judge_on")
+        form=_form(form),
+        margin=parse_share(margin, "margin"),
+        tighten=tighten,
+        judge_on=parse_share(judge_on, "judge_on"),
+        fits=tuple(map(_fit, fits)),
     )
     traces = [trace] if isinstance(trace, str | Path | Measurement) or not isinstance(trace, Iterable) else list(trace)
     measurements = [each if isinstance(each, Measurement) else measure(each) for each in traces]
@@ -57,3 +63,10 @@ def _form(form: Form | str) -> Form:
     if form not in tuple(Form):
         raise InvalidArgumentError(f"unknown form {form!r}; expected one of {', '.join(Form)}")
     return Form(form)
+
+
+def _fit(text: str) -> AgentFit:
+    try:
+        return parse_fit(text)
+    except ValueError as error:
+        raise InvalidArgumentError(str(error)) from None

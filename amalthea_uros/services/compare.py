@@ -9,7 +9,7 @@ from typing import TypeAlias
 
 from amalthea_uros._internal.paths import StrPath
 from amalthea_uros.compare.comparing import DEFAULT_TOLERANCE, EVERY_SOURCE, CompareOptions, compare_measured
-from amalthea_uros.compare.measured.events import chain_starts
+from amalthea_uros.compare.measured.events import begins_of
 from amalthea_uros.compare.measured.measuring import MeasureOptions, measure_file
 from amalthea_uros.compare.naming import Names
 from amalthea_uros.compare.results import Comparison, Source
@@ -92,8 +92,8 @@ def compare_files(
     """
     changed = open_changed(subject, settings, changes)
     if not isinstance(measured, Measurement):
-        # Of chains, what begins as in the model is measured.
-        reading = replace(reading or MeasureOptions(), chain_starts=chain_starts(changed.system))
+        # What is measured begins as in the model.
+        reading = replace(reading or MeasureOptions(), begins=begins_of(changed.system))
         measured = joined([measure_file(path, reading) for path in as_paths(measured)])
     found = compare_measured(changed.system, changed.settings, measured, options)
     return replace(

@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
+from typing import TypeVar
 
 from amalthea_uros._internal.paths import StrPath
-from amalthea_uros.compare.measured.events import chain_starts
+from amalthea_uros.compare.measured.columns import parse_column, parse_unit, parse_valid_rows
+from amalthea_uros.compare.measured.events import begins_of
 from amalthea_uros.compare.measured.measuring import MeasureOptions, measure_file
+from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.measure.begins import ModelBegins
 from amalthea_uros.measure.markers import parse_marker
 from amalthea_uros.measure.series import Measurement
 from amalthea_uros.measure.window import MeasurementWindow
 from amalthea_uros.services.inputs import as_paths
 from amalthea_uros.services.subject import Subject, open_system, time_of
 from amalthea_uros.units import Time
+
+T = TypeVar("T")
 
 
 def measure(
@@ -32,6 +38,9 @@ def measure(
     window: tuple[str | Time, str | Time | None] = (0, None),
     select: Iterable[str] = (),
     model: Subject | None = None,
+    columns: Iterable[str] = (),
+    unit: str | None = None,
+    valid_rows: str | None = None,
 ) -> Measurement:
     """Measure the times in a trace: of processes, runnables and chains, or of what markers in a CAN log delimit.
 
@@ -51,6 +60,9 @@ def measure(
     select : the objects of the result; by default all
     model : what describes the system of a trace of events, so that chains begin as they do in it; by default, at the activation of the
         job with their first step
+    columns : what the columns of a table are, e.g. "rtt_ms=round-trip" or "reply_ns - request_ns=round-trip"
+    unit : of the columns whose header names none, e.g. "ms"
+    valid_rows : the rows of the table that have values; by default "status=ok" if there is such a column. Others count as lost
 
     Raises
     ------
@@ -58,6 +70,9 @@ def measure(
     InvalidArgumentError : an option that cannot be right, or a package that is missing.
     """
     options = MeasureOptions(
+        columns=tuple(_given(parse_column, each) for each in columns),
+        unit=None if unit is None else _given(parse_unit, unit),
+        valid_rows=None if valid_rows is None else _given(parse_valid_rows, valid_rows),
         markers=None if markers is None else Path(markers),
         start=None if start is None else parse_marker(start),
         end=None if end is None else parse_marker(end),
@@ -70,6 +85,14 @@ def measure(
         period=None if period is None else time_of(period),
         window=MeasurementWindow(time_of(window[0]), None if window[1] is None else time_of(window[1])),
         select=tuple(select),
-        chain_starts={} if model is None else chain_starts(open_system(model).system),
+        begins=ModelBegins() if model is None else begins_of(open_system(model).system),
     )
     return measure_file(as_paths(trace)[0], options)
+
+
+def _given(parse: Callable[[str], T], text: str) -> T:
+    """The meaning of a text that was given to a function."""
+    try:
+        return parse(text)
+    except ValueError as error:
+        raise InvalidArgumentError(str(error)) from None

@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from traces import table
 
 from amalthea_uros import Options, task, taskset
-from amalthea_uros.compare.measured.events import chain_starts
+from amalthea_uros.compare.measured.events import begins_of
 from amalthea_uros.measure.chains import ChainSteps
 from amalthea_uros.measure.jobs import JobFollower
 from amalthea_uros.measure.series import Counts
@@ -126,7 +126,7 @@ def test_the_trace_of_a_simulation_has_what_it_observed(parameters, with_chain):
     recorder = EventRecorder()
     found = simulate_system(system, Options(duration=duration, traced=(0, duration)), [recorder])
     events = recorder.table
-    walk, steps = JobFollower(), ChainSteps(chain_starts(system))
+    walk, steps = JobFollower(), ChainSteps(begins_of(system).chains)
     for part in (events.rows(0, 50), events.rows(50, len(events))):
         walk.add(part)
         steps.add(part)

@@ -10,6 +10,7 @@ from amalthea_uros._internal.files import FileError, read_bytes, read_text, writ
 from amalthea_uros._internal.limits import DESCRIPTION_SIZE
 from amalthea_uros._internal.paths import StrPath, is_description
 from amalthea_uros._internal.shown import Shown
+from amalthea_uros.compare.calibration.agent_times import calibrated_agent_times
 from amalthea_uros.compare.calibration.execution_times import calibrated_execution_times
 from amalthea_uros.compare.calibration.executor_parts import with_executor_parts
 from amalthea_uros.compare.calibration.findings import findings_of
@@ -18,6 +19,7 @@ from amalthea_uros.compare.calibration.overheads import calibrated_overheads
 from amalthea_uros.compare.calibration.periods import calibrated_periods
 from amalthea_uros.compare.calibration.samples import Measured
 from amalthea_uros.compare.calibration.values import CalibratedValue, Outcome
+from amalthea_uros.compare.calibration.wire_parts import executed_times
 from amalthea_uros.design.description import text_edits
 from amalthea_uros.design.description.edit import apply_assignments
 from amalthea_uros.design.description.places import Places
@@ -106,9 +108,12 @@ def calibrate_text(text: str, path: Path, measurements: Sequence[Measurement], o
     executors = (choice.period for choice in before.assembly.choices if choice.task == choice.executor)
     period = next(executors, None)
     found = [
-        *calibrated_execution_times([*with_executor_parts(measured, places, period)], places, options),
+        *calibrated_execution_times(
+            [*with_executor_parts(measured, places, period)], places, options, executed_times(before.assembly.system)
+        ),
         *calibrated_overheads(measured, before, options),
         *calibrated_periods(measured, before, places, options),
+        *calibrated_agent_times(measured, text.removeprefix(_BOM), before, options),
     ]
     after, found = _edited(text.removeprefix(_BOM), found)
     _check(after, path)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil, floor
@@ -12,6 +12,7 @@ from amalthea_uros.compare.calibration.options import CalibrationOptions, Form
 from amalthea_uros.compare.calibration.samples import Measured, Samples, samples_of, without_others
 from amalthea_uros.compare.calibration.stated_overheads import stated_overhead
 from amalthea_uros.compare.calibration.values import CalibratedValue, Outcome, calibrated
+from amalthea_uros.compare.calibration.wire_parts import WITHOUT_WAITS, ExecutedTime, without_parts, without_waits
 from amalthea_uros.compare.calibration.wording import percentage
 from amalthea_uros.design.description.owners import StatedTime
 from amalthea_uros.design.description.places import Assignment, Places
@@ -57,12 +58,18 @@ class Written:
 
 
 def calibrated_execution_times(
-    measured: Sequence[Measured], places: Places, options: CalibrationOptions
+    measured: Sequence[Measured], places: Places, options: CalibrationOptions, executed: Mapping[str, ExecutedTime]
 ) -> Iterator[CalibratedValue]:
-    """The measured execution times, by their places in the description."""
+    """The measured execution times, by their places in the description.
+
+    Parameters
+    ----------
+    executed : what executors that loop execute, with what the wire takes
+    """
     groups: dict[Path, tuple[StatedTime, list[Measured]]] = {}
     with_runnables = {id(each.source) for each in measured if each.series.kind is MeasuredKind.RUNNABLE}
-    for each in _one_per_object(measured):
+    for each in _one_per_object(without_waits(measured, executed)):
+        known = executed.get(each.series.name)
         if not places.knows(each.series.name):
             continue
         try:
@@ -79,8 +86,16 @@ def calibrated_execution_times(
                 f"{each.series.name}.execution_time", samples_of([each], options.judge_on), Outcome.NOT_WRITTEN, reason
             )
             continue
+        if known is not None and known.can_wait and each.note != WITHOUT_WAITS:
+            reason = "it can wait for the wire, which is part of the measured times; measure its running time"
+            yield calibrated(
+                f"{each.series.name}.execution_time", samples_of([each], options.judge_on), Outcome.NOT_WRITTEN, reason
+            )
+            continue
         for place in stated:
-            groups.setdefault(place.path, (place, []))[1].append(without_others(each, place.elsewhere + overhead))
+            pure = without_others(each, overhead + (place.elsewhere if known is None else 0))
+            pure = pure if known is None else without_parts(pure, known.others(stated_range(place)))
+            groups.setdefault(place.path, (place, []))[1].append(pure)
     for stated_time, group in groups.values():
         yield _calibrated(stated_time, _purest(group), options)
 
@@ -164,7 +179,8 @@ def written_time(stated: StatedTime, samples: Samples, options: CalibrationOptio
     statistics, present = samples.statistics, stated_range(stated)
     refuted: tuple[str, ...] = ()
     if present is not None:
-        beyond = {"min": samples.certain_min < present[0], "max": samples.certain_max > present[1]}
+        # Time stamps are whole picoseconds, so that a difference may be wrong by one.
+        beyond = {"min": samples.certain_min < present[0] - 1, "max": samples.certain_max > present[1] + 1}
         refuted = tuple(end for end, is_beyond in beyond.items() if is_beyond)
     if options.form is Form.HISTOGRAM:
         if present is not None and not refuted and not options.tighten:

@@ -55,11 +55,11 @@ def findings_of(
 
 def _unknown(path: Path, measured: Sequence[Measured], description: Described, places: Places) -> Iterator[Finding]:
     """The objects of the trace that have no place in the description, with what they may be."""
-    known = description.assembly.system.processes
+    known, chains = description.assembly.system.processes, description.assembly.system.chains
     topics = {message.topic for callback in places.callbacks for message in (callback.incoming, *callback.outgoing) if message}
     names = dict.fromkeys(each.series.name for each in measured if each.series.kind is not MeasuredKind.CHAIN)
     for name in names:
-        if not places.knows(name) and name not in known and name not in topics:
+        if not places.knows(name) and name not in known and name not in topics and name not in chains:
             advice = did_you_mean(name, known)
             message = f"the description has no process or function {name!r}, so what was measured of it is not used"
             yield Finding(

@@ -10,13 +10,17 @@ from amalthea_uros.compare.calibration.samples import Measured, Samples
 from amalthea_uros.measure.series import TimeStatistics
 from amalthea_uros.units import Rounding, rounded_time_text, time_text
 
+#: What is said of parts that are subtracted like a baseline.
+OTHER_PARTS = "of other parts, such as the wire"
 #: Of the digest of a file; enough to recognise it.
 _DIGITS = 12
 
 
 def provenance(samples: Samples, remark: str) -> str:
     """Where measured values come from, as the end of a comment."""
-    baselines = dict.fromkeys(_baseline(each) for each in samples.measured if each.series.baseline is not None)
+    baselines = dict.fromkeys(
+        _baseline(each) for each in samples.measured if each.series.baseline is not None and OTHER_PARTS not in each.note
+    )
     notes = dict.fromkeys(each.note for each in samples.measured)
     parts = [statistics_text(samples.statistics), *notes, *baselines, remark]
     return f"measured in {', '.join(dict.fromkeys(map(_source, samples.measured)))}: {'; '.join(filter(None, parts))}"

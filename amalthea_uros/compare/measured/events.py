@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import UnknownError
+from amalthea_uros.executors.semantics.steps import iterations_name
+from amalthea_uros.measure.begins import ChainBegin, ModelBegins
 from amalthea_uros.measure.series import Measurement
 from amalthea_uros.measure.window import MeasurementWindow
 from amalthea_uros.perf.events import Event, ProcessChange, ProcessEvent, RunnableChange, RunnableEvent
+from amalthea_uros.perf.network import Direction, Purpose
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.dataflow.chains import sequences, unfold
 from amalthea_uros.trace.readers import format_of, open_trace
@@ -22,26 +25,50 @@ if TYPE_CHECKING:
 
 #: The events of a job with which a chain can begin so that a trace shows it.
 _BEGINS = {ProcessChange.ACTIVATE: EventKind.ACTIVATE, ProcessChange.START: EventKind.START}
+WITHIN_A_JOB = "it begins or ends within a job, at an event that is not in traces; measure it between markers"
+AT_HOST = (
+    "it begins or ends at the host, which is not in traces of the controller; measure it there, and give the values as a table"
+)
 
 
-def chain_starts(system: System) -> dict[str, EventKind | None]:
-    """With which event of a job each chain of a system begins; None if it begins or ends at one that traces do not tell apart."""
-    found: dict[str, EventKind | None] = {}
+def begins_of(system: System) -> ModelBegins:
+    """With which events the chains and the jobs of a system begin."""
+    return ModelBegins(
+        chains=dict(_chain_begins(system)),
+        iterations={task: iterations_name(executor.name) for task, executor in system.executor_of_task.items()},
+        callbacks=frozenset(handle.runnable for executor in system.executors for handle in executor.handles),
+    )
+
+
+def _chain_begins(system: System) -> Iterator[tuple[str, ChainBegin]]:
     for chain in system.chains.values():
         try:
-            routes = [
-                (system.events_by_name[way[0]], system.events_by_name[way[-1]]) for way in sequences(unfold(chain, system)[0])
-            ]
+            ways = sequences(unfold(chain, system)[0])
+            routes = [(system.events_by_name[way[0]], system.events_by_name[way[-1]]) for way in ways]
         except UnknownError:
             continue
-        begins = {_begin(first) for first, _ in routes}
+        if any(
+            _is_at_host(first, Direction.TO_CONTROLLER, system) or _is_at_host(last, Direction.TO_AGENT, system)
+            for first, last in routes
+        ):
+            yield chain.name, AT_HOST
+            continue
+        begins = {_begin(first, system) for first, _ in routes}
         is_shown = len(begins) == 1 and all(_ends_with_its_step(last) for _, last in routes)
-        found[chain.name] = begins.pop() if is_shown else None
-    return found
+        yield chain.name, begins.pop() if is_shown else WITHIN_A_JOB
 
 
-def _begin(event: Event) -> EventKind | None:
-    return _BEGINS.get(event.change) if isinstance(event, ProcessEvent) and event.change is not None else None
+def _is_at_host(event: Event, direction: Direction, system: System) -> bool:
+    """Whether it is a message whose time in the agent counts: a chain begins when the host publishes, and ends when it has it."""
+    transmission = system.transmissions.get(event.process or "") if isinstance(event, ProcessEvent) else None
+    return transmission is not None and (transmission.direction, transmission.purpose) == (direction, Purpose.DATA)
+
+
+def _begin(event: Event, system: System) -> ChainBegin:
+    # An iteration is no job that something activates.
+    if not isinstance(event, ProcessEvent) or event.change is None or event.process in system.executor_of_task:
+        return WITHIN_A_JOB
+    return _BEGINS.get(event.change, WITHIN_A_JOB)
 
 
 def _ends_with_its_step(event: Event) -> bool:
@@ -51,12 +78,12 @@ def _ends_with_its_step(event: Event) -> bool:
     return True
 
 
-def measured_events(path: Path, window: MeasurementWindow, starts: Mapping[str, EventKind | None]) -> Measurement:
+def measured_events(path: Path, window: MeasurementWindow, begins: ModelBegins) -> Measurement:
     """Measure a trace of events.
 
     Parameters
     ----------
-    starts : of chains that do not begin with the activation of a job: with which event they do; None: they are not measured
+    begins : with what the jobs and chains of the model begin
 
     Raises
     ------
@@ -70,7 +97,7 @@ def measured_events(path: Path, window: MeasurementWindow, starts: Mapping[str, 
     from amalthea_uros.measure.window import resolution_of
 
     reader = open_trace(path)
-    jobs, chains = JobFollower(), ChainSteps(starts)
+    jobs, chains = JobFollower(begins=begins), ChainSteps(begins.chains)
     origin: int | None = None
     times = []
     for table in reader:

@@ -4,28 +4,28 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from hashlib import file_digest, sha256
 from pathlib import Path
 
-from amalthea_uros._internal.files import is_directory, is_file
+from amalthea_uros.compare.measured.adjusted import net, with_period
+from amalthea_uros.compare.measured.columns import TableColumn, ValidRows
+from amalthea_uros.compare.measured.digests import digest_of
 from amalthea_uros.compare.measured.events import measured_events
 from amalthea_uros.compare.measured.frames import measured_frames
 from amalthea_uros.compare.measured.marker_files import counter_of, read_markers
+from amalthea_uros.compare.measured.ros_reports import is_ros_report, measured_report
 from amalthea_uros.compare.measured.signals import Signals
+from amalthea_uros.compare.measured.tables import measured_table
 from amalthea_uros.compare.measured.values import is_value_table, measured_values
-from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.measure.baselines import Baselines, names_of
+from amalthea_uros.measure.baselines import names_of
+from amalthea_uros.measure.begins import ModelBegins
 from amalthea_uros.measure.findings import judged
 from amalthea_uros.measure.markers import Marker, MarkerChain, MarkerPair, Measurable, refuse_overlap
-from amalthea_uros.measure.series import Measurement, Series
+from amalthea_uros.measure.series import Measurement
 from amalthea_uros.measure.window import MeasurementWindow
 from amalthea_uros.names import require
-from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.trace.can.logs import is_can_log
-from amalthea_uros.trace.files import trace_files
 from amalthea_uros.trace.readers import format_of
-from amalthea_uros.trace.table import EventKind
 from amalthea_uros.units import Time
 
 
@@ -44,8 +44,10 @@ class MeasureOptions:
     period : the standard period, from which the distances of starts deviate
     window : the part of the trace that is measured
     select : the only objects of the result; empty: all
-    chain_starts : with which event of a job chains begin, by default with its activation; None: they are not measured.
-        `measured_events.chain_starts` finds them in a model
+    columns : the quantities of a table that has a column for each
+    valid_rows : the rows of the table that have values; None: those with the status "ok", if the table has a column "status"
+    unit : of the columns whose header names none, in picoseconds
+    begins : with what the jobs and chains of the model begin, which `events.begins_of` finds in it
     """
 
     markers: Path | None = None
@@ -60,7 +62,10 @@ class MeasureOptions:
     period: Time | None = None
     window: MeasurementWindow = field(default_factory=MeasurementWindow)
     select: tuple[str, ...] = ()
-    chain_starts: Mapping[str, EventKind | None] = field(default_factory=dict)
+    columns: tuple[TableColumn, ...] = ()
+    valid_rows: ValidRows | None = None
+    unit: Time | None = None
+    begins: ModelBegins = field(default_factory=ModelBegins)
 
     def __post_init__(self) -> None:
         if (self.start is None) != (self.end is None):
@@ -75,6 +80,8 @@ class MeasureOptions:
             raise InvalidArgumentError(
                 "a counter belongs to a start and an end; add --start and --end, or state it in the markers"
             )
+        if not self.columns and (self.valid_rows is not None or self.unit is not None):
+            raise InvalidArgumentError("which rows are valid, and the unit, belong to the columns of a table; add --column")
         if self.baseline_from is not None and not self.baselines and self.markers is None:
             raise InvalidArgumentError("a trace for baselines needs the name of the empty object; add --baseline NAME")
 
@@ -96,9 +103,9 @@ def measure_file(path: Path, options: MeasureOptions) -> Measurement:
         known = {item.name for item in objects} | {name for each in (found, from_trace) for name in names_of(each.series)}
         if known:
             require("object", [*options.baselines.values(), *filter(None, options.baselines)], known)
-        found = _net(found, from_trace, baselines)
+        found = net(found, from_trace, baselines)
     if options.period is not None:
-        found = replace(found, series=tuple(_with_period(series, options.period) for series in found.series))
+        found = replace(found, series=tuple(with_period(series, options.period) for series in found.series))
     if options.select:
         require("measured object", options.select, dict.fromkeys(series.name for series in found.series))
         found = replace(found, series=tuple(series for series in found.series if series.name in options.select))
@@ -117,52 +124,22 @@ def _objects(options: MeasureOptions) -> tuple[Measurable, ...]:
 
 
 def _measured(path: Path, objects: Sequence[Measurable], options: MeasureOptions) -> Measurement:
-    if is_can_log(path) or (objects and not _is_other_trace(path)):
+    if options.columns:
+        if objects:
+            raise InvalidArgumentError("a table has columns, and no frames with markers; omit one of both")
+        found = measured_table(path, options.columns, options.valid_rows, options.unit, options.window)
+    elif is_can_log(path) or (objects and not _is_other_trace(path)):
         found = measured_frames(path, objects, options.window, options.channel)
     elif objects:
         raise InvalidArgumentError(f"{path.name!r} is not a log of a CAN bus, so it has no frames with markers; omit them")
+    elif is_ros_report(path):
+        found = measured_report(path, options.name)
     elif is_value_table(path):
         found = measured_values(path, options.window)
     else:
-        found = measured_events(path, options.window, options.chain_starts)
-    return replace(found, digest=_digest(path))
+        found = measured_events(path, options.window, options.begins)
+    return replace(found, digest=digest_of(path))
 
 
 def _is_other_trace(path: Path) -> bool:
-    return format_of(path) is not None or is_value_table(path)
-
-
-def _digest(path: Path) -> str:
-    if is_directory(path):
-        digests = (f"{_digest(file)}  {file.relative_to(path).as_posix()}\n" for file in trace_files(path))
-        return sha256("".join(digests).encode()).hexdigest()
-    if not is_file(path):  # a stream that has been read
-        return ""
-    with path.open("rb") as stream:
-        return file_digest(stream, "sha256").hexdigest()
-
-
-def _net(found: Measurement, empty: Measurement, baselines: Mapping[str, str]) -> Measurement:
-    """A measurement with the times of the empty objects subtracted from those of the other objects; a missing one is reported."""
-    subtracted = Baselines(baselines, empty.series)
-    series = tuple(map(subtracted.net, found.series))
-    place = Location(Path(empty.source))
-    findings = (
-        Finding(
-            "MEA012",
-            Severity.ERROR,
-            f"{name!r} was not measured; nothing is subtracted from the times of other objects",
-            place,
-            _ADVICE,
-        )
-        for name in subtracted.missing
-    )
-    return replace(found, series=series, findings=(*found.findings, *findings))
-
-
-_ADVICE = "Check the markers of the empty object, or give the trace with it: --baseline-from TRACE."
-
-
-def _with_period(series: Series, period: Time) -> Series:
-    is_distance = series.quantity in (JobMetric.START_TO_START, JobMetric.ACTIVATE_TO_ACTIVATE, JobMetric.END_TO_END)
-    return replace(series, period=series.period or period) if is_distance else series
+    return format_of(path) is not None or is_value_table(path) or is_ros_report(path)

@@ -12,6 +12,7 @@ from amalthea_uros.compare.results import (
     Comparison,
     ComparisonRow,
     DistributionRow,
+    LossRow,
     MeasuredLimit,
     Statistic,
     is_bound,
@@ -59,7 +60,13 @@ class BoundTest:
     @property
     def reason(self) -> str:
         """What is to be said about the verdict."""
-        return "; ".join(filter(None, (row.reason for row in self.rows)))
+        return "; ".join(filter(None, (_of_all(row) for row in self.rows)))
+
+
+def _of_all(row: ComparisonRow) -> str:
+    """A remark on a bound; of one that is exceeded, by how many values."""
+    share = f" ({row.beyond:,} of {counted(row.samples, 'value')})" if row.reason and row.beyond is not None else ""
+    return f"{row.reason}{share}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -220,6 +227,8 @@ def _outcome(result: Comparison) -> str:
 _EXCUSED = "without contradicting what the model states"
 
 
+#: Of so many quantities, all distributions are shown.
+_FEW_QUANTITIES = 3
 #: The extremes of fewer values say little.
 _FEW = 5
 
@@ -285,7 +294,7 @@ def _limit_text(limit: MeasuredLimit) -> str:
 def _distribution_rows(result: Comparison) -> Iterator[tuple[str, ...]]:
     """The cells of the distributions that are shown: the distance, and both medians and 99 % quantiles."""
     for row in result.distributions:
-        if not (result.with_all or row.is_hidden):
+        if not (result.with_all or row.is_hidden or len(result.distributions) <= _FEW_QUANTITIES):
             continue
         between = row.distance
         median, high = (between.quantiles[share] for share in (Fraction(50, 100), Fraction(99, 100)))
@@ -297,6 +306,12 @@ def _distribution_rows(result: Comparison) -> Iterator[tuple[str, ...]]:
             *(_time(Fraction(value)) for value in (*median, *high)),
             "equal means, other distribution" if row.is_hidden else "",
         )
+
+
+def _loss_cells(row: LossRow) -> tuple[str, ...]:
+    """The cells of what was lost."""
+    simulated = "-" if row.simulated is None else _percent(row.simulated)
+    return row.object, words(row.quantity), f"{row.values:,}", f"{row.lost:,}", _percent(row.share), simulated
 
 
 def _time(value: Fraction | None) -> str:
@@ -364,6 +379,7 @@ def comparison_document(result: Comparison) -> Document:
     bounded = ("object", "quantity", ">lower bound", ">min", ">max", ">upper bound", ">margin", "claim", "verdict", "")
     distance = "Distributions (Kolmogorov-Smirnov distance from the simulated values, and its critical value at 5 %)"
     distributed = ("object", "quantity", ">distance", ">critical", ">p50", ">simulated p50", ">p99", ">simulated p99", "")
+    lost = ("object", "quantity", ">values", ">lost", ">share", ">simulated")
     limited = ("requirement", "what", "limit", ">measured", ">values", "verdict", "")
     missing = [(row.object, words(row.quantity), str(row.verdict), row.reason) for row in _missing_rows(result)]
     not_shown, not_predicted = (Sentences([text] if text else []) for text in (_hidden(result), _hidden_missing(result)))
@@ -371,6 +387,10 @@ def comparison_document(result: Comparison) -> Document:
         section(predictions, table("", predicted, map(_prediction_cells, prediction_groups(result)))),
         section(bounds, table("", bounded, map(_bound_cells, bound_tests(result))), not_shown),
         section(distance, table("", distributed, _distribution_rows(result))),
+        section(
+            "Lost values (share; stimuli without a response in the simulation)",
+            table("", lost, map(_loss_cells, result.losses)),
+        ),
         section("Limits, as measured", table("", limited, map(_limit_cells, result.limits))),
         section("Not compared", table("", ("object", "quantity", "", "reason"), missing), not_predicted),
         section("Assumptions", Sentences(result.assumptions)),

@@ -106,7 +106,8 @@ def closing_line(measurement: Measurement) -> str:
     objects = dict.fromkeys(series.name for series in measurement.series if series.statistics is not None)
     if not objects:
         return f"Nothing was measured in {measurement.source}."
-    what = f"Measured {counted(len(objects), 'object')} over {duration_text(measurement.duration)}"
+    over = f" over {duration_text(measurement.duration)}" if measurement.duration else ""
+    what = f"Measured {counted(len(objects), 'object')}{over}"
     return f"{what}. A maximum is the longest time seen, not a bound{_exceedance(measurement)}."
 
 

@@ -11,6 +11,7 @@ from amalthea_uros.compare.results import (
     Comparison,
     ComparisonRow,
     DistributionRow,
+    LossRow,
     MeasuredLimit,
 )
 from amalthea_uros.measure.series import Counts, Measurement, Series, TimeStatistics
@@ -116,7 +117,7 @@ declare(
     ("measured_duration_ps", "measurement.duration"),
     *("tolerance", "uncertainty_ps", "duration_ps", "seed", "rows"),
     ("requirements", "limits"),
-    *("distributions", "assumptions", "findings"),
+    *("distributions", "losses", "assumptions", "findings"),
     ("changes", "differences"),
     (
         "summary",
@@ -135,8 +136,9 @@ declare(
     *("quantity", "statistic", "predicted_ps"),
     (ALSO, _range),
     *("measured_ps", "deviation", "deviation_of_prediction", "tolerance", "bound_margin_ps"),
-    *("verdict", "claim", "method", "samples", "reason"),
+    *("verdict", "claim", "method", "samples", "beyond", "reason"),
 )
+declare(LossRow, *("object", "kind", "quantity", "values", "lost", "share", ("simulated_share", "simulated")))
 declare(MeasuredLimit, *("name", "object", "quantity", "is_upper"), (ALSO, _limited), *("verdict", "samples", "reason"))
 declare(
     DistributionRow,

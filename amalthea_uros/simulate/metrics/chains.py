@@ -16,7 +16,7 @@ from amalthea_uros.timing.basics.quantities import ChainQuantity
 from amalthea_uros.timing.observed.chain_latencies import MEASURED, SAME, ObservedRouteLatencies
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
 
 @dataclass(slots=True)
@@ -26,9 +26,11 @@ class RouteMetrics:
     Attributes
     ----------
     base : time units in a picosecond
+    keep : takes the values, too
     """
 
     base: int
+    keep: Callable[[ChainQuantity, Numbers], None] | None = None
     _found: dict[ChainQuantity, MetricDistributions] = field(init=False)
     _latencies: ObservedRouteLatencies = field(init=False)
 
@@ -57,6 +59,8 @@ class RouteMetrics:
 
     def _note(self, quantity: ChainQuantity, values: Numbers, stimuli: Numbers, times: Numbers) -> None:
         self._found[quantity].add(values[None, :], stimuli, times)
+        if self.keep is not None:
+            self.keep(quantity, values)
 
     def merge_into(self, merged: Mapping[ChainQuantity, MetricDistributions]) -> None:
         """Add the latencies to those of other routes."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -27,9 +27,11 @@ class JobMetrics:
     Attributes
     ----------
     base : time units in a picosecond
+    keep : takes the jobs, too
     """
 
     base: int
+    keep: Callable[[Numbers], None] | None = None
     _of_jobs: MetricDistributions = field(init=False)
     _between_jobs: MetricDistributions = field(init=False)
     #: The last job so far, as a column; no column before the first job.
@@ -47,6 +49,8 @@ class JobMetrics:
         for earlier, later in ((self._last, jobs[:, : self._last.shape[1]]), (jobs[:, :-1], jobs[:, 1:])):
             self._between_jobs.add(times_between(earlier, later), later[JobColumn.INSTANCE], later[JobColumn.ACTIVATION])
         self._last = jobs[:, -1:].copy()
+        if self.keep is not None:
+            self.keep(jobs)
 
     @property
     def count(self) -> int:

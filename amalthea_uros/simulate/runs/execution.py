@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import partial
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from amalthea_uros.simulate.kernel.layout import Observation
 from amalthea_uros.simulate.metrics import chains, jobs
 from amalthea_uros.simulate.metrics.chains import RouteMetrics
 from amalthea_uros.simulate.metrics.jobs import JobMetrics
+from amalthea_uros.simulate.metrics.kept_values import KeptValues
 from amalthea_uros.simulate.metrics.observers import Observers
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.program.build import KernelProgram
@@ -33,12 +35,14 @@ class SimulationRun:
 
     Attributes
     ----------
+    kept : keeps single values; None if nobody needs them
     end : of the run in time units; it is earlier than planned if nothing can be simulated any more
     """
 
     context: TimingContext
     options: Options
     program: KernelProgram
+    kept: KeptValues | None = None
     end: int = field(init=False)
     driver: KernelDriver = field(init=False)
     jobs: list[JobMetrics] = field(init=False)
@@ -55,9 +59,10 @@ class SimulationRun:
         self.end = self.options.duration * program.units
         self.jobs = [JobMetrics(program.units) for _ in program.processes]
         self.runnables = [JobMetrics(program.units) for _ in program.runnables]
-        self.handles = [JobMetrics(program.units) for _ in program.handles]
+        self.handles = [JobMetrics(program.units, keep) for keep in self._kept_calls()]
         self.observers = Observers(self.context.system, self.options, program, self.end)
-        self.routes = [RouteMetrics(program.units) for _ in program.routes]
+        keep = None if self.kept is None else self.kept.add_latencies
+        self.routes = [RouteMetrics(program.units, keep and partial(keep, route.chain)) for route in program.routes]
         self.semaphores = _semaphore_states(self.context.system, program)
         traced = self.options.traced or (0, 0)
         self.driver = KernelDriver(
@@ -68,6 +73,15 @@ class SimulationRun:
             events=self._write,
             traced=(traced[0] * program.units, traced[1] * program.units),
         )
+
+    def _kept_calls(self) -> Iterator[Callable[[Numbers], None] | None]:
+        """The functions that keep the calls of each handle."""
+        executors = {executor.name: executor for executor in self.context.system.executors}
+        if self.kept is not None:
+            self.kept.units = self.program.units
+        for executor, name in self.program.handles:
+            (runnable,) = (handle.runnable for handle in executors[executor].handles if handle.name == name)
+            yield None if self.kept is None else partial(self.kept.add_calls, runnable, name)
 
     def execute(self, sinks: Sequence[TraceSink]) -> None:
         """Run to the end, and write the events."""

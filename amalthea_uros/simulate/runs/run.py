@@ -8,6 +8,7 @@ from typing import TypeAlias
 
 from amalthea_uros.executors.semantics.steps import with_steps
 from amalthea_uros.perf.system import System
+from amalthea_uros.simulate.metrics.kept_values import KeptValues
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.program.build import build_program
 from amalthea_uros.simulate.results import Simulation
@@ -22,7 +23,9 @@ from amalthea_uros.trace.table import Entity
 OpenSink: TypeAlias = "Callable[[Sequence[Entity]], TraceSink]"
 
 
-def simulate_system(system: System, options: Options, sinks: Sequence[OpenSink] = ()) -> Simulation:
+def simulate_system(
+    system: System, options: Options, sinks: Sequence[OpenSink] = (), kept: KeptValues | None = None
+) -> Simulation:
     """Simulate a system once.
 
     Processes and chains that cannot be simulated are findings; the others are simulated as if they did not exist.
@@ -30,10 +33,11 @@ def simulate_system(system: System, options: Options, sinks: Sequence[OpenSink] 
     Parameters
     ----------
     sinks : for the events of `options.traced`
+    kept : keeps single values
     """
     context = TimingContext.of_scheduling(with_first_arrivals(with_steps(system), options.settings.phases), options.settings)
     program = build_program(context, options)
-    run = SimulationRun(context, options, program)
+    run = SimulationRun(context, options, program, kept)
     with ExitStack() as stack:
         run.execute([stack.enter_context(open_sink(program.entities)) for open_sink in sinks])
     return RunEvaluation(run).result()

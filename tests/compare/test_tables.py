@@ -1,0 +1,118 @@
+"""Tables with a column for each quantity, and what tools on the host print: values by hand, and what is wrong with them."""
+
+import pytest
+
+from amalthea_uros import InvalidArgumentError, ReadError, measure
+from amalthea_uros.compare.measured.columns import parse_column, unit_of
+from amalthea_uros.units import MICROSECOND, MILLISECOND, SECOND
+
+
+def table(tmp_path, text, *columns, name="rtt.csv", **options):
+    path = tmp_path / name
+    path.write_text(text)
+    return measure(path, columns=columns or ["rtt_ms=round-trip"], **options)
+
+
+def only(found):
+    (series,) = found.series
+    return series
+
+
+def test_each_row_is_a_value_in_the_unit_of_the_header(tmp_path):
+    series = only(table(tmp_path, "cycle,rtt_ms\n1,4.5\n2,4.75\n3,5\n"))
+    assert series.values.tolist() == [4_500_000_000, 4_750_000_000, 5_000_000_000]
+    assert (series.name, series.quantity, series.counts.lost) == ("round-trip", "time", 0)
+    assert only(table(tmp_path, "rtt\n4500\n", "rtt=round-trip", unit="us")).statistics.max == 4500 * MICROSECOND
+
+
+@pytest.mark.parametrize(
+    ("header", "unit"),
+    [("rtt_ms", MILLISECOND), ("rtt (us)", MICROSECOND), ("rtt [s]", SECOND), ("rtt", None), ("atoms", None)],
+)
+def test_a_header_may_end_in_a_unit(header, unit):
+    assert unit_of(header) == unit
+
+
+def test_rows_that_failed_are_lost_and_counted_with_their_first_line(tmp_path):
+    text = "cycle,status,rtt_ms\n1,ok,4\n2,timeout,\n3,ok,nan\n4,timeout,9000\n5,ok,6\n"
+    found = table(tmp_path, text)
+    assert only(found).values.tolist() == [4 * MILLISECOND, 6 * MILLISECOND]
+    assert only(found).counts.lost == 3
+    assert [(each.rule, each.location.line) for each in found.findings] == [("MEA015", 3), ("MEA015", 4)]
+    assert "2 times" in found.findings[0].message
+    assert only(table(tmp_path, text, valid_rows="status=ok,timeout")).counts.lost == 2
+
+
+def test_a_quantity_can_be_the_difference_of_two_time_stamps_since_1970(tmp_path):
+    rows = ("1700000000000000001,1700000000004000002", "1700000001000000000,", "1700000002000000000,1700000002005000000")
+    text = "\n".join(("sent_ns,received_ns", *rows))
+    found = table(tmp_path, text, "received_ns - sent_ns=round-trip.reduced_data_age")
+    assert only(found).values.tolist() == [4_000_001_000, 5_000_000_000]
+    assert (only(found).quantity, only(found).counts.lost) == ("reduced_data_age", 1)
+
+
+@pytest.mark.parametrize(
+    ("text", "columns", "said"),
+    [
+        ("cycle,rtt_ms\n", ["rtt=a"], "no column 'rtt'"),
+        ("cycle,rtt\n1,2\n", ["rtt=a"], "names no unit"),
+        ("", ["rtt_ms=a"], "it is empty"),
+    ],
+)
+def test_a_table_without_the_column_or_its_unit_is_refused_at_its_header(tmp_path, text, columns, said):
+    with pytest.raises(ReadError, match=said) as error:
+        table(tmp_path, text, *columns)
+    assert [(each.rule, each.location.line) for each in error.value.findings] == [("MEA016", 1)]
+
+
+def test_what_is_no_number_is_told_with_its_line(tmp_path):
+    found = table(tmp_path, 'rtt_ms\n4\nfast\n-1\n1e40\n"5\n')
+    assert only(found).values.tolist() == [4 * MILLISECOND]
+    assert only(found).counts.lost == 3
+    assert [(each.rule, each.location.line) for each in found.findings[:3]] == [("MEA009", 3), ("MEA009", 4), ("MEA009", 6)]
+
+
+def test_a_table_without_rows_measures_nothing(tmp_path):
+    found = table(tmp_path, "status,rtt_ms\nlost,\n")
+    assert only(found).statistics is None
+    assert [each.rule for each in found.findings] == ["MEA015", "MEA005"]
+
+
+def test_two_columns_are_not_the_same_quantity(tmp_path):
+    with pytest.raises(InvalidArgumentError, match="two columns"):
+        table(tmp_path, "a_ms,b_ms\n1,2\n", "a_ms=x", "b_ms=x")
+    with pytest.raises(InvalidArgumentError, match="add --column"):
+        measure(tmp_path / "rtt.csv", unit="ms")
+
+
+@pytest.mark.parametrize("text", ["rtt_ms", "=round-trip", "rtt_ms=", "a - b - c=x"])
+def test_a_column_has_a_form(text):
+    with pytest.raises(ValueError, match="not of the form"):
+        parse_column(text)
+
+
+def test_documents_of_a_topic_are_rows_with_the_moments_of_their_stamps(tmp_path):
+    text = "".join(
+        f"header:\n  stamp:\n    sec: {second}\n    nanosec: {nanoseconds}\nsent:\n  sec: {second}\n  nanosec: 0\ndata: {value}\n---\n"
+        for second, nanoseconds, value in ((1_700_000_000, 5_000_000, 4.5), (1_700_000_001, 7_000_000, 4.75))
+    )
+    found = table(tmp_path, text, "header.stamp_s - sent_s=age", "data=rtt", name="echo.txt", unit="ms")
+    assert [each.values.tolist() for each in found.series] == [
+        [5 * MILLISECOND, 7 * MILLISECOND],
+        [4_500_000_000, 4_750_000_000],
+    ]
+    assert found.duration == SECOND + 2 * MILLISECOND
+
+
+def test_reports_of_a_topic_have_the_extremes_of_all_and_the_mean_of_the_last(tmp_path):
+    path = tmp_path / "delay.txt"
+    report = "average delay: {}\n\tmin: {}s max: {}s std dev: 0.00100s window: {}\n"
+    path.write_text(report.format("0.005", "0.003", "0.006", 10) + report.format("0.006", "0.004", "0.009", 20))
+    series = only(measure(path, name="age"))
+    statistics = series.statistics
+    assert (series.name, series.quantity) == ("age", "duration")
+    assert (statistics.count, statistics.min, statistics.max) == (20, 3 * MILLISECOND, 9 * MILLISECOND)
+    assert statistics.mean == 6 * MILLISECOND
+    path.write_text("average rate: 8.000\n\tmin: 0.124s max: 0.126s std dev: 0.00046s window: 11\n")
+    assert only(measure(path)).statistics.mean == 125 * MILLISECOND
+    assert only(measure(path)).quantity == "start_to_start"
