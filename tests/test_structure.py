@@ -40,7 +40,7 @@ LINES = {
     "platforms": 0,
     "report": 7900,
     "services": 1985,
-    "simulate": 7080,
+    "simulate": 7081,
     "source": 1887,
     "spec": 1967,
     "timing": 5089,
