@@ -105,7 +105,8 @@ def with_steps(system: System) -> System:
 
 
 def _with_steps(task: Task, executor: Executor) -> Task:
-    own = {name for handle in executor.handles for name in (handle.take, handle.runnable)}
+    # Whoever follows iterations executes those of which polling is the sum.
+    own = {executor.poll, *(name for handle in executor.handles for name in (handle.take, handle.runnable))}
     # Other activities are overhead of the operating system, around the iteration.
     others = [each for each in task.activities if own.isdisjoint(called_runnables((each,)))]
     first = next((n + 1 for n, each in enumerate(others) if isinstance(each, Call) and each.runnable == executor.spin), 0)
