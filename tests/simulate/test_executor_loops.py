@@ -342,6 +342,16 @@ def test_polling_before_a_timer_is_iterations_of_its_executor(semantics, trigger
         assert simulation["main"].response_time.max == 600 * US
 
 
+def test_the_operating_system_activates_each_iteration_once():
+    """Also if that takes an interrupt: 10 us for each iteration of 100 us, beside a call of 500 us in each 10 ms."""
+    os = "os: {overhead: {activation: 10 us, activations_run_in: interrupt}}"
+    text = POLLING.replace("SEMANTICS", "ROS").replace("TRIGGER", "any").replace("middleware:", f"{os}\nmiddleware:", 1)
+    simulation = simulate_system(describe_text(text).assembly.system, Options(duration=100 * MS, mode=SimulationMode.WORST))
+    (executor,) = simulation.executors
+    assert simulation["main_Activation"].jobs == pytest.approx(executor.iterations, abs=1)
+    assert executor.iterations == pytest.approx(10 * (10_000 - 500) / 110, abs=5)
+
+
 # Nothing that is unknown is taken to be harmless.
 
 LEFT_OUT = {
