@@ -16,7 +16,7 @@ from typing import NamedTuple, TypeAlias
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import Trigger
 from amalthea_uros.perf.events import CustomEvent, Event, ModeLabelEvent, RunnableChange, RunnableEvent
-from amalthea_uros.perf.network import Purpose
+from amalthea_uros.perf.network import Direction, Purpose
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Counter, EventTriggered, InterProcess, Stimulus
 from amalthea_uros.perf.system import System
@@ -265,8 +265,21 @@ class Activations:
         if times is None:
             raise UnknownError(f"the maximum number of times that a job of {cause.process.name!r} triggers it is unknown")
         completions = output(cause.process, lambda: self._of_process(cause.process, output, above), cause.has_fixed_place)
-        found = _counted(completions, cause.position.counter)
+        found = _counted(self._on_its_way(cause.process.name, completions), cause.position.counter)
         return _counted(found if times == 1 else Multiplied(found, times), cause.counter)
+
+    def _on_its_way(self, process: str, completions: EventModel) -> EventModel:
+        """What a message triggers when it has left the wire: where it goes, it comes some time later."""
+        transmission = self.system.transmissions.get(process)
+        if transmission is None:
+            return completions
+        is_received = transmission.direction is Direction.TO_CONTROLLER
+        spans = (transmission.link, transmission.driver) if is_received else (transmission.link,)
+        variations = [None if span.most is None else span.most - span.least for span in spans]
+        if None in variations:
+            raise UnknownError(f"how long {process!r} takes besides the wire is not stated")
+        variation = sum(filter(None, variations))
+        return Delayed(completions, variation) if variation else completions
 
 
 def _share(counter: Counter | None) -> Fraction:

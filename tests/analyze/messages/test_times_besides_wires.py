@@ -1,0 +1,55 @@
+"""What a message triggers behind its wire comes closer together than the message, by how much its time there varies."""
+
+import pytest
+
+from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.units import MICROSECOND as US
+from amalthea_uros.units import MILLISECOND as MS
+from amalthea_uros.uros.described import describe_text
+
+TEXT = """
+amuros: 1
+name: p
+hardware: {platform: single-core, frequency: 1 GHz}
+os: {tick: 1 ms}
+middleware:
+  executor: {name: main, loop: {spin_some: 1 ms, sleep: 1 ms}, execution_time: 10 us}
+  transport:
+    udp: {bitrate: 8 Mbit/s, overhead: 0 B, LATENCYdriver: {read: READ}, interrupt: {name: Receive, execution_time: 1 us}}
+  agent: {to_controller: 0 ms, to_host: 0 ms, acknowledgement: {min: 1 ms, max: 2 ms}}
+application:
+  nodes:
+    - name: n
+      subscriptions:
+        - {name: on_cmd, topic: cmd, interval: 20 ms, message_size: 8 B, execution_time: 100 us, reliability: best-effort}
+      publishers: [{topic: odom, message_size: 8 B}]
+      guard_conditions: [{name: on_stop, interval: 50 ms, execution_time: 100 us, publishes: [odom]}]
+"""
+
+
+def distance(process, latency="latency: {min: 1 ms, max: 4 ms}, ", read="blocking"):
+    analysis = analyze_system(describe_text(TEXT.replace("LATENCY", latency).replace("READ", read)).assembly.system)
+    return analysis[process].min_interarrival
+
+
+#: Before, two small messages can be on the wire, of some 40 bytes each.
+BLOCKED = 100 * US
+
+
+def test_interrupts_come_closer_by_how_much_the_latency_varies():
+    assert distance("Receive", "latency: 1 ms, ") == pytest.approx(20 * MS, abs=BLOCKED)
+    assert distance("Receive") == pytest.approx(17 * MS, abs=BLOCKED)
+
+
+def test_interrupts_come_closer_by_the_tick_in_which_a_driver_waits():
+    assert distance("Receive", read="dma") == pytest.approx(16 * MS, abs=BLOCKED)
+
+
+def test_nothing_is_known_of_interrupts_after_an_unknown_latency():
+    assert distance("Receive", "") is None
+
+
+@pytest.mark.parametrize(("latency", "least"), [("latency: 1 ms, ", 99 * MS), ("latency: {min: 1 ms, max: 4 ms}, ", 96 * MS)])
+def test_acknowledgements_come_closer_by_the_latency_of_what_they_acknowledge(latency, least):
+    """The agent takes 1 to 2 ms; heartbeats come every 100 ms."""
+    assert distance("heartbeat_of_client_acknowledgement", latency) == pytest.approx(least, abs=BLOCKED)
