@@ -69,3 +69,11 @@ class Tally:
             shown = ("-" if value is None else f"{value:.3f}" for value in (middle, most))
             lines.append(f"{name:42} {count:9} {share:8.0%} {next(shown):>7} {next(shown):>6}")
         return "\n".join(lines)
+
+    def summary(self) -> str:
+        """What was examined."""
+        lines = [f"{count:6} descriptions refused: {reason}" for reason, count in self.refused.most_common(5)]
+        lines += [f"{count:6} applications of which something was not simulated: {reason}" for reason, count in self.left_out.items()]
+        lines += [f"{count:6} {kind} played, {self.calls[kind]} calls compared" for kind, count in self.played.items()]
+        verdicts = ", ".join(f"{count} {verdict}" for verdict, count in self.verdicts.items())
+        return "\n".join([*lines, f"{self.applications} applications analysed and simulated; limits: {verdicts}"])
