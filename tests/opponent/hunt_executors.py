@@ -9,7 +9,7 @@
   two seeds: no observed value is beyond a bound, nothing is lost that cannot be, and no limit is missed that is met.
 
 `--only calls` and `--only bounds` leave the other one out. It prints each kind of failure with its seed, writes the smallest description
-of each to the folder, and at the end a table: for each construct the number of observed maxima of applications that have it, the share
+of each to the folder, and at the end a table: for each construct the number of observed maxima of applications with it, the share
 of them that have a bound, and the median and the maximum of observed/bound.
 """
 
@@ -37,7 +37,10 @@ Hunt = Callable[[int, Tally], list[str]]
 def hunt(only: str, seed: int) -> Found:
     """The false answers about the applications of a seed."""
     tally, said = Tally(), []
-    hunts: dict[str, Hunt] = {"calls": different_calls, "bounds": lambda seed, tally: false_claims(random_description(seed), tally)}
+    hunts: dict[str, Hunt] = {
+        "calls": different_calls,
+        "bounds": lambda seed, tally: false_claims(random_description(seed), tally),
+    }
     for name, each in hunts.items():
         if only in (name, "all"):
             try:

@@ -39,10 +39,12 @@ class CallbackHops:
     ----------
     executors : the results of all executors in loops
     jitter : of the arrivals at handles, by name, besides what is stated; None if it is unknown
+    coming_back : the transmissions of messages that are published here
     """
 
     executors: Results[ExecutorResult]
     jitter: Mapping[str, Time | None]
+    coming_back: frozenset[str] = frozenset()
 
     def response(self, segment: CallbackSegment) -> Hop:
         """From the arrival of a message, or from when a timer is due, to the end of the callback."""
@@ -114,7 +116,8 @@ class CallbackHops:
         if handle.kind is HandleKind.TIMER:
             return handle.interval
         jitter = self.jitter.get(handle.name, 0)
-        if handle.interval is None or jitter is None or not handle.is_periodic:
+        is_regular = handle.is_periodic and handle.transmission not in self.coming_back
+        if handle.interval is None or jitter is None or not is_regular:
             return None
         return handle.interval + handle.jitter + jitter
 

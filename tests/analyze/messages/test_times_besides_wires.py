@@ -27,9 +27,15 @@ application:
 """
 
 
-def distance(process, latency="latency: {min: 1 ms, max: 4 ms}, ", read="blocking"):
-    analysis = analyze_system(describe_text(TEXT.replace("LATENCY", latency).replace("READ", read)).assembly.system)
-    return analysis[process].min_interarrival
+def analysed(latency="latency: {min: 1 ms, max: 4 ms}, ", read="blocking", **changes):
+    text = TEXT.replace("LATENCY", latency).replace("READ", read)
+    for old, new in changes.items():
+        text = text.replace(old, new)
+    return analyze_system(describe_text(text).assembly.system)
+
+
+def distance(process, *latency, read="blocking"):
+    return analysed(*latency, read=read)[process].min_interarrival
 
 
 #: Before, two small messages can be on the wire, of some 40 bytes each.
@@ -53,3 +59,14 @@ def test_nothing_is_known_of_interrupts_after_an_unknown_latency():
 def test_acknowledgements_come_closer_by_the_latency_of_what_they_acknowledge(latency, least):
     """The agent takes 1 to 2 ms; heartbeats come every 100 ms."""
     assert distance("heartbeat_of_client_acknowledgement", latency) == pytest.approx(least, abs=BLOCKED)
+
+
+LATE = "to_controller: {min: 0 ms, max: 1 ms}"
+
+
+@pytest.mark.parametrize(("published", "known"), [("odom", {"cmd_topic_to_on_cmd"}), ("cmd", set())])
+def test_only_messages_that_the_host_publishes_regularly_have_a_longest_distance(published, known):
+    """What a guard condition publishes comes back from the agent as rarely as that is triggered."""
+    analysis = analysed(odom=published, **{"to_controller: 0 ms": LATE})
+    found = {each.name for each in analysis.processes if each.max_interarrival is not None and "UDP" in (each.processor or "")}
+    assert found == known

@@ -39,7 +39,9 @@ def false_claims(content: Section, tally: Tally | None = None, runs: Sequence[Op
     try:
         system = describe_content(content).assembly.system
     except ReadError as error:
-        tally.refused[next((each for each in str(error).splitlines() if " error: " in each), str(error)).partition(": ")[2]] += 1
+        tally.refused[
+            next((each for each in str(error).splitlines() if " error: " in each), str(error)).partition(": ")[2]
+        ] += 1
         return []
     tally.applications += 1
     analysis, found = analyze_system(system), []
@@ -55,7 +57,9 @@ def false_claims(content: Section, tally: Tally | None = None, runs: Sequence[Op
     constructs = (*constructs_of(content), "all")
     for name, (most, bound) in greatest.items():
         tally.add((*constructs, f"quantity: {name.partition(' of ')[0]}"), most, bound)
-    tally.verdicts.update(str(each.verdict) for each in (*analysis.requirements, *analysis.processes) if each.verdict is not None)
+    tally.verdicts.update(
+        str(each.verdict) for each in (*analysis.requirements, *analysis.processes) if each.verdict is not None
+    )
     return found
 
 

@@ -9,11 +9,7 @@ from opponent.executors.descriptions import Section
 
 def constructs_of(content: Section) -> frozenset[str]:
     """The names of the constructs of a description."""
-    return frozenset(
-        name
-        for part in (_of_loops, _of_messages, _of_wire, _of_processes)
-        for name in part(content)
-    )
+    return frozenset(name for part in (_of_loops, _of_messages, _of_wire, _of_processes) for name in part(content))
 
 
 def _of_loops(content: Section) -> Iterator[str]:

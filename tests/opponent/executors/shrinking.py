@@ -5,11 +5,23 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator
 from copy import deepcopy
+from time import monotonic
 
 from opponent.executors.descriptions import Section
 
 #: What is kept in any case.
-_NEEDED = {"amuros", "name", "hardware", "middleware", "application", "executors", "transport", "nodes", "loop", "execution_time"}
+_NEEDED = {
+    "amuros",
+    "name",
+    "hardware",
+    "middleware",
+    "application",
+    "executors",
+    "transport",
+    "nodes",
+    "loop",
+    "execution_time",
+}
 
 Path = tuple[str | int, ...]
 
@@ -22,8 +34,9 @@ def kind_of(text: str) -> str:
     return re.sub(r"\w*(topic|request|response)_(to|from)_X(_acknowledgement)?", r"message\3", found)
 
 
-def shrunk(content: Section, false: Callable[[Section], list[str]], wanted: str) -> Section:
-    """The smallest description found about which something of the same kind is said."""
+def shrunk(content: Section, false: Callable[[Section], list[str]], wanted: str, seconds: float = 60) -> Section:
+    """The smallest description found in some time about which something of the same kind is said."""
+    end = monotonic() + seconds
 
     def still(candidate: Section) -> bool:
         try:
@@ -32,11 +45,11 @@ def shrunk(content: Section, false: Callable[[Section], list[str]], wanted: str)
             return False
 
     is_smaller = True
-    while is_smaller:
+    while is_smaller and monotonic() < end:
         is_smaller = False
         for path in list(_paths(content)):
             candidate = _without(content, path)
-            if candidate is not None and still(candidate):
+            if candidate is not None and monotonic() < end and still(candidate):
                 content, is_smaller = candidate, True
     return content
 

@@ -73,7 +73,9 @@ class Tally:
     def summary(self) -> str:
         """What was examined."""
         lines = [f"{count:6} descriptions refused: {reason}" for reason, count in self.refused.most_common(5)]
-        lines += [f"{count:6} applications of which something was not simulated: {reason}" for reason, count in self.left_out.items()]
+        lines += [
+            f"{count:6} applications of which something was not simulated: {reason}" for reason, count in self.left_out.items()
+        ]
         lines += [f"{count:6} {kind} played, {self.calls[kind]} calls compared" for kind, count in self.played.items()]
         verdicts = ", ".join(f"{count} {verdict}" for verdict, count in self.verdicts.items())
         return "\n".join([*lines, f"{self.applications} applications analysed and simulated; limits: {verdicts}"])
