@@ -8,9 +8,9 @@
 - bounds: a random description with every construct, analysed, and simulated with the least and the greatest of everything and with
   two seeds: no observed value is beyond a bound, nothing is lost that cannot be, and no limit is missed that is met.
 
-`--only calls` and `--only bounds` leave the other one out. It prints each kind of failure with its seed, writes the smallest description
-of each to the folder, and at the end a table: for each construct the number of observed maxima of applications with it, the share
-of them that have a bound, and the median and the maximum of observed/bound.
+`--only calls` and `--only bounds` leave the other one out. It prints each kind of failure with its seed, and writes the smallest
+description of each to the folder. At the end it prints a table: for each construct the number of observed maxima of applications with
+it, the share of them that have a bound, and the median and the maximum of observed/bound.
 """
 
 from __future__ import annotations
@@ -34,12 +34,13 @@ Found = tuple[int, list[str], Tally]
 Hunt = Callable[[int, Tally], list[str]]
 
 
-def hunt(only: str, seed: int) -> Found:
+def hunt(only: str, heartbeats: bool, seed: int) -> Found:
     """The false answers about the applications of a seed."""
     tally, said = Tally(), []
+    bounds = partial(false_claims, heartbeats=heartbeats)
     hunts: dict[str, Hunt] = {
         "calls": different_calls,
-        "bounds": lambda seed, tally: false_claims(random_description(seed), tally),
+        "bounds": lambda seed, tally: bounds(random_description(seed), tally),
     }
     for name, each in hunts.items():
         if only in (name, "all"):
@@ -50,22 +51,23 @@ def hunt(only: str, seed: int) -> Found:
     return seed, said, tally
 
 
-def written(seed: int, text: str, folder: Path) -> Path:
+def written(seed: int, text: str, folder: Path, heartbeats: bool) -> Path:
     """The smallest description about which something of this kind is said, beside what is said."""
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / f"seed-{seed}-{sum(1 for _ in folder.glob(f'seed-{seed}-*.yaml'))}.yaml"
-    content = shrunk(random_description(seed), false_claims, kind_of(text))
-    said = [f"# {each}" for each in false_claims(content)]
+    false = partial(false_claims, heartbeats=heartbeats)
+    content = shrunk(random_description(seed), false, kind_of(text))
+    said = [f"# {each}" for each in false(content)]
     path.write_text("\n".join([*said, yaml.safe_dump(content, sort_keys=False, default_flow_style=None, width=130)]))
     return path
 
 
-def _results(only: str, seeds: range, jobs: int) -> Iterator[Found]:
+def _results(each: Callable[[int], Found], seeds: range, jobs: int) -> Iterator[Found]:
     if jobs == 1:
-        yield from map(partial(hunt, only), seeds)
+        yield from map(each, seeds)
         return
     with ProcessPoolExecutor(jobs) as pool:
-        yield from pool.map(partial(hunt, only), seeds, chunksize=10)
+        yield from pool.map(each, seeds, chunksize=10)
 
 
 def main() -> None:
@@ -77,10 +79,12 @@ def main() -> None:
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--only", choices=("all", "calls", "bounds"), default="all")
     parser.add_argument("--out", type=Path, help="folder for the smallest descriptions")
+    parser.add_argument("--without-heartbeats", action="store_true", help="of the middleware, in simulations")
     arguments = parser.parse_args()
+    heartbeats = not arguments.without_heartbeats
     first, end = map(int, arguments.seeds.split(".."))
     total, kinds, failing, begin = Tally(), Counter[str](), 0, time.monotonic()
-    for seed, said, tally in _results(arguments.only, range(first, end), arguments.jobs):
+    for seed, said, tally in _results(partial(hunt, arguments.only, heartbeats), range(first, end), arguments.jobs):
         total.add_all(tally)
         failing += bool(said)
         for kind, text in {kind_of(text): text for text in reversed(said)}.items():
@@ -88,7 +92,7 @@ def main() -> None:
             if kinds[kind] == 1:
                 print(f"seed {seed}: {text}", flush=True)  # noqa: T201
                 if arguments.out and not text.startswith(("calls", "hunt")):
-                    print(f"    {written(seed, text, arguments.out)}", flush=True)  # noqa: T201
+                    print(f"    {written(seed, text, arguments.out, heartbeats)}", flush=True)  # noqa: T201
     print(total.table())  # noqa: T201
     print("\n".join(f"{count:6} x {kind}" for kind, count in kinds.most_common()))  # noqa: T201
     print(total.summary())  # noqa: T201

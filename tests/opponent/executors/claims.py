@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from fractions import Fraction
 
 from fuzzing.contradictions import contradictions
 from opponent.executors.constructs import constructs_of
 from opponent.executors.descriptions import Section
 from opponent.executors.tally import Tally
+from test_executor_loops import without_heartbeats
 
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.system import analyze_system
@@ -33,8 +34,13 @@ ROUNDING = 20
 Seen = tuple[str, MetricObservation, Span]
 
 
-def false_claims(content: Section, tally: Tally | None = None, runs: Sequence[Options] | None = None) -> list[str]:
-    """Whatever the analysis of a description says that simulations of it refute."""
+def false_claims(content: Section, tally: Tally | None = None, *, heartbeats: bool = True) -> list[str]:
+    """Whatever the analysis of a description says that simulations of it refute.
+
+    Parameters
+    ----------
+    heartbeats : whether they are simulated, too; they are analysed in any case
+    """
     tally = Tally() if tally is None else tally
     try:
         system = describe_content(content).assembly.system
@@ -46,8 +52,8 @@ def false_claims(content: Section, tally: Tally | None = None, runs: Sequence[Op
     tally.applications += 1
     analysis, found = analyze_system(system), []
     greatest: dict[str, tuple[Fraction, int | None]] = {}
-    for options in runs or _runs():
-        simulation = simulate_system(system, options)
+    for options in _runs():
+        simulation = simulate_system(system if heartbeats else without_heartbeats(system), options)
         run = f"{options.mode} {options.seed}"
         found += [f"{run}: {text}" for text in (*contradictions(analysis, simulation), *_refuted(analysis, simulation))]
         for name, seen, bound in observed(analysis, simulation):
