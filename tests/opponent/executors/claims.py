@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 
 from fuzzing.contradictions import contradictions
@@ -15,17 +16,16 @@ from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.errors import ReadError
 from amalthea_uros.judge.verdict import Verdict
-from amalthea_uros.perf.network import Span
+from amalthea_uros.perf.network import Direction, Span
 from amalthea_uros.simulate.observations import MetricObservation
 from amalthea_uros.simulate.options import Options, SimulationMode
 from amalthea_uros.simulate.results import Simulation
 from amalthea_uros.simulate.runs.run import simulate_system
+from amalthea_uros.timing.activation.activations import comes_back
 from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
 from amalthea_uros.units import MILLISECOND
 from amalthea_uros.uros.described import describe_content
 
-#: Seeds of the sampled runs of an application.
-SEEDS = 1, 2
 DURATION = 500 * MILLISECOND
 #: A tick of a clock need not be a whole number of picoseconds, and a response consists of some ticks.
 ROUNDING = 20
@@ -34,7 +34,9 @@ ROUNDING = 20
 Seen = tuple[str, MetricObservation, Span]
 
 
-def false_claims(content: Section, tally: Tally | None = None, *, heartbeats: bool = True) -> list[str]:
+def false_claims(
+    content: Section, tally: Tally | None = None, *, heartbeats: bool = True, runs: Sequence[Options] = ()
+) -> list[str]:
     """Whatever the analysis of a description says that simulations of it refute.
 
     Parameters
@@ -52,10 +54,10 @@ def false_claims(content: Section, tally: Tally | None = None, *, heartbeats: bo
     tally.applications += 1
     analysis, found = analyze_system(system), []
     greatest: dict[str, tuple[Fraction, int | None]] = {}
-    for options in _runs():
+    for options in runs or RUNS:
         simulation = simulate_system(system if heartbeats else without_heartbeats(system), options)
         run = f"{options.mode} {options.seed}"
-        found += [f"{run}: {text}" for text in (*contradictions(analysis, simulation), *_refuted(analysis, simulation))]
+        found += [f"{run}: {text}" for text in (*_contradictions(analysis, simulation), *_refuted(analysis, simulation))]
         for name, seen, bound in observed(analysis, simulation):
             greatest[name] = max(seen.max, greatest.get(name, (Fraction(0),))[0]), bound.most
         if options.mode is SimulationMode.BEST:
@@ -69,10 +71,30 @@ def false_claims(content: Section, tally: Tally | None = None, *, heartbeats: bo
     return found
 
 
-def _runs() -> Iterator[Options]:
-    yield Options(duration=DURATION, mode=SimulationMode.BEST)
-    yield Options(duration=DURATION, mode=SimulationMode.WORST)
-    yield from (Options(duration=DURATION, seed=seed) for seed in SEEDS)
+def runs_of(duration: int, seeds: Iterable[int]) -> list[Options]:
+    """With the least of everything, the greatest of everything, and with seeds."""
+    modes = SimulationMode.BEST, SimulationMode.WORST
+    sampled = (Options(duration=duration, seed=seed) for seed in seeds)
+    return [*(Options(duration=duration, mode=mode) for mode in modes), *sampled]
+
+
+#: The runs of an application unless it is told otherwise.
+RUNS = runs_of(DURATION, (1, 2))
+
+
+def _contradictions(analysis: Analysis, simulation: Simulation) -> Iterator[str]:
+    """Those of `fuzzing`, without distances of messages that depend on what the description does not say.
+
+    How often a message comes back is stated for the subscription or the client, whatever its publisher does. Acknowledgements of the
+    client are sent when it reads, which can be in bursts; the analysis has those of callbacks, which take one message at a time.
+    """
+    system = analysis.solution.context.system
+    loose = {name for name, each in system.transmissions.items() if comes_back(each, system)}
+    loose |= {name for name, each in system.transmissions.items() if each.acknowledges and each.direction is Direction.TO_AGENT}
+    loose |= {each.acknowledges for each in system.transmissions.values() if each.acknowledges in loose}
+    for text in contradictions(analysis, simulation):
+        if not (set(text.split()) & loose and re.match(r"(activate|start|end)_to_", text)):
+            yield text
 
 
 def observed(analysis: Analysis, simulation: Simulation) -> Iterator[Seen]:

@@ -79,3 +79,12 @@ class Tally:
         lines += [f"{count:6} {kind} played, {self.calls[kind]} calls compared" for kind, count in self.played.items()]
         verdicts = ", ".join(f"{count} {verdict}" for verdict, count in self.verdicts.items())
         return "\n".join([*lines, f"{self.applications} applications analysed and simulated; limits: {verdicts}"])
+
+    def short_table(self) -> str:
+        """The rows of quantities, kinds of loops and wires, as Markdown."""
+        lines = ["| construct | observed | with a bound | observed/bound, median | maximum |", "|---|---|---|---|---|"]
+        for name, count, share, middle, most in self.rows():
+            if name.startswith(("quantity: ", "loop: ", "wire: ")) or name == "all":
+                shown = ("-" if value is None else f"{value:.2f}" for value in (middle, most))
+                lines.append(f"| {name.removeprefix('quantity: ')} | {count} | {share:.0%} | {next(shown)} | {next(shown)} |")
+        return "\n".join(lines)
