@@ -23,6 +23,7 @@ from amalthea_uros.analyze.chains.segments import CallbackSegment, EntryKind, Ta
 from amalthea_uros.analyze.results.chains import LatencyQuantity, LatencyValue
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.results import ExecutorResult, HandleResult, Hop, HopKind, TimePart
+from amalthea_uros.executors.semantics.loops import longest_until_due
 from amalthea_uros.perf.events import Event, ProcessChange, ProcessEvent
 from amalthea_uros.perf.executors import HandleKind
 from amalthea_uros.timing.dataflow.links import UNTIMED
@@ -114,7 +115,7 @@ class CallbackHops:
         """The maximum time between two nominal arrivals, or expirations; None if there is none."""
         handle = segment.handle
         if handle.kind is HandleKind.TIMER:
-            return handle.interval
+            return longest_until_due(handle)
         jitter = self.jitter.get(handle.name, 0)
         is_regular = handle.is_periodic and handle.transmission not in self.coming_back
         if handle.interval is None or jitter is None or not is_regular:
