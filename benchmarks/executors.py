@@ -67,7 +67,9 @@ def main() -> None:
         with way:
             time, found = timed(partial(simulate_system, system, Options(duration=seconds * SECOND)), arguments.repeat)
         calls, every = events(found)
-        print(f"{name}: {calls / time:,.0f} calls/s, {every / time:,.0f} events/s, {seconds / time:,.1f} s of model time per second")
+        print(
+            f"{name}: {calls / time:,.0f} calls/s, {every / time:,.0f} events/s, {seconds / time:,.1f} s of model time per second"
+        )
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@ from dataclasses import replace
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros.analyze.loads import without_doubtful_overload
 from amalthea_uros.analyze.response_times.metrics import MetricEvaluator
+from amalthea_uros.analyze.response_times.propagation import activated_with
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.results.processes import ProcessResult
 from amalthea_uros.executors.bounds.solved_system import METHOD
@@ -59,7 +60,8 @@ def _process(name: str, solution: Solution, executor: ExecutorResult | None) -> 
     process, demand = context.system.processes[name], context.stated_demand(name)
     placement = context.placement(name)
     time_base = context.demand_model.time_base(placement.core) if placement.core else 1
-    events = solution.event_models.get(name) or (context.stated_activations(name) if response is None else None)
+    is_stated = response is None and activated_with(name, context) is None
+    events = solution.event_models.get(name) or (context.stated_activations(name) if is_stated else None)
     scheduled = context.scheduled.get(name)
     deadline = deadline_of(name, context)
     if deadline is not None and deadline.is_implicit:

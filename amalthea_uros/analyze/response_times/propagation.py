@@ -17,6 +17,7 @@ from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.semantics.loops import sleep_of, why_dense, workload
 from amalthea_uros.perf.activities import Trigger
+from amalthea_uros.perf.executors import Executor
 from amalthea_uros.perf.software import Process
 from amalthea_uros.timing.activation.activations import Output
 from amalthea_uros.timing.basics.time_base import MAX_INPUT, max_time
@@ -117,14 +118,24 @@ def _workload(item: ScheduledProcess, events: EventModel, context: TimingContext
 
 def _require_known_iterations(name: str, context: TimingContext) -> None:
     """Refuse rounds of an executor that can be closer together than their stimulus says, if that matters to any other process."""
-    executor, item = context.system.executor_of_task.get(name), context.scheduled[name]
-    demand = context.demands.get(name)
+    executor, item = activated_with(name, context), context.scheduled[name]
+    demand = None if executor is None else context.demands.get(executor.task)
     if executor is None or demand is None:
         return
-    reason = why_dense(executor, context.system.executors, max_time(demand.worst, context.time_base(name)))
+    reason = why_dense(executor, context.system.executors, max_time(demand.worst, context.time_base(executor.task)))
     delayed = (other for other in context.on_core(item.core) if other.rank <= item.rank and other.name != item.name)
     if reason and (any(delayed) or _triggers_others(item, context)):
         raise UnknownError(reason)
+
+
+def activated_with(name: str, context: TimingContext) -> Executor | None:
+    """The executor whose iterations a process executes, or activates as an interrupt of the operating system, with the same stimuli."""
+    system = context.system
+    own = system.executor_of_task.get(name)
+    if own is not None:
+        return own
+    stimuli = system.processes[name].stimuli
+    return next((each for each in system.executors if stimuli and system.processes[each.task].stimuli == stimuli), None)
 
 
 def _triggers_others(item: ScheduledProcess, context: TimingContext) -> bool:

@@ -88,7 +88,8 @@ def with_steps(system: System) -> System:
     # The operating system activates the task of an executor for each iteration, too.
     begins = {name: iterations_name(each.name) for each in system.executors for name in system.processes[each.task].stimuli}
     isrs = [
-        replace(isr, stimuli=tuple(dict.fromkeys(begins.get(name, name) for name in isr.stimuli))) for isr in system.software.isrs
+        replace(isr, stimuli=tuple(dict.fromkeys(begins.get(name, name) for name in isr.stimuli)))
+        for isr in system.software.isrs
     ]
     within = _within_callbacks(system)
     runnables = [

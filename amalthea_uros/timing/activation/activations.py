@@ -289,7 +289,7 @@ class Activations:
         return _counted(found if times == 1 else Multiplied(found, times), cause.counter)
 
     def _on_its_way(self, process: str, completions: EventModel) -> EventModel:
-        """What a message triggers when it has left the wire: where it goes, it comes some time later."""
+        """The completions of a message on its wire, delayed by the varying time that it then takes to where it goes."""
         transmission = self.system.transmissions.get(process)
         if transmission is None:
             return completions

@@ -70,3 +70,14 @@ def test_only_messages_that_the_host_publishes_regularly_have_a_longest_distance
     analysis = analysed(odom=published, **{"to_controller: 0 ms": LATE})
     found = {each.name for each in analysis.processes if each.max_interarrival is not None and "UDP" in (each.processor or "")}
     assert found == known
+
+
+@pytest.mark.parametrize(("timeout", "is_known"), [("2 ms", True), ("30 ms", False)])
+def test_interrupts_that_activate_iterations_come_as_close_together_as_these(timeout, is_known):
+    """After a wait that is longer than the period, iterations follow each other until the loop has caught up."""
+    changes = {
+        "spin_some: 1 ms, sleep: 1 ms": f"spin_period: 20 ms, timeout: {timeout}",
+        "os: {tick: 1 ms}": "os: {tick: 1 ms, overhead: {activation: 2 us, activations_run_in: interrupt}}",
+        "publishes: [odom]": "publishes: []",
+    }
+    assert (analysed(**changes)["main_Activation"].response is not None) is is_known
