@@ -60,7 +60,9 @@ def _process(name: str, solution: Solution, executor: ExecutorResult | None) -> 
     process, demand = context.system.processes[name], context.stated_demand(name)
     placement = context.placement(name)
     time_base = context.demand_model.time_base(placement.core) if placement.core else 1
-    is_stated = response is None and activated_with(name, context) is None
+    # An iteration can last longer than any time that is stated.
+    iterates = activated_with(name, context) is not None
+    is_stated = response is None and not iterates
     events = solution.event_models.get(name) or (context.stated_activations(name) if is_stated else None)
     scheduled = context.scheduled.get(name)
     deadline = deadline_of(name, context)
@@ -82,7 +84,7 @@ def _process(name: str, solution: Solution, executor: ExecutorResult | None) -> 
         verdict=None,
         reason=response.reason if response is not None else solution.reasons.get(name, ""),
         min_interarrival=events.delta_min(2) if events is not None else None,
-        max_interarrival=events.max_interarrival if events is not None else None,
+        max_interarrival=events.max_interarrival if events is not None and not iterates else None,
     )
     if executor is not None:
         gap = "" if name in context.demands else context.reasons.get(name, "")

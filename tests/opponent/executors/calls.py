@@ -27,13 +27,24 @@ def _of_executors(seed: int, tally: Tally) -> list[str]:
     app = loops.fixed(seed)
     system, until = _apart(app.system), 300 * MS
     is_bare = any(least == 0 for least, _ in app.spins.values())
+    # Who is first of two of equal priority is decided elsewhere.
+    is_tied = any(priority in app.priorities.values() for priority, *_ in app.preempting)
     # Executors without a session take the messages of each other, as the player has it.
-    if is_bare or app.preempting or (len(system.executors) > 1 and system.executors[0].session is None):
+    if is_bare or is_tied or (len(system.executors) > 1 and system.executors[0].session is None):
         return []
     simulated = loops.calls(system, until)
     spans = Spans(costs=app.costs, spins=app.spins, sending={}, draw=lambda least, most: least)
     found = []
-    for one in play(system.executors, spans, until, random=loops.Least(), priorities=app.priorities, start=0):
+    played = play(
+        system.executors,
+        spans,
+        until,
+        random=loops.Least(),
+        preempting=app.preempting,
+        priorities=app.priorities,
+        start=0,
+    )
+    for one in played:
         for entity in one.entities:
             responses = simulated[one.model.name, entity.handle.name]
             difference = loops.first_difference(responses, entity.seen.responses)
