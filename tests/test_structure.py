@@ -30,7 +30,7 @@ LINES = {
     "difference": 790,
     "editor": 506,
     "errors": 13,
-    "executors": 1561,
+    "executors": 1562,
     "findings": 495,
     "judge": 561,
     "measure": 1052,
