@@ -224,12 +224,13 @@ class Played:
             timeout = timeout // waiting.resolution * waiting.resolution
         if not listens and waiting.polls_without_messages:
             return
+        if self.is_shared:
+            yield Lock(session.mutex)
+        # What was stored while others had the session ends the wait, too.
         if waiting.stored_data_ends_wait and any(each.stored for each in self.entities):
             timeout = 0
         if waiting.guard_conditions_end_wait and any(each.flag is not None for each in self.entities):
             timeout = 0
-        if self.is_shared:
-            yield Lock(session.mutex)
         end = kernel.now + timeout
         while not (session.unread and listens) and kernel.now < end:
             yield Listen(session.signal if listens else self.guards, end)

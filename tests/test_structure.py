@@ -43,7 +43,7 @@ LINES = {
     "simulate": 7081,
     "source": 1887,
     "spec": 1967,
-    "timing": 5089,
+    "timing": 5119,
     "trace": 4803,
     "units": 164,
     "uros": 5978,

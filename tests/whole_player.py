@@ -277,8 +277,10 @@ class Player:
         yield Run(overhead - before)
         taken = {}
         if self.plan["semantics"] == "LET":
+            # A timer has nothing to be taken: it is called, and its next time set, when its callback is (`rclc_take_new_data`).
             for handle in ready:
-                taken[handle["name"]] = yield from self._take(handle)
+                if handle["kind"] != "timer":
+                    taken[handle["name"]] = yield from self._take(handle)
         for handle in ready:
             found = taken[handle["name"]] if handle["name"] in taken else (yield from self._take(handle))
             yield from self._call(handle, *found)

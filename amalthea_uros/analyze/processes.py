@@ -8,6 +8,7 @@ from dataclasses import replace
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros.analyze.loads import without_doubtful_overload
 from amalthea_uros.analyze.response_times.metrics import MetricEvaluator
+from amalthea_uros.analyze.response_times.propagation import activated_with
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.results.processes import Metric, ProcessResult
 from amalthea_uros.executors.bounds.solved_system import METHOD
@@ -69,7 +70,10 @@ def _process(name: str, solution: Solution, executor: ExecutorResult | None) -> 
     process, demand = context.system.processes[name], context.stated_demand(name)
     placement = context.placement(name)
     time_base = context.demand_model.time_base(placement.core) if placement.core else 1
-    events = solution.event_models.get(name) or (context.stated_activations(name) if response is None else None)
+    # An iteration can last longer than any time that is stated.
+    iterates = activated_with(name, context) is not None
+    is_stated = response is None and not iterates
+    events = solution.event_models.get(name) or (context.stated_activations(name) if is_stated else None)
     scheduled = context.scheduled.get(name)
     deadline = deadline_of(name, context)
     if deadline is not None and deadline.is_implicit:
@@ -90,7 +94,7 @@ def _process(name: str, solution: Solution, executor: ExecutorResult | None) -> 
         verdict=None,
         reason=response.reason if response is not None else solution.reasons.get(name, ""),
         min_interarrival=events.delta_min(2) if events is not None else None,
-        max_interarrival=events.max_interarrival if events is not None else None,
+        max_interarrival=events.max_interarrival if events is not None and not iterates else None,
     )
     if executor is not None:
         gap = "" if name in context.demands else context.reasons.get(name, "")

@@ -170,6 +170,7 @@ class Executor(Named):
     ----------
     task : that executes its iterations, one per job
     spin : the runnable that every iteration begins with
+    poll : the runnable that stands for iterations without a callback, from the end of a wait until a timer is due; None for none
     handles : in the order in which they were added, which is that in which callbacks are called
     takes_first : whether all messages of an iteration are taken before the first callback (LET semantics)
     session : executors with the same one, of a middleware for several threads, exclude each other while they wait or send
@@ -183,3 +184,4 @@ class Executor(Named):
     takes_first: bool = False
     waiting: WaitBehaviour = field(default_factory=WaitBehaviour)
     session: str | None = None
+    poll: str | None = None

@@ -134,6 +134,14 @@ def test_a_timer_ends_the_wait_one_unit_early_at_most():
     assert found.handles["g"].response.worst == 10 * MS
 
 
+def test_a_wait_lasts_until_a_timer_is_due_for_the_first_time():
+    # Due every 10 ms, but first at 50 ms: until then, nothing ends the wait in which the guard condition is triggered.
+    found = evaluate(looping(timer("t", 10_000, phase=50 * MS), guard("g"), message("a", 9_000_000), loop=SPIN))
+    assert found.handles["g"].response.worst == 50 * MS
+    soon = evaluate(looping(timer("t", 10_000, phase=5 * MS), guard("g"), message("a", 9_000_000), loop=SPIN))
+    assert soon.handles["g"].response.worst == 10 * MS
+
+
 def test_a_publication_that_waits_blocks_the_round_until_its_timeout():
     publishing = message("a", 5_000_000, 1000, publications=(waiting_publication(transmission="odom_out"),))
     model = looping(publishing, timer("t", 3_000_000), loop=SPIN)

@@ -29,10 +29,10 @@ from amalthea_uros.timing.basics.quantities import ChainQuantity
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.units import MILLISECOND as MS
 from amalthea_uros.units import SECOND
-from amalthea_uros.uros.described import describe_content
+from amalthea_uros.uros.described import describe_content, describe_text
 
 BLOCK = 15
-SEEDS = range(3000 if IS_THOROUGH else 30)
+SEEDS = (*range(3000 if IS_THOROUGH else 30), 7033, 70, 102)
 #: Analyses take longer.
 BOUNDED = range(500 if IS_THOROUGH else 8)
 
@@ -316,6 +316,40 @@ def test_all_chains_of_the_samples_are_followed(sample):
     simulation = simulate(ROOT / "samples" / f"{sample}.yaml", "500 ms")
     assert {chain.name: chain.reason for chain in simulation.chains if chain.reason or not chain.observations} == {}
     assert not simulation.left_out
+
+
+POLLING = """
+amuros: 1
+name: polling
+hardware: {platform: single-core, frequency: 1 GHz}
+middleware:
+  executor: {name: main, loop: {spin: 1 s}, semantics: SEMANTICS, trigger: TRIGGER, execution_time: 100 us}
+  transport: {custom: {table: [{size: 512 B, time: 1 ms}]}}
+application:
+  nodes: [{name: n, timers: [{name: control, period: 10 ms, execution_time: 500 us, phase: 0 ms}]}]
+"""
+
+
+@pytest.mark.parametrize("semantics", ["ROS", "LET"])
+@pytest.mark.parametrize("trigger", ["any", "{one: control}", "all"])
+def test_polling_before_a_timer_is_iterations_of_its_executor(semantics, trigger):
+    """With timers only, waits return at once: in each 10 ms, a call of 500 us, and iterations of 100 us all the time."""
+    system = describe_text(POLLING.replace("SEMANTICS", semantics).replace("TRIGGER", trigger)).assembly.system
+    for mode in (SimulationMode.WORST, SimulationMode.SAMPLED):
+        simulation = simulate_system(system, Options(duration=100 * MS, mode=mode))
+        (executor,) = simulation.executors
+        assert executor.iterations == pytest.approx(10 * 95, abs=10)
+        assert simulation["main"].response_time.max == 600 * US
+
+
+def test_the_operating_system_activates_each_iteration_once():
+    """Also if that takes an interrupt: 10 us for each iteration of 100 us, beside a call of 500 us in each 10 ms."""
+    os = "os: {overhead: {activation: 10 us, activations_run_in: interrupt}}"
+    text = POLLING.replace("SEMANTICS", "ROS").replace("TRIGGER", "any").replace("middleware:", f"{os}\nmiddleware:", 1)
+    simulation = simulate_system(describe_text(text).assembly.system, Options(duration=100 * MS, mode=SimulationMode.WORST))
+    (executor,) = simulation.executors
+    assert simulation["main_Activation"].jobs == pytest.approx(executor.iterations, abs=1)
+    assert executor.iterations == pytest.approx(10 * (10_000 - 500) / 110, abs=5)
 
 
 # Nothing that is unknown is taken to be harmless.

@@ -28,13 +28,15 @@ from amalthea_uros.executors.bounds.evaluate import evaluate_executors
 from amalthea_uros.executors.bounds.publications import sending_times
 from amalthea_uros.executors.bounds.transmissions import agent_hop, arrival_jitter, process_hop, received, sent
 from amalthea_uros.executors.results import ExecutorResult, Hop, TimePart
+from amalthea_uros.executors.semantics.demand import IterationDemand
 from amalthea_uros.perf.constraints import LatencyConstraint
 from amalthea_uros.perf.events import EventChain, LabelEvent
 from amalthea_uros.perf.network import Direction, Span, Transmission
+from amalthea_uros.timing.activation.activations import comes_back
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.dataflow.routes import crosses
 from amalthea_uros.timing.response import Claim
-from amalthea_uros.units import Time
+from amalthea_uros.units import Time, up
 
 #: The method of the bound, as tables and JSON call it.
 METHOD = "sum of hop bounds"
@@ -54,8 +56,9 @@ def evaluate_executors_and_messages(solution: Solution) -> tuple[Results[Executo
     """
     jitter, sending = arrival_jitter(solution), sending_times(solution)
     executors = Results(evaluate_executors(solution, sending=sending, extra_jitter=jitter))
-    evaluator = MessageChains(ChainEvaluator(solution), CallbackHops(executors, jitter), sending)
     system = solution.context.system
+    coming_back = frozenset(name for name, each in system.transmissions.items() if comes_back(each, system))
+    evaluator = MessageChains(ChainEvaluator(solution), CallbackHops(executors, jitter, coming_back), sending)
     limited = {each.chain for each in system.constraints.constraints if isinstance(each, LatencyConstraint)}
     crossing = [chain for chain in system.events.chains if crosses(chain, solution.context.dataflow)]
     chains = Results(evaluator.chain(chain) for chain in sorted(crossing, key=lambda chain: chain.name not in limited))
@@ -185,7 +188,15 @@ class MessageChains:
             self.segments.entry(before, segment)
             yield self.callbacks.sampling(segment)
             return
-        yield self.callbacks.response(segment)
+        response = self.callbacks.response(segment)
+        yield self._from_start(segment, response) if before is None else response
+
+    def _from_start(self, segment: CallbackSegment, hop: Hop) -> Hop:
+        """A hop of a callback from its start, before which its message has been taken."""
+        if not hop.best:
+            return hop
+        taken = IterationDemand.of(segment.executor, self.context).takes[segment.handle.name]
+        return replace(hop, best=max(0, hop.best - up(Fraction(taken.lower, self.context.time_base(segment.executor.task)))))
 
     def _until_written(self, segment: CallbackSegment, hop: Hop) -> Hop:
         """A hop of a callback up to where it has written data: before it sends messages at the earliest."""

@@ -23,6 +23,7 @@ from amalthea_uros.analyze.chains.segments import CallbackSegment, EntryKind, Ta
 from amalthea_uros.analyze.results.chains import LatencyQuantity, LatencyValue
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.results import ExecutorResult, HandleResult, Hop, HopKind, TimePart
+from amalthea_uros.executors.semantics.loops import longest_until_due
 from amalthea_uros.perf.events import Event, ProcessChange, ProcessEvent
 from amalthea_uros.perf.executors import HandleKind
 from amalthea_uros.timing.dataflow.links import UNTIMED
@@ -39,10 +40,12 @@ class CallbackHops:
     ----------
     executors : the results of all executors in loops
     jitter : of the arrivals at handles, by name, besides what is stated; None if it is unknown
+    coming_back : the transmissions of messages that are published here
     """
 
     executors: Results[ExecutorResult]
     jitter: Mapping[str, Time | None]
+    coming_back: frozenset[str] = frozenset()
 
     def response(self, segment: CallbackSegment) -> Hop:
         """From the arrival of a message, or from when a timer is due, to the end of the callback."""
@@ -112,9 +115,10 @@ class CallbackHops:
         """The maximum time between two nominal arrivals, or expirations; None if there is none."""
         handle = segment.handle
         if handle.kind is HandleKind.TIMER:
-            return handle.interval
+            return longest_until_due(handle)
         jitter = self.jitter.get(handle.name, 0)
-        if handle.interval is None or jitter is None or not handle.is_periodic:
+        is_regular = handle.is_periodic and handle.transmission not in self.coming_back
+        if handle.interval is None or jitter is None or not is_regular:
             return None
         return handle.interval + handle.jitter + jitter
 

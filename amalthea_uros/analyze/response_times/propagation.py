@@ -18,6 +18,7 @@ from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.bounds.occurrences import ExecutorOccurrences, least_occurrences, occurrences
 from amalthea_uros.executors.semantics.loops import sleep_of, why_deferred, why_dense, workload
 from amalthea_uros.perf.activities import Trigger
+from amalthea_uros.perf.executors import Executor
 from amalthea_uros.perf.software import Process
 from amalthea_uros.timing.activation.activations import Output
 from amalthea_uros.timing.basics.time_base import MAX_INPUT, max_time
@@ -129,19 +130,29 @@ def _activations(item: ScheduledProcess, output: Output, executors: ExecutorOccu
         if sent is None:
             raise UnknownError("how late the executor that sends it is has no bound")
         return sent
-    events, demand = context.activations.of(item.process, output), context.demands.get(item.name)
-    executor = context.system.executor_of_task.get(item.name)
+    events, executor = context.activations.of(item.process, output), activated_with(item.name, context)
+    demand = None if executor is None else context.demands.get(executor.task)
     if executor is None or demand is None:
         return events
-    longest = max_time(demand.worst, context.time_base(item.name))
+    longest = max_time(demand.worst, context.time_base(executor.task))
     if _has_effects(item, executors, context):
-        late, deferred = executors.lateness[item.name], why_deferred(executor)
+        late, deferred = executors.lateness[executor.task], why_deferred(executor)
         reason = why_dense(executor, context.system.executors, longest) or (deferred if late is None else "")
         if reason:
             raise UnknownError(reason)
         if deferred and late:
             return Delayed(events, late)
-    return workload(executor, events, longest)
+    return workload(executor, events, longest) if item.name == executor.task else events
+
+
+def activated_with(name: str, context: TimingContext) -> Executor | None:
+    """The executor whose iterations a process executes, or activates as an interrupt of the operating system, with the same stimuli."""
+    system = context.system
+    own = system.executor_of_task.get(name)
+    if own is not None:
+        return own
+    stimuli = system.processes[name].stimuli
+    return next((each for each in system.executors if stimuli and system.processes[each.task].stimuli == stimuli), None)
 
 
 def _has_effects(item: ScheduledProcess, executors: ExecutorOccurrences, context: TimingContext) -> bool:

@@ -73,8 +73,13 @@ def timeout_of(executor: Executor) -> Time:
 
 def longest_wait(executor: Executor) -> Time:
     """The longest wait: a timer is due again after its period at most, because calls keep its grid."""
-    pending = (handle.interval for handle in timers(executor) if handle.interval is not None)
-    return min([timeout_of(executor), *(cut(period, executor) for period in pending)])
+    pending = (until for handle in timers(executor) if (until := longest_until_due(handle)) is not None)
+    return min([timeout_of(executor), *(cut(until, executor) for until in pending)])
+
+
+def longest_until_due(timer: Handle) -> Time | None:
+    """The longest time until a timer is due: its period, or that until it is due for the first time; None if it is not known."""
+    return None if timer.interval is None else max(timer.interval, timer.phase or 0)
 
 
 def busy_polls(executor: Executor) -> str:

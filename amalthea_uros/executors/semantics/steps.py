@@ -85,6 +85,12 @@ def with_steps(system: System) -> System:
         return system
     own = system.executor_of_task
     tasks = [_with_steps(task, own[task.name]) if task.name in own else task for task in system.software.tasks]
+    # The operating system activates the task of an executor for each iteration, too.
+    begins = {name: iterations_name(each.name) for each in system.executors for name in system.processes[each.task].stimuli}
+    isrs = [
+        replace(isr, stimuli=tuple(dict.fromkeys(begins.get(name, name) for name in isr.stimuli)))
+        for isr in system.software.isrs
+    ]
     within = _within_callbacks(system)
     runnables = [
         _publishing(_accessing_at_once(each) if each.name in within else each, system) for each in system.software.runnables
@@ -100,12 +106,13 @@ def with_steps(system: System) -> System:
         system,
         os=replace(system.os, semaphores=(*system.os.semaphores, *locks)),
         stimuli=replace(system.stimuli, stimuli=(*stimuli, *started)),
-        software=replace(system.software, tasks=tuple(tasks), runnables=tuple(runnables)),
+        software=replace(system.software, tasks=tuple(tasks), isrs=tuple(isrs), runnables=tuple(runnables)),
     )
 
 
 def _with_steps(task: Task, executor: Executor) -> Task:
-    own = {name for handle in executor.handles for name in (handle.take, handle.runnable)}
+    # Whoever follows iterations executes those of which polling is the sum.
+    own = {executor.poll, *(name for handle in executor.handles for name in (handle.take, handle.runnable))}
     # Other activities are overhead of the operating system, around the iteration.
     others = [each for each in task.activities if own.isdisjoint(called_runnables((each,)))]
     first = next((n + 1 for n, each in enumerate(others) if isinstance(each, Call) and each.runnable == executor.spin), 0)

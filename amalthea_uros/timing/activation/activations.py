@@ -16,13 +16,22 @@ from typing import NamedTuple, TypeAlias
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import Trigger
 from amalthea_uros.perf.events import CustomEvent, Event, ModeLabelEvent, RunnableChange, RunnableEvent
-from amalthea_uros.perf.network import Purpose
+from amalthea_uros.perf.network import Direction, Purpose, Transmission
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Counter, Custom, EventTriggered, InterProcess, Stimulus
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.timing.demand.job_paths import most_in_a_job
-from amalthea_uros.timing.event_models.models import Delayed, Downsampled, EventModel, Multiplied, aggregated, thinned
+from amalthea_uros.timing.event_models.models import (
+    Delayed,
+    Downsampled,
+    EventModel,
+    Multiplied,
+    PeriodicEvents,
+    SporadicEvents,
+    aggregated,
+    thinned,
+)
 from amalthea_uros.timing.event_models.stimuli import event_model_of
 from amalthea_uros.timing.jobs.counters import CounterFlaws, is_always
 from amalthea_uros.timing.jobs.positions import ActivityPosition, is_in_fixed_order
@@ -126,7 +135,9 @@ class Activations:
         found = tuple(self._of_stimulus(name, output, (*above, process.name)) for name in process.stimuli)
         if not found:
             raise UnknownError(self._why_never(process))
-        return self._answered(process, aggregated(found))
+        transmission = self.system.transmissions.get(process.name)
+        events = aggregated(found)
+        return events if transmission is None else self._answered(transmission, self._sent(transmission, events))
 
     def _why_never(self, process: Process) -> str:
         """Why a process has no stimulus."""
@@ -136,10 +147,19 @@ class Activations:
         agent = self.system.network.agent
         return f"how much later {agent!r} sends one message than another is not stated: 'middleware.agent.to_controller'"
 
-    def _answered(self, process: Process, messages: EventModel) -> EventModel:
+    def _sent(self, transmission: Transmission, messages: EventModel) -> EventModel:
+        """The messages of a transmission: only those of which it is stated that the host publishes them regularly are not rarer."""
+        if not isinstance(messages, PeriodicEvents) or isinstance(messages, SporadicEvents):
+            return messages
+        handles = (handle for executor in self.system.executors for handle in executor.handles)
+        is_taken = any(handle.transmission == transmission.name and handle.is_periodic for handle in handles)
+        if is_taken and not comes_back(transmission, self.system):
+            return messages
+        return SporadicEvents(messages.period, messages.jitter, messages.min_interarrival)
+
+    def _answered(self, transmission: Transmission, messages: EventModel) -> EventModel:
         """The activations of an acknowledgement: the receiver of the message sends it some time later."""
-        transmission = self.system.transmissions.get(process.name)
-        if transmission is None or transmission.purpose is not Purpose.ACKNOWLEDGEMENT:
+        if transmission.purpose is not Purpose.ACKNOWLEDGEMENT:
             return messages
         answer = transmission.agent
         if answer.most is None:
@@ -266,8 +286,21 @@ class Activations:
         if times is None:
             raise UnknownError(f"the maximum number of times that a job of {cause.process.name!r} triggers it is unknown")
         completions = output(cause.process, lambda: self._of_process(cause.process, output, above), cause.has_fixed_place)
-        found = _counted(completions, cause.position.counter)
+        found = _counted(self._on_its_way(cause.process.name, completions), cause.position.counter)
         return _counted(found if times == 1 else Multiplied(found, times), cause.counter)
+
+    def _on_its_way(self, process: str, completions: EventModel) -> EventModel:
+        """The completions of a message on its wire, delayed by the varying time that it then takes to where it goes."""
+        transmission = self.system.transmissions.get(process)
+        if transmission is None:
+            return completions
+        is_received = transmission.direction is Direction.TO_CONTROLLER
+        spans = (transmission.link, transmission.driver) if is_received else (transmission.link,)
+        variations = [None if span.most is None else span.most - span.least for span in spans]
+        if None in variations:
+            raise UnknownError(f"how long {process!r} takes besides the wire is not stated")
+        variation = sum(filter(None, variations))
+        return Delayed(completions, variation) if variation else completions
 
 
 def _share(counter: Counter | None) -> Fraction:
@@ -276,6 +309,13 @@ def _share(counter: Counter | None) -> Fraction:
 
 def _counted(events: EventModel, counter: Counter | None) -> EventModel:
     return Downsampled(events, counter.prescaler) if counter is not None and counter.prescaler > 1 else events
+
+
+def comes_back(transmission: Transmission, system: System) -> bool:
+    """Whether the agent sends what is received, because it is also published here."""
+    return transmission.topic is not None and any(
+        each.topic == transmission.topic and each.direction is Direction.TO_AGENT for each in system.transmissions.values()
+    )
 
 
 @dataclass(frozen=True, slots=True)

@@ -122,14 +122,12 @@ def _triggered(system: System, executor: Executor) -> System:
     replaced = {name for name in own if name.startswith(message_stimulus_name("")) and name not in kept}
     trigger = InterProcess(name=iteration_trigger_name(executor.name), origin=executor.origin)
     stimuli = [each for each in system.stimuli.stimuli if each.name not in replaced]
-    tasks = [
-        replace(task, stimuli=(*(name for name in own if name not in replaced), trigger.name))
-        if task.name == executor.task
-        else task
-        for task in system.software.tasks
-    ]
+    begun = (*(name for name in own if name not in replaced), trigger.name)
+    # The interrupt in which the operating system activates the task occurs with it.
+    tasks = (replace(each, stimuli=begun) if each.stimuli == own else each for each in system.software.tasks)
+    isrs = (replace(each, stimuli=begun) if each.stimuli == own else each for each in system.software.isrs)
     return replace(
         system,
         stimuli=replace(system.stimuli, stimuli=(*stimuli, trigger)),
-        software=replace(system.software, tasks=tuple(tasks)),
+        software=replace(system.software, tasks=tuple(tasks), isrs=tuple(isrs)),
     )

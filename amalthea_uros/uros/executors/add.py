@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 from amalthea_uros.perf.activities import Demand, Execute
@@ -48,7 +49,8 @@ def add_looping_executor(
     """
     core = context.core(section.core, section.location("core"))
     executor = _executor(context, section, callbacks, bodies, activates, core)
-    poll = _poll(context, executor, core) if polls_before_timers(executor) else None
+    if polls_before_timers(executor):
+        executor = replace(executor, poll=_poll(context, executor, core))
     least = _least_time(context.runnables[executor.spin], core, context)
     exclusive = has_one_message_per_iteration(executor, is_alone)
     check_executor(executor, section, context.notes)
@@ -58,7 +60,7 @@ def add_looping_executor(
             name=executor.task,
             core=core,
             stimuli=tuple(map(context.stimuli.add, activation(executor, callbacks, least, section.offset))),
-            activities=iteration_activities(executor, exclusive=exclusive, poll=poll),
+            activities=iteration_activities(executor, exclusive=exclusive, poll=executor.poll),
             # Priorities follow the fastest callback.
             period=min((each.min_interval for each in callbacks if each.interval is not None), default=None),
             priority=section.priority,

@@ -30,6 +30,7 @@ from amalthea_uros.perf.os import Policy, Scheduler
 from amalthea_uros.perf.software import Runnable
 from amalthea_uros.perf.stimuli import InterProcess, Periodic, RelativePeriodic
 from amalthea_uros.timing.event_models.models import SporadicEvents
+from amalthea_uros.uros.described import describe_text
 
 TO_PWM = ("to pwm", "cmd_published", "on_cmd_end", "speed_written", "pwm_end")
 TO_HOST = ("to host", "cmd_published", "on_cmd_end", "odom_at_host")
@@ -372,3 +373,26 @@ def test_what_an_executor_that_does_not_read_finds_unread_is_left_by_the_one_tha
     assert fast.longest < reader.longest
     assert fast.backlog_age == reader.backlog_age
     assert (fast.backlog_age is not None) is is_bounded
+
+
+def test_a_chain_from_the_start_of_a_callback_does_not_include_taking_its_message():
+    """The callback takes 100 us; to take the message before takes 30 us."""
+    found = describe_text("""
+amuros: 1
+name: p
+hardware: {platform: single-core, frequency: 1 GHz}
+middleware:
+  executor: {name: main, loop: {spin_some: 1 ms, sleep: 1 ms}, execution_time: {base: 10 us, per_message: 30 us}}
+  transport: {custom: {table: [{size: 512 B, time: 1 ms}]}}
+  agent: {to_controller: 0 ms}
+application:
+  nodes:
+    - name: n
+      subscriptions:
+        - {name: on_cmd, topic: cmd, rate: 10 Hz, message_size: 8 B, execution_time: 100 us, writes: [speed], reliability: best-effort}
+labels: {speed: 4 B}
+chains: [{name: inside, path: [on_cmd, speed]}, {name: whole, path: [/cmd, on_cmd, speed]}]
+""").assembly.system
+    chains = message_chains(found)
+    assert chains["inside"].best == 100 * US
+    assert chains["whole"].best == MS + 130 * US

@@ -6,6 +6,7 @@ from looping import CALLBACKS, described
 from amalthea_uros.perf.activities import Call, ProbabilitySwitch
 from amalthea_uros.perf.stimuli import Custom, InterProcess, Periodic
 from amalthea_uros.units import MICROSECOND, MILLISECOND, SECOND
+from amalthea_uros.uros.described import describe_text
 
 TIMER = "\n      timers: [{name: Control, period: 40 ms, execution_time: 4 us}]"
 SLEEPING = "loop: {spin_some: 100 ms, sleep: 10 ms}"
@@ -169,3 +170,23 @@ def test_with_ticks_rounds_are_apart_by_whole_ticks_but_the_first_two():
         (2, shortest),
         (3, shortest + 10 * MILLISECOND),
     ]
+
+
+def test_the_interrupt_of_the_operating_system_occurs_with_the_iterations_that_messages_begin():
+    system = describe_text("""
+amuros: 1
+name: p
+hardware: {platform: single-core, frequency: 1 GHz}
+os: {overhead: {activation: 2 us, activations_run_in: interrupt}}
+middleware:
+  executor: {name: main, loop: {spin: 1 s}, execution_time: 10 us}
+  transport: {udp: {bitrate: 10 Mbit/s, latency: 1 ms}}
+  agent: {to_controller: 1 ms}
+application:
+  nodes:
+    - name: n
+      subscriptions:
+        - {name: on_cmd, topic: cmd, interval: 20 ms, message_size: 8 B, execution_time: 100 us, reliability: best-effort}
+""").assembly.system
+    assert system.processes["main_Activation"].stimuli == system.processes["main"].stimuli
+    assert set(system.processes["main"].stimuli) <= set(system.stimuli_by_name)

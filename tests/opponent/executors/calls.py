@@ -1,0 +1,85 @@
+"""Calls of random executors and applications, simulated and played step by step."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import test_executor_loops as loops
+from opponent.executors.tally import Tally
+from played_executors import Spans, play
+from whole_player import Player, S
+
+from amalthea_uros.perf.executors import LoopKind
+from amalthea_uros.perf.system import System
+from amalthea_uros.units import MILLISECOND as MS
+from amalthea_uros.uros.described import describe_content
+
+#: An odd time by which the second executor sleeps longer, so that no two things occur at the same instant.
+_APART = 137_000
+
+
+def different_calls(seed: int, tally: Tally) -> list[str]:
+    """The calls of an executor, and of an application on a wire, that a player executes at another time."""
+    return [*_of_executors(seed, tally), *_of_application(seed, tally)]
+
+
+def _of_executors(seed: int, tally: Tally) -> list[str]:
+    app = loops.fixed(seed)
+    system, until = _apart(app.system), 300 * MS
+    is_bare = any(least == 0 for least, _ in app.spins.values())
+    # Who is first of two of equal priority is decided elsewhere.
+    is_tied = any(priority in app.priorities.values() for priority, *_ in app.preempting)
+    # Executors without a session take the messages of each other, as the player has it.
+    if is_bare or is_tied or (len(system.executors) > 1 and system.executors[0].session is None):
+        return []
+    simulated = loops.calls(system, until)
+    spans = Spans(costs=app.costs, spins=app.spins, sending={}, draw=lambda least, most: least)
+    found = []
+    played = play(
+        system.executors,
+        spans,
+        until,
+        random=loops.Least(),
+        preempting=app.preempting,
+        priorities=app.priorities,
+        start=0,
+    )
+    for one in played:
+        for entity in one.entities:
+            responses = simulated[one.model.name, entity.handle.name]
+            difference = loops.first_difference(responses, entity.seen.responses)
+            if difference is not None:
+                found.append(f"calls of an executor: {one.model.name}/{entity.handle.name}: {difference}")
+            tally.calls["executors"] += len(responses)
+    tally.played["executors"] += 1
+    return found
+
+
+def _apart(system: System) -> System:
+    executors = [
+        replace(each, loop=replace(each.loop, sleep=each.loop.sleep + _APART * number, pace=each.loop.pace + _APART * number))
+        if number and each.loop.kind is LoopKind.SLEEPING and each.loop.sleep
+        else each
+        for number, each in enumerate(system.executors)
+    ]
+    return replace(system, executors=tuple(executors))
+
+
+def _of_application(seed: int, tally: Tally) -> list[str]:
+    drawn = loops.on_wires(seed)
+    if drawn is None:
+        return []
+    (content, plan), found = drawn, []
+    system, until = describe_content(content).assembly.system, S // 4
+    loops.test_whole_way.prepared(content, plan)
+    plan["blocks"] = system.network.wires[0].keeps_sender
+    seen = Player(plan, loops.Least()).play(until)
+    for (_, handle), responses in loops.calls(loops.as_planned(system, plan), until * 1000).items():
+        played = [time * 1000 for time in seen.responses[handle]]
+        # The player counts in nanoseconds.
+        difference = loops.first_difference(responses, played, tolerance=30_000)
+        if difference is not None:
+            found.append(f"calls of an application: {handle}: {difference}")
+        tally.calls["applications"] += len(responses)
+    tally.played["applications"] += 1
+    return found

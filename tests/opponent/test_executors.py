@@ -1,0 +1,52 @@
+"""Whatever is said about a random application with executors in loops, no simulation of it shows the contrary.
+
+`python -m opponent.hunt_executors --help` says how to look through more applications.
+"""
+
+import re
+
+import pytest
+from effort import every
+from opponent.executors.calls import different_calls
+from opponent.executors.claims import false_claims, runs_of
+from opponent.executors.descriptions import random_description
+from opponent.executors.tally import Tally
+from support import ROOT
+
+from amalthea_uros.units import MILLISECOND
+
+#: Of which the table in docs/simulation.md is made.
+SAMPLE = range(60)
+RUNS = runs_of(200 * MILLISECOND, [1])
+PAGE = (ROOT / "docs" / "simulation.md").read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def sample():
+    tally, found = Tally(), {}
+    for seed in SAMPLE:
+        if said := false_claims(random_description(seed), tally, heartbeats=False, runs=RUNS):
+            found[seed] = said[:5]
+    return tally, found
+
+
+def test_nothing_that_is_observed_is_beyond_a_bound(sample):
+    tally, found = sample
+    assert found == {}
+    assert tally.applications > 50
+    assert tally.bounded["all"] > 200
+
+
+def test_the_page_says_how_close_to_their_bounds_observed_values_are(sample):
+    """If it does not: the right table is in the message."""
+    tally, _ = sample
+    told = re.search(r"^\| construct \|.*?\n\n", PAGE, re.DOTALL | re.MULTILINE)
+    assert told is not None
+    assert told[0].strip() == tally.short_table(), f"\n{tally.short_table()}\n"
+
+
+def test_every_call_is_that_of_a_player():
+    tally = Tally()
+    assert {seed: said for seed in every(10, range(40, 1040)) if (said := different_calls(seed, tally))} == {}
+    assert tally.calls["executors"] > 50
+    assert tally.calls["applications"] > 50
