@@ -42,11 +42,11 @@ LINES = {
     "services": 1955,
     "simulate": 7024,
     "source": 1887,
-    "spec": 1837,
+    "spec": 1839,
     "timing": 5086,
     "trace": 4803,
     "units": 164,
-    "uros": 5963,
+    "uros": 5984,
     "validate": 3611,
     "xmi": 8530,
 }
