@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from amalthea_uros.diagnostics import Finding
-from amalthea_uros.errors import ReadError
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.perf.system import System
 from amalthea_uros.spec.description import Description
@@ -18,7 +17,8 @@ from amalthea_uros.uros.application.serving import placement
 from amalthea_uros.uros.assembly.context import AssemblyContext
 from amalthea_uros.uros.assembly.hardware import controller_of
 from amalthea_uros.uros.assembly.planned import PriorityScale
-from amalthea_uros.uros.memory import MemoryDemand, check_memory, memory_of
+from amalthea_uros.uros.memory import MemoryDemand, memory_of
+from amalthea_uros.uros.memory_findings import check_memory
 from amalthea_uros.uros.middleware.options import COUNTED, Option
 from amalthea_uros.uros.middleware.profile import Profile
 from amalthea_uros.uros.network.classic_bus import (
@@ -99,11 +99,11 @@ def assemble(
     target = controller_of(description.name, hardware, platform, notes)
     profile = stated_profile(description.middleware, notes)
     if target is None or profile is None:
-        raise ReadError(notes.findings)
+        raise notes.refusal()
     context = AssemblyContext(description=description, controller=target, notes=notes, profile=profile)
     assembly = _assembly(context, hardware, database)
     if notes.has_errors:
-        raise ReadError(notes.findings)
+        raise notes.refusal()
     return assembly
 
 
@@ -113,7 +113,7 @@ def _assembly(context: AssemblyContext, hardware: HardwareSection, database: Seq
     added = add_processes(context, options, database)
     system = assembled_system(context, added.callbacks, added.network)
     memory = memory_of(context.description, hardware, system, context.profile)
-    check_memory(memory, hardware, context.notes)
+    check_memory(context, added.callbacks, memory, hardware)
     response_time = middleware.initialisation.response_time
     first = next((choice for choice in added.choices if choice.task == choice.executor), None)
     return Assembly(

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 
 from amalthea_uros.perf.hardware import MemoryKind
 from amalthea_uros.perf.named import Brief
@@ -12,7 +12,6 @@ from amalthea_uros.spec.application import Application
 from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.hardware import HardwareSection
 from amalthea_uros.spec.middleware import Middleware
-from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.middleware.profile import MemoryUse, Profile
 from amalthea_uros.uros.stacks import StackUse, stacks_of
 
@@ -46,6 +45,23 @@ class MemoryDemand(Brief):
         return sum(use.size for use in self.uses) + self.stacks.size
 
     @property
+    def limit(self) -> tuple[int, str] | None:
+        """The bytes that may be used, and their owner: the budget of the platform, or else the board; None if neither is stated."""
+        if self.budget is not None:
+            return self.budget, "the budget for micro-ROS"
+        return None if self.ram is None else (self.ram, "the board")
+
+    @property
+    def counted(self) -> int:
+        """The bytes that are compared with the limit: a budget is for micro-ROS alone."""
+        return self.total if self.budget is None else self.total - self.other_stacks
+
+    def with_static(self, before: Sequence[MemoryUse], after: Sequence[MemoryUse]) -> MemoryDemand:
+        """The memory with other static memory of the middleware."""
+        rest = [use for use in self.uses if use not in before]
+        return replace(self, uses=(*after, *rest))
+
+    @property
     def is_complete(self) -> bool:
         """Whether all sizes are known."""
         return not self.stacks.unknown and all(use.is_bounded for use in self.uses)
@@ -70,21 +86,6 @@ def memory_of(description: Description, hardware: HardwareSection, system: Syste
         ram=_ram(system),
         budget=None if hardware.ram_budget is None else hardware.ram_budget // 8,
     )
-
-
-def check_memory(memory: MemoryDemand, hardware: HardwareSection, notes: Notes) -> None:
-    """Report memory that exceeds the budget of the platform, or else all that the board has."""
-    limit = memory.ram if memory.budget is None else memory.budget
-    needed = memory.total if memory.budget is None else memory.total - memory.other_stacks
-    what, key = ("the application", "memories") if memory.budget is None else ("micro-ROS", "ram_budget")
-    if limit is None or needed <= limit:
-        return
-    least = "" if memory.is_complete else "at least "
-    source = "the board has" if memory.budget is None else "the budget for it is"
-    message = f"{what} needs {least}{needed} B of memory, but {source} {limit} B"
-    largest = max(memory.uses, key=lambda use: use.size, default=None)
-    advice = f"Most of it are {largest.name}: {largest.formula}." if largest is not None else "Reduce the stacks."
-    notes.warning("UR129", message, hardware.location(key), advice)
 
 
 def _handles(application: Application, middleware: Middleware) -> Iterator[MemoryUse]:

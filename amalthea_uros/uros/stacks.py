@@ -48,10 +48,9 @@ def stacks_of(description: Description, system: System, threads: Iterable[Middle
 def _stated(description: Description) -> Iterator[tuple[str, int | None]]:
     middleware, interrupt = description.middleware, receive_interrupt(description.middleware.transport)
     # A callback in an executor states no stack: it uses that of the executor.
-    callbacks = [section for node in description.application.nodes for _, section in sections_of(node)]
-    named = [
-        (each.name, each.stack) for each in (*middleware.stated_executors, *callbacks, *description.tasks, *description.isrs)
-    ]
+    named = [(each.name, each.stack) for each in middleware.stated_executors]
+    named += [(each.name, each.stack) for each in (*description.tasks, *description.isrs)]
+    named += [(each.name, each.stack) for node in description.application.nodes for _, each in sections_of(node)]
     if interrupt is not None:
         named += [(name, interrupt.stack) for name in (interrupt.name, name_for_other_frames(interrupt))]
     for name, stack in named:
@@ -64,7 +63,7 @@ class StackUser(Brief):
 
     Attributes
     ----------
-    size : in bytes; None if nobody stated it
+    size : in bytes; None if it is not specified
     """
 
     name: str
@@ -80,7 +79,7 @@ class StackUse(Brief):
     shared : whether the processes of a core share a stack
     size : in bytes, of all that is known
     users : with a size that is known: all of them; on shared stacks, those of the longest chains of preemption, lowest first
-    unknown : those whose size nobody stated; the size is then a lower bound
+    unknown : those whose size is not specified; the size is then a lower bound
     """
 
     shared: bool

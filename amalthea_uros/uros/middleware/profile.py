@@ -171,6 +171,11 @@ class Profile(ABC):
 
     @property
     @abstractmethod
+    def slot_size(self) -> int | None:
+        """Bytes of memory that each of these slots takes; None without slots."""
+
+    @property
+    @abstractmethod
     def sending(self) -> Sending:
         """How messages are sent."""
 

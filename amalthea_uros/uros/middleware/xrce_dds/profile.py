@@ -49,6 +49,11 @@ class XrceDds(MessageLayout):
         return self.build.value("RMW_UXRCE_MAX_HISTORY")
 
     @property
+    def slot_size(self) -> int:
+        """A slot has the size of the longest message, whatever message it holds."""
+        return self.build.mtu * self.build.histories[0] + _SLOT
+
+    @property
     def sending(self) -> Sending:
         """How messages are sent."""
         how, stated = self.data.sending, self.middleware.reliable.timeout
@@ -115,7 +120,7 @@ class XrceDds(MessageLayout):
         )
         messages = MemoryUse(
             name="slots for received messages",
-            size=slots * (mtu * inputs + _SLOT),
+            size=slots * self.slot_size,
             formula=f"{slots} x ({mtu} B x {inputs} + {_SLOT} B)",
         )
         entities = MemoryUse(
