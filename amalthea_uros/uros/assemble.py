@@ -11,12 +11,12 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.hardware import HardwareSection
 from amalthea_uros.units import Time
-from amalthea_uros.uros.application.entities import Initialisation, initialisation
 from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.application.serving import placement
 from amalthea_uros.uros.assembly.context import AssemblyContext
 from amalthea_uros.uros.assembly.hardware import controller_of
 from amalthea_uros.uros.assembly.planned import PriorityScale
+from amalthea_uros.uros.initialisation import Initialisation, initialisation
 from amalthea_uros.uros.memory import MemoryDemand, memory_of
 from amalthea_uros.uros.memory_findings import check_memory
 from amalthea_uros.uros.middleware.options import COUNTED, Option
@@ -114,7 +114,6 @@ def _assembly(context: AssemblyContext, hardware: HardwareSection, database: Seq
     system = assembled_system(context, added.callbacks, added.network)
     memory = memory_of(context.description, hardware, system, context.profile)
     check_memory(context, added.callbacks, memory, hardware)
-    response_time = middleware.initialisation.response_time
     first = next((choice for choice in added.choices if choice.task == choice.executor), None)
     return Assembly(
         description=context.description,
@@ -124,7 +123,7 @@ def _assembly(context: AssemblyContext, hardware: HardwareSection, database: Seq
         placement=placement(context.description, context.controller.platform) if added.callbacks else "",
         messages=added.messages,
         bus=bus_of(middleware.transport.can) if middleware.transport.can is not None else None,
-        initialisation=initialisation(application, first.period, response_time) if first else None,
+        initialisation=initialisation(application, middleware, context.profile, context.line, first.period if first else None),
         options=tuple(options),
         memory=memory,
         findings=tuple(context.notes.findings),
