@@ -39,7 +39,7 @@ LINES = {
     "perf": 1578,
     "platforms": 0,
     "report": 7919,
-    "services": 1978,
+    "services": 1988,
     "simulate": 7024,
     "source": 1887,
     "spec": 1849,

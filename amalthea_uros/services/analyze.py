@@ -20,8 +20,8 @@ from amalthea_uros.diagnostics import Finding
 from amalthea_uros.names import require
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.perf.system import System
+from amalthea_uros.services.analysis_findings import shown_findings
 from amalthea_uros.services.subject import ChangedSystem, Subject, open_changed
-from amalthea_uros.services.waiting_messages import shown_findings
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import Time
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 
 from amalthea_uros.analyze.results.analysis import Analysis
@@ -10,7 +10,6 @@ from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.executors.results import ExecutorResult
 from amalthea_uros.executors.semantics.readiness import messages
-from amalthea_uros.findings.accepted import unsuppressed
 from amalthea_uros.perf.executors import Executor
 from amalthea_uros.uros.assemble import Assembly
 from amalthea_uros.uros.generated_options import WaitingMessages, with_waiting_messages
@@ -44,11 +43,6 @@ def findings_of(assembly: Assembly | None, analysis: Analysis) -> Iterator[Findi
     for finding in analysis.findings:
         advice = _storage_advice(assembly, analysis) if finding.rule == _NO_SLOT and assembly is not None else ""
         yield replace(finding, help=advice) if advice else finding
-
-
-def shown_findings(findings: Iterable[Finding], assembly: Assembly | None, analysis: Analysis) -> tuple[Finding, ...]:
-    """Findings about a subject and those of its analysis, without those that comments accept."""
-    return unsuppressed((*findings, *findings_of(assembly, analysis)))
 
 
 def _storage_advice(assembly: Assembly, analysis: Analysis) -> str:

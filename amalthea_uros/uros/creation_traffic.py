@@ -157,5 +157,4 @@ def _reason(missing: Sequence[str], line: Line | None) -> str:
         return "the wire to the agent is not described: set 'transport'"
     if not missing:
         return ""
-    kinds = " and ".join([*([", ".join(missing[:-1])] if missing[1:] else []), missing[-1]])
-    return f"the sizes of requests for {kinds} are not specified: set 'initialisation.request_sizes'"
+    return f"no maximum of the bytes is known: set 'initialisation.request_sizes' for {', '.join(missing)}"

@@ -23,7 +23,7 @@ from amalthea_uros.uros.creation_traffic import CreationTraffic, creation_traffi
 from amalthea_uros.uros.middleware.profile import Profile
 from amalthea_uros.uros.transports.line import Line
 
-_UNKNOWN = "the response time of the agent is not specified: set 'initialisation.response_time'"
+_UNKNOWN = "no maximum is known: set 'initialisation.response_time'"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -71,7 +71,7 @@ def test_sizes_that_are_not_stated_are_unknown(author):
     assert (start.traffic.to_agent.least_bytes, start.traffic.to_agent.most_bytes) == (5 * 24, None)
     assert start.traffic.most_wire_time is None
     assert start.most_load is None
-    assert "participant, topic, publisher and datawriter" in start.traffic.reason
+    assert "participant, topic, publisher, datawriter" in start.traffic.reason
 
 
 LOOP = "loop: {spin_some: 100 ms}"

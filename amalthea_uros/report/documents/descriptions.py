@@ -139,33 +139,28 @@ def _start_texts(start: Initialisation) -> Iterator[str]:
     yield f"{count}: at least {least}{most}"
     if start.reason:
         limit = "" if start.limit is None else f"; what is not created after {time_text(start.limit)} has failed"
-        yield f"no maximum is known: {start.reason}{limit}"
+        yield f"{start.reason}{limit}"
     if start.traffic is not None:
-        yield _traffic_text(start.traffic, start.most_load)
+        yield from _traffic_texts(start.traffic, start.most_load)
 
 
 def _start_time(cycles: int | None, time: Time, rounding: Rounding) -> str:
     return rounded_time_text(time, rounding) if cycles is None else f"{counted(cycles, 'cycle')} ({time_text(time)})"
 
 
-def _traffic_text(traffic: CreationTraffic, load: Fraction | None) -> str:
-    """The messages of the creation, in a sentence."""
-    there, back = traffic.to_agent, traffic.to_controller
+def _traffic_texts(traffic: CreationTraffic, load: Fraction | None) -> Iterator[str]:
+    """The messages of the creation, their time on the wire, and why it is unknown."""
+    there, back, most = traffic.to_agent, traffic.to_controller, traffic.most_wire_time
+    size = f"at least {there.least_bytes} B" if there.most_bytes is None else f"{there.least_bytes} to {there.most_bytes} B"
     answers = there.acknowledgements + back.acknowledgements
-    known = there.most_bytes is not None
-    size = f"{there.least_bytes} to {there.most_bytes} B" if known else f"at least {there.least_bytes} B"
-    text = f"{counted(there.messages, 'message')} to the agent ({size}) and {back.messages} back ({back.most_bytes} B)"
-    text += f", with at most {counted(answers, 'acknowledgement')}" if answers else ""
+    acknowledged = f", at most {counted(answers, 'acknowledgement')}" if answers else ""
+    yield f"{counted(there.messages, 'message')} to the agent ({size}) and {back.messages} back ({back.most_bytes} B){acknowledged}"
     if traffic.least_wire_time is not None:
-        least = rounded_time_text(traffic.least_wire_time, Rounding.DOWN)
-        most = traffic.most_wire_time
-        text += (
-            f": at least {least}"
-            + ("" if most is None else f", at most {rounded_time_text(most, Rounding.UP)}")
-            + " on the wire"
-        )
-    text += "" if load is None else f", a load of at most {load_text(load, Rounding.UP)}"
-    return f"{text}; {traffic.reason}" if traffic.reason else text
+        text = f"on the wire: at least {rounded_time_text(traffic.least_wire_time, Rounding.DOWN)}"
+        text += "" if most is None else f", at most {rounded_time_text(most, Rounding.UP)}"
+        yield text + ("" if load is None else f", a load of at most {load_text(load, Rounding.UP)}")
+    if traffic.reason:
+        yield traffic.reason
 
 
 def _pools(assembly: Assembly) -> Table:
