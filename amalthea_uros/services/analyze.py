@@ -17,10 +17,10 @@ from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.design.changes.apply import Difference
 from amalthea_uros.design.changes.change import Change, Changes
 from amalthea_uros.diagnostics import Finding
-from amalthea_uros.findings.accepted import unsuppressed
 from amalthea_uros.names import require
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.perf.system import System
+from amalthea_uros.services.analysis_findings import shown_findings
 from amalthea_uros.services.subject import ChangedSystem, Subject, open_changed
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import Time
@@ -175,7 +175,8 @@ def _analyzed(changed: ChangedSystem) -> Analysis:
     """The analysis, whose findings include those about the subject."""
     analysis = analyze_system(changed.system, changed.settings)
     report_machine_code()
-    return replace(analysis, findings=unsuppressed((*changed.opened.findings, *analysis.findings)))
+    opened = changed.opened
+    return replace(analysis, findings=shown_findings(opened.findings, opened.assembly, analysis))
 
 
 #: What can be explained: an analysis, or what can be analyzed.

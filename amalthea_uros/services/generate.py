@@ -21,14 +21,17 @@ from amalthea_uros.spec.platforms import complete
 from amalthea_uros.spec.read import read_description
 from amalthea_uros.uros.assemble import Assembly, assemble
 from amalthea_uros.uros.colcon_meta import parse_meta
-from amalthea_uros.uros.generated_files import MARK, generated_memory, texts_of
+from amalthea_uros.uros.generated_files import MARK, generated_memory, generated_storage, texts_of
 from amalthea_uros.uros.generated_options import check_meta
 from amalthea_uros.uros.memory import MemoryDemand
+from amalthea_uros.uros.memory_findings import exceeded_memory
 from amalthea_uros.uros.middleware.options import OptionRole
 from amalthea_uros.uros.profiles import profile_of
 
 #: Findings about sizes, which the files set.
 _SOLVED = ("UR120", "UR127")
+#: Asked again for the sizes in the files.
+_MEMORY = "UR129"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,7 +55,9 @@ class GenerateResult(Brief, Shown):
     @property
     def findings(self) -> tuple[Finding, ...]:
         """Warnings and notes about the description, except about sizes that the files set, and those that comments in it accept."""
-        return unsuppressed(finding for finding in self.assembly.findings if finding.rule not in _SOLVED)
+        kept = [finding for finding in self.assembly.findings if finding.rule not in (*_SOLVED, _MEMORY)]
+        exceeded = exceeded_memory(self.memory, generated_storage(self.assembly), self.assembly.description.hardware)
+        return unsuppressed(kept if exceeded is None else [*kept, exceeded])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -122,7 +127,7 @@ def check_colcon_meta(path: StrPath, meta: StrPath, platform: str | None = None)
     except FileError as error:
         raise ReadError([Finding("GEN006", Severity.ERROR, error.reason, Location(file), error.advice)]) from None
     description, file_options = assembly.description, parse_meta(file, text)
-    findings = check_meta(description.application, assembly.profile, file_options, waiting_messages(assembly))
+    findings = check_meta(description.application, assembly.profile, file_options, assembly.memory, waiting_messages(assembly))
     return MetaCheck(description=Path(path), path=file, findings=findings)
 
 

@@ -20,7 +20,7 @@ from amalthea_uros.services.check import check_input
 from amalthea_uros.services.inputs import ModelInput
 from amalthea_uros.services.simulate import SimulationResult
 from amalthea_uros.services.subject import Subject, SystemInput, open_changed
-from amalthea_uros.services.waiting_messages import with_analysed_storage
+from amalthea_uros.services.waiting_messages import findings_of, with_analysed_storage
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.timing.activation.load import activation_rates
 from amalthea_uros.timing.basics.settings import Settings
@@ -119,7 +119,10 @@ def compile_report(
     # Those of reading and building a model are among the findings of the check.
     told = () if model is None else model.findings
     findings = [finding for finding in opened.findings if finding not in told]
-    findings += (*analysis.findings, *(() if simulation is None else simulation.findings))
+    findings += (
+        *findings_of(opened.assembly, analysis),
+        *(() if simulation is None else simulation.findings),
+    )
     return ReportContent(
         title=title or _name(opened),
         date=date,

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.diagnostics import Finding
 from amalthea_uros.executors.results import ExecutorResult
 from amalthea_uros.executors.semantics.readiness import messages
 from amalthea_uros.perf.executors import Executor
@@ -13,6 +15,7 @@ from amalthea_uros.uros.assemble import Assembly
 from amalthea_uros.uros.generated_options import WaitingMessages, with_waiting_messages
 from amalthea_uros.uros.middleware.checks import kept_messages
 from amalthea_uros.uros.middleware.options import OptionRole
+from amalthea_uros.uros.storage import storage_of
 
 
 def with_analysed_storage(assembly: Assembly, analysis: Analysis | None = None) -> Assembly:
@@ -24,6 +27,28 @@ def with_analysed_storage(assembly: Assembly, analysis: Analysis | None = None) 
     """
     waiting = waiting_messages(assembly, analysis)
     return replace(assembly, options=with_waiting_messages(assembly.options, waiting))
+
+
+#: Messages that are dropped because no slot is free.
+_NO_SLOT = "EXE014"
+
+
+def findings_of(assembly: Assembly | None, analysis: Analysis) -> Iterator[Finding]:
+    """The findings of an analysis, with advice about the storage for messages that fits the memory of the board.
+
+    Parameters
+    ----------
+    assembly : of the system of the analysis; None if no description says how large the memory is
+    """
+    for finding in analysis.findings:
+        advice = _storage_advice(assembly, analysis) if finding.rule == _NO_SLOT and assembly is not None else ""
+        yield replace(finding, help=advice) if advice else finding
+
+
+def _storage_advice(assembly: Assembly, analysis: Analysis) -> str:
+    storage = storage_of(assembly.profile, assembly.description.application, assembly.memory)
+    waiting = waiting_messages(assembly, analysis)
+    return "" if storage is None or waiting is None else storage.advice(waiting.most, f"{waiting.most}, {waiting.why}")
 
 
 def waiting_messages(assembly: Assembly, analysis: Analysis | None = None) -> WaitingMessages | None:

@@ -70,6 +70,8 @@ class CallbackSection(DescriptionSection):
     """Deadline relative to the activation of its task."""
     overhead: OverheadSection | None = None
     """Overhead of the operating system per job of its task; default: that of `os`."""
+    stack: Size | None = None
+    """Stack of its task; for tasks that share one stack: the most that it uses itself. In the executor it uses the stack of that."""
 
 
 class MessageCallback(CallbackSection):

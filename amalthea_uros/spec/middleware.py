@@ -27,11 +27,35 @@ class ResponseTime(Shorthand):
     """Maximum time."""
 
 
+class RequestSizes(DescriptionSection):
+    """Sizes of the longest requests to create entities, with the headers of the middleware: they depend on the lengths of names."""
+
+    participant: Size | None = None
+    """For a node."""
+    topic: Size | None = None
+    """For a topic."""
+    publisher: Size | None = None
+    """For a publisher."""
+    datawriter: Size | None = None
+    """For the data writer of a publisher."""
+    subscriber: Size | None = None
+    """For the subscriber of a subscription."""
+    datareader: Size | None = None
+    """For the data reader of a subscription."""
+    replier: Size | None = None
+    """For a service."""
+    requester: Size | None = None
+    """For a client."""
+
+
 class InitialisationSection(DescriptionSection):
     """Creation of the entities, one after the other."""
 
     response_time: ResponseTime | None = None
-    """Response time of the agent; if omitted, only the minimum number of cycles is known."""
+    """Response time of the agent, from a request to its response as the client sees it; if omitted, only the minimum that the wire
+    needs is known."""
+    request_sizes: RequestSizes = Field(default_factory=RequestSizes)
+    """Sizes of the requests; default: unknown."""
 
 
 _TRANSPORTS = described(

@@ -60,6 +60,8 @@ class Interrupt(Shorthand):
     """Core that it runs on; default: the core of the executor."""
     overhead: OverheadSection | None = None
     """Overhead of the operating system per job; default: that of `os`."""
+    stack: Size | None = None
+    """The most that it uses of the stack that it runs on."""
 
     shorthand = ("execution_time",)
     plain_value = "Execution time per frame."

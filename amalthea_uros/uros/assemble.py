@@ -6,19 +6,19 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from amalthea_uros.diagnostics import Finding
-from amalthea_uros.errors import ReadError
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.perf.system import System
 from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.hardware import HardwareSection
 from amalthea_uros.units import Time
-from amalthea_uros.uros.application.entities import Initialisation, initialisation
 from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.application.serving import placement
 from amalthea_uros.uros.assembly.context import AssemblyContext
 from amalthea_uros.uros.assembly.hardware import controller_of
 from amalthea_uros.uros.assembly.planned import PriorityScale
-from amalthea_uros.uros.memory import MemoryDemand, check_memory, memory_of
+from amalthea_uros.uros.initialisation import Initialisation, initialisation
+from amalthea_uros.uros.memory import MemoryDemand, memory_of
+from amalthea_uros.uros.memory_findings import check_memory
 from amalthea_uros.uros.middleware.options import COUNTED, Option
 from amalthea_uros.uros.middleware.profile import Profile
 from amalthea_uros.uros.network.classic_bus import (
@@ -104,13 +104,13 @@ def assemble(
     target = controller_of(description.name, hardware, platform, notes)
     profile = stated_profile(description.middleware, notes)
     if target is None or profile is None:
-        raise ReadError(notes.findings)
+        raise notes.refusal()
     context = AssemblyContext(
         description=description, controller=target, notes=notes, profile=profile, assumptions=tuple(assumptions)
     )
     assembly = _assembly(context, hardware, database)
     if notes.has_errors:
-        raise ReadError(notes.findings)
+        raise notes.refusal()
     return assembly
 
 
@@ -120,8 +120,7 @@ def _assembly(context: AssemblyContext, hardware: HardwareSection, database: Seq
     added = add_processes(context, options, database)
     system = assembled_system(context, added.callbacks, added.network)
     memory = memory_of(context.description, hardware, system, context.profile)
-    check_memory(memory, hardware, context.notes)
-    response_time = middleware.initialisation.response_time
+    check_memory(context, added.callbacks, memory, hardware)
     first = next((choice for choice in added.choices if choice.task == choice.executor), None)
     return Assembly(
         description=context.description,
@@ -131,7 +130,7 @@ def _assembly(context: AssemblyContext, hardware: HardwareSection, database: Seq
         placement=placement(context.description, context.controller.platform) if added.callbacks else "",
         messages=added.messages,
         bus=bus_of(middleware.transport.can) if middleware.transport.can is not None else None,
-        initialisation=initialisation(application, first.period, response_time) if first else None,
+        initialisation=initialisation(application, middleware, context.profile, context.line, first.period if first else None),
         options=tuple(options),
         memory=memory,
         findings=tuple(context.notes.findings),

@@ -143,10 +143,11 @@ def _core(context: AssemblyContext, callback: Callback, executor_core: str) -> s
     """The core of a callback."""
     section, node = callback.section, callback.node
     if callback.in_executor:
-        if section.overhead is not None:
-            message = f"'overhead' of {callback.name!r} has no effect, because it runs in the executor"
-            advice = "Set it at the executor, or set 'runs_in: own-task'."
-            context.notes.error("APP003", message, section.location("overhead"), advice)
+        for key in ("overhead", "stack"):
+            if getattr(section, key) is not None:
+                message = f"{key!r} of {callback.name!r} has no effect, because it runs in the executor"
+                advice = "Set it at the executor, or set 'runs_in: own-task'."
+                context.notes.error("APP003", message, section.location(key), advice)
         if section.core is not None and section.core != executor_core:
             message = f"{callback.name!r} runs in the executor on {executor_core!r}, not on {section.core!r}"
             context.notes.error("UR104", message, section.location("core"), "Remove 'core', or set 'runs_in: own-task'.")

@@ -13,6 +13,7 @@ from amalthea_uros.uros.assemble import Assembly
 from amalthea_uros.uros.generated_options import values_of, with_generated_options
 from amalthea_uros.uros.memory import MemoryDemand
 from amalthea_uros.uros.middleware.options import Option
+from amalthea_uros.uros.storage import MessageStorage, storage_of
 
 META, HEADER, CMAKE = "colcon.meta", "amuros_limits.h", "zenoh_options.cmake"
 #: In each file, by which it can be told from those that people wrote.
@@ -25,10 +26,16 @@ _MTU = re.compile(r"UCLIENT_(\w+_TRANSPORT_MTU)")
 def generated_memory(assembly: Assembly) -> MemoryDemand:
     """The memory with the options that are generated."""
     application, profile = assembly.description.application, assembly.profile
-    described = profile.memory(application)
-    generated = with_generated_options(profile, assembly.options).memory(application)
-    rest = [use for use in assembly.memory.uses if use not in described]
-    return replace(assembly.memory, uses=(*generated, *rest))
+    generated = with_generated_options(profile, assembly.options)
+    return assembly.memory.with_static(profile.memory(application), generated.memory(application))
+
+
+def generated_storage(assembly: Assembly) -> MessageStorage | None:
+    """The storage for messages with the options that are generated; None if the middleware has none."""
+    generated = with_generated_options(assembly.profile, assembly.options)
+    storage = storage_of(generated, assembly.description.application, generated_memory(assembly))
+    # As many slots are generated as are needed.
+    return None if storage is None else replace(storage, needed=storage.slots)
 
 
 def texts_of(assembly: Assembly) -> dict[str, str]:

@@ -12,8 +12,10 @@ from amalthea_uros.perf.named import Brief
 from amalthea_uros.spec.application import Application
 from amalthea_uros.spec.middleware import PoolSizes
 from amalthea_uros.uros.colcon_meta import ColconMeta, Definition
+from amalthea_uros.uros.memory import MemoryDemand
 from amalthea_uros.uros.middleware.options import COUNTED, Option, OptionRole, OptionRow
 from amalthea_uros.uros.middleware.profile import Profile
+from amalthea_uros.uros.storage import storage_of
 
 #: So many are reported of a file; more of them say nothing new.
 MAX_FINDINGS = 100
@@ -82,15 +84,16 @@ def with_generated_options(profile: Profile, options: Sequence[Option]) -> Profi
 
 
 def check_meta(
-    application: Application, profile: Profile, meta: ColconMeta, waiting: WaitingMessages | None = None
+    application: Application, profile: Profile, meta: ColconMeta, memory: MemoryDemand, waiting: WaitingMessages | None = None
 ) -> tuple[Finding, ...]:
     """What is wrong with a file of build options for an application.
 
     Parameters
     ----------
+    memory : with the options of the profile
     waiting : what the storage for messages has to be for; None for what follows from the description alone
     """
-    comparison = _MetaComparison(application, profile, waiting)
+    comparison = _MetaComparison(application, profile, memory, waiting)
     return tuple(islice(comparison.findings_of(meta), MAX_FINDINGS))
 
 
@@ -106,6 +109,7 @@ class _MetaComparison(Brief):
 
     application: Application
     profile: Profile
+    memory: MemoryDemand
     waiting: WaitingMessages | None
     values: dict[str, int] = field(default_factory=dict)
     places: dict[str, Location] = field(default_factory=dict)
@@ -185,11 +189,21 @@ class _MetaComparison(Brief):
             severity = Severity.WARNING if option.role is OptionRole.QUEUE else Severity.ERROR
             value = f"{option.text(option.available)}" + ("" if option.name in self.places else " by default")
             message = f"{option.name} is {value}, but the application needs {option.smallest}: {option.counts}"
-            yield Finding("GEN001", severity, message, place, f"{option.when_exhausted} Set it to {option.smallest}.".strip())
+            advice = self._advice(option, built)
+            yield Finding("GEN001", severity, message, place, f"{option.when_exhausted} {advice}".strip())
         elif option.role in COUNTED and option.name in self.values and self.values[option.name] >= 0:
             yield from self._surplus(option, built, place)
         elif described is not None and not described.without_effect and option.role is OptionRole.SETTING:
             yield from self._difference(option, described, place)
+
+    def _advice(self, option: Option, built: Profile) -> str:
+        """A value for an option, as far as the memory of the board has room for it."""
+        if option.role is OptionRole.QUEUE and option.smallest is not None:
+            static = self.profile.memory(self.application), built.memory(self.application)
+            storage = storage_of(built, self.application, self.memory.with_static(*static))
+            if storage is not None:
+                return storage.advice(option.smallest, str(option.smallest))
+        return f"Set it to {option.smallest}."
 
     def _surplus(self, option: Option, built: Profile, place: Location) -> Iterator[Finding]:
         smallest = option.smallest

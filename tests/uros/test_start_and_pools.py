@@ -4,7 +4,7 @@ import pytest
 
 from amalthea_uros.units import MILLISECOND as MS
 from amalthea_uros.units import parse_time
-from amalthea_uros.uros.application.entities import response_cycles
+from amalthea_uros.uros.initialisation import response_cycles
 
 APP = """
     amuros: 1
@@ -48,9 +48,9 @@ def test_entities_in_the_order_of_creation(author):
         *("session client", "participant node", "topic out", "publisher out", "datawriter out"),
         *("topic a", "subscriber a", "datareader a", "topic b", "subscriber b", "datareader b", "replier Ask"),
     ]
-    # A cycle for each request, then 10 to 102 that check for the response.
-    assert (start.min_cycles, start.max_cycles) == (12 * 11, 12 * 103)
-    assert start.max_time == (12 * 103 - 1) * MS
+    # A cycle for each request, then 10 to 102 that check for the response; both subscriptions ask for data before the last one.
+    assert (start.min_cycles, start.max_cycles) == (12 * 11, 12 * 103 + 2)
+    assert start.max_time == (12 * 103 + 1) * MS
 
 
 def test_what_the_application_needs(author):

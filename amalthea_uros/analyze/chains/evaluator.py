@@ -209,14 +209,13 @@ class ChainEvaluator:
             if link.kind is LinkKind.DATA:
                 self._require_known_writers(link.names)
         parts: list[list[TimedStage]] = []
-        before = None
         groups = self.groups(route)
-        for group, follower in zip_longest(groups, (after[0] for after in groups[1:])):
-            controller = self.controller(group[0].process.name)
-            if controller != before or not parts:
+        followers, writers = [after[0] for after in groups[1:]], [before[-1] for before in groups[:-1]]
+        controllers = [self.controller(group[0].process.name) for group in groups]
+        for number, (group, follower, writer) in enumerate(zip_longest(groups, followers, [None, *writers])):
+            if not number or controllers[number] != controllers[number - 1]:
                 parts.append([])
-            parts[-1].append(self.timing.group(group, follower))
-            before = controller
+            parts[-1].append(self.timing.group(group, follower, writer))
         return RouteLatencies(parts, self.timing.unit, is_certain=route.is_timed, budget=self.budget)
 
     def _require_known_writers(self, labels: Iterable[str]) -> None:

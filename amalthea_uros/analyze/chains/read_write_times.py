@@ -124,6 +124,11 @@ class ReadWriteBounds:
         """Whether both are the actual times."""
         return self.pessimistic.has_times_of(self.optimistic) and self.pessimistic.jobs_later == self.optimistic.jobs_later
 
+    def reading_at_release(self) -> ReadWriteBounds:
+        """The times where jobs see nothing that is written after their releases, however late they read."""
+        late = self.optimistic
+        return self if self.is_exact else replace(self, optimistic=replace(late, reads=np.minimum(late.reads, late.releases)))
+
     def taking_part(self, counter: Counter, period: Time) -> ReadWriteBounds:
         """The times of only those jobs that a counter lets take part.
 

@@ -37,6 +37,7 @@ from amalthea_uros.timing.dataflow.stages import NEXT_JOB, SAME_JOB, At, Fire, P
 from amalthea_uros.timing.demand.model import MAX_TIME_BASE
 from amalthea_uros.timing.jobs.counters import first_effect, is_always, max_distance
 from amalthea_uros.timing.response import Response
+from amalthea_uros.timing.scheduling.scheduled import ScheduledProcess
 from amalthea_uros.units import Time
 
 
@@ -60,19 +61,23 @@ class StageTiming:
         unit = lcm(*(self.context.demand_model.time_base(core) for core in self.context.system.cores))
         self.unit = unit if unit <= MAX_TIME_BASE else 1
 
-    def group(self, stages: Sequence[Stage], follower: Stage | None) -> TimedStage:
+    def group(self, stages: Sequence[Stage], follower: Stage | None, before: Stage | None = None) -> TimedStage:
         """A stage and those that it triggers, directly or through others.
 
         Parameters
         ----------
         follower : the first stage that reads from the last of them
+        before : the stage that the first of them reads from
 
         Raises
         ------
         UnknownError : a response time in it is unbounded or unknown.
         """
+        timed = self._group(stages, follower)
+        if before is not None and timed.read_write is not None and self._sees_only_what_ended(before, stages[0]):
+            timed = replace(timed, read_write=timed.read_write.reading_at_release())
         return replace(
-            self._group(stages, follower),
+            timed,
             stimulus_wait=self._stimulus_wait(stages),
             responds_before_read=_responds_before_read(stages[-1]),
         )
@@ -269,19 +274,41 @@ class StageTiming:
         return is_at_start and kind(follower.leave) is not JobPhase.ACTIVATION and self._takes_core(base, follower)
 
     def _takes_core(self, one: Stage, other: Stage) -> bool:
-        """Whether the process of a stage, as long as it is ready, keeps that of another one from executing."""
-        first, then = self.context.scheduled.get(one.process.name), self.context.scheduled.get(other.process.name)
-        if first is None or then is None or first.core != then.core or first.server or then.server or first.rank <= then.rank:
-            return False
-        # While something below keeps the first one off, or it waits for that, the other one can start.
-        return self._blocking_on(first.core).level(first).rank > then.rank
+        """Whether the process of a stage, as long as it is ready, keeps that of another one from starting."""
+        both = self._scheduled(one, other)
+        return both is not None and self._blocking_on(both[0].core).prevents_start(*both)
 
     def _interrupts(self, one: Stage, other: Stage) -> bool:
         """Whether the process of a stage, once it is ready, preempts that of another one at once and keeps it off until its end."""
-        if not self._takes_core(one, other):
+        both = self._scheduled(one, other)
+        return both is not None and self._blocking_on(both[0].core).interrupts(*both)
+
+    def _scheduled(self, one: Stage, other: Stage) -> tuple[ScheduledProcess, ScheduledProcess] | None:
+        first, then = self.context.scheduled.get(one.process.name), self.context.scheduled.get(other.process.name)
+        return None if first is None or then is None else (first, then)
+
+    def _sees_only_what_ended(self, writer: Stage, reader: Stage) -> bool:
+        """Whether a job that reads sees only what was written up to its release.
+
+        Proof, for a reader that preempts the writer at once and delays it, and whose jobs end before the next one is released:
+
+        1. From its release on the job of the reader is ready, because the one before it has ended. Until it ends, the writer does not
+           execute.
+        2. A job of the writer that has not written at that release writes while it executes, or when it ends, which is right after
+           it has executed. Both come after the end of the reader, and so after its read.
+        3. A job that has written by then has done so at the latest at the release.
+
+        So the latest read counts as if it were at the release, although the reader may get the core later. Under logical execution
+        time the writer publishes without executing; a reader reads at its release anyway.
+        """
+        if is_logical(writer.leave) or is_logical(reader.enter) or self.context.decisions:
             return False
-        first, then = (self.context.scheduled[stage.process.name] for stage in (one, other))
-        return self._blocking_on(first.core).always_preempts(first, then)
+        if writer.jobs_later is not None or isinstance(writer.leave, Pass) or not isinstance(reader.enter, Read):
+            return False
+        releases = known_releases(reader.process, self.context.system)
+        if releases is None or self.context.has_loops(self.context.scheduled[reader.process.name].core):
+            return False
+        return self._interrupts(reader, writer) and self._worst(reader.process) <= releases.period * self.unit
 
     def _is_visible_at_once(self, writer: Stage, reader: Stage | None) -> bool:
         """Whether a read at the instant of a write certainly comes after it.

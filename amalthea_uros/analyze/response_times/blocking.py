@@ -257,6 +257,17 @@ class Blocking:
             and self.open_semaphores.isdisjoint(of_other)
         )
 
+    def prevents_start(self, one: ScheduledProcess, other: ScheduledProcess) -> bool:
+        """Whether a process, as long as it is ready, keeps another one of the core from starting, if not from continuing."""
+        if one.core != other.core or one.server or other.server or one.rank <= other.rank:
+            return False
+        # While something below keeps the first one off, or it waits for that, the other one can start.
+        return self.level(one).rank > other.rank
+
+    def interrupts(self, one: ScheduledProcess, other: ScheduledProcess) -> bool:
+        """Whether a process, once it is ready, preempts another one at once and delays it until its own end."""
+        return self.prevents_start(one, other) and self.always_preempts(one, other)
+
     def last_region(self, item: ScheduledProcess) -> Time:
         """The demand after the last point at which others of its kind can run, where that point is as late as possible."""
         if preemption(item) is Preemption.NON_PREEMPTIVE:

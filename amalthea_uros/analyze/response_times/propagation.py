@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 
 from amalthea_uros.analyze.response_times.constant_schedule import constant_responses
 from amalthea_uros.analyze.response_times.core import responses_on
+from amalthea_uros.analyze.response_times.known_best_cases import raised
 from amalthea_uros.analyze.response_times.known_offsets import tightened
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.errors import UnknownError
@@ -42,6 +43,7 @@ def solve(context: TimingContext) -> Solution:
         if not changing:
             for core in context.system.cores:
                 solution.responses |= constant_responses(core, solution) or tightened(core, solution)
+                solution.responses |= raised(core, solution)
             return solution
         # Without the diverging processes and those that depend on them, the others can converge.
         diverging |= changing

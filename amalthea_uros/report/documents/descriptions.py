@@ -24,7 +24,7 @@ from amalthea_uros.report.basics.document import (
     table,
 )
 from amalthea_uros.report.wording.cells import activation_text, exactly, load_text
-from amalthea_uros.units import Rounding, time_text
+from amalthea_uros.units import Rounding, Time, rounded_time_text, time_text
 
 if TYPE_CHECKING:
     from amalthea_uros.perf.executors import Executor
@@ -33,8 +33,9 @@ if TYPE_CHECKING:
     from amalthea_uros.services.import_code import ImportResult
     from amalthea_uros.services.init import Catalogue, InitResult, Offered
     from amalthea_uros.services.report import ReportContent
-    from amalthea_uros.uros.application.entities import Initialisation
     from amalthea_uros.uros.assemble import Assembly
+    from amalthea_uros.uros.creation_traffic import CreationTraffic
+    from amalthea_uros.uros.initialisation import Initialisation
     from amalthea_uros.uros.memory import MemoryDemand
     from amalthea_uros.uros.middleware.options import Option
 
@@ -46,7 +47,7 @@ def build_document(result: BuildResult) -> Document:
     rest = f": AMALTHEA {result.document.version}, {objects}, built from {result.description}"
     written = lines(Lead(str(result.document.path or "unsaved"), rest))
     tasks, isrs = _tasks(assembly), _isrs(assembly)
-    start = [] if assembly.initialisation is None else [_start_text(assembly.initialisation)]
+    start = [] if assembly.initialisation is None else list(_start_texts(assembly.initialisation))
     sections = (
         section("", written),
         section(f"Tasks ({len(tasks.rows)})", tasks, Sentences([assembly.placement] if assembly.placement else [])),
@@ -130,13 +131,36 @@ def _bus_load(assembly: Assembly) -> str:
     return load_text(sum((each.bus_load for each in assembly.messages), Fraction(0)), Rounding.UP)
 
 
-def _start_text(start: Initialisation) -> str:
-    """The initialisation of the middleware, in a sentence."""
+def _start_texts(start: Initialisation) -> Iterator[str]:
+    """The initialisation of the middleware: its time, and its messages."""
     count = f"{counted(len(start.entities), 'entity')}, created one after the other"
-    text = f"{count}: at least {counted(start.min_cycles, 'cycle')} ({time_text(start.min_time)})"
-    if start.max_cycles is None or start.max_time is None:
-        return text
-    return f"{text}, at most {counted(start.max_cycles, 'cycle')} ({time_text(start.max_time)})"
+    least = _start_time(start.min_cycles, start.min_time, Rounding.DOWN)
+    most = "" if start.max_time is None else f", at most {_start_time(start.max_cycles, start.max_time, Rounding.UP)}"
+    yield f"{count}: at least {least}{most}"
+    if start.reason:
+        limit = "" if start.limit is None else f"; what is not created after {time_text(start.limit)} has failed"
+        yield f"{start.reason}{limit}"
+    if start.traffic is not None:
+        yield from _traffic_texts(start.traffic, start.most_load)
+
+
+def _start_time(cycles: int | None, time: Time, rounding: Rounding) -> str:
+    return rounded_time_text(time, rounding) if cycles is None else f"{counted(cycles, 'cycle')} ({time_text(time)})"
+
+
+def _traffic_texts(traffic: CreationTraffic, load: Fraction | None) -> Iterator[str]:
+    """The messages of the creation, their time on the wire, and why it is unknown."""
+    there, back, most = traffic.to_agent, traffic.to_controller, traffic.most_wire_time
+    size = f"at least {there.least_bytes} B" if there.most_bytes is None else f"{there.least_bytes} to {there.most_bytes} B"
+    answers = there.acknowledgements + back.acknowledgements
+    acknowledged = f", at most {counted(answers, 'acknowledgement')}" if answers else ""
+    yield f"{counted(there.messages, 'message')} to the agent ({size}) and {back.messages} back ({back.most_bytes} B){acknowledged}"
+    if traffic.least_wire_time is not None:
+        text = f"on the wire: at least {rounded_time_text(traffic.least_wire_time, Rounding.DOWN)}"
+        text += "" if most is None else f", at most {rounded_time_text(most, Rounding.UP)}"
+        yield text + ("" if load is None else f", a load of at most {load_text(load, Rounding.UP)}")
+    if traffic.reason:
+        yield traffic.reason
 
 
 def _pools(assembly: Assembly) -> Table:

@@ -8,8 +8,9 @@ from amalthea_uros.perf.executors import Executor
 from amalthea_uros.report.fields.declaration import declare
 from amalthea_uros.services.build import BuildResult
 from amalthea_uros.services.generate import GenerateResult, MetaCheck
-from amalthea_uros.uros.application.entities import Initialisation
+from amalthea_uros.uros.creation_traffic import CreationTraffic, SentForCreation
 from amalthea_uros.uros.generated_options import values_of
+from amalthea_uros.uros.initialisation import Initialisation
 from amalthea_uros.uros.memory import MemoryDemand
 
 
@@ -72,7 +73,20 @@ declare(
     ("most_cycles", "max_cycles"),
     ("least_time_ps", "min_time"),
     ("most_time_ps", "max_time"),
+    "reason",
+    ("limit_ps", "limit"),
+    "traffic",
+    ("most_load", lambda start: None if start.most_load is None else float(start.most_load)),
 )
+declare(
+    CreationTraffic,
+    "to_agent",
+    "to_controller",
+    ("least_wire_time_ps", "least_wire_time"),
+    ("most_wire_time_ps", "most_wire_time"),
+    "reason",
+)
+declare(SentForCreation, "messages", "least_bytes", "most_bytes", "acknowledgements")
 declare(
     Executor,
     ("executor", "name"),

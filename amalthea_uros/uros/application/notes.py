@@ -6,6 +6,7 @@ from collections.abc import Iterable
 
 from amalthea_uros._internal.similar import Suggestions
 from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros.errors import ReadError
 
 _LONGEST_LIST = 12
 
@@ -31,6 +32,10 @@ class Notes:
             if finding not in self._known:
                 self._known.add(finding)
                 self.findings.append(finding)
+
+    def refusal(self) -> ReadError:
+        """The error that carries all findings."""
+        return ReadError(self.findings)
 
     def error(self, rule: str, message: str, location: Location | None, help_text: str = "") -> None:
         """Add a finding that prevents a model."""

@@ -22,7 +22,6 @@ def check_middleware(callbacks: Sequence[Callback], profile: Profile, notes: Not
     _check_message_sizes(callbacks, profile, notes)
     _check_streams(callbacks, profile, notes)
     _check_blocking(callbacks, profile, notes)
-    _check_histories(callbacks, profile, notes)
     _check_threads(profile, notes)
 
 
@@ -219,38 +218,3 @@ def _receivers(node: NodeSection) -> Iterator[tuple[CallbackSection, int]]:
         yield MessageCallback.model_construct(), PARAMETER_SERVICES
     if node.lifecycle is not None:
         yield MessageCallback.model_construct(), LIFECYCLE_SERVICES
-
-
-def _check_histories(callbacks: Sequence[Callback], profile: Profile, notes: Notes) -> None:
-    """Report histories that are deeper than the slots for all messages together, so that these are used up first."""
-    slots = profile.waiting.slots
-    if slots is None:
-        return
-    by_default = []
-    loops = {executor.name for executor in profile.middleware.stated_executors if executor.loop is not None}
-    for callback in callbacks:
-        depth = depth_of(callback.section)
-        if depth is None or depth <= slots:
-            continue
-        if callback.section.states("depth"):
-            text = (
-                f"the history of {callback.name!r} is {depth} messages deep, but only {slots} can be stored for all callbacks"
-            )
-            notes.warning("UR125", f"{text}: {_effect(callback)}", callback.section.location("depth"), _ADVICE)
-        elif callback.executor in loops:
-            by_default.append(callback)
-    if by_default:
-        names = ", ".join(repr(callback.name) for callback in by_default)
-        text = f"by default, the histories of {names} are deeper than the storage for messages of all callbacks, {slots}"
-        place = profile.middleware.limits.location("RMW_UXRCE_MAX_HISTORY")
-        notes.info("UR125", f"{text}: {_effect(by_default[0])}", place, _ADVICE)
-
-
-_ADVICE = "Set RMW_UXRCE_MAX_HISTORY to the messages that can wait at the same time, or a smaller 'depth'."
-
-
-def _effect(callback: Callback) -> str:
-    """What happens when the slots are used up before the history."""
-    assert isinstance(callback.section, MessageCallback)
-    expected = "the oldest one being overwritten" if callback.section.history == "keep-last" else "more being kept"
-    return f"a new message of any topic is dropped instead of {expected}"

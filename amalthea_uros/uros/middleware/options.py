@@ -157,28 +157,24 @@ def option_rows(folder: str) -> Mapping[str, OptionRow]:
 
 
 def check_options(options: Iterable[Option], middleware: Middleware, notes: Notes) -> None:
-    """Report options that are too small, and values that the build refuses or ignores."""
+    """Report options that are too small, and values that the build refuses or ignores; see `storage` for those of waiting messages."""
     for option in options:
         if option.without_effect:
             _report_without_effect(option, middleware, notes)
         elif option.is_power_of_two and option.available & (option.available - 1):
             _report_no_power_of_two(option, middleware, notes)
-        elif option.is_exceeded and option.role in COUNTED:
+        elif option.is_exceeded and option.role is OptionRole.POOL:
             _report_pool(option, middleware, notes)
         elif option.is_exceeded and option.role is OptionRole.ROOM:
             _report_name(option, middleware, notes)
 
 
 def _report_pool(option: Option, middleware: Middleware, notes: Notes) -> None:
-    """Without an entity the application does not start; without a slot it loses messages."""
+    """Without an entity the application does not start."""
     default = "" if option.is_stated else " by default"
-    is_queue = option.role is OptionRole.QUEUE
-    least = "at least " if is_queue else ""
-    message = f"{option.name} is {option.available}{default}, but the application needs {least}{option.needed}"
-    # How many messages wait depends on response times, which nobody knows here.
-    value = "the number that 'amuros generate' computes" if is_queue else f"{option.needed} or more"
-    advice = f"{option.when_exhausted} Set {option.name} to {value} in the build and under 'limits'."
-    report = notes.error if option.is_stated and option.role is OptionRole.POOL else notes.warning
+    message = f"{option.name} is {option.available}{default}, but the application needs {option.needed}"
+    advice = f"{option.when_exhausted} Set {option.name} to {option.needed} or more in the build and under 'limits'."
+    report = notes.error if option.is_stated else notes.warning
     report("UR120", message, _location(option, middleware), advice)
 
 

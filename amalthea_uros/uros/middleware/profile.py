@@ -94,6 +94,28 @@ class Sending(Brief):
     is_protected: bool
 
 
+class CreationFigures(NamedTuple):
+    """The messages that create entities, in bytes without the framing of the transport, and the limits of their responses.
+
+    Attributes
+    ----------
+    least_request : the shortest request for an entity, whatever its names are
+    status : the response to it
+    data_request : by which a receiving entity asks for its data
+    acknowledgement : of each of them; None if they are not reliable
+    session_limit, entity_limit : time after which the creation has failed; 0 for entities that are not waited for
+    """
+
+    session_request: int
+    session_response: int
+    least_request: int
+    status: int
+    data_request: int
+    acknowledgement: int | None
+    session_limit: Time
+    entity_limit: Time
+
+
 class Heartbeat(NamedTuple):
     """A message that the middleware sends by itself.
 
@@ -172,12 +194,22 @@ class Profile(ABC):
 
     @property
     @abstractmethod
+    def slot_size(self) -> int | None:
+        """Bytes of memory that each of these slots takes; None without slots."""
+
+    @property
+    @abstractmethod
     def sending(self) -> Sending:
         """How messages are sent."""
 
     @abstractmethod
     def heartbeat(self, direction: Direction) -> Heartbeat:
         """What it sends by itself in a direction."""
+
+    @property
+    def creation(self) -> CreationFigures | None:
+        """How entities are created; None if the agent does not create them on request."""
+        return None
 
     @property
     @abstractmethod

@@ -61,11 +61,16 @@ def add_receivers(context: AssemblyContext, messages: Sequence[WireMessage], wak
     names = tuple(thread.name for thread in threads)
     if interrupt is None:
         return Receivers(processes=names, message_triggers=tuple(triggers))
-    others = (_add_isr(context, interrupt, f"{interrupt.name}_Other", ()),)
+    others = (_add_isr(context, interrupt, name_for_other_frames(interrupt), ()),)
     if not incoming:
         return Receivers(other_triggers=others)
     last = (_add_isr(context, interrupt, interrupt.name, triggers),)
     return Receivers(processes=(interrupt.name, *names), message_triggers=last, other_triggers=others)
+
+
+def name_for_other_frames(interrupt: Interrupt) -> str:
+    """The name of the interrupt service routine when it receives a frame without the end of a message of the application."""
+    return f"{interrupt.name}_Other"
 
 
 def without_idle(system: System, stimuli: Sequence[str]) -> System:

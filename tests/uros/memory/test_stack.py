@@ -7,6 +7,7 @@ from effort import examples
 from hypothesis import given
 from hypothesis import strategies as st
 
+from amalthea_uros.errors import ReadError
 from amalthea_uros.uros.described import describe_text
 
 KINDS = ("preemptive", "cooperative", "non-preemptive")
@@ -112,3 +113,48 @@ def test_the_longest_chain_is_that_of_all_chains(tasks, isrs):
 def test_tasks_of_osek_share_their_stack(os, shared):
     text = f"amuros: 1\nname: app\nhardware: {{platform: generic}}\n{os}middleware: {{policy: OSEK}}\ntasks:\n  - {task('A', 1, 100)}"
     assert describe_text(text).assembly.memory.stacks.shared is shared
+
+
+CALLBACKS = """\
+amuros: 1
+name: app
+hardware: {{platform: generic}}
+os: {{stack: {stack}}}
+middleware:
+  executor: {{name: Executor, stack: 400 B, loop: {{spin_some: 10 ms}}}}
+  transport: {{can: {{bitrate: 500 kbit/s, interrupt: {{execution_time: 2 us, stack: 64 B}}}}}}
+application:
+  nodes:
+    - name: node
+      subscriptions:
+        - {{name: Take, topic: t, rate: 10 Hz, message_size: 4 B, execution_time: 1 us, runs_in: executor}}
+      timers:
+        - {{name: Fast, period: 10 ms, execution_time: 1 us, runs_in: {place}, priority: 2, stack: 100 B}}
+        - {{name: Slow, period: 20 ms, execution_time: 1 us, runs_in: own-task, priority: 1{slow}}}
+"""
+
+
+def of_callbacks(stack="per-task", slow=", stack: 200 B", place="own-task"):
+    return describe_text(CALLBACKS.format(stack=stack, slow=slow, place=place)).assembly.memory.stacks
+
+
+def test_callbacks_in_tasks_of_their_own_have_stacks():
+    stacks = of_callbacks()
+    assert {user.name: user.size for user in stacks.users} == {"Executor": 400, "Fast": 100, "Slow": 200, "CAN_Receive": 64}
+    assert (stacks.size, stacks.unknown) == (764, ())
+
+
+def test_callbacks_share_the_stack_of_their_core():
+    # On the slow one the fast one, on that the executor, if it is more urgent, and the interrupt.
+    assert of_callbacks("shared").size == 200 + 100 + 400 + 64
+
+
+def test_a_callback_without_a_stated_stack_makes_a_lower_bound():
+    assert of_callbacks(slow="").unknown == ("Slow",)
+    stacks = of_callbacks("shared", slow="")
+    assert (stacks.size, stacks.unknown, "Slow" in chain(stacks)) == (564, ("Slow",), False)
+
+
+def test_a_callback_in_the_executor_uses_the_stack_of_that():
+    with pytest.raises(ReadError, match="'stack' of 'Fast' has no effect, because it runs in the executor"):
+        of_callbacks(place="executor")

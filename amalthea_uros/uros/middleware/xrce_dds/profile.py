@@ -21,7 +21,7 @@ from amalthea_uros.units import MILLISECOND, Time
 from amalthea_uros.uros.application.entities import Entities, entities_of
 from amalthea_uros.uros.application.messages import MessageKind
 from amalthea_uros.uros.middleware.options import Option, OptionRow
-from amalthea_uros.uros.middleware.profile import Heartbeat, MemoryUse, Sending
+from amalthea_uros.uros.middleware.profile import CreationFigures, Heartbeat, MemoryUse, Sending
 from amalthea_uros.uros.middleware.xrce_dds.build import rows
 from amalthea_uros.uros.middleware.xrce_dds.messages import MessageLayout, contents_of
 
@@ -50,6 +50,11 @@ class XrceDds(MessageLayout):
         return self.build.value("RMW_UXRCE_MAX_HISTORY")
 
     @property
+    def slot_size(self) -> int:
+        """A slot has the size of the longest message, whatever message it holds."""
+        return self.build.mtu * self.build.histories[0] + _SLOT
+
+    @property
     def sending(self) -> Sending:
         """How messages are sent."""
         how, stated = self.data.sending, self.middleware.reliable.timeout
@@ -72,6 +77,23 @@ class XrceDds(MessageLayout):
     def _heartbeat_interval(self) -> Time:
         """Time without input after which the client asks for an acknowledgement."""
         return self._time("UCLIENT_MIN_HEARTBEAT_TIME_INTERVAL")
+
+    @property
+    def creation(self) -> CreationFigures:
+        """Requests with their responses, each with a time limit (micro-ROS/rmw_microxrcedds src/rmw_init.c, src/utils.c)."""
+        stated = self.build.stated(self.option_table["RMW_UXRCE_ENTITY_CREATION_TIMEOUT"])
+        limit = self._time("RMW_UXRCE_ENTITY_CREATION_DESTROY_TIMEOUT") if stated is None else stated * MILLISECOND
+        attempts, interval = "UCLIENT_MAX_SESSION_CONNECTION_ATTEMPTS", "UCLIENT_MIN_SESSION_CONNECTION_INTERVAL"
+        return CreationFigures(
+            session_request=self.size("create_client"),
+            session_response=self.size("status_agent"),
+            least_request=self.size("create"),
+            status=self.size("status"),
+            data_request=self.size("read_data"),
+            acknowledgement=self.size("acknowledgement") if limit else None,
+            session_limit=self.build.value(attempts) * self._time(interval),
+            entity_limit=limit,
+        )
 
     @property
     def buffers(self) -> int:
@@ -116,7 +138,7 @@ class XrceDds(MessageLayout):
         )
         messages = MemoryUse(
             name="slots for received messages",
-            size=slots * (mtu * inputs + _SLOT),
+            size=slots * self.slot_size,
             formula=f"{slots} x ({mtu} B x {inputs} + {_SLOT} B)",
         )
         entities = MemoryUse(

@@ -43,6 +43,11 @@ class ZenohPico(Profile):
         return None
 
     @property
+    def slot_size(self) -> None:
+        """There are no slots."""
+        return None
+
+    @property
     def sending(self) -> Sending:
         """How messages are sent: the transport acknowledges them, nobody waits for that."""
         how, stated = self.data.sending, self.middleware.reliable.timeout
