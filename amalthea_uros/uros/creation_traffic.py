@@ -76,7 +76,7 @@ def creation_traffic(
     figures: CreationFigures,
     sizes: Mapping[str, DataSize],
     line: Line | None,
-    heartbeat: Heartbeat,
+    heartbeat: Callable[[Direction], Heartbeat],
 ) -> CreationTraffic:
     """The messages of the creation.
 
@@ -114,13 +114,16 @@ def round_trip(figures: CreationFigures, line: Line, *, is_session: bool) -> Tim
     return there + back + 2 * line.link.least
 
 
-def _heartbeat_load(heartbeat: Heartbeat, figures: CreationFigures, line: Line | None) -> Fraction:
+def _heartbeat_load(heartbeat: Callable[[Direction], Heartbeat], figures: CreationFigures, line: Line | None) -> Fraction:
     """Each side asks for acknowledgements after its interval without one, and the other side answers."""
     if line is None or figures.acknowledgement is None:
         return Fraction(0)
-    lengths, ways = (heartbeat.length, figures.acknowledgement), (Direction.TO_AGENT, Direction.TO_CONTROLLER)
-    times = [sum(time_on(line, line.frames(length, way))[1] for length in lengths) for way in ways]
-    return Fraction(max(times) if line.is_duplex else sum(times), heartbeat.interval)
+    loads = []
+    for way, back in ((Direction.TO_AGENT, Direction.TO_CONTROLLER), (Direction.TO_CONTROLLER, Direction.TO_AGENT)):
+        asked, answered = heartbeat(way), heartbeat(back)
+        times = (time_on(line, line.frames(length, way))[1] for length in (asked.length, figures.acknowledgement))
+        loads.append(sum(map(Fraction, times, (asked.interval, answered.interval)), Fraction(0)))
+    return max(loads) if line.is_duplex else sum(loads, Fraction(0))
 
 
 def _sent(
