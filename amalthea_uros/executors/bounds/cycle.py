@@ -19,7 +19,7 @@ A wait answers the heartbeats that are unread, whose number depends on the cycle
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -266,11 +266,19 @@ class Cycle:
     @property
     def _longest_without_reading(self) -> Time | None:
         """The longest cycle without a wait in which no publication reads until its acknowledgement; None if it is not bounded."""
-        handles = [
+        return self._longest_of(
             each
             for each in self.executor.handles
             if not any(reads_until_acknowledged(publication, self.sending) for publication in each.publications)
-        ]
+        )
+
+    @cached_property
+    def longest_without_call(self) -> Time | None:
+        """The longest cycle without a wait and without a callback; None if it is not bounded."""
+        return self._longest_of(())
+
+    def _longest_of(self, handles: Iterable[Handle]) -> Time | None:
+        """The longest cycle without a wait in which only some handles are called."""
         return replace(self, executor=replace(self.executor, handles=tuple(handles))).longest
 
     def _suspended(self, wait: Time) -> Time | None:

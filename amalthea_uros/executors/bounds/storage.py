@@ -23,11 +23,15 @@ already. Of the checks after that, the n-th at the latest takes it, each of whic
 most L2 + G with the greatest distance G of two messages that come for certain, or the longest cycle with the whole timeout. If its
 handle is the only one of the executor, nothing can be before it in the backlog when nothing of it is taken: H = 0, so that n = 1, and
 the next message of the handle arrives after the wait has begun, and ends it.
+
+If it is the only one, and delta(2) > I + L2 with the longest cycle I without a callback, nothing is ever stored: a message that arrives
+in such a cycle is taken I later, and the next one arrives after the wait that follows has begun. Then it is taken after L2 at most, as
+any message of an executor that stores none.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 
@@ -58,33 +62,74 @@ class Storage:
     why: str
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StorageConditions:
+    """What bounds how long the messages of a handle can be stored.
+
+    Attributes
+    ----------
+    events : arrivals of its messages
+    until_wait : longest time from a check of what is ready to the next wait
+    until_check : longest time from the arrival that ends a wait to the check after it
+    until_timeout : longest time from a check to the next one, with the whole timeout between them; None if it is not bounded
+    age : greatest age of the receive backlog
+    gaps : greatest distances of messages that come for certain, of some handles of the executor
+    idle : longest cycle without a callback, if the executor has no other handle; None if it has
+    room : most messages that can be stored for the handle; None if nothing limits them
+    """
+
+    events: EventModel
+    until_wait: Time
+    until_check: Time
+    until_timeout: Time | None
+    age: Time
+    gaps: Sequence[Time] = ()
+    idle: Time | None = None
+    room: int | None = None
+
+    @property
+    def longest(self) -> Storage | None:
+        """The longest storage; None if it has no bound."""
+        length = self.until_wait + self.until_check
+        until_next = [] if self.until_timeout is None else [self.until_timeout]
+        # Distances of periodic events grow by the same, so that the condition holds for all m if it does for one.
+        is_drained = self.events.delta_min(2) > length
+        if self.idle is not None and self.events.delta_min(2) > self.idle + length:
+            return Storage(most=length, why="no message arrives before the wait that follows the one before it")
+        if is_drained and self.idle is not None:
+            until_next += self.gaps
+            why = "a message that is stored is taken when the next one arrives, or the wait times out"
+            return Storage(most=max(length, min(until_next) + self.until_check), why=why) if until_next else None
+        until_next += [length + gap for gap in self.gaps]
+        count = _stored(self.events, self.age, length) if is_drained else self.room
+        if count is None or not until_next:
+            return None
+        why = f"up to {count} are stored for it, each of which is taken when another message arrives, or a wait times out"
+        return Storage(most=self.age + self.until_check + count * min(until_next), why=why)
+
+
 def storage_of(handle: Handle, cycle: Cycle, extra_jitter: Mapping[str, Time | None]) -> Storage | None:
     """How long a message of a handle can be stored; None if that has no bound, or depends on other executors or a trigger condition."""
     executor, until_wait, until_check, age = cycle.executor, cycle.until_wait, cycle.until_check, cycle.greatest_age
-    if None in (until_wait, until_check, age) or not _is_taken_in_each_iteration(handle, cycle):
+    if until_wait is None or until_check is None or age is None or not _is_taken_in_each_iteration(handle, cycle):
         return None
     try:
         events = arrivals(handle, extra_jitter)
     except UnknownError:
         return None
-    length = (until_wait or 0) + (until_check or 0)
-    # Distances of periodic events grow by the same, so that the condition holds for all m if it does for one.
-    is_drained = events.delta_min(2) > length
-    gaps = [] if cycle.loses_messages else list(_gaps(executor, extra_jitter))
+    gaps = () if cycle.loses_messages else tuple(_gaps(executor, extra_jitter))
     if gaps:
         cycle.solved.context.notes.assume(ASSUMPTION)
-    timed_out = cycle.longest_with(longest_wait(executor))
-    until_next = [] if timed_out is None else [timed_out]
-    if is_drained and executor.handles == (handle,):
-        until_next += gaps
-        why = "a message that is stored is taken when the next one arrives, or the wait times out"
-        return Storage(most=max(length, min(until_next) + (until_check or 0)), why=why) if until_next else None
-    until_next += [length + gap for gap in gaps]
-    count = _stored(events, age or 0, length) if is_drained else _room(handle, executor)
-    if count is None or not until_next:
-        return None
-    why = f"up to {count} are stored for it, each of which is taken when another message arrives, or a wait times out"
-    return Storage(most=(age or 0) + (until_check or 0) + count * min(until_next), why=why)
+    return StorageConditions(
+        events=events,
+        until_wait=until_wait,
+        until_check=until_check,
+        until_timeout=cycle.longest_with(longest_wait(executor)),
+        age=age,
+        gaps=gaps,
+        idle=cycle.longest_without_call if executor.handles == (handle,) else None,
+        room=min((limit for limit in (handle.depth, executor.waiting.slots) if limit is not None), default=None),
+    ).longest
 
 
 def _is_taken_in_each_iteration(handle: Handle, cycle: Cycle) -> bool:
@@ -108,11 +153,6 @@ def _stored(events: EventModel, age: Time, length: Time) -> int | None:
         if arrived <= count + 1:
             return most
     return None
-
-
-def _room(handle: Handle, executor: Executor) -> int | None:
-    """The most messages that are stored for a handle, because others are lost."""
-    return min((limit for limit in (handle.depth, executor.waiting.slots) if limit is not None), default=None)
 
 
 def _gaps(executor: Executor, extra_jitter: Mapping[str, Time | None]) -> Iterator[Time]:

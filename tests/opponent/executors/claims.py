@@ -90,7 +90,6 @@ def _contradictions(analysis: Analysis, simulation: Simulation) -> Iterator[str]
     """
     system = analysis.solution.context.system
     loose = {name for name, each in system.transmissions.items() if comes_back(each, system)}
-    loose |= {name for name, each in system.transmissions.items() if each.acknowledges and each.direction is Direction.TO_AGENT}
     loose |= {each.acknowledges for each in system.transmissions.values() if each.acknowledges in loose}
     for text in contradictions(analysis, simulation):
         if not (set(text.split()) & loose and re.match(r"(activate|start|end)_to_", text)):
