@@ -13,6 +13,7 @@ from typing import NamedTuple, Self
 
 from amalthea_uros.perf.executors import WaitBehaviour
 from amalthea_uros.perf.named import Brief
+from amalthea_uros.perf.network import Recovery
 from amalthea_uros.spec.application import Application
 from amalthea_uros.spec.middleware import Middleware, MiddlewareTask
 from amalthea_uros.spec.profiles import ProfileData, ThreadData
@@ -178,6 +179,11 @@ class Profile(ABC):
     @abstractmethod
     def heartbeat(self) -> Heartbeat:
         """What it sends by itself, in both directions."""
+
+    @property
+    @abstractmethod
+    def recovery(self) -> Recovery | None:
+        """How reliable messages that were lost are sent again; None if it does not care for losses."""
 
     @property
     @abstractmethod
