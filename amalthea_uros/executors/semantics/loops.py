@@ -86,7 +86,7 @@ def busy_polls(executor: Executor) -> str:
 
 
 def timing_context(system: System, settings: Settings | None = None) -> TimingContext:
-    """The timing context of a system, in which the execution demand of executors that busy-poll is unknown, and of what is sent again."""
+    """The timing context of a system; the execution demand is unknown of executors that busy-poll, and of what is sent again."""
     polling = {executor.task: reason for executor in system.executors if (reason := busy_polls(executor))}
     return TimingContext.of(system, settings, unknown_demands=polling | _sent_again(system))
 

@@ -21,6 +21,7 @@ from amalthea_uros.simulate.program.executors import IterationCompiler, add_acti
 from amalthea_uros.simulate.program.image import Code, JumpLabel, Operation, ProgramHooks
 from amalthea_uros.simulate.program.resources import Resources
 from amalthea_uros.simulate.program.watches import EventSource
+from amalthea_uros.simulate.program.wire_programs import add_end, add_start
 from amalthea_uros.simulate.sampling.streams import ValueStream
 from amalthea_uros.timing.basics.settings import MemoryModel
 from amalthea_uros.timing.context import TimingContext
@@ -47,6 +48,7 @@ class Body:
     masks : of groups that cannot be interrupted, around the activity
     executions : the records of executions of runnables that are measured
     iteration : of an executor, if the process executes one in each job
+    part : of a message that is acknowledged, the number of the last one that is complete
     """
 
     resources: Resources
@@ -61,6 +63,7 @@ class Body:
     masks: int = 0
     executions: dict[str, int] = field(default_factory=dict)
     iteration: IterationCompiler | None = None
+    part: int = -1
     _places: collections.Counter[int] = field(default_factory=collections.Counter)
 
     @property
@@ -230,7 +233,7 @@ def _process_code(body: Body, process: Process, scheduler: Scheduler | None) -> 
     body.require_limited(process.activities)
     entry, exit_ = model.overheads.of_isr(process, body.core) if isinstance(process, Isr) else (None, None)
     copies = model.copies(process, body.core) if model.settings.memory is MemoryModel.IMPLICIT else []
-    body.add_all(body.hooks.start)
+    add_start(body, process)
     body.demand(entry)
     for kind, frame in copies:
         if kind is AccessKind.READ:
@@ -245,10 +248,7 @@ def _process_code(body: Body, process: Process, scheduler: Scheduler | None) -> 
         body.number = 0
         for activity in scheduler.overhead:
             compile_activity(body, activity)
-    messages = body.resources.executors.messages
-    body.add_all(messages.first_operations_of_end(process.name))
-    body.add_all(body.hooks.end)
-    body.add_all(messages.last_operations(process.name))
+    add_end(body, process)
     body.code.add(layout.END)
     return body.code
 

@@ -13,6 +13,7 @@ from amalthea_uros.simulate.kernel.layout import PUT
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.program.chains import ChainCompiler, FollowedRoute
 from amalthea_uros.simulate.program.executors import ExecutorRecords
+from amalthea_uros.simulate.program.flows import FlowRecords
 from amalthea_uros.simulate.program.image import Image
 from amalthea_uros.simulate.program.messages import MessageRecords
 from amalthea_uros.simulate.program.modes import ModeRecords
@@ -74,8 +75,10 @@ class _ProgramBuilder:
         runnables = watches.watched.runnables
         watches.measured = {name: len(processes) + number for number, name in enumerate(runnables)}
         network = MessageRecords(resources)
-        executors = resources.executors = ExecutorRecords(resources, network, len(processes) + len(runnables))
+        flows = FlowRecords(network)
+        executors = resources.executors = ExecutorRecords(resources, network, flows, len(processes) + len(runnables))
         network.place()
+        flows.place()
         executors.place()
         chains = ChainCompiler(resources)
         for name in filter(network.is_about_message, processes):
