@@ -124,6 +124,7 @@ class _ProgramBuilder:
             handles=tuple(executors.measured),
             handle_records=dict(network.handles),
             executors=executors.publications_of(),
+            lossy=flows.on_lossy_wires(),
             left_out=self.left_out,
             chains_left_out=chains.left_out,
         )
@@ -164,6 +165,7 @@ class KernelProgram:
     handles : executors and handles of which the calls are measured, in the order of their numbers, which follow those of runnables
     handle_records : by executor and handle
     executors : those that are simulated, each with the records of its publications
+    lossy : the records of messages on wires of which it is stated how many they lose
     left_out : why a process is not simulated
     chains_left_out : why a chain is not followed
     """
@@ -186,5 +188,6 @@ class KernelProgram:
     handles: tuple[tuple[str, str], ...]
     handle_records: dict[tuple[str, str], int]
     executors: dict[str, list[int]]
+    lossy: dict[str, int]
     left_out: dict[str, str]
     chains_left_out: dict[str, str]

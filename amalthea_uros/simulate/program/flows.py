@@ -51,6 +51,11 @@ class FlowRecords:
         """The flow of what an executor sends; 0 if it sends nothing reliable."""
         return self.flows.get((self.messages.inboxes[executor], Direction.TO_AGENT), 0)
 
+    def on_lossy_wires(self) -> dict[str, int]:
+        """The records of messages on wires of which it is stated how many they lose."""
+        lossy = [each.name for wire in self.messages.system.network.wires if wire.losses for each in self._on(wire)]
+        return {name: self.messages.transmissions[name] for name in lossy}
+
     def _on(self, wire: Wire) -> list[Transmission]:
         every = (self.messages.system.transmissions[name] for name in self.messages.transmissions)
         return [each for each in every if each.wire == wire.name]
