@@ -277,7 +277,8 @@ class Player:
         yield Run(overhead - before)
         taken = {}
         if self.plan["semantics"] == "LET":
-            for handle in ready:
+            # A timer is set to its next time when it is called.
+            for handle in (each for each in ready if each["kind"] == "subscription"):
                 taken[handle["name"]] = yield from self._take(handle)
         for handle in ready:
             found = taken[handle["name"]] if handle["name"] in taken else (yield from self._take(handle))

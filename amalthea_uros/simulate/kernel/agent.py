@@ -160,7 +160,7 @@ def _send_again(m: Memory, flow: int, acknowledgement: int) -> int:
     if message == 0 or m[message + FIRST_PART] > part:
         m[acknowledgement + MISSING] &= ~(1 << (part - m[acknowledgement + UP_TO]))
         return CONTINUE
-    line = m[m[message + SENT_AS] + SENT_AGAIN_ON]
+    line = m[flow + SENT_AGAIN_ON]
     if m[FREE_MESSAGES] == 0:
         return NO_MESSAGES
     code = lacks_delay(m, line)

@@ -101,8 +101,9 @@ NEXT_PART, UNACKNOWLEDGED, SEND_ROOM = range(4, 7)
 # Its receiver: the first part that is missing, bits of those from there on that have arrived, the part after the last known one, for
 # how many there is room, the part up to which messages are handed over, and where they are read.
 EXPECTED, ARRIVED_PARTS, KNOWN_TO, RECEIVE_ROOM, HANDED_OVER, FLOW_INBOX = range(7, 13)
-# Who misses an acknowledgement asks: as which message, whether the time runs, when, and after which time.
-ASKS_AS, IS_ASKING, ASKS_AT, ASKS_AFTER, FLOW_SIZE = range(13, 18)
+# Who misses an acknowledgement asks: as which message, whether the time runs, when, and after which time. The line of the agent on which
+# it sends again.
+ASKS_AS, IS_ASKING, ASKS_AT, ASKS_AFTER, SENT_AGAIN_ON, FLOW_SIZE = range(13, 19)
 
 # Losses: values that decide, how many in which time (0: a value for each message), when the last ones were, which is the oldest, and
 # when the next one can be. The stimulus that stands for them in a trace, and their number.
@@ -116,11 +117,11 @@ READ_FROM, FOR_HANDLE, REPLY_WITH, REPLIES = range(3, 7)
 WRITTEN, DONE_WRITING, HOLDS_WRITER = range(7, 10)
 # The time to the host, the lines on which the agent sends it back, and what it carries: places from which values come, and to which.
 TO_HOST, RELAYS, RELAYS_END, STAMPS_FROM, STAMPS_FROM_END, STAMPS_TO, STAMPS_TO_END = range(10, 17)
-# The flow to which it belongs if it is reliable, the number of its parts, and the line on which the agent sends it again.
-FLOW, PARTS_OF, SENT_AGAIN_ON = range(17, 20)
+# The flow to which it belongs if it is reliable, and the number of its parts.
+FLOW, PARTS_OF = range(17, 19)
 # What loses it, how often that was, how often it was sent again; stages of which it keeps the values, and that respond at the host.
-LOSES, LOSES_END, LOST_ON_WIRE, SENT_AGAIN = range(20, 24)
-KEEPS, KEEPS_END, RESPONSES, RESPONSES_END, TRANSMISSION_SIZE = range(24, 29)
+LOSES, LOSES_END, LOST_ON_WIRE, SENT_AGAIN = range(19, 23)
+KEEPS, KEEPS_END, RESPONSES, RESPONSES_END, TRANSMISSION_SIZE = range(23, 28)
 
 # Where messages wait to be read, and how many are kept for callbacks of at most so many.
 UNREAD_FIRST, UNREAD_LAST, KEPT, SLOTS, INBOX_SIZE = range(5)

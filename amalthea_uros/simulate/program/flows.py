@@ -77,9 +77,11 @@ class FlowRecords:
             layout.PARTS_OF: parts(reply, system),
         }
         if is_received:
-            fields[layout.SENT_AGAIN_ON] = messages.line(
+            # All of a flow wait in one queue of the agent.
+            line = messages.image.words[fields[layout.FLOW] + layout.SENT_AGAIN_ON] or messages.line(
                 transmission, messages.delay(f"again {transmission.name}", transmission.agent), layout.TO_WIRE
             )
+            messages.image.put(fields[layout.FLOW], {layout.SENT_AGAIN_ON: line})
         if wire.losses:
             messages.sent_again.add(transmission.name)
             if is_received:
