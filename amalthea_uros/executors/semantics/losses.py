@@ -13,6 +13,6 @@ def losses_text(wire: Wire, losses: Losses) -> str:
     """What is assumed about the messages that a wire loses."""
     which = "" if len(losses.directions) == len(Direction) else f" {losses.directions[0]}"
     if losses.window:
-        return f"at most {counted(losses.count, 'message')}{which} in any {time_text(losses.window)} are lost on {wire.name!r}"
+        return f"{wire.name!r} loses at most {counted(losses.count, 'message')}{which} in any {time_text(losses.window)}"
     percent = f"{losses.per_billion / _PERCENT:.7f}".rstrip("0").rstrip(".")
-    return f"each message{which} is lost on {wire.name!r} with a probability of {percent} %"
+    return f"{wire.name!r} loses each message{which} with a probability of {percent} %"

@@ -101,8 +101,8 @@ NEXT_PART, UNACKNOWLEDGED, SEND_ROOM = range(4, 7)
 # Its receiver: the first part that is missing, bits of those from there on that have arrived, the part after the last known one, for
 # how many there is room, the part up to which messages are handed over, and where they are read.
 EXPECTED, ARRIVED_PARTS, KNOWN_TO, RECEIVE_ROOM, HANDED_OVER, FLOW_INBOX = range(7, 13)
-# Who misses an acknowledgement asks: as which message, whether the time runs, when, and after which time. The line of the agent on which
-# it sends again.
+# Who misses an acknowledgement asks: as which message, whether the time runs, when, and after which time. The line on which the agent
+# sends again.
 ASKS_AS, IS_ASKING, ASKS_AT, ASKS_AFTER, SENT_AGAIN_ON, FLOW_SIZE = range(13, 19)
 
 # Losses: values that decide, how many in which time (0: a value for each message), when the last ones were, which is the oldest, and
