@@ -105,9 +105,11 @@ EXPECTED, ARRIVED_PARTS, KNOWN_TO, RECEIVE_ROOM, HANDED_OVER, FLOW_INBOX = range
 # sends again.
 ASKS_AS, IS_ASKING, ASKS_AT, ASKS_AFTER, SENT_AGAIN_ON, FLOW_SIZE = range(13, 19)
 
-# Losses: values that decide, how many in which time (0: a value for each message), when the last ones were, which is the oldest, and
-# when the next one can be. The stimulus that stands for them in a trace, and their number.
-LOSS_VALUES, LOSS_COUNT, LOSS_WINDOW, LOSS_TIMES, LOSS_INDEX, NEXT_LOSS, LOSS_ENTITY, LOSS_NUMBER, LOSSES_SIZE = range(9)
+# Losses: values that decide, how many in which time (0: a value for each message), when the last ones were, which is the oldest, when
+# the next one can be, and how many messages get through then before. The stimulus that stands for them in a trace, and their number.
+LOSS_VALUES, LOSS_COUNT, LOSS_WINDOW, LOSS_TIMES, LOSS_INDEX, NEXT_LOSS, PASSING, LOSS_ENTITY, LOSS_NUMBER, LOSSES_SIZE = range(
+    10
+)
 
 # A message on a wire. The stimulus of its task, the line to the controller, the stimulus of the first process that receives it.
 WIRE_STIMULUS, LINE_IN, RECEIVED_BY = range(3)

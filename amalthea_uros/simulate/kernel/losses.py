@@ -5,6 +5,8 @@ from __future__ import annotations
 from amalthea_uros.simulate.kernel.layout import *
 from amalthea_uros.simulate.kernel.reports import NO_NOTE, emit
 
+#: One of so many messages is lost that follow each other when it is time: what comes after a silence would be lost too often.
+MOST_PASSING = 8
 #: The kind of event, as in `trace.table.EventKind`.
 _TRIGGER = 30
 
@@ -39,9 +41,14 @@ def _loses(m: Memory, losses: int) -> bool:
     oldest = m[losses + LOSS_TIMES] + m[losses + LOSS_INDEX]
     if m[NOW] < m[losses + NEXT_LOSS] or m[NOW] < m[oldest] + m[losses + LOSS_WINDOW]:
         return False
+    if m[losses + PASSING]:
+        m[losses + PASSING] -= 1
+        return False
     m[oldest] = m[NOW]
     m[losses + LOSS_INDEX] = (m[losses + LOSS_INDEX] + 1) % m[losses + LOSS_COUNT]
-    m[losses + NEXT_LOSS] = m[NOW] + _value(m, losses)
+    value = _value(m, losses)
+    m[losses + NEXT_LOSS] = m[NOW] + value // MOST_PASSING
+    m[losses + PASSING] = value % MOST_PASSING
     return True
 
 

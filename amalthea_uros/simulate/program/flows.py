@@ -10,6 +10,7 @@ from amalthea_uros.executors.semantics.suspension import parts
 from amalthea_uros.perf.distributions import Uniform
 from amalthea_uros.perf.network import Direction, Losses, Purpose, Transmission, Wire
 from amalthea_uros.simulate.kernel import layout
+from amalthea_uros.simulate.kernel.losses import MOST_PASSING
 from amalthea_uros.simulate.kernel.message_records import MOST_PARTS
 from amalthea_uros.simulate.options import SimulationMode
 from amalthea_uros.simulate.program.entities import losses_name
@@ -19,6 +20,8 @@ from amalthea_uros.simulate.sampling.words import RandomSource
 from amalthea_uros.trace.table import EntityKind
 
 _BILLION = 10**9
+#: Of times, so that the values of a stream fit into 62 bits.
+_LONGEST = 2**58
 _AGAIN = "the agent takes as long to send a message again as to send it for the first time"
 
 
@@ -140,13 +143,15 @@ class FlowRecords:
         resources = self.messages.resources
         resources.context.notes.assume(losses_text(wire, losses))
         stream = self._values(wire, losses)
+        first = int(stream.take(1)[0]) if losses.window else 0
         times, _ = resources.image.items([-layout.NEVER] * losses.count)
         fields = {
             layout.LOSS_VALUES: resources.stream(stream),
             layout.LOSS_COUNT: losses.count,
             layout.LOSS_WINDOW: resources.time(losses.window),
             layout.LOSS_TIMES: times,
-            layout.NEXT_LOSS: int(stream.take(1)[0]) if losses.window else 0,
+            layout.NEXT_LOSS: first // MOST_PASSING,
+            layout.PASSING: first % MOST_PASSING,
             layout.LOSS_ENTITY: resources.entities.number(EntityKind.STIMULUS, losses_name(wire)),
         }
         return resources.image.record(layout.LOSSES_SIZE, fields)
@@ -160,5 +165,6 @@ class FlowRecords:
             return choices([_BILLION - losses.per_billion, losses.per_billion], SimulationMode.SAMPLED, source)
         if resources.options.mode is SimulationMode.WORST:
             return constant(0)
-        longest = 2 * resources.time(losses.window) // losses.count
-        return values(Uniform(lower=0, upper=longest), resources.options.mode, source)
+        # The time, and how many messages get through then before one is lost.
+        longest = min(2 * resources.time(losses.window) // losses.count, _LONGEST)
+        return values(Uniform(lower=0, upper=MOST_PASSING * longest), resources.options.mode, source)
