@@ -36,16 +36,16 @@ class LossRate(NamedTuple):
 
 def _loss_rate(value: Any) -> LossRate:
     text = value if isinstance(value, str) else ""
-    if found := _COUNT.fullmatch(text):
+    if counted := _COUNT.fullmatch(text):
         try:
-            window = units.parse_time(found[2])
+            window = units.parse_time(counted[2])
         except ValueError as error:
             raise problem(str(error)) from None
-        if not 1 <= int(found[1]) <= _MOST or window <= 0:
+        if not 1 <= int(counted[1]) <= _MOST or window <= 0:
             raise unexpected(f"expected 1 to {_MOST:,} messages in a time above zero")
-        return LossRate(count=int(found[1]), window=window)
-    if found := _SHARE.fullmatch(text):
-        share = Fraction(found[1]) * _BILLION / 100
+        return LossRate(count=int(counted[1]), window=window)
+    if stated := _SHARE.fullmatch(text):
+        share = Fraction(stated[1]) * _BILLION / 100
         if not 1 <= share < _BILLION:
             raise unexpected("expected a probability above 0 % and below 100 %")
         return LossRate(per_billion=int(share))

@@ -10,7 +10,7 @@ _PERCENT = 10**7
 
 
 def losses_text(wire: Wire, losses: Losses) -> str:
-    """What is assumed about the messages that a wire loses."""
+    """The assumption about the messages that a wire loses."""
     which = "" if len(losses.directions) == len(Direction) else f" {losses.directions[0]}"
     if losses.window:
         return f"{wire.name!r} loses at most {counted(losses.count, 'message')}{which} in any {time_text(losses.window)}"

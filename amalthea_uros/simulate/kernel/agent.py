@@ -1,4 +1,4 @@
-"""What the agent does: it sends messages of the host, hands over and acknowledges what arrives, and sends again what is missing.
+"""The agent: it sends messages of the host, hands over and acknowledges what arrives, and sends again what is missing.
 
 After eProsima/Micro-XRCE-DDS-Agent `Processor.cpp` and `OutputStream.hpp`. Each function has its whole effect, or none and a reason to
 stop, after which it is called again.

@@ -22,7 +22,7 @@ def lacks_loss_value(m: Memory, transmission: int) -> int:
 
 
 def is_lost(m: Memory, process: int, transmission: int) -> bool:
-    """Decide whether a message, or a part of it, is lost at the end of its way on the wire."""
+    """Decide whether a message, or a part of it, is lost when it leaves the wire."""
     for place in range(m[transmission + LOSES], m[transmission + LOSES_END]):
         losses = m[place]
         if _loses(m, losses):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import collections
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
@@ -64,7 +63,7 @@ class Body:
     executions: dict[str, int] = field(default_factory=dict)
     iteration: IterationCompiler | None = None
     part: int = -1
-    _places: collections.Counter[int] = field(default_factory=collections.Counter)
+    _places: dict[int, int] = field(default_factory=dict)
 
     @property
     def context(self) -> TimingContext:
@@ -74,7 +73,7 @@ class Body:
     def place(self) -> str:
         """What draws values here, and nowhere else: the random numbers of a place depend neither on others nor on a trace."""
         name = self.process.name if self.process is not None else f"decision on {self.core}"
-        self._places[self.number] += 1
+        self._places[self.number] = self._places.get(self.number, 0) + 1
         return f"{name} activity {self.number} {self._places[self.number]}"
 
     # Activities.

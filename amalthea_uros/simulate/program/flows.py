@@ -130,14 +130,14 @@ class FlowRecords:
 
     def _losses(self, wire: Wire, direction: Direction) -> list[int]:
         """The records of what loses messages in a direction; one record for both if they are counted together."""
-        found = []
-        for losses in wire.losses:
-            if direction in losses.directions:
-                key = (wire.name, losses)
-                if key not in self.messages.losses:
-                    self.messages.losses[key] = self._new_losses(wire, losses)
-                found.append(self.messages.losses[key])
-        return found if self.messages.resources.options.mode is not SimulationMode.BEST else []
+        if self.messages.resources.options.mode is SimulationMode.BEST:
+            return []
+        records = self.messages.losses
+        here = [losses for losses in wire.losses if direction in losses.directions]
+        for losses in here:
+            if (wire.name, losses) not in records:
+                records[wire.name, losses] = self._new_losses(wire, losses)
+        return [records[wire.name, losses] for losses in here]
 
     def _new_losses(self, wire: Wire, losses: Losses) -> int:
         resources = self.messages.resources

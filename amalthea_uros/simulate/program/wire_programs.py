@@ -1,4 +1,4 @@
-"""What is special in the programs of messages on wires: they can be lost, sent again, and then only in part."""
+"""The programs of messages on wires, which can be lost, and sent again as a whole or in part."""
 
 from __future__ import annotations
 
