@@ -78,7 +78,7 @@ class LossyPlayer(Player):
 
     def _unless_lost(self, direction, arrives):
         def end():
-            if next(self.lost[direction]):
+            if next(self.lost[direction], False):
                 self.counts[direction] += 1
             else:
                 arrives()

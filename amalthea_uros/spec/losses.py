@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass
 from fractions import Fraction
-from typing import Annotated, Any, NamedTuple, Self, TypeAlias
+from typing import Annotated, Any, Self, TypeAlias
 
 from pydantic import BeforeValidator, model_validator
 
@@ -20,7 +21,8 @@ _SHARE = re.compile(r"\s*(\d{1,3}(?:\.\d{1,9})?)\s*%\s*", re.ASCII)
 _EXPECTED = "expected a number in a time such as '1 per 10 s', or a probability of each message such as '0.1 %'"
 
 
-class LossRate(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class LossRate:
     """At most a number of messages in any time of some length, or each message with a probability.
 
     Attributes
