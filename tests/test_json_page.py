@@ -41,6 +41,7 @@ RUNS = {
         ("simulate", ADVANCED, "--duration", "100ms", "--labels", "all"),
         ("simulate", "unknown.amxmi", "--duration", "20ms"),
         ("simulate", "robot-xrce.yaml", "--duration", "200ms"),
+        ("simulate", "lossy.yaml", "--duration", "2s"),
         ("simulate", ADVANCED, "--duration", "20ms", "--set", "Control_Function.execution_time=40us"),
         (
             "simulate",
@@ -223,6 +224,7 @@ def folder(tmp_path):
     model.root.constraints_model.requirements.append(am.ProcessRequirement(name="preemptions", process=process, limit=count))
     save(model, tmp_path / "counted.amxmi")
     (tmp_path / "way.yaml").write_text(WAY)
+    (tmp_path / "lossy.yaml").write_text(WAY.replace("transport: {", "transport: {losses: 1 per 1 s, "))
     (tmp_path / "loops.yaml").write_text(LOOPS)
     (tmp_path / "arduino.yaml").write_text(ARDUINO)
     rclc = (tmp_path / "rclc-in-executor.yaml").read_text()

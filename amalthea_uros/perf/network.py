@@ -44,6 +44,51 @@ class Span(Brief):
         return self if self.most is not None or self.mean is None else Span(least=self.mean, most=self.mean)
 
 
+class Direction(StrEnum):
+    """Where a message goes."""
+
+    TO_CONTROLLER = "to the controller"
+    TO_AGENT = "to the agent"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Losses(Brief):
+    """How many messages are lost, as an assumption: a number in any time of some length, or each message with a probability.
+
+    Attributes
+    ----------
+    directions : in which they are lost
+    count : the most that are lost in any time of the length `window`, in all these directions together
+    window : 0 for a probability
+    per_billion : the probability that a message is lost, in billionths
+    """
+
+    directions: tuple[Direction, ...]
+    count: int = 0
+    window: Time = 0
+    per_billion: int = 0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Recovery(Brief):
+    """How reliable messages that were lost are found and sent again: who misses an acknowledgement asks for it.
+
+    Attributes
+    ----------
+    asks_after : time without a received message after which a thread of the controller that waits for messages asks
+    agent_asks_every : time between two times at which the agent asks
+    sent_parts : most parts of messages that the controller keeps until they are acknowledged; None for no limit
+    received_parts : how many parts the controller can receive ahead of one that is missing, itself included; None for no limit
+    agent_sent_parts : most parts of messages that the agent sends before the first one is acknowledged; None for no limit
+    """
+
+    asks_after: Time
+    agent_asks_every: Time
+    sent_parts: int | None = None
+    received_parts: int | None = None
+    agent_sent_parts: int | None = None
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Wire(Named):
     """A wire.
@@ -51,21 +96,18 @@ class Wire(Named):
     Attributes
     ----------
     cores : that stand for it: one per direction if both can send at the same time, else one
-    loses_messages : whether frames can be lost on it
+    loses_messages : whether messages can be lost on it
+    losses : how many are; none of them if that is not known
+    recovery : None if nothing is acknowledged, or who asks for missing acknowledgements is not known
     keeps_sender : whether a thread of the controller that sends waits until its message is on the wire
     """
 
     kind: WireKind
     cores: tuple[str, ...]
     loses_messages: bool = False
+    losses: tuple[Losses, ...] = ()
+    recovery: Recovery | None = None
     keeps_sender: bool = False
-
-
-class Direction(StrEnum):
-    """Where a message goes."""
-
-    TO_CONTROLLER = "to the controller"
-    TO_AGENT = "to the agent"
 
 
 class Purpose(StrEnum):

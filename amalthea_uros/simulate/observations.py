@@ -327,6 +327,7 @@ class ExecutorObservation(Shown):
     ----------
     iterations : number of iterations that ended
     timeouts : number of publications that were not acknowledged in time
+    refusals : number of publications that were not sent, as all buffers had messages that were not acknowledged
     handles : in the order in which they are called
     """
 
@@ -334,6 +335,25 @@ class ExecutorObservation(Shown):
     iterations: int
     timeouts: int
     handles: Results[HandleObservation]
+    refusals: int = 0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LossObservation(Shown):
+    """A message on a wire that loses messages.
+
+    Attributes
+    ----------
+    sent : how often it was on the wire
+    lost : how often it was lost there, or a part of it
+    sent_again : how often it was sent again, as it was not acknowledged
+    """
+
+    name: str
+    wire: str
+    sent: int
+    lost: int
+    sent_again: int
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

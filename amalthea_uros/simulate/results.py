@@ -16,6 +16,7 @@ from amalthea_uros.simulate.observations import (
     CoreObservation,
     ExecutorObservation,
     LabelObservation,
+    LossObservation,
     MetricObservation,
     ProcessObservation,
     RequirementObservation,
@@ -45,6 +46,7 @@ class Simulation(Shown):
     duration : model time
     left_out : the processes that are not simulated, each with the reason
     executors : those that loop
+    losses : the messages on wires of which it is stated how many they lose
     runnables : those that requirements limit
     labels : those that were asked for
     assumptions : on which the run is based
@@ -60,6 +62,7 @@ class Simulation(Shown):
     left_out: Results[ProcessObservation] = field(default_factory=Results)
     chains: Results[ChainObservation] = field(default_factory=Results)
     executors: Results[ExecutorObservation] = field(default_factory=Results)
+    losses: Results[LossObservation] = field(default_factory=Results)
     runnables: Results[RunnableObservation] = field(default_factory=Results)
     labels: Results[LabelObservation] = field(default_factory=Results)
     requirements: Results[RequirementObservation] = field(default_factory=Results)

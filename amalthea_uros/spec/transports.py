@@ -8,6 +8,7 @@ from pydantic import AfterValidator, Field, model_validator
 
 from amalthea_uros.spec.execution_time import ExecutionTimeSection
 from amalthea_uros.spec.executors import MessageCost
+from amalthea_uros.spec.losses import LossesSection
 from amalthea_uros.spec.os import OverheadSection
 from amalthea_uros.spec.section import DescriptionSection, Shorthand
 from amalthea_uros.spec.values import (
@@ -283,6 +284,19 @@ class TransportSection(DescriptionSection):
     """Maximum time until a reliable message is acknowledged."""
     loses_messages: bool = False
     """Whether messages can be lost on the wire, so that reliable ones are sent again."""
+    losses: LossesSection | None = None
+    """How many messages are lost, as an assumption, e.g. `1 per 10 s` or `0.1 %`; default: unknown if `loses_messages`, else none."""
+
+    @model_validator(mode="after")
+    def _loses_what_is_stated(self) -> Self:
+        if self.losses is not None and self.states("loses_messages") and not self.loses_messages:
+            raise problem("'losses' are stated, but 'loses_messages' is false")
+        return self
+
+    @property
+    def is_lossy(self) -> bool:
+        """Whether messages can be lost."""
+        return self.loses_messages or self.losses is not None
 
 
 #: The keys of a transport of which it has one.

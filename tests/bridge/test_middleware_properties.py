@@ -15,7 +15,7 @@ from amalthea_uros.errors import UnknownError, WriteError
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.perf.executors import Executor, Handle, HandleKind, LoopKind, ThreadLoop, TriggerCondition, TriggerKind
 from amalthea_uros.perf.hardware import Core, Hardware, Structure
-from amalthea_uros.perf.network import Direction, Network, Purpose, Span, Transmission, Wire, WireKind
+from amalthea_uros.perf.network import Direction, Losses, Network, Purpose, Recovery, Span, Transmission, Wire, WireKind
 from amalthea_uros.perf.software import Runnable, Software, Task
 from amalthea_uros.perf.stimuli import Custom
 from amalthea_uros.perf.system import System
@@ -35,7 +35,16 @@ EXECUTOR = Executor(
 )
 NETWORK = Network(
     agent="Agent of mine",
-    wires=(Wire(name="W", kind=WireKind.SERIAL, cores=("C",)),),
+    wires=(
+        Wire(
+            name="W",
+            kind=WireKind.SERIAL,
+            cores=("C",),
+            loses_messages=True,
+            losses=(Losses(directions=(Direction.TO_AGENT,), count=1, window=10**13), Losses(directions=(), per_billion=10**6)),
+            recovery=Recovery(asks_after=10**11, agent_asks_every=2 * 10**11, sent_parts=4),
+        ),
+    ),
     transmissions=(
         Transmission(
             name="Sent", wire="W", direction=Direction.TO_AGENT, purpose=Purpose.DATA, topic="t", length=20, processes=("Main",)

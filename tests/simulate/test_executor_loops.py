@@ -158,7 +158,7 @@ def as_planned(system, plan):
     (executor,) = system.executors
     handles = tuple(replace(handle, phase=phases[handle.name]) for handle in executor.handles)
     loop = replace(executor.loop, sleep=plan["sleep"] * 1000, sleep_early=0, pace=0)
-    return replace(without_heartbeats(system), executors=(replace(executor, loop=loop, handles=handles),))
+    return replace(system, executors=(replace(executor, loop=loop, handles=handles),))
 
 
 @pytest.mark.parametrize("block", range(0, len(SEEDS), BLOCK))
@@ -173,7 +173,7 @@ def test_every_call_over_wires_is_that_of_a_player(block):
         test_whole_way.prepared(content, plan)
         plan["blocks"] = system.network.wires[0].keeps_sender
         seen = Player(plan, Least()).play(S // 4)
-        for (_, handle), responses in calls(as_planned(system, plan), S // 4 * 1000).items():
+        for (_, handle), responses in calls(without_heartbeats(as_planned(system, plan)), S // 4 * 1000).items():
             played = [time * 1000 for time in seen.responses[handle]]
             assert first_difference(responses, played, tolerance=30_000) is None, (seed, handle, content)
             compared += len(responses)

@@ -91,9 +91,20 @@ def busy_polls(executor: Executor) -> str:
 
 
 def timing_context(system: System, settings: Settings | None = None) -> TimingContext:
-    """The timing context of a system, in which the execution demand of executors that busy-poll is unknown."""
+    """The timing context of a system; the execution demand is unknown of executors that busy-poll, and of what is sent again."""
     polling = {executor.task: reason for executor in system.executors if (reason := busy_polls(executor))}
-    return TimingContext.of(system, settings, unknown_demands=polling)
+    return TimingContext.of(system, settings, unknown_demands=polling | _sent_again(system))
+
+
+def _sent_again(system: System) -> dict[str, str]:
+    """The messages on wires that lose reliable ones, each with the reason why nobody knows how often it is sent."""
+    acknowledging = {each.wire for each in system.network.transmissions if each.acknowledges is not None}
+    lossy = {wire.name for wire in system.network.wires if wire.losses} & acknowledging
+    return {
+        each.name: f"messages are lost on {each.wire!r}, and reliable ones are sent again"
+        for each in system.network.transmissions
+        if each.wire in lossy
+    }
 
 
 def iterations_follow_at_once(executor: Executor) -> str:

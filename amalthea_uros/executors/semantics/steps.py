@@ -175,14 +175,16 @@ def _publishing(runnable: Runnable, system: System) -> Runnable:
 
 
 def _sent(system: System) -> Iterator[Transmission]:
-    """Messages that are sent here: publications of callbacks, acknowledgements, and messages that come back from the agent."""
+    """Messages that are sent here: publications of callbacks, acknowledgements, what asks for them, and what the agent sends back."""
+    asking = {wire.name for wire in system.network.wires if wire.recovery is not None}
     published = {
         each.transmission for executor in system.executors for handle in executor.handles for each in handle.publications
     }
     for each in system.transmissions.values():
         # Only an executor that loops acknowledges what it reads when it reads it.
+        is_asking = each.purpose is Purpose.HEARTBEAT and bool(system.executors) and each.wire in asking
         is_reply = each.purpose is Purpose.ACKNOWLEDGEMENT and (system.executors or each.direction is Direction.TO_CONTROLLER)
-        if is_reply or each.name in published or relayed(each, system):
+        if is_reply or is_asking or each.name in published or relayed(each, system):
             yield each
 
 

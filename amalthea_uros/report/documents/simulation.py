@@ -146,6 +146,7 @@ def _sections(simulation: Simulation, metrics: Iterable[Section] = (), changed: 
     yield section("Observed response times", _processes(simulation))
     yield from metrics
     yield from map(_executor, simulation.executors)
+    yield section("Messages on wires that lose some", _losses(simulation))
     yield section(CHAINS_HEADING, _chains(simulation))
     yield section("Runnables with requirements", _runnables(simulation))
     yield section("Labels", _labels(simulation))
@@ -207,12 +208,19 @@ def _executor(executor: ExecutorObservation) -> Section:
         )
         for handle in executor.handles
     ]
-    timeouts = [f"{counted(executor.timeouts, 'publication')} not acknowledged in time"] if executor.timeouts else []
+    failed = [f"{counted(executor.timeouts, 'publication')} not acknowledged in time"] if executor.timeouts else []
+    if executor.refusals:
+        failed.append(f"{counted(executor.refusals, 'publication')} not sent, because all buffers are in use")
     return section(
         f"Executor {executor.name} (from the arrival of a message, or when a timer is due, to the end of the callback)",
-        Sentences([f"{counted(executor.iterations, 'iteration')}", *timeouts]),
+        Sentences([f"{counted(executor.iterations, 'iteration')}", *failed]),
         table("", ("handle", "kind", ">calls", ">min", ">mean", ">max", ">late by", ">lost"), rows),
     )
+
+
+def _losses(simulation: Simulation) -> Table:
+    rows = [(each.name, each.wire, f"{each.sent:,}", f"{each.lost:,}", f"{each.sent_again:,}") for each in simulation.losses]
+    return table("", ("message", "wire", ">sent", ">lost", ">sent again"), rows)
 
 
 def _chains(simulation: Simulation) -> Table:

@@ -17,6 +17,7 @@ from amalthea_uros.simulate.observations import (
     ExecutorObservation,
     HandleObservation,
     LabelObservation,
+    LossObservation,
     MetricObservation,
     ObservedOccurrence,
     ProcessObservation,
@@ -67,6 +68,7 @@ declare(
     ("processors", "simulation.cores"),
     ("processes", "simulation.processes"),
     ("executors", "simulation.executors"),
+    ("losses", "simulation.losses"),
     ("chains", "simulation.chains"),
     ("left_out", _left_out),
     ("runnables", "simulation.runnables"),
@@ -95,7 +97,8 @@ declare(
     ("preemptions", "preemptions.total"),
     ("migrations", "migrations.total"),
 )
-declare(ExecutorObservation, *("name", "iterations", "timeouts", "handles"))
+declare(ExecutorObservation, *("name", "iterations", "timeouts", "refusals", "handles"))
+declare(LossObservation, *("name", "wire", "sent", "lost", "sent_again"))
 declare(
     HandleObservation,
     *("name", "kind", "runnable", "calls", "lost", "metrics"),

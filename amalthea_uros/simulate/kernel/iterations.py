@@ -1,19 +1,14 @@
-"""Executors: what their threads read and wait for, what is ready, and when the next iteration begins.
+"""Executors: what their threads wait for, what is ready, and when the next iteration begins.
 
-After ros2/rclc `executor.c`, ros2/rcl `timer.c` and `wait.c`, micro-ROS/rmw_microxrcedds `rmw_wait.c` and `rmw_publish.c`: see
-`executors.semantics.loops`.
+After ros2/rclc `executor.c`, ros2/rcl `timer.c` and `wait.c`: see `executors.semantics.loops`.
 """
 
 from __future__ import annotations
 
 from amalthea_uros.simulate.kernel.activation import fire
 from amalthea_uros.simulate.kernel.layout import *
-from amalthea_uros.simulate.kernel.message_records import append, free_message, pop
-from amalthea_uros.simulate.kernel.messages import draw_delay, write
-from amalthea_uros.simulate.kernel.waiting import wait
-
-#: The outcomes of `read`.
-HAS_READ, IS_DONE, HAS_TO_WAIT = range(3)
+from amalthea_uros.simulate.kernel.message_records import free_message, pop
+from amalthea_uros.simulate.kernel.wires import draw_delay
 
 
 def listen(m: Memory, executor: int) -> None:
@@ -43,77 +38,6 @@ def expect(m: Memory, executor: int, publication: int) -> None:
     """Begin to wait for the acknowledgements of a publication."""
     m[executor + WAIT_END] = m[NOW] + m[publication + TIMEOUT_AFTER]
     m[executor + AWAITED] = publication
-
-
-def read(m: Memory, core: int, process: int, executor: int) -> int:
-    """Read one message, or wait for one; whether there is more to read is only known when the process continues."""
-    awaited, inbox = m[executor + AWAITED], m[executor + INBOX]
-    if awaited:
-        if m[awaited + ACKNOWLEDGED_PARTS] >= m[awaited + ASKED_FOR]:
-            return IS_DONE
-    elif 0 < m[executor + MESSAGES_PER_WAIT] <= m[executor + DATA_READ]:
-        return IS_DONE
-    message = m[inbox + UNREAD_FIRST]
-    if message:
-        pop(m, inbox + UNREAD_FIRST)
-        _read_message(m, executor, message)
-        return HAS_READ
-    if not awaited and (m[executor + DATA_READ] or _is_woken(m, executor)):
-        return IS_DONE
-    if m[NOW] >= m[executor + WAIT_END]:
-        if awaited:
-            m[awaited + TIMEOUTS] += 1
-        return IS_DONE
-    m[process + READS_WITH] = executor
-    m[m[executor + WAIT_ALARM] + ALARM_AT] = m[executor + WAIT_END]
-    wait(m, core, process, False)
-    return HAS_TO_WAIT
-
-
-def _is_woken(m: Memory, executor: int) -> bool:
-    """Whether something that is kept already ends the wait."""
-    for place in range(m[executor + HANDLES], m[executor + HANDLES_END]):
-        handle = m[place]
-        if m[handle + KEPT_NUMBER]:
-            if m[executor + FLAGS_END_WAIT] if m[handle + HANDLE_KIND] == FLAG else m[executor + KEPT_END_WAIT]:
-                return True
-    return False
-
-
-def _read_message(m: Memory, executor: int, message: int) -> None:
-    transmission = m[message + SENT_AS]
-    m[executor + REPLY_AS] = m[transmission + REPLY_WITH]
-    m[executor + REPLIES_LEFT] = m[transmission + REPLIES]
-    if m[transmission + FOR_HANDLE]:
-        m[executor + DATA_READ] += 1
-        _keep(m, m[transmission + READ_FROM], m[transmission + FOR_HANDLE], message)
-        return
-    if m[message + ACKNOWLEDGES]:
-        m[m[message + ACKNOWLEDGES] + ACKNOWLEDGED_PARTS] += 1
-    free_message(m, message)
-
-
-def _keep(m: Memory, inbox: int, handle: int, message: int) -> None:
-    """Keep a message for a callback; beyond its depth the oldest one or itself is lost, and itself if there is no slot."""
-    if 0 < m[handle + DEPTH] <= m[handle + KEPT_NUMBER] and m[handle + OVERWRITES]:
-        m[handle + LOST_CALLS] += 1
-        free_message(m, pop(m, handle + KEPT_FIRST))
-    elif m[handle + KEPT_NUMBER] >= m[handle + DEPTH] or m[inbox + KEPT] >= m[inbox + SLOTS]:
-        m[handle + LOST_CALLS] += 1
-        free_message(m, message)
-        return
-    else:
-        m[handle + KEPT_NUMBER] += 1
-        m[inbox + KEPT] += 1
-    append(m, handle + KEPT_FIRST, message)
-
-
-def reply(m: Memory, core: int, process: int, executor: int) -> int:
-    """Write an acknowledgement of what was read; the result is that of `write`."""
-    result = write(m, core, process, m[executor + REPLY_AS], 0)
-    if result <= 1:
-        m[executor + REPLIES_LEFT] -= 1
-    return result
 
 
 def begin_iteration(m: Memory, process: int) -> None:

@@ -3,26 +3,25 @@
 from __future__ import annotations
 
 from amalthea_uros.simulate.kernel.activation import end_job, fire
+from amalthea_uros.simulate.kernel.agent import part_arrives
 from amalthea_uros.simulate.kernel.conditions import counts, holds, set_mode, step_mode
 from amalthea_uros.simulate.kernel.cores import change_level, requeue, run, stays
 from amalthea_uros.simulate.kernel.iterations import (
-    HAS_TO_WAIT,
-    IS_DONE,
     begin_iteration,
     begin_wait,
     check,
     expect,
     listen,
     plan_iteration,
-    read,
-    reply,
     take_data,
 )
 from amalthea_uros.simulate.kernel.layout import *
-from amalthea_uros.simulate.kernel.messages import bring, draw_delay, pass_on, post, put_in_inbox, write
+from amalthea_uros.simulate.kernel.messages import arrive, has_arrived, pass_on, post, publish, put_in_inbox
+from amalthea_uros.simulate.kernel.reading import HAS_TO_WAIT, IS_DONE, has_to_write, read, reply
 from amalthea_uros.simulate.kernel.reports import begin_execution, end_execution, observe, report_access, report_execution
 from amalthea_uros.simulate.kernel.stages import follow
 from amalthea_uros.simulate.kernel.waiting import await_events, change_events, request, serve, unlock
+from amalthea_uros.simulate.kernel.wires import draw_delay, keep_values, restore_values
 
 #: Who does more at one instant does not end.
 MOST_STEPS = 10_000_000
@@ -218,16 +217,16 @@ def _communicate(m: Memory, core: int, process: int, at: int) -> int:
         expect(m, first, second)
     elif operation == READ:
         outcome = read(m, core, process, first)
-        if outcome == HAS_TO_WAIT:
+        if outcome >= HAS_TO_WAIT:
             m[process + AT] = at
-            return CONTINUE + 1
+            return outcome - HAS_TO_WAIT + CONTINUE + 1
         following = second if outcome == IS_DONE else following
     elif operation == REPLY or operation == WRITE:
         is_reply = operation == REPLY
-        if is_reply and m[first + REPLIES_LEFT] == 0:
+        if is_reply and not has_to_write(m, first):
             m[process + AT] = second
             return 0
-        result = reply(m, core, process, first) if is_reply else write(m, core, process, first, second)
+        result = reply(m, core, process, first) if is_reply else publish(m, core, process, first, second)
         if result <= 1:
             # Perhaps there is more to acknowledge.
             m[process + AT] = at if is_reply else following
@@ -257,14 +256,35 @@ def _communicate(m: Memory, core: int, process: int, at: int) -> int:
     elif operation == HAVE_READ:
         if m[process + ITS_MESSAGE]:
             put_in_inbox(m, m[process + ITS_MESSAGE])
-    elif operation == ACKNOWLEDGE_PART:
-        message = m[process + ITS_MESSAGE]
-        code = bring(m, first, m[message + ACKNOWLEDGES] if message else 0)
+    elif operation > POST:
+        return _pass_wire(m, process, at)
+    elif operation == PART_ARRIVES:
+        code = part_arrives(m, process, first, second)
     else:
-        code = post(m, process, first, 0)
+        code = post(m, process, first)
     if code:
         return code + 1
     m[process + AT] = following
+    return 0
+
+
+def _pass_wire(m: Memory, process: int, at: int) -> int:
+    """Carry out an operation about what is sent on a wire that loses messages; the result is as that of `_execute_operation`."""
+    operation, first, second = m[at], m[at + 1], m[at + 2]
+    message, is_next, code = m[process + ITS_MESSAGE], True, CONTINUE
+    if operation == ARRIVE:
+        code = arrive(m, process, first)
+    elif operation == TEST_PART:
+        is_next = message == 0 or (m[message + PARTS_IN_IT] >> first) & 1 != 0
+    elif operation == TEST_ARRIVED:
+        is_next = has_arrived(m, process)
+    elif message and operation == KEEP_VALUES:
+        keep_values(m, message, first)
+    elif message:
+        is_next = not restore_values(m, message, first)
+    if code:
+        return code + 1
+    m[process + AT] = at + OPERATION_SIZE if is_next else second
     return 0
 
 

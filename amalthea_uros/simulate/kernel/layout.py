@@ -76,16 +76,40 @@ EXECUTIONS, RUNNABLE_ENTITY, RUNNABLE_SIZE = range(3)
 # A queue of messages of a process: numbers of those that have arrived, were taken and did not fit, and whether the job has taken one.
 ARRIVED, TAKEN_MESSAGES, LOST_MESSAGES, HAS_TAKEN, MESSAGE_LIMIT, MESSAGE_CAPTURE, MESSAGE_SIZE = range(7)
 
-# What occurs at a planned time: the next iteration of an executor, the end of a wait, or what a delay line gives away.
+# What occurs at a planned time: the next iteration of an executor, the end of a wait, what a delay line gives away, or the agent looks
+# whether it misses acknowledgements of a flow.
 ALARM_AT, ALARM_KIND, ALARM_OF, ALARM_SIZE = range(4)
-NEXT_ITERATION, END_OF_WAIT, DELAY_LINE = range(3)
+NEXT_ITERATION, END_OF_WAIT, DELAY_LINE, AGENT_ASKS = range(4)
 
-# A message, from its sender to where it waits. It acknowledges a publication, or (0) nothing. Carried values follow.
-NEXT_MESSAGE, BORN, DUE, SENT_AS, ACKNOWLEDGES, CARRIED = range(6)
+# A message, from its sender to where it waits. What is sent of a reliable message is a copy of it, with its parts (bits) that have not
+# been lost; others are one part. An acknowledgement or a heartbeat is about a flow.
+NEXT_MESSAGE, BORN, DUE, SENT_AS, ORIGINAL, PARTS_IN_IT, ABOUT = range(7)
+# A reliable message: its first part in the flow, the number of its copies and of lists that it is in, whether it has been on the wire.
+FIRST_PART, USES, HAS_BEEN_SENT = range(7, 10)
+# An acknowledgement: the first part that is missing, and bits of those from there on that are. A heartbeat: the part after the last one
+# (0: it is none). Carried values follow.
+UP_TO, MISSING, ANNOUNCED_TO, CARRIED = range(10, 14)
 
-# A delay line: messages in their order, each with the time at which it comes out, to enter a wire or to be received. As what it sends
-# the messages that begin there.
-FIRST_MESSAGE, LAST_MESSAGE, DELAY, ITS_ALARM, ENTERS_WIRE, CREATES, LINE_SIZE = range(7)
+# A delay line: messages in their order, each with the time at which it comes out. As what it sends the messages that begin there.
+FIRST_MESSAGE, LAST_MESSAGE, DELAY, ITS_ALARM, LEADS_TO, CREATES, LINE_SIZE = range(7)
+TO_RECEIVER, TO_WIRE, TO_AGENT_ITSELF = range(3)
+
+# A flow: the reliable messages of a session in one direction. Those that are not acknowledged, and those that the agent holds back.
+SENT_FIRST, SENT_LAST, HELD_FIRST, HELD_LAST = range(4)
+# Its sender: the number of the next part, of the first one that is not acknowledged, and how many may be sent from there on.
+NEXT_PART, UNACKNOWLEDGED, SEND_ROOM = range(4, 7)
+# Its receiver: the first part that is missing, bits of those from there on that have arrived, the part after the last known one, for
+# how many there is room, the part up to which messages are handed over, and where they are read.
+EXPECTED, ARRIVED_PARTS, KNOWN_TO, RECEIVE_ROOM, HANDED_OVER, FLOW_INBOX = range(7, 13)
+# Who misses an acknowledgement asks: as which message, whether the time runs, when, and after which time. The line on which the agent
+# sends again.
+ASKS_AS, IS_ASKING, ASKS_AT, ASKS_AFTER, SENT_AGAIN_ON, FLOW_SIZE = range(13, 19)
+
+# Losses: values that decide, how many in which time (0: a value for each message), when the last ones were, which is the oldest, when
+# the next one can be, and how many messages get through then before. The stimulus that stands for them in a trace, and their number.
+LOSS_VALUES, LOSS_COUNT, LOSS_WINDOW, LOSS_TIMES, LOSS_INDEX, NEXT_LOSS, PASSING, LOSS_ENTITY, LOSS_NUMBER, LOSSES_SIZE = range(
+    10
+)
 
 # A message on a wire. The stimulus of its task, the line to the controller, the stimulus of the first process that receives it.
 WIRE_STIMULUS, LINE_IN, RECEIVED_BY = range(3)
@@ -94,23 +118,31 @@ READ_FROM, FOR_HANDLE, REPLY_WITH, REPLIES = range(3, 7)
 # How often it was written and was on the wire; whether who writes it waits for that.
 WRITTEN, DONE_WRITING, HOLDS_WRITER = range(7, 10)
 # The time to the host, the lines on which the agent sends it back, and what it carries: places from which values come, and to which.
-TO_HOST, RELAYS, RELAYS_END, STAMPS_FROM, STAMPS_FROM_END, STAMPS_TO, STAMPS_TO_END, TRANSMISSION_SIZE = range(10, 18)
+TO_HOST, RELAYS, RELAYS_END, STAMPS_FROM, STAMPS_FROM_END, STAMPS_TO, STAMPS_TO_END = range(10, 17)
+# The flow to which it belongs if it is reliable, and the number of its parts.
+FLOW, PARTS_OF = range(17, 19)
+# What loses it, how often that was, how often it was sent again; stages of which it keeps the values, and that respond at the host.
+LOSES, LOSES_END, LOST_ON_WIRE, SENT_AGAIN = range(19, 23)
+KEEPS, KEEPS_END, RESPONSES, RESPONSES_END, TRANSMISSION_SIZE = range(23, 28)
 
 # Where messages wait to be read, and how many are kept for callbacks of at most so many.
 UNREAD_FIRST, UNREAD_LAST, KEPT, SLOTS, INBOX_SIZE = range(5)
 
-# A publication: the acknowledgements that each one needs, how many are wanted and have come in all, and its timeout.
-PARTS_SENT, ASKED_FOR, ACKNOWLEDGED_PARTS, TIMEOUT_AFTER, TIMEOUTS, PUBLICATION_SIZE = range(6)
+# A publication: its timeout, how often that passed; whether there was no room for the message, and how often.
+TIMEOUT_AFTER, TIMEOUTS, IS_REFUSED, REFUSALS, PUBLICATION_SIZE = range(5)
 
 # What an executor reads and waits with: its process, the messages, the timeout of its wait, and to what it is cut.
 READER_PROCESS, INBOX, WAIT_TIMEOUT, RESOLUTION, MESSAGES_PER_WAIT, KEPT_END_WAIT, FLAGS_END_WAIT = range(7)
 # Its wait or publication: how long, until when, for which publication (0: for data), what it has read, and what it has to acknowledge.
-WAIT_FOR, WAIT_END, AWAITED, DATA_READ, REPLIES_LEFT, REPLY_AS, WAIT_ALARM = range(7, 14)
+WAIT_FOR, WAIT_END, AWAITED, DATA_READ, REPLIES_LEFT, REPLY_AS, REPLY_ABOUT, WAIT_ALARM = range(7, 15)
+# What it sends reliably, and which parts of that it sends again. Whether it listens, for how long altogether, and until when.
+OUT_FLOW, AGAIN_FROM, AGAIN_TO, LISTENING, LISTENS_FOR, LISTENS_UNTIL = range(15, 21)
+NOT_LISTENING, BEGINS_TO_LISTEN, HAS_ASKED, LISTENS = range(4)
 # Its handles, and sets of them: it calls if all of one set are ready.
-HANDLES, HANDLES_END, TRIGGER_SETS, TRIGGER_SETS_END, IS_TRIGGERED = range(14, 19)
+HANDLES, HANDLES_END, TRIGGER_SETS, TRIGGER_SETS_END, IS_TRIGGERED = range(21, 26)
 # Its loop: a stream of sleeps, the least distance of their ends, the last end, a period, the time up to which it has planned, to what
 # that sleep is cut, and what begins an iteration.
-SLEEPS, PACE, LAST_WAKE, LOOP_PERIOD, INVOCATION, SLEEP_RESOLUTION, LOOP_STIMULUS, LOOP_ALARM, EXECUTOR_SIZE = range(19, 28)
+SLEEPS, PACE, LAST_WAKE, LOOP_PERIOD, INVOCATION, SLEEP_RESOLUTION, LOOP_STIMULUS, LOOP_ALARM, EXECUTOR_SIZE = range(26, 35)
 
 # A handle: a timer is due at a time and every period; of the others, messages are kept, or a flag was set at a time.
 HANDLE_KIND, NEXT_CALL, TIMER_PERIOD, KEPT_FIRST, KEPT_LAST, KEPT_NUMBER, DEPTH, OVERWRITES = range(8)
@@ -240,17 +272,24 @@ PLAN_ITERATION = 52  # plans the next iteration of (an executor)
 DEPART = 53  # (a message) leaves the wire: decides when it gets to the host
 PASS_ON = 54  # (a message) has left the wire
 HAVE_READ = 55  # what the job is about waits to be read from now on
-ACKNOWLEDGE_PART = 56  # the agent acknowledges a part of a message, on (a line)
+PART_ARRIVES = 56  # the agent has received, if it is not lost, the part with (a number), and acknowledges it on (a line)
 POST = 57  # writes (a message), and continues
-ENTER = 60  # (a stage) reads at the start of the job, into its snapshot; if (1), also into its value
-TAKE = 61  # (a stage) takes what is there now, or, if (1), what was there at the start
-REACH = 62  # a position of (a stage) is reached: (a bit)
-MARK = 63  # the stimulus of the chain of (a stage) occurs now, or occurred (1) at the activation, (2) when the message was sent
-PUT = 64  # (a stage) gives away what it has
-LEAVE = 65  # the same if the job has reached all positions
-PUBLISH = 66  # the same, at the end of the period
+ARRIVE = 58  # decides whether (a message) is lost on the wire
+TEST_PART = 59  # if the message does not contain the part with (a number), goes to (an operation)
+TEST_ARRIVED = 60  # if the message is lost, goes to (an operation)
+KEEP_VALUES = 61  # (a message) keeps the values of chains, for when it is sent again
+RESTORE_VALUES = (
+    62  # if (a message) has been sent before, the values are those that it has kept, and the job goes to (an operation)
+)
+ENTER = 70  # (a stage) reads at the start of the job, into its snapshot; if (1), also into its value
+TAKE = 71  # (a stage) takes what is there now, or, if (1), what was there at the start
+REACH = 72  # a position of (a stage) is reached: (a bit)
+MARK = 73  # the stimulus of the chain of (a stage) occurs now, or occurred (1) at the activation, (2) when the message was sent
+PUT = 74  # (a stage) gives away what it has
+LEAVE = 75  # the same if the job has reached all positions
+PUBLISH = 76  # the same, at the end of the period
 RESPOND = (
-    67  # the response of the chain of (a stage) occurs now or, if given, at (a time of the job); it counts when all is reached
+    77  # the response of the chain of (a stage) occurs now or, if given, at (a time of the job); it counts when all is reached
 )
 
 #: Flags of REQUEST and AWAIT.

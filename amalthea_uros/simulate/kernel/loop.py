@@ -7,7 +7,8 @@ from amalthea_uros.simulate.kernel.budgets import replenish
 from amalthea_uros.simulate.kernel.cores import dispatch, dispatch_all, pause, stop
 from amalthea_uros.simulate.kernel.jobs import execute_writes, resume_job
 from amalthea_uros.simulate.kernel.layout import *
-from amalthea_uros.simulate.kernel.messages import bring, ring
+from amalthea_uros.simulate.kernel.messages import ring
+from amalthea_uros.simulate.kernel.wires import bring
 
 
 def run_kernel(m: Memory) -> int:

@@ -14,18 +14,23 @@ from typing import Any, TypeAlias
 from amalthea_uros._internal.machine_code import LOADING, CompilationEffort
 from amalthea_uros.simulate.kernel import (
     activation,
+    agent,
     budgets,
     conditions,
     cores,
+    flows,
     iterations,
     jobs,
     layout,
     loop,
+    losses,
     message_records,
     messages,
+    reading,
     reports,
     stages,
     waiting,
+    wires,
 )
 from amalthea_uros.simulate.kernel.layout import Memory
 
@@ -34,17 +39,22 @@ CompiledKernel: TypeAlias = Callable[[Memory], int]
 
 _MODULES = (
     activation,
+    agent,
     budgets,
     conditions,
     cores,
+    flows,
     iterations,
     jobs,
     loop,
+    losses,
     message_records,
     messages,
+    reading,
     reports,
     stages,
     waiting,
+    wires,
 )
 
 

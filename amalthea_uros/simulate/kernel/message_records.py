@@ -1,25 +1,69 @@
-"""The records of messages: a list of those that are free, and lists of those that wait somewhere."""
+"""The records of messages: a list of those that are free, and lists of those that wait somewhere.
+
+A reliable message stays where it is until it is acknowledged; what is sent, and received, are copies.
+"""
 
 from __future__ import annotations
 
 from amalthea_uros.simulate.kernel.layout import *
+
+#: Bits of a word that stand for parts of a message.
+MOST_PARTS = 60
 
 
 def new_message(m: Memory, transmission: int) -> int:
     """A record for a message that carries nothing yet; there must be a free one."""
     message = m[FREE_MESSAGES]
     m[FREE_MESSAGES] = m[message + NEXT_MESSAGE]
-    m[message + NEXT_MESSAGE] = 0
+    for place in range(message, message + CARRIED):
+        m[place] = 0
     m[message + BORN] = m[NOW]
     m[message + SENT_AS] = transmission
-    m[message + ACKNOWLEDGES] = 0
+    m[message + PARTS_IN_IT] = 1
     for place in range(message + CARRIED, message + CARRIED + m[CARRIED_VALUES]):
         m[place] = -1
     return message
 
 
+def copy_of(m: Memory, original: int) -> int:
+    """A copy of a reliable message, with all of its parts; there must be a free record."""
+    copy = new_message(m, m[original + SENT_AS])
+    m[original + USES] += 1
+    m[copy + ORIGINAL] = original
+    m[copy + BORN] = m[original + BORN]
+    m[copy + FIRST_PART] = m[original + FIRST_PART]
+    m[copy + PARTS_IN_IT] = (1 << min(parts_of(m, original), MOST_PARTS)) - 1
+    carry(m, original, copy)
+    return copy
+
+
+def carry(m: Memory, message: int, other: int) -> None:
+    """Have a message carry what another one does."""
+    for index in range(CARRIED, CARRIED + m[CARRIED_VALUES]):
+        m[other + index] = m[message + index]
+
+
+def parts_of(m: Memory, message: int) -> int:
+    """The number of parts of a message."""
+    return m[m[message + SENT_AS] + PARTS_OF]
+
+
 def free_message(m: Memory, message: int) -> None:
-    """A message is gone."""
+    """A message is gone; so is the one of which it is the last copy, if it is acknowledged."""
+    original = m[message + ORIGINAL]
+    _put_back(m, message)
+    if original:
+        stop_using(m, original)
+
+
+def stop_using(m: Memory, message: int) -> None:
+    """A reliable message is in one list less, or has one copy less."""
+    m[message + USES] -= 1
+    if m[message + USES] == 0:
+        _put_back(m, message)
+
+
+def _put_back(m: Memory, message: int) -> None:
     m[message + NEXT_MESSAGE] = m[FREE_MESSAGES]
     m[FREE_MESSAGES] = message
 

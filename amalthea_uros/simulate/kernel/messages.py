@@ -1,15 +1,28 @@
-"""Messages: through the agent, over the wire, through the driver and the receiving processes, until they wait to be read.
+"""Messages: over the wire, through the driver and the receiving processes, until they wait to be read.
 
-A message that acknowledges a publication, or a part of it, comes back as one of its own. Times in the agent, in switches and in the
-driver are delays that keep the order of messages. Each function has its whole effect, or none and a reason to stop.
+A message that acknowledges another one, or a part of it, comes back as one of its own. Times in the agent, in switches and in the
+driver are delays that keep the order of messages. Each function has its whole effect, or none and a reason to stop; some continue
+when they are called again.
 """
 
 from __future__ import annotations
 
 from amalthea_uros.simulate.kernel.activation import fire
+from amalthea_uros.simulate.kernel.agent import (
+    ask,
+    hand_over,
+    lacks_to_relay,
+    read_acknowledgement,
+    relay,
+    send,
+    send_first,
+)
+from amalthea_uros.simulate.kernel.flows import fill_acknowledgement, has_room
 from amalthea_uros.simulate.kernel.layout import *
+from amalthea_uros.simulate.kernel.losses import is_lost, lacks_loss_value
 from amalthea_uros.simulate.kernel.message_records import append, free_message, new_message
 from amalthea_uros.simulate.kernel.waiting import release, wait
+from amalthea_uros.simulate.kernel.wires import delay, enter_wire, lacks_delay
 
 
 def ring(m: Memory, alarm: int) -> int:
@@ -17,6 +30,8 @@ def ring(m: Memory, alarm: int) -> int:
     owner = m[alarm + ALARM_OF]
     if m[alarm + ALARM_KIND] == DELAY_LINE:
         return _come_out(m, owner)
+    if m[alarm + ALARM_KIND] == AGENT_ASKS:
+        return ask(m, alarm, owner)
     if m[alarm + ALARM_KIND] == NEXT_ITERATION:
         code = fire(m, m[owner + LOOP_STIMULUS], 0)
         if code:
@@ -36,88 +51,45 @@ def wake(m: Memory, process: int) -> None:
         release(m, process)
 
 
-# Delay lines.
-
-
-def bring(m: Memory, line: int, publication: int) -> int:
-    """A message begins its way on a line; it acknowledges a publication, or nothing (0)."""
-    if m[FREE_MESSAGES] == 0:
-        return NO_MESSAGES
-    code = _lacks_delay(m, line)
-    if code == 0:
-        message = new_message(m, m[line + CREATES])
-        m[message + ACKNOWLEDGES] = publication
-        _delay(m, line, message)
-    return code
-
-
-def _lacks_delay(m: Memory, line: int) -> int:
-    """Why a line cannot take a message now."""
-    stream = m[line + DELAY]
-    if m[stream + STREAM_AT] == m[stream + STREAM_END]:
-        m[CAUSE] = stream
-        return STREAM_EMPTY
-    return CONTINUE
-
-
-def draw_delay(m: Memory, stream: int) -> int:
-    """The next delay of a stream."""
-    delay = m[m[stream + STREAM_AT]]
-    m[stream + STREAM_AT] += 1
-    return delay
-
-
-def _delay(m: Memory, line: int, message: int) -> None:
-    """Put a message on a line, which none overtakes."""
-    due = m[NOW] + draw_delay(m, m[line + DELAY])
-    alarm = m[line + ITS_ALARM]
-    if m[line + FIRST_MESSAGE]:
-        due = max(due, m[m[line + LAST_MESSAGE] + DUE])
-    else:
-        m[alarm + ALARM_AT] = due
-    m[message + DUE] = due
-    append(m, line + FIRST_MESSAGE, message)
-
-
 def _come_out(m: Memory, line: int) -> int:
     """The first message of a line comes out."""
     message = m[line + FIRST_MESSAGE]
-    following = m[message + NEXT_MESSAGE]
-    code = enter_wire(m, message, 0) if m[line + ENTERS_WIRE] else _receive(m, message)
+    following, leads_to = m[message + NEXT_MESSAGE], m[line + LEADS_TO]
+    if leads_to == TO_WIRE:
+        code = send(m, message)
+    elif leads_to == TO_AGENT_ITSELF:
+        code = read_acknowledgement(m, message)
+    else:
+        code = _receive(m, message)
     if code == 0:
         m[line + FIRST_MESSAGE] = following
         m[m[line + ITS_ALARM] + ALARM_AT] = m[following + DUE] if following else NEVER
     return code
 
 
-# Wires and what receives messages.
+# The end of a wire, and what receives messages.
 
 
-def enter_wire(m: Memory, message: int, origin: int) -> int:
-    """A message is queued on its wire; `origin` is the process that has written it, 0 if it comes from outside."""
-    transmission = m[message + SENT_AS]
-    for place in range(m[transmission + STAMPS_TO], m[transmission + STAMPS_TO_END], 2):
-        m[m[place]] = m[message + CARRIED + m[place + 1]]
-    m[MESSAGE] = message
-    return fire(m, m[transmission + WIRE_STIMULUS], origin)
+def arrive(m: Memory, process: int, transmission: int) -> int:
+    """Decide whether a message is lost on the wire."""
+    code = lacks_loss_value(m, transmission)
+    if code == 0 and m[process + ITS_MESSAGE] and is_lost(m, process, transmission):
+        m[m[process + ITS_MESSAGE] + PARTS_IN_IT] = 0
+    return code
+
+
+def has_arrived(m: Memory, process: int) -> bool:
+    """Whether the message of a job is not lost, or only some of its parts are."""
+    message = m[process + ITS_MESSAGE]
+    return message == 0 or m[message + PARTS_IN_IT] != 0
 
 
 def pass_on(m: Memory, process: int, transmission: int) -> int:
-    """A message has left the wire, and continues from there."""
-    message, line_in = m[process + ITS_MESSAGE], m[transmission + LINE_IN]
-    code = _lacks_delay(m, line_in) if line_in else CONTINUE
-    if code:
-        return code
-    free = m[FREE_MESSAGES]
-    for place in range(m[transmission + RELAYS], m[transmission + RELAYS_END]):
-        if free == 0:
-            return NO_MESSAGES
-        free = m[free + NEXT_MESSAGE]
-        code = _lacks_delay(m, m[place])
+    """A message has left the wire, and continues from there if it is not lost."""
+    if m[process + ITS_MESSAGE]:
+        code = _leave_wire(m, transmission, m[process + ITS_MESSAGE])
         if code:
             return code
-    if message:
-        _leave_wire(m, transmission, message)
     m[transmission + DONE_WRITING] += 1
     for place in range(m[PROCESSES], m[PROCESSES_END]):
         writer = m[place]
@@ -127,23 +99,31 @@ def pass_on(m: Memory, process: int, transmission: int) -> int:
     return CONTINUE
 
 
-def _leave_wire(m: Memory, transmission: int, message: int) -> None:
-    for place in range(m[transmission + STAMPS_FROM], m[transmission + STAMPS_FROM_END], 2):
-        m[message + CARRIED + m[place + 1]] = m[m[place]]
-    for place in range(m[transmission + RELAYS], m[transmission + RELAYS_END]):
-        _relay(m, m[place], message)
-    if m[transmission + LINE_IN]:
-        _delay(m, m[transmission + LINE_IN], message)
-    else:
+def _leave_wire(m: Memory, transmission: int, message: int) -> int:
+    line_in = m[transmission + LINE_IN]
+    if m[message + PARTS_IN_IT] == 0:
         free_message(m, message)
-
-
-def _relay(m: Memory, line: int, message: int) -> None:
-    """The agent sends a message back that somebody here has subscribed to."""
-    copy = new_message(m, m[line + CREATES])
-    for index in range(CARRIED, CARRIED + m[CARRIED_VALUES]):
-        m[copy + index] = m[message + index]
-    _delay(m, line, copy)
+        return CONTINUE
+    code = lacks_delay(m, line_in) if line_in else CONTINUE
+    if code:
+        return code
+    for place in range(m[transmission + STAMPS_FROM], m[transmission + STAMPS_FROM_END], 2):
+        value = m[m[place]]
+        m[message + CARRIED + m[place + 1]] = value
+        if m[message + ORIGINAL]:
+            m[m[message + ORIGINAL] + CARRIED + m[place + 1]] = value
+    if line_in:
+        delay(m, line_in, message)
+        return CONTINUE
+    if m[message + ORIGINAL]:
+        code = hand_over(m, m[transmission + FLOW])
+    else:
+        code = lacks_to_relay(m, transmission)
+        if code == 0:
+            relay(m, transmission, message)
+    if code == 0:
+        free_message(m, message)
+    return code
 
 
 def _receive(m: Memory, message: int) -> int:
@@ -158,8 +138,8 @@ def _receive(m: Memory, message: int) -> int:
 
 def put_in_inbox(m: Memory, message: int) -> None:
     """A message waits to be read; a flag is seen at once."""
-    transmission = m[message + SENT_AS]
-    inbox, handle = m[transmission + READ_FROM], m[transmission + FOR_HANDLE]
+    transmission, about = m[message + SENT_AS], m[message + ABOUT]
+    inbox, handle = m[about + FLOW_INBOX] if about else m[transmission + READ_FROM], m[transmission + FOR_HANDLE]
     m[message + DUE] = m[NOW]
     is_flag = handle != 0 and m[handle + HANDLE_KIND] == FLAG
     if is_flag:
@@ -181,36 +161,61 @@ def put_in_inbox(m: Memory, message: int) -> None:
             wake(m, m[place])
 
 
-# Writing.
+# Writing. The result is 0 if the process continues, 1 if it waits until the message is on the wire, or a reason to stop plus 1.
 
 
-def write(m: Memory, core: int, process: int, transmission: int, publication: int) -> int:
-    """Write a message of a publication that waits for acknowledgements, or (0) for none; 1: the process waits until it is on the wire.
+def publish(m: Memory, core: int, process: int, transmission: int, publication: int) -> int:
+    """Write a message of a callback; if there is no room for a reliable one, it is not sent."""
+    flow = m[transmission + FLOW]
+    if publication:
+        m[publication + IS_REFUSED] = 0
+        if flow and not has_room(m, flow, m[transmission + PARTS_OF]):
+            m[publication + IS_REFUSED] = 1
+            m[publication + REFUSALS] += 1
+            return 0
+    code = post(m, process, transmission)
+    return code + 1 if code else until_on_wire(m, core, process, transmission)
 
-    The result is 0, 1, or a reason to stop plus 1.
-    """
-    code = post(m, process, transmission, publication)
+
+def post(m: Memory, process: int, transmission: int) -> int:
+    """Write a message, and continue; the result is a reason to stop, or 0."""
+    if m[FREE_MESSAGES] == 0:
+        return NO_MESSAGES
+    flow, message = m[transmission + FLOW], new_message(m, transmission)
+    code = send_first(m, flow, message, process) if flow else enter_wire(m, message, process)
     if code:
+        free_message(m, message)
+        return code
+    m[transmission + WRITTEN] += 1
+    return CONTINUE
+
+
+def acknowledge(m: Memory, core: int, process: int, transmission: int, flow: int) -> int:
+    """Write an acknowledgement of what has arrived of a flow, or (0) of nothing that is followed."""
+    if m[FREE_MESSAGES] == 0:
+        return NO_MESSAGES + 1
+    message = new_message(m, transmission)
+    if flow:
+        fill_acknowledgement(m, message, flow)
+    return write(m, core, process, message)
+
+
+def write(m: Memory, core: int, process: int, message: int) -> int:
+    """Write a message, which is gone if it cannot be written now."""
+    transmission = m[message + SENT_AS]
+    code = enter_wire(m, message, process)
+    if code:
+        free_message(m, message)
         return code + 1
+    m[transmission + WRITTEN] += 1
+    return until_on_wire(m, core, process, transmission)
+
+
+def until_on_wire(m: Memory, core: int, process: int, transmission: int) -> int:
+    """Have a process wait until the message that it has written last is on the wire, if its driver does."""
     if not m[transmission + HOLDS_WRITER]:
         return 0
     m[process + WRITES_TO] = transmission
     m[process + WRITE_TICKET] = m[transmission + WRITTEN]
     wait(m, core, process, False)
     return 1
-
-
-def post(m: Memory, process: int, transmission: int, publication: int) -> int:
-    """Write a message, and continue."""
-    if m[FREE_MESSAGES] == 0:
-        return NO_MESSAGES
-    message = new_message(m, transmission)
-    m[message + ACKNOWLEDGES] = publication
-    code = enter_wire(m, message, process)
-    if code:
-        free_message(m, message)
-        return code
-    m[transmission + WRITTEN] += 1
-    if publication:
-        m[publication + ASKED_FOR] += m[publication + PARTS_SENT]
-    return CONTINUE

@@ -77,6 +77,11 @@ def _complete(m: Memory, process: int, stage: int) -> None:
         _observe(m, stage, _RESPONSE, m[stage + RESPONDED_AT], m[stage + VALUE])
 
 
+def observe_response(m: Memory, stage: int, time: int, value: int) -> None:
+    """Report a response of a chain that occurs after the job of its last stage."""
+    _observe(m, stage, _RESPONSE, time, value)
+
+
 def _observe(m: Memory, stage: int, kind: int, time: int, value: int) -> None:
     """Report a stimulus or a response of a chain."""
     row = m[OBSERVATIONS]

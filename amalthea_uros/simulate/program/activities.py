@@ -391,7 +391,8 @@ def _handles_message(body: Body, stimulus: str) -> bool:
     own, sent = messages.system.transmissions.get(process), messages.sent.get(stimulus)
     if own is not None and process in messages.transmissions:
         if sent is not None and sent.name in messages.acknowledging_lines:
-            body.code.add(layout.ACKNOWLEDGE_PART, messages.acknowledging_lines[sent.name])
+            body.part += 1
+            body.code.add(layout.PART_ARRIVES, messages.acknowledging_lines[sent.name], body.part)
             return True
         # What it passes first gets it after the time in the driver.
         return stimulus == messages.receiving_stimulus(own)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import collections
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
@@ -21,6 +20,7 @@ from amalthea_uros.simulate.program.executors import IterationCompiler, add_acti
 from amalthea_uros.simulate.program.image import Code, JumpLabel, Operation, ProgramHooks
 from amalthea_uros.simulate.program.resources import Resources
 from amalthea_uros.simulate.program.watches import EventSource
+from amalthea_uros.simulate.program.wire_programs import add_end, add_start
 from amalthea_uros.simulate.sampling.streams import ValueStream
 from amalthea_uros.timing.basics.settings import MemoryModel
 from amalthea_uros.timing.context import TimingContext
@@ -47,6 +47,7 @@ class Body:
     masks : of groups that cannot be interrupted, around the activity
     executions : the records of executions of runnables that are measured
     iteration : of an executor, if the process executes one in each job
+    part : of a message that is acknowledged, the number of the last one that is complete
     """
 
     resources: Resources
@@ -61,7 +62,8 @@ class Body:
     masks: int = 0
     executions: dict[str, int] = field(default_factory=dict)
     iteration: IterationCompiler | None = None
-    _places: collections.Counter[int] = field(default_factory=collections.Counter)
+    part: int = -1
+    _places: dict[int, int] = field(default_factory=dict)
 
     @property
     def context(self) -> TimingContext:
@@ -71,7 +73,7 @@ class Body:
     def place(self) -> str:
         """What draws values here, and nowhere else: the random numbers of a place depend neither on others nor on a trace."""
         name = self.process.name if self.process is not None else f"decision on {self.core}"
-        self._places[self.number] += 1
+        self._places[self.number] = self._places.get(self.number, 0) + 1
         return f"{name} activity {self.number} {self._places[self.number]}"
 
     # Activities.
@@ -230,7 +232,7 @@ def _process_code(body: Body, process: Process, scheduler: Scheduler | None) -> 
     body.require_limited(process.activities)
     entry, exit_ = model.overheads.of_isr(process, body.core) if isinstance(process, Isr) else (None, None)
     copies = model.copies(process, body.core) if model.settings.memory is MemoryModel.IMPLICIT else []
-    body.add_all(body.hooks.start)
+    add_start(body, process)
     body.demand(entry)
     for kind, frame in copies:
         if kind is AccessKind.READ:
@@ -245,10 +247,7 @@ def _process_code(body: Body, process: Process, scheduler: Scheduler | None) -> 
         body.number = 0
         for activity in scheduler.overhead:
             compile_activity(body, activity)
-    messages = body.resources.executors.messages
-    body.add_all(messages.first_operations_of_end(process.name))
-    body.add_all(body.hooks.end)
-    body.add_all(messages.last_operations(process.name))
+    add_end(body, process)
     body.code.add(layout.END)
     return body.code
 

@@ -13,6 +13,7 @@ from amalthea_uros.simulate.kernel.layout import PUT
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.program.chains import ChainCompiler, FollowedRoute
 from amalthea_uros.simulate.program.executors import ExecutorRecords
+from amalthea_uros.simulate.program.flows import FlowRecords
 from amalthea_uros.simulate.program.image import Image
 from amalthea_uros.simulate.program.messages import MessageRecords
 from amalthea_uros.simulate.program.modes import ModeRecords
@@ -74,8 +75,10 @@ class _ProgramBuilder:
         runnables = watches.watched.runnables
         watches.measured = {name: len(processes) + number for number, name in enumerate(runnables)}
         network = MessageRecords(resources)
-        executors = resources.executors = ExecutorRecords(resources, network, len(processes) + len(runnables))
+        flows = FlowRecords(network)
+        executors = resources.executors = ExecutorRecords(resources, network, flows, len(processes) + len(runnables))
         network.place()
+        flows.place()
         executors.place()
         chains = ChainCompiler(resources)
         for name in filter(network.is_about_message, processes):
@@ -121,6 +124,7 @@ class _ProgramBuilder:
             handles=tuple(executors.measured),
             handle_records=dict(network.handles),
             executors=executors.publications_of(),
+            lossy=flows.on_lossy_wires(),
             left_out=self.left_out,
             chains_left_out=chains.left_out,
         )
@@ -161,6 +165,7 @@ class KernelProgram:
     handles : executors and handles of which the calls are measured, in the order of their numbers, which follow those of runnables
     handle_records : by executor and handle
     executors : those that are simulated, each with the records of its publications
+    lossy : the records of messages on wires of which it is stated how many they lose
     left_out : why a process is not simulated
     chains_left_out : why a chain is not followed
     """
@@ -183,5 +188,6 @@ class KernelProgram:
     handles: tuple[tuple[str, str], ...]
     handle_records: dict[tuple[str, str], int]
     executors: dict[str, list[int]]
+    lossy: dict[str, int]
     left_out: dict[str, str]
     chains_left_out: dict[str, str]

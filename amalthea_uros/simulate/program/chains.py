@@ -149,6 +149,9 @@ class ChainCompiler:
 
     def _stage(self, stage: Stage, record: int) -> None:
         hooks = self.hooks.setdefault(stage.process.name, ProgramHooks())
+        messages = self.resources.executors.messages
+        if stage.process.name in messages.sent_again:
+            messages.keep(stage.process.name, record)
         self._enter(stage, record, hooks)
         for index, position in enumerate(self._positions(stage)):
             hooks.before.setdefault(position.number, []).append((layout.REACH, record, 1 << index))
@@ -213,6 +216,11 @@ class ChainCompiler:
                 else:
                     # Only at its end is it known which job has taken part.
                     is_sent = occurrence.when is JobPhase.END and self._gets_to_host(stage.process.name)
+                    messages = self.resources.executors.messages
+                    if is_sent and stage.process.name in messages.sent_again:
+                        hooks.end.append((layout.LEAVE, record, 0))
+                        messages.respond(stage.process.name, record)
+                        return
                     hooks.end.append((layout.RESPOND, record, layout.AT_HOST if is_sent else _RESPONSE_TIMES[occurrence.when]))
             case boundary:
                 raise UnknownError(f"it leaves a process in a way that is not followed: {type(boundary).__name__}")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
+from amalthea_uros.perf.network import Wire
 from amalthea_uros.perf.software import Isr
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.activation.releases import arriving
@@ -33,12 +34,18 @@ class EntityNumbers:
         return self.number(EntityKind.ISR if is_isr else EntityKind.TASK, name)
 
 
+def losses_name(wire: Wire) -> str:
+    """The name of the stimulus that stands for the losses on a wire in a trace."""
+    return f"losses on {wire.name}"
+
+
 def _entities(system: System) -> Iterator[Entity]:
     for name, process in system.processes.items():
         yield Entity(EntityKind.ISR if isinstance(process, Isr) else EntityKind.TASK, name)
     yield from (Entity(EntityKind.CORE, name) for name in system.cores)
     yield from (Entity(EntityKind.SCHEDULER, name) for name in system.schedulers)
     yield from (Entity(EntityKind.STIMULUS, name) for name in (*system.stimuli_by_name, *arriving(system)))
+    yield from (Entity(EntityKind.STIMULUS, losses_name(wire)) for wire in system.network.wires if wire.losses)
     yield from (Entity(EntityKind.RUNNABLE, name) for name in system.runnables)
     yield from (Entity(EntityKind.LABEL, name) for name in system.labels)
     yield from (Entity(EntityKind.SEMAPHORE, semaphore.name) for semaphore in system.os.semaphores)

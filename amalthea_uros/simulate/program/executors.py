@@ -11,16 +11,17 @@ from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.semantics.loops import SLEEP_RESOLUTION, returns_at_once, sleep_of
 from amalthea_uros.executors.semantics.readiness import is_message, shares_session
 from amalthea_uros.executors.semantics.steps import IterationStep, iterations_name, session_lock, steps_of
-from amalthea_uros.executors.semantics.suspension import parts
 from amalthea_uros.perf.activities import Activity, Call, ProbabilitySwitch
 from amalthea_uros.perf.distributions import Boundaries
 from amalthea_uros.perf.executors import Executor, Handle, HandleKind, LoopKind, Publication, TriggerKind
 from amalthea_uros.perf.software import Process
 from amalthea_uros.simulate.kernel import layout
 from amalthea_uros.simulate.options import SimulationMode
+from amalthea_uros.simulate.program.flows import FlowRecords
 from amalthea_uros.simulate.program.image import JumpLabel
 from amalthea_uros.simulate.program.messages import MessageRecords
 from amalthea_uros.simulate.program.resources import Resources
+from amalthea_uros.simulate.program.wire_programs import add_parts
 from amalthea_uros.simulate.sampling.streams import durations
 from amalthea_uros.simulate.sampling.words import RandomSource
 from amalthea_uros.timing.touching import awaited
@@ -45,6 +46,7 @@ class ExecutorRecords:
 
     resources: Resources
     messages: MessageRecords
+    flows: FlowRecords
     first_number: int
     records: dict[str, int] = field(default_factory=dict)
     measured: list[tuple[str, str]] = field(default_factory=list)
@@ -72,6 +74,7 @@ class ExecutorRecords:
         fields = {
             layout.READER_PROCESS: resources.processes[executor.task],
             layout.INBOX: self.messages.inboxes[executor.name],
+            layout.OUT_FLOW: self.flows.out_of(executor.name),
             layout.WAIT_TIMEOUT: time(loop.timeout),
             layout.RESOLUTION: time(waiting.resolution),
             layout.MESSAGES_PER_WAIT: waiting.messages_per_wait or 0,
@@ -114,10 +117,7 @@ class ExecutorRecords:
         """The record of a publication of a callback."""
         key = (executor, handle.name, publication.topic)
         if key not in self._publications:
-            system = self.resources.context.system
-            awaited = system.transmissions.get(publication.acknowledgement or "")
             fields = {
-                layout.PARTS_SENT: 0 if awaited is None else parts(awaited, system),
                 layout.TIMEOUT_AFTER: self.resources.time(layout.NEVER if publication.timeout is None else publication.timeout),
             }
             self._publications[key] = self.resources.image.record(layout.PUBLICATION_SIZE, fields)
@@ -176,7 +176,10 @@ def add_activities(body: Body, process: Process) -> None:
         raise UnknownError(
             f"it waits for the acknowledgement of {message.topic!r} outside an executor with a loop, which is not simulated"
         )
-    body.activities(process.activities)
+    if process.name in body.resources.executors.messages.transmissions:
+        add_parts(body, process)
+    else:
+        body.activities(process.activities)
 
 
 @dataclass(slots=True)

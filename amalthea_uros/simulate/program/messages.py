@@ -13,7 +13,7 @@ from amalthea_uros.executors.semantics.suspension import parts
 from amalthea_uros.perf.activities import Trigger, walk
 from amalthea_uros.perf.distributions import Boundaries, Uniform
 from amalthea_uros.perf.executors import Executor, Handle, HandleKind
-from amalthea_uros.perf.network import Direction, Purpose, Span, Transmission
+from amalthea_uros.perf.network import Direction, Losses, Purpose, Span, Transmission
 from amalthea_uros.perf.stimuli import InterProcess, Periodic, Stimulus
 from amalthea_uros.perf.system import System
 from amalthea_uros.simulate.arrivals import StimulusOccurrences, occurrences
@@ -46,6 +46,8 @@ class MessageRecords:
     arrivals : of messages that come over no wire
     alarms : what occurs at planned times
     acknowledging_lines : by the name of the message with which the agent acknowledges
+    sent_again : reliable messages on wires of which it is stated how many they lose
+    losses : the records of what loses messages, by wire
     """
 
     resources: Resources
@@ -57,6 +59,8 @@ class MessageRecords:
     arrivals: list[tuple[int, StimulusOccurrences]] = field(default_factory=list)
     alarms: list[int] = field(default_factory=list)
     acknowledging_lines: dict[str, int] = field(default_factory=dict)
+    sent_again: set[str] = field(default_factory=set)
+    losses: dict[tuple[str, Losses], int] = field(default_factory=dict)
     _receivers: dict[str, bool] | None = None
     _carried: int = 0
     _stamps: dict[tuple[int, int], list[int]] = field(default_factory=dict)
@@ -95,7 +99,7 @@ class MessageRecords:
         """Say what is assumed of a message beyond what is stated."""
         assume = self.resources.context.notes.assume
         if transmission.is_dropped_when_busy or any(
-            wire.name == transmission.wire and wire.loses_messages for wire in self.system.network.wires
+            wire.name == transmission.wire and wire.loses_messages and not wire.losses for wire in self.system.network.wires
         ):
             assume(f"no message is lost on {transmission.wire!r}, or dropped because another thread is sending")
         if relayed(transmission, self.system):
@@ -134,8 +138,11 @@ class MessageRecords:
         else:
             wire = next(each for each in system.network.wires if each.name == transmission.wire)
             fields[layout.HOLDS_WRITER] = int(wire.keeps_sender)
+            if transmission.purpose is Purpose.ACKNOWLEDGEMENT:
+                arrives = self.delay(f"to agent {transmission.name}", transmission.link)
+                fields[layout.LINE_IN] = self.line(transmission, arrives, layout.TO_AGENT_ITSELF)
             if transmission.purpose is Purpose.DATA and transmission.agent.simulated.most is not None:
-                fields[layout.TO_HOST] = self._delay(f"to host {transmission.name}", transmission.link, transmission.agent)
+                fields[layout.TO_HOST] = self.delay(f"to host {transmission.name}", transmission.link, transmission.agent)
         self.image.put(record, fields)
         if isinstance(system.stimuli_by_name[stimulus], InterProcess):
             self.sent[stimulus] = transmission
@@ -143,8 +150,8 @@ class MessageRecords:
             self._bring(transmission, system.stimuli_by_name[stimulus])
         self._acknowledge(transmission)
         lines = [
-            self._line(
-                relay, self._delay(f"relay {relay.name}", transmission.link, transmission.agent, relay.agent), enters=True
+            self.line(
+                relay, self.delay(f"relay {relay.name}", transmission.link, transmission.agent, relay.agent), layout.TO_WIRE
             )
             for relay in self._relays(transmission)
         ]
@@ -160,8 +167,10 @@ class MessageRecords:
         """The fields of a transmission that the controller receives."""
         system = self.system
         fields = {
-            layout.LINE_IN: self._line(
-                transmission, self._delay(f"receive {transmission.name}", transmission.link, transmission.driver)
+            layout.LINE_IN: self.line(
+                transmission,
+                self.delay(f"receive {transmission.name}", transmission.link, transmission.driver),
+                layout.TO_RECEIVER,
             )
         }
         received_by = self.receiving_stimulus(transmission)
@@ -185,11 +194,16 @@ class MessageRecords:
 
     def _reader_of(self, transmission: Transmission) -> Executor | None:
         """The executor that reads what no handle takes: an acknowledgement is read by whoever waits for it."""
+        acknowledged = self.system.transmissions.get(transmission.acknowledges or "")
+        sender = None if acknowledged is None else self.sender(acknowledged)
+        return sender or next(iter(self.system.executors), None)
+
+    def sender(self, transmission: Transmission) -> Executor | None:
+        """The executor that sends a message; None if none does that loops."""
         for executor in self.system.executors:
-            sent = {each.transmission for handle in executor.handles for each in handle.publications}
-            if transmission.acknowledges in sent:
+            if any(transmission.name == each.transmission for handle in executor.handles for each in handle.publications):
                 return executor
-        return next(iter(self.system.executors), None)
+        return None
 
     def receiving_stimulus(self, transmission: Transmission) -> str | None:
         """The stimulus of the first process that a message passes: that which the end of its last frame triggers; None for none."""
@@ -237,17 +251,17 @@ class MessageRecords:
             return
         sent = self.system.transmissions.get(transmission.acknowledges)
         if sent is not None:
-            delay = self._delay(f"acknowledge {transmission.name}", sent.link, transmission.agent)
-            self.acknowledging_lines[transmission.name] = self._line(transmission, delay, enters=True)
+            delay = self.delay(f"acknowledge {transmission.name}", sent.link, transmission.agent)
+            self.acknowledging_lines[transmission.name] = self.line(transmission, delay, layout.TO_WIRE)
 
     def _bring(self, transmission: Transmission, stimulus: Stimulus) -> None:
         """Have each occurrence of a stimulus bring a message."""
         ready = taker(transmission, self.system)
         if transmission.purpose is Purpose.DATA and transmission.direction is Direction.TO_CONTROLLER and ready is not None:
             stimulus = self._published(stimulus.name, ready[1]) or stimulus
-            line = self._line(transmission, self._delay(f"from host {transmission.name}", transmission.agent), enters=True)
+            line = self.line(transmission, self.delay(f"from host {transmission.name}", transmission.agent), layout.TO_WIRE)
         else:
-            line = self._line(transmission, self._delay("", _AT_ONCE), enters=True)
+            line = self.line(transmission, self.delay("", _AT_ONCE), layout.TO_WIRE)
         self.brought[stimulus.name] = (line, stimulus)
 
     def _published(self, name: str, handle: Handle, others: Sequence[Handle] = ()) -> Stimulus | None:
@@ -274,7 +288,7 @@ class MessageRecords:
         assert stimulus is not None
         fields = {layout.READ_FROM: self.inboxes[executor.name], layout.FOR_HANDLE: self.handles[executor.name, handle.name]}
         transmission = self.image.record(layout.TRANSMISSION_SIZE, fields)
-        line = self._line_of(transmission, self._delay("", _AT_ONCE), enters=False)
+        line = self._line_of(transmission, self.delay("", _AT_ONCE), layout.TO_RECEIVER)
         record = self.image.record(layout.STIMULUS_SIZE, {layout.BRINGS: line})
         source = RandomSource(self.resources.options.seed, f"stimulus {stimulus.name}")
         times = occurrences(stimulus, self.system, self.resources.options.mode, source, self.resources.units)
@@ -282,7 +296,7 @@ class MessageRecords:
 
     # Lines.
 
-    def _delay(self, place: str, *spans: Span) -> int:
+    def delay(self, place: str, *spans: Span) -> int:
         """The stream of a delay that consists of several.
 
         Instead of a maximum that is unknown, the minimum counts; nothing that depends on it is observed: see `obstacle`.
@@ -298,12 +312,13 @@ class MessageRecords:
         times = Boundaries(lower=least, upper=most)
         return self.resources.stream(durations(times, Fraction(self.resources.units), self.resources.options.mode, source))
 
-    def _line(self, transmission: Transmission, delay: int, *, enters: bool = False) -> int:
-        return self._line_of(self.transmissions[transmission.name], delay, enters=enters)
+    def line(self, transmission: Transmission, delay: int, leads_to: int) -> int:
+        """A line of messages with a stream of delays."""
+        return self._line_of(self.transmissions[transmission.name], delay, leads_to)
 
-    def _line_of(self, transmission: int, delay: int, *, enters: bool) -> int:
+    def _line_of(self, transmission: int, delay: int, leads_to: int) -> int:
         line = self.image.record(
-            layout.LINE_SIZE, {layout.DELAY: delay, layout.ENTERS_WIRE: int(enters), layout.CREATES: transmission}
+            layout.LINE_SIZE, {layout.DELAY: delay, layout.LEADS_TO: leads_to, layout.CREATES: transmission}
         )
         self.image.put(line, {layout.ITS_ALARM: self.alarm(layout.DELAY_LINE, line)})
         return line
@@ -330,6 +345,18 @@ class MessageRecords:
         else:
             self._stamp(self.handles[target], layout.HANDLE_STAMPS, place, index)
 
+    def keep(self, name: str, stage: int) -> None:
+        """Have a message that can be sent again keep the value of a stage of a chain that it has on the wire."""
+        self._stamp(self.transmissions[name], layout.KEEPS, stage, self._carried)
+        self._carried += 1
+
+    def respond(self, name: str, stage: int) -> None:
+        """Have a message that can wait for earlier ones be the response of a chain when the host gets it."""
+        record, index = self.transmissions[name], self._carried
+        self._carried += 1
+        self._stamp(record, layout.STAMPS_FROM, stage + layout.LINK, index)
+        self._stamp(record, layout.RESPONSES, stage, index)
+
     def _stamp(self, record: int, first: int, place: int, index: int) -> None:
         self._stamps.setdefault((record, first), []).extend((place, index))
 
@@ -346,7 +373,8 @@ class MessageRecords:
     def first_operations_of_end(self, process: str) -> Sequence[Operation]:
         """The operations of a process on its message at the end of a job, before those of chains."""
         record = self.transmissions.get(process, 0)
-        return [(layout.DEPART, record, 0)] if record and self.image.words[record + layout.TO_HOST] else []
+        is_later = process in self.sent_again
+        return [(layout.DEPART, record, 0)] if record and self.image.words[record + layout.TO_HOST] and not is_later else []
 
     def head(self) -> dict[int, int]:
         """The head of the memory; fills the lists of what is carried."""

@@ -21,6 +21,7 @@ from amalthea_uros.simulate.observations import (
     CountObservation,
     ExecutorObservation,
     HandleObservation,
+    LossObservation,
     ProcessObservation,
     RunnableObservation,
 )
@@ -73,6 +74,7 @@ class RunEvaluation:
             left_out=Results(self._left_out(name, reason) for name, reason in program.left_out.items()),
             chains=found,
             executors=executors,
+            losses=Results(self._losses()),
             runnables=runnables,
             labels=Results(self.run.observers.labels()),
             requirements=requirements,
@@ -183,14 +185,27 @@ class RunEvaluation:
         for executor in self.context.system.executors:
             if executor.name not in self.program.executors:
                 continue
-            timeouts = (memory[record + layout.TIMEOUTS] for record in self.program.executors[executor.name])
+            publications = self.program.executors[executor.name]
             yield ExecutorObservation(
                 name=executor.name,
                 iterations=self.run.jobs[self.program.processes.index(executor.task)].count,
-                timeouts=int(sum(timeouts)),
+                timeouts=int(sum(memory[record + layout.TIMEOUTS] for record in publications)),
+                refusals=int(sum(memory[record + layout.REFUSALS] for record in publications)),
                 handles=Results(
                     self._handle(executor, handle, found[executor.name, handle.name]) for handle in executor.handles
                 ),
+            )
+
+    def _losses(self) -> Iterator[LossObservation]:
+        """The messages that were lost, of those that can be."""
+        memory = self.run.driver.memory
+        for name, record in self.program.lossy.items():
+            yield LossObservation(
+                name=name,
+                wire=self.context.system.transmissions[name].wire,
+                sent=int(memory[record + layout.DONE_WRITING]),
+                lost=int(memory[record + layout.LOST_ON_WIRE]),
+                sent_again=int(memory[record + layout.SENT_AGAIN]),
             )
 
     def _handle(self, executor: Executor, handle: Handle, found: JobMetrics) -> HandleObservation:

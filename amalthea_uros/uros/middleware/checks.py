@@ -152,7 +152,7 @@ def _check_recovery(callbacks: Sequence[Callback], profile: Profile, notes: Note
     src/c/core/session/stream/output_reliable_stream.c of eProsima/Micro-XRCE-DDS-Client.
     """
     how = profile.sending
-    if not (profile.middleware.transport.loses_messages and how.waits) or how.resends_after is None:
+    if not (profile.middleware.transport.is_lossy and how.waits) or how.resends_after is None:
         return
     incoming = [callback.incoming for callback in callbacks if callback.incoming is not None]
     dense = min(incoming, key=lambda message: message.interval, default=None)

@@ -13,7 +13,7 @@ from typing import NamedTuple, Self
 
 from amalthea_uros.perf.executors import WaitBehaviour
 from amalthea_uros.perf.named import Brief
-from amalthea_uros.perf.network import Direction
+from amalthea_uros.perf.network import Direction, Recovery
 from amalthea_uros.spec.application import Application
 from amalthea_uros.spec.middleware import Middleware, MiddlewareTask
 from amalthea_uros.spec.profiles import ProfileData, ThreadData
@@ -210,6 +210,11 @@ class Profile(ABC):
     def creation(self) -> CreationFigures | None:
         """How entities are created; None if the agent does not create them on request."""
         return None
+
+    @property
+    @abstractmethod
+    def recovery(self) -> Recovery | None:
+        """How reliable messages that were lost are sent again; None if it does not care for losses."""
 
     @property
     @abstractmethod

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
+from amalthea_uros.perf.network import Direction, Losses
 from amalthea_uros.perf.system import System
+from amalthea_uros.spec.losses import LossesSection
 from amalthea_uros.spec.transports import Can, CanFd
 from amalthea_uros.uros.application.callbacks import Callback
 from amalthea_uros.uros.assembly.context import AssemblyContext
@@ -67,6 +69,20 @@ def foreign_frames(section: Can | CanFd, database: Sequence[ForeignFrame]) -> tu
     return (*described, *without_own([frame for frame in database if frame.name not in names], section))
 
 
+def stated_losses(section: LossesSection | None) -> Iterator[Losses]:
+    """The losses of a wire."""
+    if section is None:
+        return
+    rates = (
+        (section.both, tuple(Direction)),
+        (section.to_controller, (Direction.TO_CONTROLLER,)),
+        (section.to_agent, (Direction.TO_AGENT,)),
+    )
+    for rate, directions in rates:
+        if rate is not None:
+            yield Losses(directions=directions, count=rate.count, window=rate.window, per_billion=rate.per_billion)
+
+
 def with_network(system: System, planned: PlannedNetwork | None, context: AssemblyContext) -> System:
     """A system with its network, before chains are added to it; without one, the system itself."""
     if planned is None:
@@ -76,13 +92,17 @@ def with_network(system: System, planned: PlannedNetwork | None, context: Assemb
     for frame in planned.foreign:
         if frame.name in system.processes:
             context.notes.duplicate("process or frame", frame.name, frame.origin, system.processes[frame.name].origin)
+    queued = [*queueing.of(planned.messages), *map(queueing.foreign, planned.foreign)]
     plan = WirePlan(
         line=planned.line,
         name=free_name(planned.line.name, system),
-        queued=[*queueing.of(planned.messages), *map(queueing.foreign, planned.foreign)],
+        queued=queued,
         receivers=planned.receivers,
+        loses_messages=middleware.transport.is_lossy,
+        losses=tuple(stated_losses(middleware.transport.losses)),
+        recovery=context.profile.recovery if any(each.transmission.acknowledges for each in queued) else None,
     )
     check_load(plan, context.notes)
     check_reading(plan, system.executors, context.notes)
-    found = with_wire(system, plan, middleware.agent.name, middleware.transport.loses_messages, context.assumptions)
+    found = with_wire(system, plan, middleware.agent.name, context.assumptions)
     return without_idle(found, planned.receivers.other_triggers)

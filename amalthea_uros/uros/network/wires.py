@@ -17,7 +17,7 @@ from amalthea_uros.perf.activities import Activity, Demand, Execute, SchedulePoi
 from amalthea_uros.perf.distributions import Boundaries, Constant, Sampling
 from amalthea_uros.perf.hardware import Clock, Core, CoreType, Structure
 from amalthea_uros.perf.mapping import TaskAllocation
-from amalthea_uros.perf.network import Direction, Network, Purpose, Wire
+from amalthea_uros.perf.network import Direction, Losses, Network, Purpose, Recovery, Wire
 from amalthea_uros.perf.os import OperatingSystem, Policy, Scheduler
 from amalthea_uros.perf.software import Preemption, Runnable, Task
 from amalthea_uros.perf.stimuli import Stimulus
@@ -90,12 +90,16 @@ class WirePlan:
     Attributes
     ----------
     name : of the wire
+    loses_messages, losses, recovery : as in `perf.network.Wire`
     """
 
     line: Line
     name: str
     queued: Sequence[Queued]
     receivers: Receivers
+    loses_messages: bool = False
+    losses: tuple[Losses, ...] = ()
+    recovery: Recovery | None = None
 
     def core(self, direction: Direction) -> str:
         """The core that stands for a direction."""
@@ -136,7 +140,7 @@ class WirePlan:
         return _OF_CLIENT if identifier is None else arbitration_rank(identifier, extended=section.identifier == "extended")
 
 
-def with_wire(system: System, plan: WirePlan, agent: str, loses_messages: bool, assumptions: tuple[str, ...]) -> System:
+def with_wire(system: System, plan: WirePlan, agent: str, assumptions: tuple[str, ...]) -> System:
     """A system with a wire."""
     lowest = max(plan.ranks.values(), default=0)
     wire = WireCores(
@@ -165,7 +169,9 @@ def with_wire(system: System, plan: WirePlan, agent: str, loses_messages: bool, 
                     name=plan.name,
                     kind=plan.line.kind,
                     cores=plan.cores,
-                    loses_messages=loses_messages,
+                    loses_messages=plan.loses_messages,
+                    losses=plan.losses,
+                    recovery=plan.recovery,
                     keeps_sender=plan.line.keeps_sender,
                 ),
             ),

@@ -16,7 +16,7 @@ from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.errors import ReadError
 from amalthea_uros.judge.verdict import Verdict
-from amalthea_uros.perf.network import Direction, Span
+from amalthea_uros.perf.network import Span
 from amalthea_uros.simulate.observations import MetricObservation
 from amalthea_uros.simulate.options import Options, SimulationMode
 from amalthea_uros.simulate.results import Simulation

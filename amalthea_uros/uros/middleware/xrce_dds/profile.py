@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from amalthea_uros.perf.network import Direction
+from amalthea_uros.perf.network import Direction, Recovery
 from amalthea_uros.spec.application import Application, NodeSection
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.units import MILLISECOND, Time
@@ -27,6 +27,8 @@ from amalthea_uros.uros.middleware.xrce_dds.messages import MessageLayout, conte
 
 #: Bytes of a slot for a received message, besides its buffer.
 _SLOT = 64
+#: Reliable messages that the agent sends before the first one is acknowledged: its reliable stream in eProsima/Micro-XRCE-DDS-Agent.
+_AGENT_WINDOW = 16
 #: Bytes of an entity.
 _ENTITIES = {
     "RMW_UXRCE_MAX_PUBLISHERS": 224,
@@ -72,6 +74,18 @@ class XrceDds(MessageLayout):
         client, agent = self._heartbeat_interval, self.data.sending.heartbeat
         interval = client if direction is Direction.TO_AGENT or agent is None else agent
         return Heartbeat(self.size("heartbeat"), interval, is_answered=True)
+
+    @property
+    def recovery(self) -> Recovery:
+        """Heartbeats: of the client after a silence, and of the agent at intervals."""
+        client, (inputs, outputs) = self._heartbeat_interval, self.build.histories
+        return Recovery(
+            asks_after=client,
+            agent_asks_every=self.data.sending.heartbeat or client,
+            sent_parts=outputs,
+            received_parts=inputs,
+            agent_sent_parts=_AGENT_WINDOW,
+        )
 
     @property
     def _heartbeat_interval(self) -> Time:

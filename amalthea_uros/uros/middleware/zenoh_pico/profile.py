@@ -66,6 +66,11 @@ class ZenohPico(Profile):
         return Heartbeat(self.size("heartbeat"), interval, is_answered=False)
 
     @property
+    def recovery(self) -> None:
+        """It leaves that to the transport."""
+        return None
+
+    @property
     def buffers(self) -> None:
         """There are none: nobody keeps messages until they are acknowledged."""
         return None
