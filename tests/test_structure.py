@@ -42,7 +42,7 @@ LINES = {
     "services": 1955,
     "simulate": 7767,
     "source": 1887,
-    "spec": 1903,
+    "spec": 1905,
     "timing": 5086,
     "trace": 4803,
     "units": 164,
