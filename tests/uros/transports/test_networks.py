@@ -72,6 +72,8 @@ def test_no_message_takes_longer_than_its_bound(kind, executor, author):
         for name in names:
             response = bounds[name].response
             assert response.worst is not None
+            if not found[name].jobs:
+                continue  # a heartbeat, when no acknowledgement is missing
             assert response.best <= found[name].response_time.min
             assert found[name].response_time.max <= response.worst
 
