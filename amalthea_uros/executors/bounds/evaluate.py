@@ -121,6 +121,8 @@ def _until_ready(cycle: Cycle, delay: Delay, wait: Time, waited_for: str, stored
     stored : what bounds this time better than cycles of which each waits; None if they do
     """
     if stored is not None:
+        if not stored.is_stored:
+            return [TimePart(name="running iteration", most=stored.most, why=stored.why)]
         return [TimePart(name="storage", most=stored.most, why=f"{waited_for}; {stored.why}")]
     return [*_of_cycle(cycle), TimePart(name="wait", most=wait, why=waited_for), _before(cycle, delay, wait)]
 

@@ -56,10 +56,12 @@ class Storage:
     Attributes
     ----------
     why : what it waits for
+    is_stored : whether a publication can have read it
     """
 
     most: Time
     why: str
+    is_stored: bool = True
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -95,7 +97,8 @@ class StorageConditions:
         # Distances of periodic events grow by the same, so that the condition holds for all m if it does for one.
         is_drained = self.events.delta_min(2) > length
         if self.idle is not None and self.events.delta_min(2) > self.idle + length:
-            return Storage(most=length, why="no message arrives before the wait that follows the one before it")
+            why = "what is ready was fixed just before; publications store no message for it, as each arrives after the wait has begun"
+            return Storage(most=length, why=why, is_stored=False)
         if is_drained and self.idle is not None:
             until_next += self.gaps
             why = "a message that is stored is taken when the next one arrives, or the wait times out"
