@@ -1,7 +1,7 @@
 """Looks for false answers about random applications with executors that spin in loops.
 
-`python -m opponent.hunt_executors --seeds 0..10000 --jobs 2 --out FOLDER` with `tests`, `tests/simulate` and `tools` on the path, e.g.
-`PYTHONPATH=.:tests:tests/simulate:tools` in the folder of the project. For each seed it compares
+`python -m opponent.hunt_executors --seeds 0..10000 --jobs 2 --out FOLDER` with `tests` and `tools` on the path, e.g.
+`PYTHONPATH=.:tests:tools` in the folder of the project. For each seed it compares
 
 - calls: a random executor, and a random application on a wire, each simulated and played step by step by a player that shares no
   code with the simulation; every call has the same response time;

@@ -3,14 +3,13 @@
 import random
 from dataclasses import replace
 
-import numpy as np
 import pytest
 import test_whole_way
 from effort import IS_THOROUGH
 from hand_made_systems import WRITE, Proc, ticks
 from looping_executors import SPIN, US, WaitBehaviour, guard, looping, message, timer, waiting_publication
 from played_executors import Spans, play
-from random_executors import application
+from simulated_calls import Least, as_planned, calls, first_difference, fixed, on_wires, without_heartbeats
 from support import ROOT
 from whole_player import Player, S
 
@@ -21,12 +20,8 @@ from amalthea_uros.perf.activities import Call, Communication, Group, LabelAcces
 from amalthea_uros.perf.executors import LoopKind, TriggerCondition, TriggerKind
 from amalthea_uros.perf.software import Runnable
 from amalthea_uros.simulate.options import Options, SimulationMode
-from amalthea_uros.simulate.program.build import build_program
-from amalthea_uros.simulate.runs.execution import SimulationRun
 from amalthea_uros.simulate.runs.run import simulate_system
-from amalthea_uros.timing.activation.releases import with_first_arrivals
 from amalthea_uros.timing.basics.quantities import ChainQuantity
-from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.units import MILLISECOND as MS
 from amalthea_uros.units import SECOND
 from amalthea_uros.uros.described import describe_content, describe_text
@@ -37,66 +32,7 @@ SEEDS = (*range(3000 if IS_THOROUGH else 30), 7033, 70, 102)
 BOUNDED = range(500 if IS_THOROUGH else 8)
 
 
-class Least:
-    """Chooses the least of everything, and nothing that may happen."""
-
-    def choice(self, options):
-        return options[0] if isinstance(options[0], str) else min(options)
-
-    def randint(self, low, high):
-        return low
-
-    def randrange(self, *_):
-        return 0
-
-    def uniform(self, low, high):
-        return low
-
-    def random(self):
-        return 0.9
-
-
-def calls(system, until):
-    """The calls of each handle in a run in which everything takes its least time: the response times in picoseconds."""
-    options = Options(duration=until, mode=SimulationMode.BEST)
-    context = TimingContext.of_scheduling(with_first_arrivals(with_steps(system), {}), options.settings)
-    program, rows = build_program(context, options), []
-    assert program.left_out == {}
-    run = SimulationRun(context, options, program)
-    run.driver.jobs = lambda chunk: rows.append(chunk.copy())
-    run.execute([])
-    jobs = np.concatenate(rows)
-    first = len(program.processes) + len(program.runnables)
-    return {
-        key: [(int(row[4]) - int(row[2])) // program.units for row in jobs[jobs[:, 0] == first + number]]
-        for number, key in enumerate(program.handles)
-    }
-
-
-def first_difference(simulated, played, tolerance=0):
-    """Where two lists of times differ; the last call can be cut off by the end. None if they do not."""
-    if abs(len(simulated) - len(played)) > 1:
-        return len(simulated), len(played)
-    pairs = zip(simulated, played, strict=False)
-    return next((pair for pair in pairs if abs(pair[0] - pair[1]) > tolerance), None)
-
-
 # Executors of all kinds: triggers, LET, sessions, guard conditions, sleeps in ticks, slots.
-
-
-def fixed(seed):
-    """A random application without publications, in which all phases are known and no two things occur at the same instant."""
-    chance = random.Random(seed)
-    app = application(chance)
-    executors = []
-    for executor in app.system.executors:
-        handles = [
-            # The player pays for taking what is not there, the model does not.
-            replace(each, publications=(), phase=chance.randrange(1, each.interval), take=None if each.always else each.take)
-            for each in executor.handles
-        ]
-        executors.append(replace(executor, handles=tuple(handles)))
-    return replace(app, system=replace(app.system, executors=tuple(executors)))
 
 
 @pytest.mark.parametrize("block", range(0, len(SEEDS), BLOCK))
@@ -122,43 +58,6 @@ def test_every_call_is_that_of_a_player(block):
 
 
 # Whole applications: the host, the agent, wires, interrupts, acknowledgements, publications that wait.
-
-
-def on_wires(seed):
-    """A random description with known phases, and the plan of its player; None for what the two model with different detail."""
-    chance = random.Random(seed)
-    content, plan = test_whole_way.drawn(chance)
-    plan["begin"] = 0
-    for handle in plan["handles"]:
-        handle["phase"] = chance.randrange(1, handle["period"])
-    wire = content["middleware"]["transport"]
-    has_frames = plan["stages"] and plan["wire"] == "serial"  # each chunk has an interrupt, for the player each message
-    if plan["tick"] or plan["wire"] == "usb_cdc" or has_frames or wire.get("can_fd", {}).get("foreign"):
-        return None
-    if plan["wire"] == "serial":
-        # A bit takes a whole number of nanoseconds, in which the player counts.
-        plan["rate"] = wire["serial"]["baud_rate"] = 1_000_000
-    return content, plan
-
-
-def without_heartbeats(system):
-    """The system of the player, whose sessions are never silent for long."""
-    gone = {name for name in system.transmissions if name.startswith("heartbeat")}
-    network, software = system.network, system.software
-    return replace(
-        system,
-        network=replace(network, transmissions=tuple(each for each in network.transmissions if each.name not in gone)),
-        software=replace(software, tasks=tuple(task for task in software.tasks if task.name not in gone)),
-        mapping=replace(system.mapping, tasks=tuple(each for each in system.mapping.tasks if each.task not in gone)),
-    )
-
-
-def as_planned(system, plan):
-    phases = {handle["name"]: handle["phase"] * 1000 for handle in plan["handles"]}
-    (executor,) = system.executors
-    handles = tuple(replace(handle, phase=phases[handle.name]) for handle in executor.handles)
-    loop = replace(executor.loop, sleep=plan["sleep"] * 1000, sleep_early=0, pace=0)
-    return replace(system, executors=(replace(executor, loop=loop, handles=handles),))
 
 
 @pytest.mark.parametrize("block", range(0, len(SEEDS), BLOCK))

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from effort import IS_THOROUGH
 from lossy_player import LossyPlayer, losses
-from test_executor_loops import as_planned, first_difference
+from simulated_calls import as_planned, first_difference
 from test_whole_way import drawn
 from traces import said
 from whole_player import MS, S

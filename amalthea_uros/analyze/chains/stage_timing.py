@@ -36,6 +36,7 @@ from amalthea_uros.timing.dataflow.events import EventOccurrence, JobPhase
 from amalthea_uros.timing.dataflow.stages import NEXT_JOB, SAME_JOB, At, Fire, Pass, Read, Stage
 from amalthea_uros.timing.demand.model import MAX_TIME_BASE
 from amalthea_uros.timing.jobs.counters import first_effect, is_always, max_distance
+from amalthea_uros.timing.jobs.positions import ActivityPosition
 from amalthea_uros.timing.response import Response
 from amalthea_uros.timing.scheduling.scheduled import ScheduledProcess
 from amalthea_uros.units import Time
@@ -116,11 +117,14 @@ class StageTiming:
 
     def _left_after(self, base: Stage) -> Time:
         """The minimum demand of a job after it has triggered the next stage."""
-        process, model = base.process, self.context.demand_model
-        scheduled = self.context.scheduled.get(process.name)
-        if scheduled is None or not isinstance(base.leave, Fire) or base.leave.position is None:
+        return self._demand_after(base.process, base.leave.position) if isinstance(base.leave, Fire) else 0
+
+    def _demand_after(self, process: Process, position: ActivityPosition | None) -> Time:
+        """The minimum demand of a job after a position of it; 0 if that is unknown."""
+        model, scheduled = self.context.demand_model, self.context.scheduled.get(process.name)
+        if scheduled is None or position is None:
             return 0
-        before = model.of_position(base.leave.position, scheduled.core, including=True)
+        before = model.of_position(position, scheduled.core, including=True)
         everything = model.of_activities(process, process.activities, scheduled.core)
         return (everything.best - before.best) * self.unit // model.time_base(scheduled.core)
 
@@ -297,6 +301,8 @@ class StageTiming:
         2. A job of the writer that has not written at that release writes while it executes, or when it ends, which is right after
            it has executed. Both come after the end of the reader, and so after its read.
         3. A job that has written by then has done so at the latest at the release.
+        4. An explicit read counts only if the job executes after it: in which order a read at the end of a job and an access of the job
+           that executes next occur, if both are at one instant, is unknown.
 
         So the latest read counts as if it were at the release, although the reader may get the core later. Under logical execution
         time the writer publishes without executing; a reader reads at its release anyway.
@@ -304,6 +310,8 @@ class StageTiming:
         if is_logical(writer.leave) or is_logical(reader.enter) or self.context.decisions:
             return False
         if writer.jobs_later is not None or isinstance(writer.leave, Pass) or not isinstance(reader.enter, Read):
+            return False
+        if is_inside(reader.enter) and not self._demand_after(reader.process, reader.enter.position):
             return False
         releases = known_releases(reader.process, self.context.system)
         if releases is None or self.context.has_loops(self.context.scheduled[reader.process.name].core):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import test_executor_loops as loops
+import simulated_calls as loops
 from opponent.executors.tally import Tally
 from played_executors import Spans, play
 from whole_player import Player, S

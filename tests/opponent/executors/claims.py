@@ -10,7 +10,7 @@ from fuzzing.contradictions import contradictions
 from opponent.executors.constructs import constructs_of
 from opponent.executors.descriptions import Section
 from opponent.executors.tally import Tally
-from test_executor_loops import without_heartbeats
+from simulated_calls import without_heartbeats
 
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.system import analyze_system
