@@ -36,7 +36,6 @@ from amalthea_uros.timing.dataflow.events import EventOccurrence, JobPhase
 from amalthea_uros.timing.dataflow.stages import NEXT_JOB, SAME_JOB, At, Fire, Pass, Read, Stage
 from amalthea_uros.timing.demand.model import MAX_TIME_BASE
 from amalthea_uros.timing.jobs.counters import first_effect, is_always, max_distance
-from amalthea_uros.timing.jobs.positions import ActivityPosition
 from amalthea_uros.timing.response import Response
 from amalthea_uros.timing.scheduling.scheduled import ScheduledProcess
 from amalthea_uros.units import Time
@@ -117,14 +116,14 @@ class StageTiming:
 
     def _left_after(self, base: Stage) -> Time:
         """The minimum demand of a job after it has triggered the next stage."""
-        return self._demand_after(base.process, base.leave.position) if isinstance(base.leave, Fire) else 0
+        return self._demand_after(base.process, base.leave) if isinstance(base.leave, Fire) else 0
 
-    def _demand_after(self, process: Process, position: ActivityPosition | None) -> Time:
-        """The minimum demand of a job after a position of it; 0 if that is unknown."""
+    def _demand_after(self, process: Process, boundary: Fire | Read) -> Time:
+        """The minimum demand of a job after something that it does; 0 if that is unknown."""
         model, scheduled = self.context.demand_model, self.context.scheduled.get(process.name)
-        if scheduled is None or position is None:
+        if scheduled is None or boundary.position is None:
             return 0
-        before = model.of_position(position, scheduled.core, including=True)
+        before = model.of_position(boundary.position, scheduled.core, including=True)
         everything = model.of_activities(process, process.activities, scheduled.core)
         return (everything.best - before.best) * self.unit // model.time_base(scheduled.core)
 
@@ -311,7 +310,7 @@ class StageTiming:
             return False
         if writer.jobs_later is not None or isinstance(writer.leave, Pass) or not isinstance(reader.enter, Read):
             return False
-        if is_inside(reader.enter) and not self._demand_after(reader.process, reader.enter.position):
+        if is_inside(reader.enter) and not self._demand_after(reader.process, reader.enter):
             return False
         releases = known_releases(reader.process, self.context.system)
         if releases is None or self.context.has_loops(self.context.scheduled[reader.process.name].core):

@@ -70,7 +70,7 @@ def _of_application(seed: int, tally: Tally) -> list[str]:
     if drawn is None:
         return []
     (content, plan), found = drawn, []
-    system, until = describe_content(content).assembly.system, S // 4
+    system, until = loops.without_heartbeats(describe_content(content).assembly.system), S // 4
     loops.test_whole_way.prepared(content, plan)
     plan["blocks"] = system.network.wires[0].keeps_sender
     seen = Player(plan, loops.Least()).play(until)
