@@ -31,8 +31,8 @@ def test_the_wire_during_the_start():
     # Requests have at least 24 B: three frames of 8 bytes, and one of 4. Acknowledgements can be missing.
     least = 6 * (3 * 111 + 79) + (2 * 111 + 95) + 4 * 222
     assert start.traffic.least_wire_time == least * BIT
-    # Each side can ask for acknowledgements every 100 ms, and is answered: four messages of 13 B, two frames each.
-    heartbeats = Fraction(4 * 2 * 135 * BIT, 100 * MS)
+    # The client can ask for acknowledgements every 100 ms, the agent every 200 ms, and each is answered: 13 B each, in two frames.
+    heartbeats = Fraction(2 * 2 * 135 * BIT, 100 * MS) + Fraction(2 * 2 * 135 * BIT, 200 * MS)
     assert start.most_load == Fraction(start.traffic.most_wire_time, start.min_time) + heartbeats
 
 
