@@ -2,6 +2,7 @@
 
 import json
 from fractions import Fraction
+from functools import partial
 
 import pytest
 from hypothesis import given
@@ -19,6 +20,7 @@ from amalthea_uros.timing.event_models.models import (
     AggregatedEventModel,
     Delayed,
     Downsampled,
+    EventModel,
     EventPattern,
     MinimumDistances,
     Multiplied,
@@ -163,3 +165,13 @@ def test_the_tutorial_of_compositional_analysis():
                     follower = chain[chain.index(task.name) + 1]
                     events[follower] = completions(task.events, response, task.demand.best)
     assert worst == case["expected_wcrt"]
+
+
+@pytest.mark.parametrize(
+    "derived", [partial(Delayed, variation=7), partial(Multiplied, factor=3), partial(Downsampled, prescaler=4)]
+)
+@pytest.mark.parametrize("source", [PeriodicEvents(10, 13, 2), SporadicEvents(9), EventPattern(20, (0, 3, 4)), SingleEvent()])
+def test_most_events_in_a_window_are_those_that_the_distances_allow(source, derived):
+    events = derived(source)
+    for window in range(80):
+        assert events.eta_plus(window) == EventModel.eta_plus(events, window)

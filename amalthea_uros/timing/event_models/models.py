@@ -283,6 +283,9 @@ class Multiplied(DerivedEvents):
     def delta_min(self, count: int) -> Time:
         return self.events.delta_min(-(-count // self.factor))
 
+    def eta_plus(self, window: Time) -> int:
+        return self.factor * self.events.eta_plus(window)
+
     @property
     def rate(self) -> Fraction:
         return self.events.rate * self.factor
@@ -296,6 +299,9 @@ class Downsampled(DerivedEvents):
 
     def delta_min(self, count: int) -> Time:
         return self.events.delta_min((count - 1) * self.prescaler + 1) if count > 1 else 0
+
+    def eta_plus(self, window: Time) -> int:
+        return -(-self.events.eta_plus(window) // self.prescaler)
 
     @property
     def rate(self) -> Fraction:
@@ -364,6 +370,9 @@ class Delayed(DerivedEvents):
 
     def delta_min(self, count: int) -> Time:
         return max(0, self.events.delta_min(count) - self.variation) if count > 1 else 0
+
+    def eta_plus(self, window: Time) -> int:
+        return self.events.eta_plus(window + self.variation) if window > 0 else 0
 
 
 @dataclass(frozen=True)
