@@ -43,7 +43,7 @@ LINES = {
     "simulate": 7823,
     "source": 1887,
     "spec": 2047,
-    "timing": 5128,
+    "timing": 5140,
     "trace": 4803,
     "units": 164,
     "uros": 6385,

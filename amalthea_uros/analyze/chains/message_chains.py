@@ -32,7 +32,6 @@ from amalthea_uros.executors.semantics.demand import IterationDemand
 from amalthea_uros.perf.constraints import LatencyConstraint
 from amalthea_uros.perf.events import EventChain, LabelEvent
 from amalthea_uros.perf.network import Direction, Span, Transmission
-from amalthea_uros.timing.activation.activations import comes_back
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.dataflow.routes import crosses
 from amalthea_uros.timing.response import Claim
@@ -57,8 +56,7 @@ def evaluate_executors_and_messages(solution: Solution) -> tuple[Results[Executo
     jitter, sending = arrival_jitter(solution), sending_times(solution)
     executors = Results(evaluate_executors(solution, sending=sending, extra_jitter=jitter))
     system = solution.context.system
-    coming_back = frozenset(name for name, each in system.transmissions.items() if comes_back(each, system))
-    evaluator = MessageChains(ChainEvaluator(solution), CallbackHops(executors, jitter, coming_back), sending)
+    evaluator = MessageChains(ChainEvaluator(solution), CallbackHops(executors, jitter, system), sending)
     limited = {each.chain for each in system.constraints.constraints if isinstance(each, LatencyConstraint)}
     crossing = [chain for chain in system.events.chains if crosses(chain, solution.context.dataflow)]
     chains = Results(evaluator.chain(chain) for chain in sorted(crossing, key=lambda chain: chain.name not in limited))

@@ -26,6 +26,8 @@ from amalthea_uros.executors.results import ExecutorResult, HandleResult, Hop, H
 from amalthea_uros.executors.semantics.loops import longest_until_due
 from amalthea_uros.perf.events import Event, ProcessChange, ProcessEvent
 from amalthea_uros.perf.executors import HandleKind
+from amalthea_uros.perf.system import System
+from amalthea_uros.timing.activation.relays import comes_regularly
 from amalthea_uros.timing.dataflow.links import UNTIMED
 from amalthea_uros.timing.dataflow.routes import routes
 from amalthea_uros.timing.touching import awaited
@@ -40,12 +42,11 @@ class CallbackHops:
     ----------
     executors : the results of all executors in loops
     jitter : of the arrivals at handles, by name, besides what is stated; None if it is unknown
-    coming_back : the transmissions of messages that are published here
     """
 
     executors: Results[ExecutorResult]
     jitter: Mapping[str, Time | None]
-    coming_back: frozenset[str] = frozenset()
+    system: System
 
     def response(self, segment: CallbackSegment) -> Hop:
         """From the arrival of a message, or from when a timer is due, to the end of the callback."""
@@ -117,8 +118,7 @@ class CallbackHops:
         if handle.kind is HandleKind.TIMER:
             return longest_until_due(handle)
         jitter = self.jitter.get(handle.name, 0)
-        is_regular = handle.is_periodic and handle.transmission not in self.coming_back
-        if handle.interval is None or jitter is None or not is_regular:
+        if handle.interval is None or jitter is None or not comes_regularly(handle, self.system):
             return None
         return handle.interval + handle.jitter + jitter
 

@@ -11,6 +11,7 @@ from amalthea_uros.executors.semantics.loops import busy_polls, longest_wait, mi
 from amalthea_uros.executors.semantics.readiness import can_defer, certain_rate, has_backlog, messages, shares_session, timers
 from amalthea_uros.executors.semantics.suspension import SESSION_ASSUMPTION
 from amalthea_uros.perf.executors import Executor, HandleKind, LoopKind
+from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.notes import AnalysisNotes
 from amalthea_uros.units import SECOND, Rounding, Time, rounded_time_text, time_text
 
@@ -25,7 +26,7 @@ def note_executors(results: Iterable[ExecutorResult], solved: SolvedSystem) -> N
     notes, executors = solved.context.notes, solved.context.system.executors
     for executor, result in zip(executors, results, strict=True):
         _assume(executor, executors, notes)
-        _note_loop(executor, executors, result, notes)
+        _note_loop(executor, solved.context.system, result, notes)
         _note_waiting(executor, executors, notes)
         for handle in result.handles:
             _note_handle(handle, executor, notes)
@@ -47,15 +48,15 @@ def _assume(executor: Executor, others: Sequence[Executor], notes: AnalysisNotes
         notes.assume(f"executors: {SESSION_ASSUMPTION}")
 
 
-def _note_loop(executor: Executor, executors: Sequence[Executor], result: ExecutorResult, notes: AnalysisNotes) -> None:
+def _note_loop(executor: Executor, system: System, result: ExecutorResult, notes: AnalysisNotes) -> None:
     growing = next((handle for handle in result.handles if handle.response.is_overload), None)
     if growing is not None:
-        age = "" if has_backlog(executor, executors) else _age_after(60 * SECOND, executor, result)
+        age = "" if has_backlog(executor, system.executors) else _age_after(60 * SECOND, certain_rate(executor, system), result)
         why = growing.response.reason.removeprefix("overload: ").removesuffix(", so that messages wait longer and longer")
         message = f"messages wait longer and longer in {executor.name!r}: {why}{age}"
         notes.error("EXE012", message, executor)
     elif executor.waiting.messages_per_wait == 1 and messages(executor) and min_pace(executor):
-        most, arriving = Fraction(1, min_pace(executor)), certain_rate(executor)
+        most, arriving = Fraction(1, min_pace(executor)), certain_rate(executor, system)
         if arriving > most * NEAR_CAPACITY:
             message = (
                 f"{executor.name!r} takes at most one message per iteration, so at most {float(most * SECOND):.4g} messages/s "
@@ -72,10 +73,10 @@ def _note_loop(executor: Executor, executors: Sequence[Executor], result: Execut
         notes.warning("EXE020", message, executor)
 
 
-def _age_after(time: Time, executor: Executor, result: ExecutorResult) -> str:
+def _age_after(time: Time, arriving: Fraction, result: ExecutorResult) -> str:
     """How old the messages are that are served after a time: the n-th arrives after n intervals, and is served after n iterations."""
     served = max(result.loop.least, 1)
-    age = time - Fraction(time) / (served * certain_rate(executor))
+    age = time - Fraction(time) / (served * arriving)
     return f"; after {time_text(time)} they are at least {rounded_time_text(age, Rounding.DOWN)} old" if age > 0 else ""
 
 

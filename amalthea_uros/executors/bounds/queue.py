@@ -116,7 +116,7 @@ def certain_overload(cycle: Cycle) -> Delay | None:
 
     It depends on no jitter: that of periodic messages does not change their rate.
     """
-    rate, most = certain_rate(cycle.executor), cycle.most_served
+    rate, most = certain_rate(cycle.executor, cycle.solved.context.system), cycle.most_served
     if most is None or rate * cycle.shortest_with_message <= most:
         return None
     served = _per_second(Fraction(most, cycle.shortest_with_message))

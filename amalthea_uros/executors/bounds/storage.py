@@ -39,7 +39,8 @@ from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.bounds.cycle import Cycle
 from amalthea_uros.executors.semantics.loops import longest_wait
 from amalthea_uros.executors.semantics.readiness import arrivals, can_defer, messages, sharing
-from amalthea_uros.perf.executors import Executor, Handle
+from amalthea_uros.perf.executors import Handle
+from amalthea_uros.timing.activation.relays import comes_regularly
 from amalthea_uros.timing.event_models.models import EventModel
 from amalthea_uros.units import Time
 
@@ -120,7 +121,7 @@ def storage_of(handle: Handle, cycle: Cycle, extra_jitter: Mapping[str, Time | N
         events = arrivals(handle, extra_jitter)
     except UnknownError:
         return None
-    gaps = () if cycle.loses_messages else tuple(_gaps(executor, extra_jitter))
+    gaps = () if cycle.loses_messages else tuple(_gaps(cycle, extra_jitter))
     if gaps:
         cycle.solved.context.notes.assume(ASSUMPTION)
     return StorageConditions(
@@ -158,10 +159,10 @@ def _stored(events: EventModel, age: Time, length: Time) -> int | None:
     return None
 
 
-def _gaps(executor: Executor, extra_jitter: Mapping[str, Time | None]) -> Iterator[Time]:
+def _gaps(cycle: Cycle, extra_jitter: Mapping[str, Time | None]) -> Iterator[Time]:
     """The greatest distances of messages that come for certain, by handles."""
-    for handle in messages(executor):
-        if handle.is_periodic and handle.interval:
+    for handle in messages(cycle.executor):
+        if comes_regularly(handle, cycle.solved.context.system):
             with suppress(UnknownError):
                 events = arrivals(handle, extra_jitter)
                 yield events.period + events.jitter

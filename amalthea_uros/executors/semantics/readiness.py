@@ -15,6 +15,8 @@ from fractions import Fraction
 
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.executors import Executor, Handle, HandleKind, TriggerKind
+from amalthea_uros.perf.system import System
+from amalthea_uros.timing.activation.relays import comes_regularly
 from amalthea_uros.timing.event_models.models import PeriodicEvents, SporadicEvents
 from amalthea_uros.units import SECOND, Time
 
@@ -131,7 +133,7 @@ def arrivals(handle: Handle, extra_jitter: Mapping[str, Time | None]) -> Periodi
     return kind(handle.interval, handle.jitter + extra)
 
 
-def certain_rate(executor: Executor) -> Fraction:
-    """How many messages per time arrive at an executor for certain: those that are periodic."""
-    periods = (handle.interval for handle in messages(executor) if handle.is_periodic)
+def certain_rate(executor: Executor, system: System) -> Fraction:
+    """How many messages per time arrive at an executor for certain: those that come regularly."""
+    periods = (handle.interval for handle in messages(executor) if comes_regularly(handle, system))
     return sum((Fraction(1, period) for period in periods if period), Fraction(0))

@@ -27,6 +27,7 @@ from amalthea_uros.perf.os import Semaphore, SemaphoreKind
 from amalthea_uros.perf.software import Runnable, Task
 from amalthea_uros.perf.stimuli import InterProcess
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.activation.relays import relayed
 
 
 @dataclass(frozen=True, slots=True)
@@ -186,15 +187,3 @@ def _sent(system: System) -> Iterator[Transmission]:
         is_reply = each.purpose is Purpose.ACKNOWLEDGEMENT and (system.executors or each.direction is Direction.TO_CONTROLLER)
         if is_reply or is_asking or each.name in published or relayed(each, system):
             yield each
-
-
-def relayed(transmission: Transmission, system: System) -> list[Transmission]:
-    """The messages that the agent sends back here as another one."""
-    if transmission.direction is not Direction.TO_CONTROLLER or transmission.purpose is not Purpose.DATA:
-        return []
-    others = system.transmissions.values()
-    return [
-        each
-        for each in others
-        if each.direction is Direction.TO_AGENT and each.purpose is Purpose.DATA and each.topic == transmission.topic
-    ]

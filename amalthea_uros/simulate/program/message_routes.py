@@ -8,12 +8,12 @@ from itertools import pairwise, product
 
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.semantics.callbacks import handle_around, taker
-from amalthea_uros.executors.semantics.steps import relayed
 from amalthea_uros.perf.activities import Call
 from amalthea_uros.perf.events import Event, EventChain, RunnableChange, RunnableEvent
 from amalthea_uros.perf.executors import Handle
 from amalthea_uros.perf.network import Direction, Transmission
 from amalthea_uros.simulate.program.messages import MessageRecords
+from amalthea_uros.timing.activation.relays import relayed
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.dataflow.chains import sequences, unfold
 from amalthea_uros.timing.dataflow.events import EventOccurrence

@@ -8,7 +8,6 @@ from fractions import Fraction
 
 from amalthea_uros.executors.semantics.callbacks import taker
 from amalthea_uros.executors.semantics.readiness import messages
-from amalthea_uros.executors.semantics.steps import relayed
 from amalthea_uros.executors.semantics.suspension import parts
 from amalthea_uros.perf.activities import Trigger, walk
 from amalthea_uros.perf.distributions import Boundaries, Uniform
@@ -24,6 +23,7 @@ from amalthea_uros.simulate.program.image import Image, Operation
 from amalthea_uros.simulate.program.resources import Resources
 from amalthea_uros.simulate.sampling.streams import durations
 from amalthea_uros.simulate.sampling.words import RandomSource
+from amalthea_uros.timing.activation.relays import relayed
 from amalthea_uros.units import Time
 
 #: Assumptions.

@@ -20,6 +20,7 @@ from amalthea_uros.perf.network import Direction, Purpose, Transmission
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Counter, Custom, EventTriggered, InterProcess, Stimulus
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.activation.relays import comes_regularly
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.timing.demand.job_paths import most_in_a_job
 from amalthea_uros.timing.event_models.models import (
@@ -152,8 +153,7 @@ class Activations:
         if not isinstance(messages, PeriodicEvents) or isinstance(messages, SporadicEvents):
             return messages
         handles = (handle for executor in self.system.executors for handle in executor.handles)
-        is_taken = any(handle.transmission == transmission.name and handle.is_periodic for handle in handles)
-        if is_taken and not comes_back(transmission, self.system):
+        if any(handle.transmission == transmission.name and comes_regularly(handle, self.system) for handle in handles):
             return messages
         return SporadicEvents(messages.period, messages.jitter, messages.min_interarrival)
 
@@ -309,13 +309,6 @@ def _share(counter: Counter | None) -> Fraction:
 
 def _counted(events: EventModel, counter: Counter | None) -> EventModel:
     return Downsampled(events, counter.prescaler) if counter is not None and counter.prescaler > 1 else events
-
-
-def comes_back(transmission: Transmission, system: System) -> bool:
-    """Whether the agent sends what is received, because it is also published here."""
-    return transmission.topic is not None and any(
-        each.topic == transmission.topic and each.direction is Direction.TO_AGENT for each in system.transmissions.values()
-    )
 
 
 @dataclass(frozen=True, slots=True)

@@ -92,3 +92,30 @@ def test_acknowledgements_that_take_longer_than_the_distance_of_messages_have_no
     (handle,) = analyze_system(bare(most="15 ms")).executors["executor"].handles
     assert handle.lost is not None
     assert handle.response.worst is None or handle.terms[0].name == "storage"
+
+
+BACK = """
+amuros: 1
+name: back
+hardware: {platform: rp2040, frequency: 150 MHz}
+middleware:
+  executor: {name: executor, loop: {spin_some: 100 ms}, callbacks: in-executor, execution_time: 30 us}
+  transport: {usb_cdc: {latency: {min: 0 ms, max: 1 ms}}}
+  agent: {to_controller: {min: 0 ms, max: 1 ms}, to_host: {min: 0 ms, max: 1 ms}, acknowledgement: {min: 0 ms, max: 2 ms}}
+application:
+  nodes:
+    - name: n
+      publishers: [{topic: v, message_size: 8 B, reliability: reliable}]
+      subscriptions:
+        - {name: own, topic: OWN, message_size: 8 B, rate: 20 Hz, execution_time: 100 us}
+        - {name: rare, topic: r, message_size: 8 B, rate: 2 Hz, execution_time: 1 ms, publishes: [v]}
+"""
+
+
+def test_a_message_that_comes_back_does_not_end_waits_for_certain(author):
+    # What `own` receives is published by `rare`, whose messages come every 500 ms, not every 50 ms: it ends no wait before its timeout.
+    def rare(topic):
+        handle = analyze_system(author.describe(BACK.replace("OWN", topic)).system).executors["executor"].handles["rare"]
+        return handle.response.worst
+
+    assert rare("other") < 100 * MILLISECOND < rare("v")

@@ -1,0 +1,25 @@
+"""Messages that the agent sends back to the controller that has published them: their times are those of the publications."""
+
+from __future__ import annotations
+
+from amalthea_uros.perf.executors import Handle
+from amalthea_uros.perf.network import Direction, Purpose, Transmission
+from amalthea_uros.perf.system import System
+
+
+def relayed(transmission: Transmission, system: System) -> list[Transmission]:
+    """The messages that the agent sends back here as another one."""
+    if transmission.direction is not Direction.TO_CONTROLLER or transmission.purpose is not Purpose.DATA:
+        return []
+    others = system.transmissions.values()
+    return [
+        each
+        for each in others
+        if each.direction is Direction.TO_AGENT and each.purpose is Purpose.DATA and each.topic == transmission.topic
+    ]
+
+
+def comes_regularly(handle: Handle, system: System) -> bool:
+    """Whether messages of a handle come for certain, one in each interval: the host publishes them, and nobody here."""
+    transmission = system.transmissions.get(handle.transmission or "")
+    return handle.is_periodic and (transmission is None or not relayed(transmission, system))
