@@ -14,17 +14,14 @@ from decimal import Decimal, InvalidOperation
 from fractions import Fraction
 from pathlib import Path
 
+from amalthea_uros.compare.measured.columns import LARGEST, UNITS
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.measure.series import Counts, MeasuredKind, Measurement, Series
 from amalthea_uros.measure.window import MeasurementWindow
 from amalthea_uros.trace.files import TracePlace, TraceProblems, opened_text
-from amalthea_uros.units import MICROSECOND, MILLISECOND, NANOSECOND, SECOND
 
-_UNITS = {"ps": 1, "ns": NANOSECOND, "us": MICROSECOND, "ms": MILLISECOND, "s": SECOND}
-_COLUMN = re.compile(r"(value|start|end|time)_(ps|ns|us|ms|s)")
+_COLUMN = re.compile(rf"(value|start|end|time)_({'|'.join(UNITS)})")
 _PLAIN = ("object", "quantity", "kind")
-#: Larger times do not fit into the columns.
-_LARGEST = 2**62
 
 
 def columns_of(header: list[str]) -> dict[str, tuple[int, int]] | None:
@@ -33,7 +30,7 @@ def columns_of(header: list[str]) -> dict[str, tuple[int, int]] | None:
     for place, name in enumerate(each.strip() for each in header):
         match = _COLUMN.fullmatch(name)
         if match is not None:
-            found[match[1]] = place, _UNITS[match[2]]
+            found[match[1]] = place, UNITS[match[2]]
         elif name in _PLAIN:
             found[name] = place, 1
     is_complete = "object" in found and ("value" in found or {"start", "end"} <= found.keys())
@@ -54,17 +51,16 @@ def measured_values(path: Path, window: MeasurementWindow) -> Measurement:
     Raises
     ------
     ReadError : the file cannot be read.
+    InvalidArgumentError : a part is to be measured of values without times.
     """
     problems = TraceProblems(path)
     with opened_text(path, problems) as lines:
-        table = _Table(problems, window)
+        table = _Table(path.name, problems, window)
         table.read(csv.reader(lines))
     return Measurement(
         source=str(path),
         format="measured values",
-        digest="",
         duration=table.duration,
-        resolution=None,
         series=tuple(table.series()),
         findings=problems.findings,
     )
@@ -72,6 +68,7 @@ def measured_values(path: Path, window: MeasurementWindow) -> Measurement:
 
 @dataclass(slots=True)
 class _Table:
+    name: str
     problems: TraceProblems
     window: MeasurementWindow
     _rows: dict[tuple[str, str, str], list[tuple[int, int | None]]] = field(default_factory=dict)
@@ -81,6 +78,8 @@ class _Table:
 
     def read(self, lines: csv._reader) -> None:  # type: ignore[name-defined]
         self._columns = columns_of(next(lines, [])) or {}
+        if not {"time", "end"} & self._columns.keys():
+            self.window.refuse_part(self.name)
         while True:
             try:
                 for fields in lines:
@@ -111,9 +110,7 @@ class _Table:
             self._first = time if self._first is None else self._first
             self._last = max(self._last, time)
             offset = time - self._first
-            if not self.window.is_all and not (
-                self.window.start <= offset and (self.window.end is None or offset < self.window.end)
-            ):
+            if not self.window.contains(offset):
                 return
             time = offset
         self._rows.setdefault((name, quantity, kind), []).append((value, time))
@@ -135,7 +132,7 @@ class _Table:
     def _time(self, fields: list[str], column: str) -> int:
         place, unit = self._columns[column]
         time = round(Fraction(Decimal(fields[place].strip())) * unit)
-        if abs(time) > _LARGEST:
+        if abs(time) > LARGEST:
             raise ValueError(column)
         return time
 
