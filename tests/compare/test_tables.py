@@ -56,7 +56,7 @@ def test_a_quantity_can_be_the_difference_of_two_time_stamps_since_1970(tmp_path
     [
         ("cycle,rtt_ms\n", ["rtt=a"], "no column 'rtt'"),
         ("cycle,rtt\n1,2\n", ["rtt=a"], "names no unit"),
-        ("", ["rtt_ms=a"], "it is empty"),
+        ("", ["rtt_ms=a"], "its header is empty"),
         ("rtt_ms,rtt_ms\n4,400\n", ["rtt_ms=a"], "2 columns 'rtt_ms'"),
         ("status,status,rtt_ms\nok,lost,4\n", ["rtt_ms=a"], "2 columns 'status'"),
     ],
@@ -191,3 +191,19 @@ def test_reports_of_a_topic_have_the_extremes_of_all_and_the_mean_of_the_last(tm
     assert only(measure(path)).quantity == "start_to_start"
     path.write_text(report.format("0.005", "0.003", "0.006", 10) + report.format("1e99999999", "0.004", "1e99999999", 20))
     assert only(measure(path)).statistics.max == 6 * MILLISECOND
+
+
+@pytest.mark.parametrize("text", ["nan", "inf", "1e400", "1e999999", "1e99999999", '"5', "4,5", "fast"])
+def test_a_value_that_is_no_time_is_an_error_at_its_line(tmp_path, text):
+    path = tmp_path / "values.csv"
+    path.write_text(f"object,value_us\na,4\na,{text}\na,6\n")
+    found = measure(path)
+    assert only(found).values.tolist() == [4 * MICROSECOND, 6 * MICROSECOND]
+    assert [(each.rule, each.location.line) for each in found.findings] == [("MEA009", 3)]
+
+
+def test_two_columns_with_values_are_refused(tmp_path):
+    path = tmp_path / "values.csv"
+    path.write_text("object,value_us,value_ms\na,4000,400\n")
+    with pytest.raises(ReadError, match="2 columns with 'value'"):
+        measure(path)

@@ -53,17 +53,25 @@ def read_records(lines: Iterator[str], problems: TraceProblems) -> Iterator[Reco
 
 
 def _from_csv(lines: Iterator[tuple[int, str]], header: str, problems: TraceProblems) -> Iterator[Record]:
-    delimiter = max(_DELIMITERS, key=header.count)
+    delimiter, width = max(_DELIMITERS, key=header.count), 0
     for number, line in lines:
+        place = TracePlace(number, 1, line.rstrip("\r\n"))
         try:
             # Fields do not go over several lines, so that a quote that is missing spoils one row only.
-            fields = next(csv.reader([line], delimiter=delimiter, strict=True))
+            fields = [field.strip() for field in next(csv.reader([line], delimiter=delimiter, strict=True))]
         except csv.Error as error:
-            place = TracePlace(number, 1, line.rstrip("\r\n"))
-            problems.add("MEA009", Severity.ERROR, f"a line is not CSV: {error}; it counts as lost", place)
-            yield Record(number, [])
-            continue
-        yield Record(number, [field.strip() for field in fields])
+            problems.add("MEA009", Severity.ERROR, f"a line is not CSV: {error}; it has no value", place)
+            fields = []
+        width = width or len(fields)
+        if any(fields[width:]):
+            message = "a line has more fields than the header; it has no value"
+            problems.add("MEA009", Severity.ERROR, message, place, _SEPARATORS)
+            fields = []
+        yield Record(number, fields)
+
+
+#: A number with a decimal comma would be two fields.
+_SEPARATORS = "If numbers have decimal commas, write them with points."
 
 
 def _from_documents(lines: Iterator[tuple[int, str]], problems: TraceProblems) -> Iterator[Record]:

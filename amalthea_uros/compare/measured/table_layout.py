@@ -48,14 +48,12 @@ class TableLayout:
 
     Attributes
     ----------
-    width : number of columns of the header
     starts : None for a column with values
     status : the place of the column that says whether a row has values; None if all have
     time : when a row was complete; None if no column says it
     """
 
     columns: tuple[TableColumn, ...]
-    width: int
     ends: tuple[TimesColumn, ...]
     starts: tuple[TimesColumn | None, ...]
     status: int | None
@@ -83,7 +81,6 @@ class HeaderColumns:
         self._refuse_other_unit([name for each in columns for name in each.columns], unit)
         return TableLayout(
             columns=tuple(columns),
-            width=len(names),
             ends=tuple(self._time(each.column, unit) for each in columns),
             starts=tuple(None if each.start is None else self._time(each.start, unit) for each in columns),
             status=self._place(rows.column) if valid is not None or rows.column in names else None,
@@ -98,7 +95,7 @@ class HeaderColumns:
             raise self._error(message, "Give each column a name of its own.")
         if name in names:
             return names.index(name)
-        what = f"it has {listed(names)}" if names else "it is empty"
+        what = f"it has {listed(names)}" if names else "its header is empty"
         advice = did_you_mean(name, dict.fromkeys(names)) or "name a column of the header with --column"
         raise self._error(f"the table has no column {name!r}; {what}", f"{advice[:1].upper()}{advice[1:]}")
 

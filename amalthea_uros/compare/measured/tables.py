@@ -71,10 +71,6 @@ def _is_empty(fields: Sequence[str], place: int) -> bool:
     return place >= len(fields) or fields[place].lower() in _EMPTY
 
 
-#: A row that is divided by decimal commas has wrong values in its columns.
-_SEPARATORS = "If numbers have decimal commas, separate the columns by semicolons, and write the numbers with points."
-
-
 @dataclass(slots=True)
 class _Table:
     """The values of the columns, and how many rows have none."""
@@ -108,10 +104,6 @@ class _Table:
         """Take a row."""
         if not record.fields:
             self._lose(record.rows)
-            return
-        if any(record.fields[self.layout.width :]):
-            self._lose()
-            self._wrong(record, "a row has more fields than the header; it counts as lost", _SEPARATORS)
             return
         try:
             time = self._time(record)
@@ -193,8 +185,8 @@ class _Table:
             "MEA015", Severity.WARNING, message, place, "See the share of lost values before the maxima are used."
         )
 
-    def _wrong(self, record: Record, message: str, advice: str = "") -> None:
-        self.problems.add("MEA009", Severity.ERROR, message, TracePlace(record.line, 1, ",".join(record.fields)), advice)
+    def _wrong(self, record: Record, message: str) -> None:
+        self.problems.add("MEA009", Severity.ERROR, message, TracePlace(record.line, 1, ",".join(record.fields)))
 
     def series(self) -> Iterator[Series]:
         """The values of each column."""
